@@ -1,0 +1,25 @@
+"""Errors a user may meet, each with the exit code the command line gives it."""
+
+
+class Hsr8Error(Exception):
+    """Base of every error of the simulator; its message is meant for people."""
+
+    exit_code = 3
+
+
+class UsageError(Hsr8Error):
+    """The command line asks for something that cannot be done as asked."""
+
+    exit_code = 2
+
+
+class ScenarioError(UsageError):
+    """A scenario file or a setting is wrong: what, where, why, and what is allowed."""
+
+
+class RenderingUnavailable(UsageError):
+    """No OpenGL that can draw without a display was found."""
+
+
+class SimulationDiverged(Hsr8Error):
+    """The physics blew up: names the tick, the body and the last command."""

@@ -1,0 +1,1 @@
+"""Evaluation: metrics of a run and whether it passed."""

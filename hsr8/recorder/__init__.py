@@ -1,0 +1,1 @@
+"""Recorder: run folder and Rerun log, both listeners of the loop."""

@@ -1,0 +1,77 @@
+"""What the loop publishes and who may listen."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.world.truth import Truth
+from navigation.belief import Belief
+from navigation.decision import GazeDecision, MotionDecision, Task
+from vision.detection import Detection
+from walking.command import HeadTarget, VelocityCommand
+from walking.state import WalkingState
+
+Image = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRecord:
+    """What one camera frame led to.
+
+    Attributes:
+        index: number of the frame.
+        time: capture time [s].
+        image: (height, width, 3) RGB, or None with the analytic camera.
+        detections: what vision found in it.
+        belief: what the robot believes after it.
+        gaze: where it decided to look.
+        motion: how it decided to move (the decision in force; new once per footstep).
+        task: where it is going.
+    """
+
+    index: int
+    time: float
+    image: Image | None
+    detections: tuple[Detection, ...]
+    belief: Belief
+    gaze: GazeDecision
+    motion: MotionDecision
+    task: Task
+
+
+@dataclass(frozen=True, slots=True)
+class TickRecord:
+    """Published once per record period (20 ms by default).
+
+    Attributes:
+        tick: number of the control tick.
+        time: simulated time [s].
+        truth: state of the world.
+        walking: what the walking engine knows of itself.
+        command: velocity asked of it.
+        head: gaze asked of it.
+        frame: the camera frame taken since the last record, if any.
+    """
+
+    tick: int
+    time: float
+    truth: Truth
+    walking: WalkingState
+    command: VelocityCommand
+    head: HeadTarget
+    frame: FrameRecord | None
+
+
+class Listener(Protocol):
+    """Somebody who watches a run; watching never changes it."""
+
+    def on_record(self, record: TickRecord) -> None:
+        """Take one record."""
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Take one event, for example ``via_point``, ``collision``, ``fall``."""
+
+    def close(self, exit_reason: str) -> None:
+        """The run has ended, for whatever reason."""

@@ -1,0 +1,1 @@
+"""Pictures and video made from a recorded run."""

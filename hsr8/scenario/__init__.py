@@ -1,0 +1,1 @@
+"""Scenarios: what a file may say, and the file read and checked."""

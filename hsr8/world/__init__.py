@@ -1,0 +1,1 @@
+"""The world: MuJoCo model, body, sensors and cameras."""

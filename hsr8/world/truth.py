@@ -1,0 +1,58 @@
+"""Ground truth of one instant: it leaves the world towards recorder and metrics only."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """The robot touches an obstacle.
+
+    Attributes:
+        obstacle: index in the layout's obstacles.
+        moving: whether that obstacle is a mover.
+        robot_geom: name of the robot's geom.
+        force: normal force [N].
+        closing: the robot's own motion closes the gap.
+    """
+
+    obstacle: int
+    moving: bool
+    robot_geom: str
+    force: float
+    closing: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """State of the world at one instant.
+
+    Attributes:
+        time: simulated time [s].
+        qpos: generalised position of the robot, MuJoCo order (nq,).
+        robot: x, y, heading of the robot frame R in W (3,) [m, m, rad].
+        obstacle_positions: axes of all obstacles, layout order (n, 2) [m].
+        obstacle_velocities: (n, 2) [m/s].
+        contacts: everything touched since the previous record.
+        clearance: distance from the robot's body to the nearest obstacle [m].
+        joint_torque: (26,) [N m].
+        foot_force: true normal force under the left and right foot (2,) [N].
+        zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.
+        fallen: whether the robot lies.
+    """
+
+    time: float
+    qpos: Array
+    robot: Array
+    obstacle_positions: Array
+    obstacle_velocities: Array
+    contacts: tuple[Contact, ...]
+    clearance: float
+    joint_torque: Array
+    foot_force: Array
+    zmp: Array
+    fallen: bool

@@ -1,0 +1,1 @@
+"""Navigation: detections become a belief, the belief a gaze and a velocity."""

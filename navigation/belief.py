@@ -1,0 +1,104 @@
+"""What the robot believes: its pose, the obstacles, and how fresh its map is."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from navigation.local_map import LocalMap
+    from navigation.observation import CameraView
+
+Array = NDArray[np.float64]
+
+
+class Motion(StrEnum):
+    """Statistical verdict on whether an obstacle moves."""
+
+    STATIC = "static"
+    MOVING = "moving"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, slots=True)
+class Particles:
+    """Hypotheses where an unseen mover may be.
+
+    Attributes:
+        positions: in W (n, 2) [m].
+        velocities: in W (n, 2) [m/s].
+        weights: sum to one (n,).
+    """
+
+    positions: Array
+    velocities: Array
+    weights: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """One obstacle as the robot believes it to be, in the field frame W.
+
+    Attributes:
+        id: number, unique in a run.
+        label: colour class.
+        position: (2,) [m].
+        velocity: (2,) [m/s]; zero for a static track.
+        covariance: of (x, y, vx, vy) (4, 4).
+        radius: [m].
+        radius_sigma: [m].
+        motion: static, moving or not yet known.
+        hits: number of detections.
+        age: time since it was last detected [s].
+        last_seen: where it was detected last (2,) [m].
+        visible: detected in the latest frame.
+        particles: hypotheses of a lost track that may move, else None.
+    """
+
+    id: int
+    label: str
+    position: Array
+    velocity: Array
+    covariance: Array
+    radius: float
+    radius_sigma: float
+    motion: Motion
+    hits: int
+    age: float
+    last_seen: Array
+    visible: bool
+    particles: Particles | None = None
+
+    @property
+    def position_sigma(self) -> float:
+        """Square root of the largest eigenvalue of the position covariance [m]."""
+        return float(np.sqrt(max(np.linalg.eigvalsh(self.covariance[:2, :2])[-1], 0.0)))
+
+
+@dataclass(frozen=True, slots=True)
+class Belief:
+    """Everything the robot believes after a camera frame.
+
+    Attributes:
+        time: capture time of the frame [s].
+        pose: x, y, heading of R in W (3,) [m, m, rad], heading wrapped.
+        pose_covariance: (3, 3).
+        tracks: obstacles, by id.
+        local_map: occupancy, confidence and age per cell around the robot.
+        view: where the camera looked, angles in R.
+        seen_beacons: names of beacons in this frame.
+        lost: whether localization has noticed that it is lost.
+        filter_faults: how often a filter had to be re-initialised so far.
+    """
+
+    time: float
+    pose: Array
+    pose_covariance: Array
+    tracks: tuple[Track, ...]
+    local_map: "LocalMap"
+    view: "CameraView"
+    seen_beacons: tuple[str, ...]
+    lost: bool
+    filter_faults: int

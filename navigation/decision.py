@@ -1,0 +1,105 @@
+"""What navigation decides: where to look and how to move."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedLimits:
+    """Speed envelope of the walking layer, in R.
+
+    Attributes:
+        forward, backward, lateral: largest speeds, all positive [m/s].
+        turn: largest turn rate [rad/s].
+        acceleration: largest change of speed [m/s²].
+        footstep: time a command is latched for, one footstep [s].
+    """
+
+    forward: float
+    backward: float
+    lateral: float
+    turn: float
+    acceleration: float
+    footstep: float
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Where to go next.
+
+    Attributes:
+        target: destination in W (2,) [m].
+        heading: heading to arrive with [rad].
+        is_goal: final goal rather than a via point.
+        index: number of via points passed so far.
+        aligning: the goal is reached, only the heading is left to turn to.
+        done: nothing is left to do.
+    """
+
+    target: Array
+    heading: float
+    is_goal: bool
+    index: int
+    aligning: bool
+    done: bool
+
+
+@dataclass(frozen=True, slots=True)
+class GazeDecision:
+    """Where to look, and why.
+
+    Attributes:
+        pan, tilt: chosen gaze, left and up positive [rad].
+        psi_lm, psi_sf, psi_ob, psi_way: partial evaluations in [0, 1]; psi_ob is the
+            largest over the obstacles.
+        gaze_map: GM over (tilt, pan) cells (m, n).
+    """
+
+    pan: float
+    tilt: float
+    psi_lm: float
+    psi_sf: float
+    psi_ob: float
+    psi_way: float
+    gaze_map: Array
+
+
+@dataclass(frozen=True, slots=True)
+class VirtualObstacle:
+    """Dynamic virtual obstacle (Yoo & Kim, eq. (11)).
+
+    Attributes:
+        position: p_vo in W (2,) [m].
+        radius: R_vo [m].
+        track_id: the mover it belongs to.
+    """
+
+    position: Array
+    radius: float
+    track_id: int
+
+
+@dataclass(frozen=True, slots=True)
+class MotionDecision:
+    """How to move during the next footstep.
+
+    Attributes:
+        velocity: forward, left, turn in R (3,) [m/s, m/s, rad/s].
+        direction: field direction u_T in W [rad].
+        speed: speed along it after velocity modification [m/s].
+        situation: what velocity modification found: free, accelerate, brake, escape,
+            path_change.
+        virtual_obstacles: in force.
+        extended_radii: (track id, S_oe) of the obstacles the field uses.
+    """
+
+    velocity: Array
+    direction: float
+    speed: float
+    situation: str
+    virtual_obstacles: tuple[VirtualObstacle, ...]
+    extended_radii: tuple[tuple[int, float], ...]

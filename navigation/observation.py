@@ -1,0 +1,75 @@
+"""What reaches navigation: odometry and what one camera frame showed."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """One cylinder located in the robot frame R at the capture of a frame.
+
+    Attributes:
+        kind: obstacle or beacon.
+        label: colour class of an obstacle; name of a beacon, ``top/bottom`` colours.
+        distance: from the origin of R to the axis [m].
+        bearing: counter-clockwise from x of R [rad].
+        covariance: of (distance, bearing) (2, 2).
+        radius: [m].
+        radius_sigma: standard deviation of `radius` [m].
+        cut: the blob touches the border of the image.
+        occluded: something hides part of it.
+    """
+
+    kind: Literal["obstacle", "beacon"]
+    label: str
+    distance: float
+    bearing: float
+    covariance: Array
+    radius: float
+    radius_sigma: float
+    cut: bool = False
+    occluded: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class CameraView:
+    """Where the camera looked in the robot frame R when the frame was taken.
+
+    Attributes:
+        rotation: R_RC, columns right, down, forward (3, 3).
+        position: p_RC (3,) [m].
+        pan, tilt: measured head angles [rad].
+        horizontal_fov, vertical_fov: [rad].
+    """
+
+    rotation: Array
+    position: Array
+    pan: float
+    tilt: float
+    horizontal_fov: float
+    vertical_fov: float
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One camera frame as navigation sees it.
+
+    Attributes:
+        time: capture time [s].
+        odometry: pose of R in the odometry frame at capture (x, y, yaw) (3,) [m, m, rad];
+            yaw is unwrapped.
+        walking: whether the robot was stepping since the last frame.
+        view: where the camera looked.
+        observations: what it recognised.
+    """
+
+    time: float
+    odometry: Array
+    walking: bool
+    view: CameraView
+    observations: tuple[Observation, ...]

@@ -1,0 +1,79 @@
+"""Pinhole camera: the one place that turns pixels into rays and points into pixels."""
+
+from dataclasses import dataclass
+from math import tan
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class CameraPose:
+    """Pose of the camera in the robot frame R at the time an image was taken.
+
+    Attributes:
+        rotation: R_RC, columns are the camera's right, down and forward axes (3, 3).
+        position: p_RC (3,) [m]; z is the height above the floor.
+        tilt_sigma: standard deviation of the pitch of the camera [rad].
+        roll_sigma: standard deviation of the roll of the camera [rad].
+        yaw_sigma: standard deviation of the yaw of the camera [rad].
+        height_sigma: standard deviation of its height [m].
+    """
+
+    rotation: Array
+    position: Array
+    tilt_sigma: float = 0.0
+    roll_sigma: float = 0.0
+    yaw_sigma: float = 0.0
+    height_sigma: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class PinholeCamera:
+    """Ideal pinhole camera with square pixels and the centre in the middle.
+
+    Attributes:
+        width, height: size of the image [pixel].
+        focal: focal length [pixel].
+    """
+
+    width: int
+    height: int
+    focal: float
+
+    @classmethod
+    def from_vertical_fov(cls, width: int, height: int, fov: float) -> "PinholeCamera":
+        """Build from the vertical field of view `fov` [rad]."""
+        return cls(width, height, 0.5 * height / tan(0.5 * fov))
+
+    @property
+    def horizontal_fov(self) -> float:
+        """Horizontal field of view [rad]."""
+        return 2.0 * float(np.arctan(0.5 * self.width / self.focal))
+
+    @property
+    def vertical_fov(self) -> float:
+        """Vertical field of view [rad]."""
+        return 2.0 * float(np.arctan(0.5 * self.height / self.focal))
+
+    def rays(self, u: Array, v: Array) -> Array:
+        """Directions in the camera frame (..., 3), z = 1, of image points (u, v) [pixel].
+
+        Pixel (i, j) covers u from i to i + 1 and v from j to j + 1.
+        """
+        x = (np.asarray(u, float) - 0.5 * self.width) / self.focal
+        y = (np.asarray(v, float) - 0.5 * self.height) / self.focal
+        return np.stack([x, y, np.ones_like(x)], axis=-1)
+
+    def project(self, points: Array) -> Array:
+        """Image points (..., 2) [pixel] of `points` in the camera frame (..., 3) [m].
+
+        Points behind the camera give NaN.
+        """
+        p = np.asarray(points, float)
+        z = np.where(p[..., 2] > 1e-9, p[..., 2], np.nan)
+        u = 0.5 * self.width + self.focal * p[..., 0] / z
+        v = 0.5 * self.height + self.focal * p[..., 1] / z
+        return np.stack([u, v], axis=-1)

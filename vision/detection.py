@@ -1,0 +1,38 @@
+"""What the camera recognised in one image."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Detection:
+    """One cylinder seen in one image, located in the robot frame R at capture.
+
+    Attributes:
+        kind: obstacle or beacon.
+        label: colour class of an obstacle; ``top/bottom`` colour classes of a beacon.
+        bearing: direction of the axis, counter-clockwise from x of R [rad].
+        distance: horizontal distance of the axis from the origin of R [m].
+        covariance: of (distance, bearing) (2, 2) [m², m rad, rad²].
+        radius: radius of the cylinder [m].
+        radius_sigma: its standard deviation [m].
+        cut: the blob touches the border of the image.
+        occluded: another thing hides part of it.
+        box: left, top, right, bottom pixel of the blob, right and bottom exclusive.
+    """
+
+    kind: Literal["obstacle", "beacon"]
+    label: str
+    bearing: float
+    distance: float
+    covariance: Array
+    radius: float
+    radius_sigma: float
+    cut: bool
+    occluded: bool
+    box: tuple[int, int, int, int]

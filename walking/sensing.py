@@ -1,0 +1,31 @@
+"""What the body feels: the only way the world reaches the walking library."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class BodySensors:
+    """One reading of all body sensors, taken at the start of a control tick.
+
+    Attributes:
+        joint_position: encoder angles in the order of ``JOINT_NAMES`` (26,) [rad].
+        joint_velocity: encoder rates in the same order (26,) [rad/s].
+        gyro: angular velocity of the trunk in the IMU frame (3,) [rad/s].
+        accelerometer: specific force in the IMU frame (3,) [m/s²].
+        orientation: attitude of the IMU as its own filter reports it, quaternion
+            w-x-y-z (4,); roll and pitch are absolute, yaw drifts.
+        foot_force: normal force under front-left, front-right, back-left and
+            back-right pad of the left and the right foot (2, 4) [N].
+    """
+
+    joint_position: Array
+    joint_velocity: Array
+    gyro: Array
+    accelerometer: Array
+    orientation: Array
+    foot_force: Array

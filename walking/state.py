@@ -1,0 +1,97 @@
+"""What walking knows of itself after a tick: odometry, camera pose, gait."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Phase(StrEnum):
+    """Phase of the gait."""
+
+    STANDING = "standing"
+    DOUBLE_SUPPORT = "double"
+    LEFT_SUPPORT = "left"
+    RIGHT_SUPPORT = "right"
+
+
+@dataclass(frozen=True, slots=True)
+class Footstep:
+    """A foothold in the odometry frame.
+
+    Attributes:
+        left: whether it is the left foot.
+        x, y: position of the foot frame on the floor [m].
+        yaw: direction of the foot [rad].
+    """
+
+    left: bool
+    x: float
+    y: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class Odometry:
+    """Pose of the robot frame R in the odometry frame, which drifts.
+
+    Attributes:
+        x, y: position [m].
+        yaw: heading [rad], unwrapped.
+    """
+
+    x: float
+    y: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeadCameraPose:
+    """Pose of the head camera in the robot frame R, from encoders and IMU.
+
+    Attributes:
+        rotation: R_RC, columns are the camera's right, down and forward axes (3, 3).
+        position: p_RC (3,) [m]; its z is the height above the floor.
+        pan: measured pan of the head [rad].
+        tilt: measured tilt of the head joint [rad].
+    """
+
+    rotation: Array
+    position: Array
+    pan: float
+    tilt: float
+
+
+@dataclass(frozen=True, slots=True)
+class WalkingState:
+    """Snapshot of the walking engine after a tick.
+
+    Attributes:
+        phase: gait phase.
+        odometry: pose of R in the odometry frame.
+        camera: estimated pose of the head camera.
+        given: velocity (forward, left, turn) the engine really walks (3,) [m/s, m/s, rad/s].
+        footsteps: planned footholds, the support foot first.
+        zmp: planned zero-moment point in the odometry frame (2,) [m].
+        dcm: planned divergent component of motion in the odometry frame (2,) [m].
+        com: measured centre of mass in the odometry frame (2,) [m].
+        roll, pitch: measured attitude of the trunk [rad].
+        step_count: number of completed steps.
+        fallen: whether the robot believes that it has fallen.
+    """
+
+    phase: Phase
+    odometry: Odometry
+    camera: HeadCameraPose
+    given: Array
+    footsteps: tuple[Footstep, ...]
+    zmp: Array
+    dcm: Array
+    com: Array
+    roll: float
+    pitch: float
+    step_count: int
+    fallen: bool

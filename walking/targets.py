@@ -1,0 +1,25 @@
+"""What walking asks of the servos."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class JointTargets:
+    """Set-points of the 26 position servos for one control tick.
+
+    The set-point sent to the servo is ``position + offset``. The offset makes up for the
+    compliance of the servo under the load expected of it (gravity, velocity lag); a body
+    without dynamics follows ``position`` alone.
+
+    Attributes:
+        position: desired joint angles, order of ``JOINT_NAMES`` (26,) [rad].
+        offset: feed-forward offset of the set-points (26,) [rad].
+    """
+
+    position: Array
+    offset: Array
