@@ -1,0 +1,50 @@
+"""Angles: wrapping, and the angle of a vector, for scalars and arrays.
+
+The scalar versions stay out of NumPy because they run in hot scalar paths.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+TWO_PI = 2.0 * math.pi
+
+
+def wrap(a: float) -> float:
+    """Wrap an angle into (-pi, pi].
+
+    Args:
+        a: Angle [rad].
+
+    Returns:
+        The same direction in (-pi, pi] [rad].
+    """
+    wrapped = math.remainder(a, TWO_PI)
+    return math.pi if wrapped == -math.pi else wrapped
+
+
+def wrap_array(a: ArrayLike) -> NDArray[np.float64]:
+    """Wrap every angle of an array into (-pi, pi].
+
+    Args:
+        a: Angles [rad], any shape.
+
+    Returns:
+        New array of the same shape [rad].
+    """
+    angles = np.asarray(a, dtype=np.float64)
+    wrapped: NDArray[np.float64] = math.pi - np.mod(math.pi - angles, TWO_PI)
+    return wrapped
+
+
+def angle_of(x: float, y: float) -> float:
+    """Direction of the vector (x, y), counter-clockwise from the x axis [rad]."""
+    return math.atan2(y, x)
+
+
+def angle_of_array(v: ArrayLike) -> NDArray[np.float64]:
+    """Directions of vectors of shape (..., 2), result of shape (...) [rad]."""
+    vectors = np.asarray(v, dtype=np.float64)
+    directions: NDArray[np.float64] = np.arctan2(vectors[..., 1], vectors[..., 0])
+    return directions
