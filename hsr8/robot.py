@@ -1,0 +1,214 @@
+"""The robot side of the loop: sensors in, joint targets out. It never meets the truth."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from hsr8.recorder.record import FrameRecord, Image
+from navigation.belief import Belief
+from navigation.decision import GazeDecision, MotionDecision, Task
+from navigation.observation import CameraView, Frame, Observation
+from vision.camera import CameraPose, PinholeCamera
+from vision.detection import Detection
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.sensing import BodySensors
+from walking.state import HeadCameraPose, Phase, WalkingState
+from walking.targets import JointTargets
+
+# How well encoders, IMU and leg kinematics know the camera's pose while walking
+# (scripts/camera_pose_study.py).
+TILT_SIGMA = 0.008  # [rad]
+ROLL_SIGMA = 0.008  # [rad]
+YAW_SIGMA = 0.006  # [rad]
+HEIGHT_SIGMA = 0.003  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class SensorFrame:
+    """Everything the robot senses at the start of one control tick.
+
+    Attributes:
+        time: simulated time [s].
+        body: encoders, IMU, foot pads.
+        image: (height, width, 3) picture taken now, if the camera is due.
+        detections: what a camera without pixels reports instead.
+    """
+
+    time: float
+    body: BodySensors
+    image: Image | None = None
+    detections: tuple[Detection, ...] | None = None
+
+
+class Sees(Protocol):
+    """Finds things in an image."""
+
+    def detect(self, image: Image, pose: CameraPose) -> tuple[Detection, ...]:
+        """Detections in `image` taken from `pose`."""
+
+
+class Believes(Protocol):
+    """Turns camera frames into a belief."""
+
+    def update(self, frame: Frame) -> Belief:
+        """Belief after `frame`."""
+
+
+class Goes(Protocol):
+    """Knows where to go next."""
+
+    def update(self, pose: np.ndarray) -> Task:
+        """Task at the believed pose (3,)."""
+
+
+class Looks(Protocol):
+    """Chooses where to look."""
+
+    def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
+        """Gaze for this frame."""
+
+
+class Moves(Protocol):
+    """Chooses how to move."""
+
+    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+        """Motion for the next footstep."""
+
+
+class Robot:
+    """Perception, belief, gaze, planning and walking, one after the other.
+
+    Args:
+        walking: the walking engine.
+        camera: intrinsics of the head camera.
+        vision: detector; unused when the frames carry detections.
+        belief: estimator.
+        mission: sequence of destinations.
+        gaze: gaze planner.
+        planner: motion planner.
+        footstep: time between two motion decisions [s].
+    """
+
+    def __init__(
+        self,
+        *,
+        walking: WalkingEngine,
+        camera: PinholeCamera,
+        vision: Sees,
+        belief: Believes,
+        mission: Goes,
+        gaze: Looks,
+        planner: Moves,
+        footstep: float,
+    ) -> None:
+        self._walking = walking
+        self._camera = camera
+        self._vision = vision
+        self._belief = belief
+        self._mission = mission
+        self._gaze = gaze
+        self._planner = planner
+        self._footstep = footstep
+        self._motion: MotionDecision | None = None
+        self._planned_at = -np.inf
+        self._planned_step = -1
+        self._frames = 0
+        self.command = VelocityCommand()
+        self.head = HeadTarget()
+        self.frame: FrameRecord | None = None
+
+    def step(self, sensed: SensorFrame) -> JointTargets:
+        """One control tick: walk on, and look and decide when a camera frame came."""
+        targets = self._walking.step(sensed.body, self.command, self.head)
+        if sensed.image is not None or sensed.detections is not None:
+            self._perceive(sensed)
+        return targets
+
+    def walking_state(self) -> WalkingState:
+        """What the walking engine knows of itself."""
+        return self._walking.state()
+
+    def _perceive(self, sensed: SensorFrame) -> None:
+        state = self._walking.state()
+        if sensed.detections is not None:
+            detections = sensed.detections
+        else:
+            assert sensed.image is not None
+            detections = self._vision.detect(sensed.image, camera_pose(state.camera))
+        belief = self._belief.update(self._frame(sensed.time, state, detections))
+        task = self._mission.update(belief.pose)
+        motion = self._decide_motion(sensed.time, state, belief, task)
+        gaze = self._gaze.choose(belief, task, motion)
+        forward, left, turn = motion.velocity.tolist()
+        self.command = VelocityCommand(forward, left, turn)
+        self.head = HeadTarget(gaze.pan, gaze.tilt)
+        self.frame = FrameRecord(
+            index=self._frames,
+            time=sensed.time,
+            image=sensed.image,
+            detections=detections,
+            belief=belief,
+            gaze=gaze,
+            motion=motion,
+            task=task,
+        )
+        self._frames += 1
+
+    def _decide_motion(
+        self, time: float, state: WalkingState, belief: Belief, task: Task
+    ) -> MotionDecision:
+        """A new decision once per footstep, or after a footstep's time when standing."""
+        due = (
+            state.step_count != self._planned_step or time - self._planned_at >= self._footstep
+        )
+        if self._motion is None or due:
+            self._motion = self._planner.plan(belief, task)
+            self._planned_at = time
+            self._planned_step = state.step_count
+        return self._motion
+
+    def _frame(
+        self, time: float, state: WalkingState, detections: tuple[Detection, ...]
+    ) -> Frame:
+        odometry, head = state.odometry, state.camera
+        return Frame(
+            time=time,
+            odometry=np.array([odometry.x, odometry.y, odometry.yaw]),
+            walking=state.phase is not Phase.STANDING,
+            view=CameraView(
+                rotation=head.rotation,
+                position=head.position,
+                pan=head.pan,
+                tilt=head.tilt,
+                horizontal_fov=self._camera.horizontal_fov,
+                vertical_fov=self._camera.vertical_fov,
+            ),
+            observations=tuple(
+                Observation(
+                    kind=d.kind,
+                    label=d.label,
+                    distance=d.distance,
+                    bearing=d.bearing,
+                    covariance=d.covariance,
+                    radius=d.radius,
+                    radius_sigma=d.radius_sigma,
+                    cut=d.cut,
+                    occluded=d.occluded,
+                )
+                for d in detections
+            ),
+        )
+
+
+def camera_pose(head: HeadCameraPose) -> CameraPose:
+    """The head camera's pose with its uncertainty, as vision wants it."""
+    return CameraPose(
+        rotation=head.rotation,
+        position=head.position,
+        tilt_sigma=TILT_SIGMA,
+        roll_sigma=ROLL_SIGMA,
+        yaw_sigma=YAW_SIGMA,
+        height_sigma=HEIGHT_SIGMA,
+    )

@@ -1,0 +1,177 @@
+"""A camera without pixels: cylinders projected geometrically, seen with known noise.
+
+It yields the same detections as vision would and needs no OpenGL. Occlusion, borders,
+range and missed detections are modelled; colours are taken as recognised.
+"""
+
+from dataclasses import dataclass
+from math import asin, atan2, cos, hypot, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.world.body import Body
+from hsr8.world.camera import HEAD_CAMERA
+from hsr8.world.layout import Layout
+from hsr8.world.motion import Movers
+from hsr8.world.rotation import heading
+from vision.camera import PinholeCamera
+from vision.detection import Detection
+
+Array = NDArray[np.float64]
+
+OBSTACLE_RANGE = 3.0  # farther obstacles are not reported [m]
+BEACON_RANGE = 5.0  # farther beacons are not reported [m]
+DETECTED = 0.97  # share of visible things that are detected
+HIDDEN = 0.7  # hidden share of the width beyond which nothing is detected
+BEARING_SIGMA = 0.008  # [rad]
+RANGE_SIGMA = 0.010  # at no distance [m]
+RANGE_SIGMA_RATE = 0.015  # and per metre
+RADIUS_SIGMA = 0.006  # [m]
+CUT_FACTOR = 3.0  # a thing cut by the border is located so much worse
+
+
+@dataclass(frozen=True, slots=True)
+class _Thing:
+    kind: str
+    label: str
+    radius: float
+    height: float
+
+
+class AnalyticCamera:
+    """Detects the cylinders of a layout by geometry.
+
+    Args:
+        layout: obstacles and beacons.
+        camera: intrinsics.
+        rng: generator of noise and misses.
+    """
+
+    def __init__(self, layout: Layout, camera: PinholeCamera, rng: np.random.Generator) -> None:
+        self._camera = camera
+        self._rng = rng
+        self._movers = Movers.of(layout)
+        static = layout.obstacles[: len(layout.obstacles) - len(self._movers)]
+        self._static = np.array([o.position for o in static], dtype=float).reshape(-1, 2)
+        self._posts = np.array([b.position for b in layout.beacons], dtype=float).reshape(-1, 2)
+        self._things = [
+            *(_Thing("obstacle", o.colour, o.radius, o.height) for o in layout.obstacles),
+            *(_Thing("beacon", b.name, b.radius, b.height) for b in layout.beacons),
+        ]
+        self._index: tuple[int, int] | None = None
+
+    def capture(self, body: Body) -> tuple[Detection, ...]:
+        """Detections of the world as it is now, by distance and label."""
+        body.update_kinematics()
+        model, data = body.model, body.data
+        if self._index is None:
+            root = int(model.joint("root").qposadr[0])
+            self._index = (model.camera(HEAD_CAMERA).id, root)
+        camera_id, root = self._index
+        position = data.cam_xpos[camera_id]
+        # MuJoCo's camera looks along -z with y up; ours along +z with y down.
+        rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
+        robot = np.array([*data.qpos[root : root + 2], heading(data.qpos[root + 3 : root + 7])])
+        places = np.concatenate([self._static, self._movers.positions(body.time), self._posts])
+        return self._detect(places, position, rotation, robot)
+
+    def _detect(
+        self, places: Array, position: Array, rotation: Array, robot: Array
+    ) -> tuple[Detection, ...]:
+        offsets = places - position[:2]
+        ranges = np.hypot(offsets[:, 0], offsets[:, 1])
+        spans: list[tuple[float, float]] = []  # azimuth and half width, nearer first
+        found = []
+        for i in np.argsort(ranges, kind="stable").tolist():
+            thing, distance = self._things[i], float(ranges[i])
+            if distance <= thing.radius:
+                continue
+            azimuth = atan2(offsets[i, 1], offsets[i, 0])
+            half = asin(thing.radius / distance)
+            hidden = _hidden_share(azimuth, half, spans)
+            spans.append((azimuth, half))
+            limit = BEACON_RANGE if thing.kind == "beacon" else OBSTACLE_RANGE
+            draw = self._rng.random()
+            noise = self._rng.standard_normal(3)
+            if distance > limit or hidden > HIDDEN or draw > DETECTED:
+                continue
+            box = self._box(places[i], thing, position, rotation)
+            if box is None:
+                continue
+            found.append(self._locate(places[i] - robot[:2], robot[2], thing, box, hidden, noise))
+        return tuple(sorted(found, key=lambda d: (d.distance, d.label)))
+
+    def _box(
+        self, place: Array, thing: _Thing, position: Array, rotation: Array
+    ) -> tuple[int, int, int, int, bool] | None:
+        """Pixel box of a cylinder and whether the border cuts it; None when out of the image."""
+        offset = place - position[:2]
+        distance = hypot(*offset.tolist())
+        side = np.array([-offset[1], offset[0]]) * (thing.radius / distance)
+        corners = np.array(
+            [
+                [*(place + s * side), z]
+                for s in (-1.0, 1.0)
+                for z in (0.0, 0.5 * thing.height, thing.height)
+            ]
+        )
+        local = (corners - position) @ rotation
+        if (local[:, 2] < 0.05).any():
+            return None
+        pixels = self._camera.project(local)
+        left, top = pixels.min(axis=0).tolist()
+        right, bottom = pixels.max(axis=0).tolist()
+        width, height = self._camera.width, self._camera.height
+        if right < 2 or left > width - 2 or bottom < 2 or top > height - 2:
+            return None
+        if thing.kind == "beacon" and (top < 0 or bottom > height):
+            return None  # its two colours name it only when both are seen
+        cut = left < 0 or top < 0 or right > width or bottom > height
+        return (
+            max(0, int(left)),
+            max(0, int(top)),
+            min(width, int(right) + 1),
+            min(height, int(bottom) + 1),
+            cut,
+        )
+
+    @staticmethod
+    def _locate(
+        offset: Array,
+        yaw: float,
+        thing: _Thing,
+        box: tuple[int, int, int, int, bool],
+        hidden: float,
+        noise: Array,
+    ) -> Detection:
+        x, y = offset.tolist()
+        distance = hypot(x, y)
+        factor = CUT_FACTOR if box[4] else 1.0 + 2.0 * hidden
+        range_sigma = factor * (RANGE_SIGMA + RANGE_SIGMA_RATE * distance)
+        bearing_sigma = factor * BEARING_SIGMA
+        bearing = atan2(y, x) - yaw + bearing_sigma * float(noise[1])
+        beacon = thing.kind == "beacon"
+        radius = thing.radius + (0.0 if beacon else factor * RADIUS_SIGMA * float(noise[2]))
+        return Detection(
+            kind="beacon" if beacon else "obstacle",
+            label=thing.label,
+            bearing=atan2(sin(bearing), cos(bearing)),
+            distance=max(0.05, distance + range_sigma * float(noise[0])),
+            covariance=np.diag([range_sigma**2, bearing_sigma**2]),
+            radius=max(0.01, radius),
+            radius_sigma=0.0 if beacon else factor * RADIUS_SIGMA,
+            cut=box[4],
+            occluded=hidden > 0.1,
+            box=box[:4],
+        )
+
+
+def _hidden_share(azimuth: float, half: float, nearer: list[tuple[float, float]]) -> float:
+    """Largest share of an angular interval that one nearer interval covers."""
+    worst = 0.0
+    for other, other_half in nearer:
+        offset = atan2(sin(other - azimuth), cos(other - azimuth))
+        low, high = max(-half, offset - other_half), min(half, offset + other_half)
+        worst = max(worst, (high - low) / (2.0 * half))
+    return worst

@@ -1,0 +1,178 @@
+"""A body without dynamics: joints follow their targets, the stance foot stays planted.
+
+Footsteps land exactly where the joint targets put them, but for a small seeded slip at
+each change of support. It serves fast tuning and tests; the loop around it is the same.
+"""
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.contacts import ContactWatch
+from hsr8.world.index import ModelIndex
+from hsr8.world.layout import Layout
+from hsr8.world.motion import Movers
+from hsr8.world.physics import CONTROL_PERIOD, place_robot
+from hsr8.world.rotation import heading
+from hsr8.world.sensors import SensorSuite
+from hsr8.world.truth import Truth
+from walking.sensing import BodySensors
+from walking.targets import JointTargets
+
+Array = NDArray[np.float64]
+
+SLIP = 0.002  # standard deviation of a foot's slip at touch-down, per axis [m]
+YAW_SLIP = 0.008  # and about the vertical [rad]
+LANDED = 0.0005  # the swing foot takes over when it is lower than the stance foot by this [m]
+LIFTED = 0.001  # a foot higher than the other by this carries nothing [m]
+GRAVITY = 9.81
+WATCH_TICKS = 4  # contacts with obstacles are looked for every 20 ms
+
+
+class KinematicBody:
+    """The robot without physics.
+
+    Args:
+        model: compiled world.
+        layout: what stands and moves in it.
+        noise: sensor noise.
+        rng: generator of sensors and slip.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, layout: Layout, noise: SensorNoise, rng: np.random.Generator
+    ) -> None:
+        self.model = model
+        self.data = mujoco.MjData(model)
+        self._movers = Movers.of(layout)
+        self._n_static = len(layout.obstacles) - len(self._movers)
+        self._index = ModelIndex.of(model, self._n_static, len(self._movers))
+        sensor_rng, self._slip_rng = rng.spawn(2)
+        self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD)
+        self._watch = ContactWatch(model, self._index, self._n_static)
+        self._static_positions = np.array(
+            [o.position for o in layout.obstacles[: self._n_static]], dtype=float
+        ).reshape(-1, 2)
+        self._weight = float(model.body_subtreemass[self._index.base_body]) * GRAVITY
+        self._tick = 0
+        place_robot(model, self.data, np.array(layout.start))
+        mujoco.mj_kinematics(model, self.data)
+        self._joints = self.data.qpos[self._index.joint_qpos].copy()
+        self._rates = np.zeros_like(self._joints)
+        self._gyro = np.zeros(3)
+        self._load = np.array([0.5, 0.5])
+        self._stance = 0
+        self._anchor = self._foot_on_floor(0)
+        self._plant()
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self._tick * CONTROL_PERIOD
+
+    def sense(self) -> BodySensors:
+        """Read encoders, IMU and foot pads, computed from the planned motion."""
+        root = self._index.root_qpos
+        quaternion = self.data.qpos[root + 3 : root + 7]
+        rotation = self.data.xmat[self._index.base_body].reshape(3, 3)
+        return self._suite.read(
+            joint_position=self._joints,
+            joint_velocity=self._rates,
+            gyro=self._gyro,
+            accelerometer=rotation[2] * GRAVITY,
+            orientation=quaternion,
+            foot_force=np.repeat(self._load[:, None] * self._weight / 4.0, 4, axis=1),
+        )
+
+    def apply(self, targets: JointTargets) -> None:
+        """Put the joints at their targets and the body where the planted foot says."""
+        self._tick += 1
+        self._rates = (targets.position - self._joints) / CONTROL_PERIOD
+        self._joints = targets.position.copy()
+        root = self._index.root_qpos
+        before = self.data.qpos[root + 3 : root + 7].copy()
+        self.data.qpos[self._index.joint_qpos] = self._joints
+        self._plant()
+        difference = np.empty(3)
+        mujoco.mju_subQuat(difference, self.data.qpos[root + 3 : root + 7], before)
+        self._gyro = difference / CONTROL_PERIOD
+        if self._tick % WATCH_TICKS == 0:
+            if len(self._movers):
+                self.data.mocap_pos[self._index.mover_mocap, :2] = self._movers.positions(self.time)
+            self.update_kinematics()
+            mujoco.mj_collision(self.model, self.data)
+            self._watch.watch(self.data)
+
+    def update_kinematics(self) -> None:
+        """Bring all poses up to date."""
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def truth(self) -> Truth:
+        """State of the world now; a kinematic robot never falls."""
+        data, root = self.data, self._index.root_qpos
+        robot = np.array(
+            [*data.qpos[root : root + 2].tolist(), heading(data.qpos[root + 3 : root + 7])]
+        )
+        feet = data.site_xpos[list(self._index.foot_sites), :2]
+        return Truth(
+            time=self.time,
+            qpos=data.qpos.copy(),
+            robot=robot,
+            obstacle_positions=np.concatenate(
+                [self._static_positions, self._movers.positions(self.time)]
+            ),
+            obstacle_velocities=np.concatenate(
+                [np.zeros_like(self._static_positions), self._movers.velocities(self.time)]
+            ),
+            contacts=self._watch.take(),
+            clearance=self._watch.clearance(data, robot),
+            joint_torque=np.zeros(len(self._joints)),
+            foot_force=self._load * self._weight,
+            zmp=self._load @ feet,
+            fallen=False,
+        )
+
+    def state_bytes(self) -> bytes:
+        """Configuration, planted foot and slip generator's next draw are all of the state."""
+        return b"".join(a.tobytes() for a in (self.data.qpos, self.data.mocap_pos, self._anchor))
+
+    def _foot_on_floor(self, side: int) -> Array:
+        """x, y, yaw of a foot projected onto the floor (3,)."""
+        site = self._index.foot_sites[side]
+        x_axis = self.data.site_xmat[site].reshape(3, 3)[:, 0]
+        return np.array([*self.data.site_xpos[site][:2], np.arctan2(x_axis[1], x_axis[0])])
+
+    def _plant(self) -> None:
+        """Move the base so that the stance foot lies flat where it is anchored."""
+        self._anchor_base()
+        heights = self.data.site_xpos[list(self._index.foot_sites), 2]
+        other = 1 - self._stance
+        if heights[other] < heights[self._stance] - LANDED:
+            self._stance = other
+            slip = self._slip_rng.standard_normal(3) * (SLIP, SLIP, YAW_SLIP)
+            self._anchor = self._foot_on_floor(other) + slip
+            self._anchor_base()
+            heights = self.data.site_xpos[list(self._index.foot_sites), 2]
+        gap = float(heights[1 - self._stance] - heights[self._stance])
+        share = 0.5 if gap < LIFTED else 0.0
+        self._load = np.full(2, share)
+        self._load[self._stance] = 1.0 - share
+
+    def _anchor_base(self) -> None:
+        root, site = self._index.root_qpos, self._index.foot_sites[self._stance]
+        self.data.qpos[root : root + 3] = 0.0
+        self.data.qpos[root + 3 : root + 7] = (1.0, 0.0, 0.0, 0.0)
+        mujoco.mj_kinematics(self.model, self.data)
+        r_foot = self.data.site_xmat[site].reshape(3, 3)
+        p_foot = self.data.site_xpos[site].copy()
+        x, y, yaw = self._anchor.tolist()
+        c, s = np.cos(yaw), np.sin(yaw)
+        rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ r_foot.T
+        quaternion = np.empty(4)
+        mujoco.mju_mat2Quat(quaternion, rotation.ravel())
+        self.data.qpos[root : root + 3] = np.array([x, y, 0.0]) - rotation @ p_foot
+        self.data.qpos[root + 3 : root + 7] = quaternion
+        mujoco.mj_kinematics(self.model, self.data)

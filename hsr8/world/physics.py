@@ -1,0 +1,169 @@
+"""The full body: MuJoCo physics, two steps a control tick."""
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import SimulationDiverged
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.contacts import ContactWatch
+from hsr8.world.index import ModelIndex
+from hsr8.world.layout import Layout
+from hsr8.world.motion import Movers
+from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product, up_component
+from hsr8.world.sensors import SensorSuite
+from hsr8.world.truth import Truth
+from walking.joints import JOINT_NAMES
+from walking.sensing import BodySensors
+from walking.targets import JointTargets
+
+Array = NDArray[np.float64]
+
+CONTROL_PERIOD = 0.005  # Yoo & Kim: the walking pattern is recomputed every 5 ms [s]
+FALLEN_HEIGHT = 0.13  # a pelvis below this lies [m]
+FALLEN_TILT = 0.5  # cosine of the tilt beyond which the robot has fallen [1]
+
+
+def place_robot(model: mujoco.MjModel, data: mujoco.MjData, start: Array) -> None:
+    """Set the robot to ``walk_ready`` at x, y, heading `start` (3,) [m, m, rad]."""
+    mujoco.mj_resetDataKeyframe(model, data, model.key("walk_ready").id)
+    root = int(model.joint("root").qposadr[0])
+    x, y, yaw = np.asarray(start, float).tolist()
+    data.qpos[root : root + 2] = x, y
+    data.qpos[root + 3 : root + 7] = quaternion_product(
+        quaternion_from_yaw(yaw), data.qpos[root + 3 : root + 7]
+    )
+
+
+class PhysicsBody:
+    """The robot in full physics.
+
+    Args:
+        model: compiled world.
+        layout: what stands and moves in it.
+        noise: sensor noise.
+        rng: generator of the sensors.
+
+    Raises:
+        ValueError: the control period is no multiple of the physics step.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, layout: Layout, noise: SensorNoise, rng: np.random.Generator
+    ) -> None:
+        self.model = model
+        self.data = mujoco.MjData(model)
+        self._movers = Movers.of(layout)
+        self._n_static = len(layout.obstacles) - len(self._movers)
+        self._index = ModelIndex.of(model, self._n_static, len(self._movers))
+        self._suite = SensorSuite(noise, rng, CONTROL_PERIOD)
+        self._watch = ContactWatch(model, self._index, self._n_static)
+        self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
+        if abs(self._substeps * model.opt.timestep - CONTROL_PERIOD) > 1e-9:
+            raise ValueError(
+                f"the control period {CONTROL_PERIOD} s is no multiple of the physics step "
+                f"{model.opt.timestep} s"
+            )
+        self._substep = 0
+        self._static_positions = np.array(
+            [o.position for o in layout.obstacles[: self._n_static]], dtype=float
+        ).reshape(-1, 2)
+        self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
+        place_robot(model, self.data, np.array(layout.start))
+        self._move_obstacles()
+        # Warnings are counted and raised by `apply`; MuJoCo shall not write a file of its own.
+        mujoco.set_mju_user_warning(lambda _message: None)
+        mujoco.mj_forward(model, self.data)
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return float(self._substep * self.model.opt.timestep)
+
+    def sense(self) -> BodySensors:
+        """Read encoders, IMU and foot pads."""
+        data, index = self.data, self._index
+        root, dof = index.root_qpos, index.root_dof
+        return self._suite.read(
+            joint_position=data.qpos[index.joint_qpos],
+            joint_velocity=data.qvel[index.joint_dof],
+            gyro=data.qvel[dof + 3 : dof + 6],
+            accelerometer=data.sensordata[index.accelerometer],
+            orientation=data.qpos[root + 3 : root + 7],
+            foot_force=data.sensordata[index.foot_force],
+        )
+
+    def apply(self, targets: JointTargets) -> None:
+        """Send the set-points and advance one control tick.
+
+        Raises:
+            SimulationDiverged: MuJoCo warned or the state is no longer finite.
+        """
+        self.data.ctrl[self._index.actuators] = targets.position + targets.offset
+        for _ in range(self._substeps):
+            self._move_obstacles()
+            mujoco.mj_step(self.model, self.data)
+            self._substep += 1
+        self._watch.watch(self.data)
+        self._guard()
+
+    def update_kinematics(self) -> None:
+        """Bring geom, camera and light poses up to date; the state stays as it is."""
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def truth(self) -> Truth:
+        """State of the world now."""
+        data, index = self.data, self._index
+        root = index.root_qpos
+        quaternion = data.qpos[root + 3 : root + 7]
+        robot = np.array([*data.qpos[root : root + 2].tolist(), heading(quaternion)])
+        load, pressure = self._watch.feet(data)
+        return Truth(
+            time=self.time,
+            qpos=data.qpos.copy(),
+            robot=robot,
+            obstacle_positions=np.concatenate(
+                [self._static_positions, self._movers.positions(self.time)]
+            ),
+            obstacle_velocities=np.concatenate(
+                [np.zeros_like(self._static_positions), self._movers.velocities(self.time)]
+            ),
+            contacts=self._watch.take(),
+            clearance=self._watch.clearance(data, robot),
+            joint_torque=data.actuator_force[index.actuators].copy(),
+            foot_force=load,
+            zmp=pressure,
+            fallen=bool(
+                data.qpos[root + 2] < FALLEN_HEIGHT or up_component(quaternion) < FALLEN_TILT
+            ),
+        )
+
+    def state_bytes(self) -> bytes:
+        """MuJoCo's integration state."""
+        mujoco.mj_getState(
+            self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION
+        )
+        return self._state.tobytes()
+
+    def _move_obstacles(self) -> None:
+        """Put every mover where its law wants it at the end of this physics step."""
+        if len(self._movers):
+            time = (self._substep + 1) * self.model.opt.timestep
+            self.data.mocap_pos[self._index.mover_mocap, :2] = self._movers.positions(time)
+
+    def _guard(self) -> None:
+        warned = self.data.warning.number.any()
+        if not warned and np.isfinite(self.data.qacc).all():
+            return
+        speeds = np.abs(self.data.qvel)
+        dof = int(np.argmax(np.where(np.isfinite(speeds), speeds, np.inf)))
+        body = self.model.body(self.model.dof_bodyid[dof]).name
+        worst = int(np.argmax(np.abs(self.data.ctrl[self._index.actuators])))
+        raise SimulationDiverged(
+            f"the physics diverged at tick {round(self.time / CONTROL_PERIOD)} "
+            f"(t = {self.time:.3f} s): body {body!r} moves at {speeds[dof]:.3g} rad/s or m/s; "
+            f"largest set-point of the last command: {JOINT_NAMES[worst]} at "
+            f"{self.data.ctrl[self._index.actuators[worst]]:.3f} rad"
+        )

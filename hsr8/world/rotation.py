@@ -1,0 +1,45 @@
+"""The few rotations the world needs; quaternions are w-x-y-z as in MuJoCo."""
+
+from math import atan2, cos, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def quaternion_from_yaw(yaw: float) -> Array:
+    """Rotation by `yaw` [rad] about z."""
+    return np.array([cos(0.5 * yaw), 0.0, 0.0, sin(0.5 * yaw)])
+
+
+def quaternion_product(a: Array, b: Array) -> Array:
+    """Hamilton product: first `b`, then `a`."""
+    aw, ax, ay, az = a.tolist()
+    bw, bx, by, bz = b.tolist()
+    return np.array(
+        [
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ]
+    )
+
+
+def small_rotation(roll: float, pitch: float) -> Array:
+    """Quaternion of a small rotation about x and y [rad]."""
+    q = np.array([1.0, 0.5 * roll, 0.5 * pitch, 0.0])
+    return q / np.linalg.norm(q)
+
+
+def heading(quaternion: Array) -> float:
+    """Yaw of the x axis of a body [rad]."""
+    w, x, y, z = quaternion.tolist()
+    return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def up_component(quaternion: Array) -> float:
+    """Cosine of the angle between the body's z axis and the vertical."""
+    _, x, y, _ = quaternion.tolist()
+    return float(1.0 - 2.0 * (x * x + y * y))

@@ -1,0 +1,55 @@
+"""Sensor noise: what stands between the true state of the body and what the robot feels."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.rotation import quaternion_from_yaw, quaternion_product, small_rotation
+from walking.sensing import BodySensors
+
+Array = NDArray[np.float64]
+
+
+class SensorSuite:
+    """Adds seeded noise to true readings; one instance a run.
+
+    Args:
+        noise: magnitudes.
+        rng: generator of this subsystem.
+        period: control tick [s].
+    """
+
+    def __init__(self, noise: SensorNoise, rng: np.random.Generator, period: float) -> None:
+        self._noise = noise
+        self._rng = rng
+        self._drift_step = noise.yaw_drift * float(np.sqrt(period))
+        self._yaw_drift = 0.0
+        self._gain = 1.0 + noise.foot_force_gain * rng.standard_normal((2, 4))
+
+    def read(
+        self,
+        *,
+        joint_position: Array,
+        joint_velocity: Array,
+        gyro: Array,
+        accelerometer: Array,
+        orientation: Array,
+        foot_force: Array,
+    ) -> BodySensors:
+        """Turn true values (units as in ``BodySensors``) into one noisy reading."""
+        noise = self._noise
+        draw = self._rng.standard_normal(69)
+        self._yaw_drift += self._drift_step * float(draw[68])
+        tilted = quaternion_product(
+            orientation,
+            small_rotation(noise.tilt * float(draw[66]), noise.tilt * float(draw[67])),
+        )
+        force = self._gain * foot_force + noise.foot_force * draw[58:66].reshape(2, 4)
+        return BodySensors(
+            joint_position=joint_position + noise.encoder * draw[0:26],
+            joint_velocity=joint_velocity + noise.encoder_rate * draw[26:52],
+            gyro=gyro + noise.gyro * draw[52:55],
+            accelerometer=accelerometer + noise.accelerometer * draw[55:58],
+            orientation=quaternion_product(quaternion_from_yaw(self._yaw_drift), tilted),
+            foot_force=np.maximum(force, 0.0),
+        )
