@@ -1,0 +1,220 @@
+"""The closed loop: world, sensors, robot, and back, one control tick after the other."""
+
+import hashlib
+import zlib
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+import numpy as np
+
+from hsr8.assemble_robot import build_robot
+from hsr8.errors import SimulationDiverged
+from hsr8.recorder.record import FrameRecord, Listener, TickRecord
+from hsr8.robot import SensorFrame
+from hsr8.scenario.schema import Scenario
+from hsr8.world.analytic import AnalyticCamera
+from hsr8.world.assembly import assemble
+from hsr8.world.body import Body
+from hsr8.world.camera import RenderedCamera
+from hsr8.world.generator import draw_layout
+from hsr8.world.kinematic import KinematicBody
+from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.truth import Truth
+from vision.camera import PinholeCamera
+
+GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
+FALL_DWELL = 0.6  # and for so long after a fall, so that it can be seen [s]
+EPISODE_GAP = 0.5  # a contact after a pause as long as this is a new collision [s]
+
+
+@dataclass(frozen=True, slots=True)
+class RunOutcome:
+    """How a run ended.
+
+    Attributes:
+        exit_reason: goal, timeout, completed, fall, diverged or interrupted.
+        time: simulated time at the end [s].
+        state_hash: SHA-256 of the world's state and the robot's belief.
+    """
+
+    exit_reason: str
+    time: float
+    state_hash: str
+
+
+def named_rng(seed: int, name: str) -> np.random.Generator:
+    """Generator of the subsystem `name`; independent of every other name's."""
+    return np.random.default_rng(
+        np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(name.encode()),))
+    )
+
+
+class Simulation:
+    """One run of one scenario with one seed.
+
+    Args:
+        scenario: what to run.
+        seed: draws the world and every noise.
+        listeners: told of every record; they never change the run.
+
+    Raises:
+        ScenarioError: the world cannot be drawn as asked.
+        RenderingUnavailable: the camera needs OpenGL and there is none.
+    """
+
+    def __init__(
+        self, scenario: Scenario, seed: int, listeners: Sequence[Listener] = ()
+    ) -> None:
+        self.scenario = scenario
+        self.seed = seed
+        self.listeners = list(listeners)
+        self.layout = draw_layout(scenario, seed)
+        camera = scenario.camera
+        self.model = assemble(self.layout, quality="vision", scenario=scenario)
+        body_rng = named_rng(seed, "body")
+        kind: Callable[..., Body] = PhysicsBody if scenario.robot.body == "full" else KinematicBody
+        self._body = kind(self.model, self.layout, scenario.sensor_noise(), body_rng)
+        self._pinhole = PinholeCamera.from_vertical_fov(
+            camera.width, camera.height, float(np.radians(camera.vertical_fov_deg))
+        )
+        self._robot = build_robot(scenario, self.layout, self._pinhole, named_rng(seed, "belief"))
+        self._watch = _EventWatch(self._tell)
+        self._interrupted = False
+        self._rendered: RenderedCamera | None = None
+        self._analytic: AnalyticCamera | None = None
+        if camera.source == "analytic":
+            self._analytic = AnalyticCamera(self.layout, self._pinhole, named_rng(seed, "camera"))
+
+    def interrupt(self) -> None:
+        """Ask the run to end after the present tick."""
+        self._interrupted = True
+
+    def run(self) -> RunOutcome:
+        """Run to the end and close the listeners.
+
+        Raises:
+            SimulationDiverged: the physics blew up; the listeners are closed first.
+        """
+        reason = "error"
+        with ExitStack() as stack:
+            if self._analytic is None:
+                camera = self.scenario.camera
+                self._rendered = stack.enter_context(
+                    RenderedCamera(self.model, camera.width, camera.height)
+                )
+            try:
+                reason = self._ticks()
+            except SimulationDiverged as error:
+                reason = "diverged"
+                self._tell("diverged", str(error))
+                raise
+            except KeyboardInterrupt:
+                reason = "interrupted"
+            finally:
+                for listener in self.listeners:
+                    listener.close(reason)
+        return RunOutcome(reason, self._body.time, self.state_hash())
+
+    def state_hash(self) -> str:
+        """SHA-256 of the world's state and the robot's belief."""
+        digest = hashlib.sha256(self._body.state_bytes())
+        if self._robot.frame is not None:
+            belief = self._robot.frame.belief
+            digest.update(belief.pose.tobytes() + belief.pose_covariance.tobytes())
+            for track in belief.tracks:
+                digest.update(track.position.tobytes() + track.covariance.tobytes())
+        return digest.hexdigest()
+
+    def _ticks(self) -> str:
+        scenario = self.scenario
+        camera_ticks = round(scenario.camera.period_ms / 1000 / CONTROL_PERIOD)
+        record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
+        last = round(scenario.duration / CONTROL_PERIOD)
+        end: tuple[int, str] | None = None
+        published: FrameRecord | None = None
+        for tick in range(last + 1):
+            sensed = self._sense(tick % camera_ticks == 0)
+            targets = self._robot.step(sensed)
+            if tick % record_ticks == 0:
+                truth = self._body.truth()
+                frame = self._robot.frame
+                self._publish(tick, truth, frame if frame is not published else None)
+                published = frame
+                end = end or self._ending(tick, truth)
+            if self._interrupted:
+                return "interrupted"
+            if end is not None and tick >= end[0]:
+                return end[1]
+            self._body.apply(targets)
+        return "timeout" if self.layout.goal_heading is not None else "completed"
+
+    def _sense(self, camera_due: bool) -> SensorFrame:
+        body = self._body.sense()
+        if not camera_due:
+            return SensorFrame(self._body.time, body)
+        if self._rendered is not None:
+            return SensorFrame(self._body.time, body, image=self._rendered.capture(self._body))
+        assert self._analytic is not None
+        return SensorFrame(self._body.time, body, detections=self._analytic.capture(self._body))
+
+    def _ending(self, tick: int, truth: Truth) -> tuple[int, str] | None:
+        """Tick and reason of an end that is now decided."""
+        if truth.fallen:
+            self._tell("fall", "the robot has fallen")
+            return tick + round(FALL_DWELL / CONTROL_PERIOD), "fall"
+        frame = self._robot.frame
+        if frame is not None and frame.task.done:
+            return tick + round(GOAL_DWELL / CONTROL_PERIOD), "goal"
+        return None
+
+    def _publish(self, tick: int, truth: Truth, frame: FrameRecord | None) -> None:
+        self._watch.look(truth, frame)
+        record = TickRecord(
+            tick=tick,
+            time=self._body.time,
+            truth=truth,
+            walking=self._robot.walking_state(),
+            command=self._robot.command,
+            head=self._robot.head,
+            frame=frame,
+        )
+        for listener in self.listeners:
+            listener.on_record(record)
+
+    def _tell(self, kind: str, text: str) -> None:
+        for listener in self.listeners:
+            listener.on_event(self._body.time, kind, text)
+
+
+class _EventWatch:
+    """Turns records into events."""
+
+    def __init__(self, tell: Callable[[str, str], None]) -> None:
+        self._tell = tell
+        self._touched: dict[int, float] = {}
+        self._index = 0
+        self._lost = False
+        self._done = False
+
+    def look(self, truth: Truth, frame: FrameRecord | None) -> None:
+        """Tell what changed since the last record."""
+        for contact in truth.contacts:
+            before = self._touched.get(contact.obstacle, -np.inf)
+            self._touched[contact.obstacle] = truth.time
+            if truth.time - before >= EPISODE_GAP:
+                what = "mover" if contact.moving else "obstacle"
+                self._tell(
+                    "collision", f"{contact.robot_geom} touches {what} {contact.obstacle}"
+                )
+        if frame is None:
+            return
+        if frame.task.index > self._index:
+            self._index = frame.task.index
+            self._tell("via_point", f"via point {self._index} passed")
+        if frame.task.done and not self._done:
+            self._done = True
+            self._tell("goal", "goal reached")
+        if frame.belief.lost != self._lost:
+            self._lost = frame.belief.lost
+            self._tell(*(("lost", "localization is lost") if self._lost else ("found", "localized again")))
