@@ -34,8 +34,9 @@ def wrap_array(a: ArrayLike) -> NDArray[np.float64]:
         New array of the same shape [rad].
     """
     angles = np.asarray(a, dtype=np.float64)
-    wrapped: NDArray[np.float64] = math.pi - np.mod(math.pi - angles, TWO_PI)
-    return wrapped
+    wrapped = math.pi - np.mod(math.pi - angles, TWO_PI)
+    half_open: NDArray[np.float64] = np.where(wrapped <= -math.pi, math.pi, wrapped)
+    return half_open
 
 
 def angle_of(x: float, y: float) -> float:

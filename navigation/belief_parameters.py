@@ -1,0 +1,157 @@
+"""Parameters of the belief: localization, tracks and local map."""
+
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le, Lt
+
+Positive = Annotated[float, Gt(0.0)]
+NonNegative = Annotated[float, Ge(0.0)]
+
+
+@dataclass(frozen=True)
+class LocalizationParameters:
+    """Unscented Kalman filter of the robot's pose from odometry and beacons."""
+
+    slip: NonNegative = 0.08
+    """Standard deviation of a footstep's displacement and turn, as a share of it [1]."""
+    drift: NonNegative = 0.006
+    """Standard deviation of the odometry's speed error over a footstep while stepping [m/s]."""
+    turn_drift: NonNegative = 0.03
+    """Standard deviation of the odometry's turn rate error over a footstep [rad/s]."""
+    footstep: Positive = 0.34
+    """Time over which an odometry error stays the same, one footstep [s]."""
+    standing_drift: NonNegative = 0.0005
+    """Random walk of the position while standing; of the heading in radians [m/s^0.5]."""
+    correlation_time: NonNegative = 0.10
+    """Correlation time of the error of successive sightings of one beacon [s]."""
+    gate: Positive = 13.8
+    """Normalised innovation squared above which a beacon sighting is rejected [1]."""
+    lost_run: Annotated[int, Ge(2)] = 8
+    """Rejected sightings in a row, of two or more beacons, that mean being lost [1]."""
+    lost_time: Positive = 2.0
+    """Duration of such a run that means being lost whatever the number of beacons [s]."""
+    lost_sigma: Positive = 1.0
+    """Standard deviation of position and heading while lost [m, rad]."""
+    recovery_sigma: Positive = 0.15
+    """Standard deviation of position and heading after recovery from beacons [m, rad]."""
+    recovery_window: Positive = 6.0
+    """Age up to which sightings of beacons serve recovery [s]."""
+
+
+@dataclass(frozen=True)
+class TrackingParameters:
+    """Obstacle tracks: filters, association, classification, birth and death."""
+
+    acceleration_noise: Positive = 0.03
+    """White acceleration of the constant-velocity filter [m/s^1.5]."""
+    static_diffusion: Positive = 5e-5
+    """Random walk of the static filter [m²/s]."""
+    velocity_sigma: Positive = 0.06
+    """Standard deviation of the velocity of a new track [m/s]."""
+    correlation_time: NonNegative = 0.10
+    """Correlation time of the error of successive detections of one obstacle [s]."""
+    cut_inflation: Annotated[float, Ge(1.0)] = 2.0
+    """Factor on the standard deviations of a detection cut by the image border [1]."""
+    gate: Positive = 13.8
+    """Squared Mahalanobis distance above which a detection belongs to another track [1]."""
+    birth_density: Positive = 0.01
+    """Density of detections of new obstacles against which association competes [1/m²]."""
+    birth_hits: Annotated[int, Ge(2)] = 2
+    """Detections that make a track [1]."""
+    birth_time: Positive = 0.5
+    """Time within which they must come [s]."""
+    evidence_limit: Positive = 3.0
+    """Largest change of the log likelihood ratio per detection [1]."""
+    evidence_floor: Annotated[float, Lt(0.0)] = -5.0
+    """Smallest log likelihood ratio of moving against static [1]."""
+    evidence_ceiling: Positive = 6.0
+    """Largest log likelihood ratio of moving against static [1]."""
+    moving_evidence: Positive = 2.5
+    """Log likelihood ratio above which a track moves [1]."""
+    moving_speed: NonNegative = 0.02
+    """Speed above which a track may move [m/s]."""
+    moving_hits: Annotated[int, Ge(1)] = 4
+    """Detections without which no track moves [1]."""
+    static_evidence: Annotated[float, Lt(0.0)] = -3.0
+    """Log likelihood ratio below which an undecided track is static [1]."""
+    static_time: NonNegative = 2.0
+    """Time from first to last detection without which no track is static [s]."""
+    static_hits: Annotated[int, Ge(1)] = 6
+    """Detections without which no track is static [1]."""
+    doubt_evidence: float = 1.25
+    """Log likelihood ratio above which a static track is undecided again [1]."""
+    stopped_evidence: Annotated[float, Lt(0.0)] = -4.0
+    """Log likelihood ratio below which a mover is static [1]."""
+    manoeuvre_gate: Positive = 9.0
+    """Normalised innovation squared above which a mover has changed its velocity [1]."""
+    manoeuvre_sigma: Positive = 0.03
+    """Velocity uncertainty added to a mover in view that changes its velocity [m/s]."""
+    resighting_time: Positive = 0.5
+    """Time unseen after which a sighting off the prediction may be a reversal [s]."""
+    line_width: Positive = 0.15
+    """Distance from its old line up to which a mover has reversed [m]."""
+    reversal_sigma: Positive = 0.03
+    """Standard deviation of the velocity of a mover that reversed [m/s]."""
+    resighting_sigma: Positive = 0.08
+    """Standard deviation of the velocity of a mover found elsewhere [m/s]."""
+    lost_time: Positive = 0.35
+    """Time unseen after which a track that may move becomes particles [s]."""
+    particles: Annotated[int, Ge(2)] = 16
+    """Hypotheses per lost track [1]."""
+    reversal_rate: NonNegative = 1.0 / 15.0
+    """Rate of reversals of an unseen mover [1/s]."""
+    detection_probability: Annotated[float, Gt(0.0), Lt(1.0)] = 0.8
+    """Probability of detecting what is clearly in view, over one `refutation_time` [1]."""
+    refutation_time: Positive = 0.1
+    """Time in view over which one failed detection counts against a hypothesis [s]."""
+    resample_share: Annotated[float, Gt(0.0), Le(1.0)] = 0.35
+    """Share of effective particles below which they are resampled [1]."""
+    forget_time: Positive = 25.0
+    """Time unseen after which a track that may move is dropped [s]."""
+    range: Positive = 2.5
+    """Distance up to which obstacles are detected [m]."""
+    view_margin: NonNegative = 0.07
+    """Distance from the border of the view inside which a detection is expected [rad]."""
+    miss_time: Positive = 0.2
+    """Time in view without detection that counts as one miss [s]."""
+    misses: Annotated[int, Ge(1)] = 5
+    """Misses in a row that end a track that does not move [1]."""
+    overlap: Annotated[float, Gt(0.0), Le(1.0)] = 0.8
+    """Share of the sum of radii below which two tracks of a colour are one obstacle [1]."""
+    radius_limit: Positive = 0.005
+    """Least standard deviation of a track's radius [m]."""
+    pose_sigma_limit: Positive = 0.10
+    """Largest pose uncertainty carried into the tracks, for they matter relatively [m]."""
+
+
+@dataclass(frozen=True)
+class LocalMapParameters:
+    """Confidence and occupancy around the robot."""
+
+    cell: Positive = 0.10
+    """Side of a cell [m]."""
+    size: Positive = 6.0
+    """Side of the map [m]."""
+    attenuation: Annotated[float, Lt(0.0)] = -0.03
+    """Rate xi_lm at which confidence decays out of sight [1/s]."""
+    range: Positive = 2.5
+    """Distance up to which the floor is searched for obstacles [m]."""
+    free_evidence: Annotated[float, Lt(0.0)] = -0.4
+    """Change of the log odds of occupancy of a cell seen empty, per frame [1]."""
+    occupied_evidence: Positive = 0.9
+    """Change of the log odds of a cell under a detection, per frame [1]."""
+    evidence_limit: Positive = 4.0
+    """Largest absolute log odds [1]."""
+
+
+@dataclass(frozen=True)
+class BeliefParameters:
+    """All parameters of the belief."""
+
+    localization: LocalizationParameters = field(default_factory=LocalizationParameters)
+    """Robot pose."""
+    tracking: TrackingParameters = field(default_factory=TrackingParameters)
+    """Obstacles."""
+    local_map: LocalMapParameters = field(default_factory=LocalMapParameters)
+    """Map around the robot."""

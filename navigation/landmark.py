@@ -1,0 +1,59 @@
+"""Landmarks: what a known point looks like from a pose, and a pose from known points."""
+
+from collections.abc import Sequence
+from math import atan2, cos, hypot, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap
+
+Array = NDArray[np.float64]
+
+
+def sighting(pose: Sequence[float], landmark: tuple[float, float]) -> tuple[float, float]:
+    """Range and bearing of a landmark.
+
+    Args:
+        pose: x, y, heading of R in W [m, m, rad].
+        landmark: position in W [m].
+
+    Returns:
+        Range [m] and bearing in R, wrapped [rad].
+    """
+    dx = landmark[0] - pose[0]
+    dy = landmark[1] - pose[1]
+    return hypot(dx, dy), wrap(atan2(dy, dx) - pose[2])
+
+
+def to_world(pose: Sequence[float], distance: float, bearing: float) -> tuple[float, float]:
+    """Position in W of what is seen at `distance` [m] and `bearing` [rad] from `pose`."""
+    direction = pose[2] + bearing
+    return pose[0] + distance * cos(direction), pose[1] + distance * sin(direction)
+
+
+def pose_from_points(seen: Array, known: Array) -> Array:
+    """Pose that best lays seen points over known ones (least squares).
+
+    Args:
+        seen: points in R (n, 2), two or more [m].
+        known: the same points in W (n, 2) [m].
+
+    Returns:
+        x, y, heading of R in W (3,) [m, m, rad].
+
+    Raises:
+        ValueError: if fewer than two points are given.
+    """
+    if len(seen) < 2:
+        raise ValueError(f"a pose needs at least 2 landmarks, not {len(seen)}")
+    seen_mean = seen.mean(axis=0)
+    known_mean = known.mean(axis=0)
+    a = seen - seen_mean
+    b = known - known_mean
+    turn = float(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]))
+    heading = atan2(turn, float(np.sum(a * b)))
+    c, s = cos(heading), sin(heading)
+    x = float(known_mean[0] - c * seen_mean[0] + s * seen_mean[1])
+    y = float(known_mean[1] - s * seen_mean[0] - c * seen_mean[1])
+    return np.array([x, y, heading])
