@@ -1,0 +1,50 @@
+# `make` alone prints this list. Every verb sets up what it needs first.
+PY := .venv/bin/python
+PACKAGES := hsr8 navigation walking vision
+SOURCES := $(PACKAGES) scripts tests
+# One thread per process: linear algebra on tiny matrices only loses time to more.
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test test-all lint types layers fix lock build clean
+
+help:  ## this list
+	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+setup:  ## virtual environment, locked packages, OpenGL for machines without a display
+	@bash scripts/setup.sh
+
+run: setup  ## the paper's experiment, then its video: make run ARGS="--seed 7"
+	@bash scripts/run_paper.sh $(ARGS)
+
+test: setup  ## the fast test suite: make test ARGS="-k gait"
+	@$(PY) -m pytest $(XDIST) $(ARGS)
+
+test-all: setup  ## the slow studies too
+	@$(PY) -m pytest $(XDIST) -m "slow or not slow" --timeout 3600 $(ARGS)
+
+lint: setup  ## ruff: style and formatting
+	@$(PY) -m ruff check $(SOURCES)
+	@$(PY) -m ruff format --check $(SOURCES)
+
+types: setup  ## mypy, strict
+	@$(PY) -m mypy
+
+layers: setup  ## who may import whom
+	@.venv/bin/lint-imports --no-logo
+
+fix: setup  ## let ruff mend and format
+	@$(PY) -m ruff check --fix $(SOURCES)
+	@$(PY) -m ruff format $(SOURCES)
+
+lock:  ## resolve the dependencies anew into requirements.lock (needs the network)
+	@bash scripts/lock.sh $(ARGS)
+
+build: setup  ## build the wheel and try it in an environment of its own
+	@bash scripts/smoke_wheel.sh
+
+clean:  ## remove caches and build products; runs/ and .venv stay
+	@rm -rf build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache MUJOCO_LOG.TXT
+	@find $(SOURCES) models -name __pycache__ -type d -prune -exec rm -rf {} +
