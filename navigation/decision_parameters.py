@@ -1,0 +1,343 @@
+"""Parameters of the decisions: evaluations, gaze, field, movers, filter, mission.
+
+Defaults are the profile `extended`; `NavigationParameters.paper` is the reference with
+the printed structure. Every difference between the two is a field of this module.
+"""
+
+from dataclasses import dataclass, field
+from math import pi
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le, Lt
+
+Positive = Annotated[float, Gt(0.0)]
+NonNegative = Annotated[float, Ge(0.0)]
+Share = Annotated[float, Ge(0.0), Le(1.0)]
+Count = Annotated[int, Ge(1)]
+
+
+@dataclass(frozen=True)
+class MissionParameters:
+    """Sequence of via points, arrival at the goal."""
+
+    r_via: Positive = 0.15
+    """Distance at which a via point is passed [m]."""
+    r_goal: Positive = 0.05
+    """Distance at which the goal is reached and the turn to its heading begins [m]."""
+    r_release: Positive = 0.08
+    """Distance beyond which a robot turning at the goal walks back to it [m]."""
+    heading_tolerance: Positive = 0.07
+    """Heading error at which the mission is done [rad]."""
+
+
+@dataclass(frozen=True)
+class EvaluationParameters:
+    """Partial evaluations (1)-(4)."""
+
+    d_nm: Positive = 0.30
+    """Nearest sample points of the local map [m]."""
+    d_fm: Positive = 1.30
+    """Farthest sample points of the local map [m]."""
+    lambda_cf: Share = 0.85
+    """Confidence below which a sample point is under-confident [1]."""
+    map_ratio: Literal["printed", "share"] = "share"
+    """psi_lm: N_lp/N_cp as printed, or the share N_lp/(N_lp + N_cp)."""
+    t_sf: Positive = 0.05
+    """Position uncertainty at which psi_sf is one [m]."""
+    t_heading: NonNegative = 0.09
+    """Heading uncertainty at which psi_sf is one; 0 leaves the heading out [rad]."""
+    omega_o: Positive = 20.0
+    """Normalisation of the obstacle evaluation [1/m]."""
+    gamma_o: Positive = 0.25
+    """Obstacle evaluation at which psi_ob is one [1/s]."""
+    d_n_thres: Positive = 0.80
+    """Obstacle-free distance at which psi_way is one [m]."""
+    attention_range: Positive = 2.5
+    """Distance up to which obstacles take part in the gaze [m]."""
+    beacon_range: Positive = 4.5
+    """Distance up to which beacons are worth a look [m]."""
+
+
+@dataclass(frozen=True)
+class DeadlineParameters:
+    """Votes by age over half the worst-case time to contact."""
+
+    static_speed: NonNegative = 0.02
+    """Speed a static obstacle is feared to have [m/s]."""
+    unknown_speed: Share = 0.70
+    """Speed an undecided obstacle is feared to have, share of the robot's [1]."""
+    mover_speed: Share = 0.80
+    """Largest speed a mover is feared to have, share of the robot's [1]."""
+    exponent: Positive = 1.5
+    """Growth of a vote with its urgency [1]."""
+    urgency_limit: Positive = 4.0
+    """Largest urgency of a vote [1]."""
+    unknown_bonus: NonNegative = 1.0
+    """Age added to undecided obstacles [s]."""
+    static_weight: NonNegative = 0.12
+    """Weight of votes of static obstacles [1]."""
+    map_weight: NonNegative = 0.05
+    """Weight of votes of the local map [1]."""
+    way_weight: NonNegative = 0.2
+    """Weight of the vote of the way [1]."""
+    beacon_weight: NonNegative = 1.6
+    """Weight of the votes of the beacons together [1]."""
+    t_heading: Positive = 0.06
+    """Heading uncertainty at which the beacons vote fully [rad]."""
+    switch_ratio: Annotated[float, Ge(1.0)] = 1.03
+    """Gain in the gaze map that moves the gaze [1]."""
+
+
+@dataclass(frozen=True)
+class GazeParameters:
+    """Gaze map (5)-(6) and the timing of the gaze."""
+
+    mode: Literal["integrated", "deadline", "fixed", "sweep"] = "deadline"
+    """Who chooses the gaze: (1)-(6), deadline votes, nobody, or a blind sweep."""
+    w_lm: NonNegative = 0.09
+    """Weight of the local map in (6) [1]."""
+    w_way: NonNegative = 0.23
+    """Weight of the way point in (6) [1]."""
+    w_sf: NonNegative = 0.23
+    """Weight of self-localization in (6) [1]."""
+    w_ob: NonNegative = 0.45
+    """Weight of obstacles in (6) [1]."""
+    step: Positive = pi / 36.0
+    """Step of the gaze map [rad]."""
+    box_share: Annotated[float, Gt(0.0), Le(0.5)] = 0.45
+    """Half width of the box of a vote, share of the field of view [1]."""
+    obstacle_votes: Literal["mean", "sum"] = "sum"
+    """Votes of the obstacles in (6): divided by their number as printed, or summed."""
+    map_votes: Literal["mean", "each"] = "each"
+    """Vote of the local map: at the mean under-confident point as printed, or at each."""
+    candidates: Literal["obstacles", "beacons"] = "beacons"
+    """Who votes for self-localization: obstacles and beacons, or beacons alone."""
+    switch_ratio: Annotated[float, Ge(1.0)] = 1.1
+    """Gain in the gaze map that moves the gaze [1]."""
+    pan_limit: Positive = pi / 2.0
+    """Largest pan to either side [rad]."""
+    tilt_min: Annotated[float, Lt(0.0)] = -pi / 3.0
+    """Lowest tilt [rad]."""
+    tilt_max: NonNegative = pi / 9.0
+    """Highest tilt [rad]."""
+    dwell: NonNegative = 0.1
+    """Time the gaze rests after arrival before it is decided again [s]."""
+    arrival_tolerance: Positive = 0.06
+    """Distance from the target at which the head has arrived [rad]."""
+    saccade_limit: Positive = 0.6
+    """Time after which the gaze is decided again even without arrival [s]."""
+    fixed_tilt: float = -0.45
+    """Tilt of the fixed gaze and of the sweep [rad]."""
+    sweep_amplitude: NonNegative = 1.2
+    """Pan amplitude of the sweep [rad]."""
+    sweep_period: Positive = 4.0
+    """Period of the sweep [s]."""
+    deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
+    """Deadline votes."""
+
+
+@dataclass(frozen=True)
+class UnivectorParameters:
+    """Univector field (7)-(10)."""
+
+    s_robot: Positive = 0.12
+    """Radius of the robot [m]."""
+    margin: NonNegative = 0.03
+    """Margin added to the robot's radius in S_r [m]."""
+    omega_soe: NonNegative = 1.0
+    """Weight of speed and uncertainty in (7) [1]."""
+    eta_vo: NonNegative = 0.5
+    """Growth of the extended radius with the obstacle's speed [s]."""
+    eta_imp: NonNegative = 0.05
+    """Growth of the extended radius with the partial evaluations [m]."""
+    d_con: Positive = 0.80
+    """Distance within which the field bends towards the arrival heading [m]."""
+    arrival: Literal["hard", "ramped", "nposture"] = "ramped"
+    """(8): switched at d_con as printed, ramped in, or Kim's posture field."""
+    k_alpha: Positive = 1.0
+    """Arrival gain on the bearing of the destination [1]."""
+    k_beta: Annotated[float, Lt(0.0)] = -0.6
+    """Arrival gain on the heading still to turn [1]."""
+    arrival_clamp: Positive = 1.3
+    """Largest deviation of the ramped field from the destination [rad]."""
+    arrival_ramp: Positive = 0.5
+    """Width of the ramp, share of d_con [1]."""
+    holonomic_distance: NonNegative = 0.45
+    """Distance from the goal within which the body turns to the goal's heading [m]."""
+    slow_distance: Positive = 0.30
+    """Distance from the goal within which k_rho falls [m]."""
+    slow_share: Share = 0.2
+    """k_rho at the goal [1]."""
+    d_e: Positive = 0.20
+    """Radius offset of the spiral (9) [m]."""
+    d_b: Positive = 0.25
+    """Width of the outer band of (9) [m]."""
+    k_r: Positive = 0.30
+    """Curvature of the outer spiral (9) [m]."""
+    inside: Literal["zero", "outward"] = "outward"
+    """Field inside the extended radius: none as printed, or straight outward."""
+    blend: Literal["weights", "distance"] = "distance"
+    """(10): fixed weights as printed, or weights by distance."""
+    w_muf: NonNegative = 0.75
+    """Weight of move-to-goal for fixed weights [1]."""
+    w_auf: NonNegative = 0.25
+    """Weight of avoid-obstacle for fixed weights [1]."""
+    virtual_weight: NonNegative = 1.5
+    """Weight of dynamic virtual obstacles in the blend by distance [1]."""
+    memory: NonNegative = 1.0
+    """Time unseen after which what may move leaves the field to the filter [s]."""
+
+
+@dataclass(frozen=True)
+class MoverParameters:
+    """Dynamic virtual obstacle (11) and velocity modification."""
+
+    virtual_obstacle: Literal["off", "printed", "own"] = "own"
+    """(11) as printed, uncapped with a remembered side, or not at all."""
+    xi: Annotated[float, Gt(0.0), Lt(1.0)] = 0.6
+    """Convexity of the dynamic virtual obstacle [1]."""
+    omega_dist: Positive = 12.0
+    """Length of the virtual path of the printed form [1]."""
+    path_time: Positive = 6.0
+    """Length of the virtual path of the own form, per relative speed [s]."""
+    least_speed: Positive = 0.015
+    """Speed below which an obstacle has no path [m/s]."""
+    velocity_modification: Literal["off", "closed", "sampled"] = "sampled"
+    """Free speeds from the quadratic, from samples, or not at all."""
+    radius: Literal["extended", "physical"] = "physical"
+    """Radius velocity modification avoids: S_oe, or the bodies and a margin."""
+    margin: NonNegative = 0.05
+    """That margin [m]."""
+    horizon: Positive = 6.0
+    """Contacts later than this are ignored [s]."""
+    samples: Annotated[int, Ge(2)] = 21
+    """Number of sampled speeds [1]."""
+    acceleration_time: Positive = 0.8
+    """Time over which the sampled form may accelerate [s]."""
+
+
+@dataclass(frozen=True)
+class GateParameters:
+    """Slow down before ground that was never seen."""
+
+    enabled: bool = True
+    """Whether the gate is used."""
+    confidence: Share = 0.3
+    """Confidence below which the ground counts as unseen [1]."""
+    near: Positive = 0.25
+    """Nearest ground asked for [m]."""
+    far: Positive = 0.60
+    """Farthest ground asked for [m]."""
+    half_width: NonNegative = 0.10
+    """Half width of the ground asked for [m]."""
+    speed: NonNegative = 0.03
+    """Largest speed towards unseen ground [m/s]."""
+
+
+@dataclass(frozen=True)
+class FilterParameters:
+    """Time-to-contact filter over rolled-out footsteps."""
+
+    enabled: bool = True
+    """Whether the filter is used."""
+    headings: Count = 24
+    """Number of candidate directions [1]."""
+    speeds: Count = 6
+    """Number of candidate speeds per direction [1]."""
+    steps: Annotated[int, Ge(0)] = 4
+    """Footsteps rolled out with the body's real motion before the straight path [1]."""
+    turn_change: Positive = 0.4
+    """Largest change of the turn rate from footstep to footstep [rad/s]."""
+    static_horizon: Positive = 2.0
+    """Time to contact below which static obstacles count [s]."""
+    moving_horizon: Positive = 6.0
+    """Time to contact below which movers count [s]."""
+    reversal_horizon: Positive = 2.5
+    """Time to contact below which the reversal of a mover counts [s]."""
+    urgent_time: Positive = 1.5
+    """Time to contact below which a contact is urgent [s]."""
+    urgent_weight: NonNegative = 20.0
+    """Penalty of an urgent contact [1]."""
+    weight: NonNegative = 6.0
+    """Penalty of any other contact [1]."""
+    change_weight: NonNegative = 0.15
+    """Penalty of a change of velocity [1]."""
+    particle_weight: NonNegative = 2.0
+    """Weight of a lost mover's particles together [1]."""
+    reversal_weight: NonNegative = 0.12
+    """Weight of the reversal of a visible mover [1]."""
+    margin: NonNegative = 0.025
+    """Distance kept from the bodies of obstacles [m]."""
+    sigma_limit: NonNegative = 0.06
+    """Largest part of a mover's position uncertainty added to that [m]."""
+
+
+@dataclass(frozen=True)
+class BodyParameters:
+    """From a direction and a speed to a body velocity."""
+
+    turn_gain: Positive = 1.5
+    """Turn rate per heading error [1/s]."""
+    turn_wait: NonNegative = 0.5
+    """Heading error below which a fast path is walked without turning first [rad]."""
+
+
+@dataclass(frozen=True)
+class NavigationParameters:
+    """All parameters of the decisions; the defaults are the profile `extended`."""
+
+    mission: MissionParameters = field(default_factory=MissionParameters)
+    """Way points and arrival."""
+    evaluation: EvaluationParameters = field(default_factory=EvaluationParameters)
+    """Partial evaluations."""
+    gaze: GazeParameters = field(default_factory=GazeParameters)
+    """Gaze."""
+    univector: UnivectorParameters = field(default_factory=UnivectorParameters)
+    """Univector field."""
+    mover: MoverParameters = field(default_factory=MoverParameters)
+    """Moving obstacles."""
+    gate: GateParameters = field(default_factory=GateParameters)
+    """Confidence gate."""
+    filter: FilterParameters = field(default_factory=FilterParameters)
+    """Time-to-contact filter."""
+    body: BodyParameters = field(default_factory=BodyParameters)
+    """Body command."""
+
+    @classmethod
+    def extended(cls) -> "NavigationParameters":
+        """Our best."""
+        return cls()
+
+    @classmethod
+    def paper(cls) -> "NavigationParameters":
+        """Printed structure and constants with the least repairs: a reference."""
+        return cls(
+            evaluation=EvaluationParameters(map_ratio="printed", t_heading=0.0),
+            gaze=GazeParameters(
+                mode="integrated",
+                w_lm=0.21,
+                w_way=0.17,
+                w_sf=0.29,
+                w_ob=0.33,
+                box_share=0.5,
+                obstacle_votes="mean",
+                map_votes="mean",
+                candidates="obstacles",
+                switch_ratio=1.0,
+            ),
+            univector=UnivectorParameters(
+                arrival="hard",
+                k_beta=-0.5,
+                holonomic_distance=0.0,
+                d_e=0.40,
+                d_b=0.80,
+                inside="zero",
+                blend="weights",
+                memory=25.0,
+            ),
+            mover=MoverParameters(
+                virtual_obstacle="printed", velocity_modification="closed", radius="extended"
+            ),
+            gate=GateParameters(enabled=False),
+            filter=FilterParameters(enabled=False),
+        )

@@ -1,0 +1,113 @@
+"""The mission: via points in order, then a goal to arrive at with a heading."""
+
+from math import atan2, hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap
+from navigation.decision import Task
+from navigation.decision_parameters import MissionParameters
+
+Array = NDArray[np.float64]
+
+
+class Mission:
+    """Sequence of way points; the paper's planner "simply updates sequential waypoints".
+
+    A via point is to be left towards the next one, so its heading points there. The last
+    way point is the goal: reach it, turn to its heading, done. Without a goal heading any
+    will do. An endless mission is a tour: every point is a via point, the first follows
+    the last.
+    """
+
+    def __init__(
+        self,
+        waypoints: Array,
+        goal_heading: float | None,
+        endless: bool,
+        parameters: MissionParameters,
+    ) -> None:
+        """Start at the first way point.
+
+        Args:
+            waypoints: in W (n, 2) [m], n >= 1.
+            goal_heading: heading to arrive with at the last [rad]; None for any.
+            endless: visit the points in a circle for ever.
+            parameters: arrival distances and tolerance.
+
+        Raises:
+            ValueError: there is no way point, or a tour of a single one.
+        """
+        points = np.asarray(waypoints, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < (2 if endless else 1):
+            raise ValueError(
+                f"a mission needs way points of shape (n, 2), n >= {2 if endless else 1}, "
+                f"not {points.shape}"
+            )
+        self._points = points
+        self._goal_heading = goal_heading
+        self._endless = endless
+        self._parameters = parameters
+        self._passed = 0
+        self._aligning = False
+        self._done = False
+
+    def update(self, pose: Array) -> Task:
+        """Advance the mission by the believed `pose` (3,) [m, m, rad] and say what to do."""
+        x, y, heading = pose.tolist()
+        if not self._done:
+            while self._pass_via(x, y):
+                pass
+            if self._at_goal_point():
+                self._approach_goal(x, y, heading)
+        return self._task(x, y)
+
+    def _target(self) -> tuple[float, float]:
+        tx, ty = self._points[self._passed % len(self._points)].tolist()
+        return tx, ty
+
+    def _at_goal_point(self) -> bool:
+        return not self._endless and self._passed == len(self._points) - 1
+
+    def _pass_via(self, x: float, y: float) -> bool:
+        if self._at_goal_point():
+            return False
+        tx, ty = self._target()
+        if hypot(tx - x, ty - y) >= self._parameters.r_via:
+            return False
+        self._passed += 1
+        return True
+
+    def _approach_goal(self, x: float, y: float, heading: float) -> None:
+        tx, ty = self._target()
+        distance = hypot(tx - x, ty - y)
+        reach = self._parameters.r_release if self._aligning else self._parameters.r_goal
+        self._aligning = distance < reach
+        if self._aligning:
+            error = 0.0
+            if self._goal_heading is not None:
+                error = abs(wrap(self._goal_heading - heading))
+            self._done = error < self._parameters.heading_tolerance
+
+    def _task(self, x: float, y: float) -> Task:
+        index = self._passed % len(self._points)
+        target = self._points[index]
+        is_goal = self._at_goal_point()
+        if not is_goal:
+            ahead = self._points[(index + 1) % len(self._points)] - target
+        elif index > 0:
+            ahead = target - self._points[index - 1]
+        else:
+            ahead = target - np.array([x, y])
+        heading = atan2(float(ahead[1]), float(ahead[0]))
+        if is_goal and self._goal_heading is not None:
+            heading = wrap(self._goal_heading)
+        return Task(
+            target=target,
+            heading=heading,
+            is_goal=is_goal,
+            index=self._passed,
+            aligning=self._aligning and not self._done,
+            done=self._done,
+        )

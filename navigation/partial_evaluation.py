@@ -1,0 +1,148 @@
+"""The four partial evaluations, Yoo & Kim, eqs. (1)-(4), and the set O they speak of.
+
+Each is a number in [0, 1] that says how much something deserves a look.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap_array
+from navigation.decision_parameters import EvaluationParameters
+from navigation.obstacle_set import ObstacleSet, largest_deviation
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+NEAREST = 0.05
+"""Least distance in (3) [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SamplePoints:
+    """The sampling region R_s of eq. (1): polar points fixed in R.
+
+    Attributes:
+        distance: (n,) [m].
+        bearing: (n,) [rad].
+        points: in R (n, 2) [m].
+    """
+
+    distance: Array
+    bearing: Array
+    points: Array
+
+    @classmethod
+    def polar(cls, d_nm: float, d_fm: float) -> "SamplePoints":
+        """Every 0.2 m from `d_nm` to `d_fm` [m], every 10 deg from -90 to 90."""
+        rings = np.arange(d_nm, d_fm + 1e-9, 0.2)
+        rays = np.radians(np.arange(-90.0, 90.1, 10.0))
+        distance, bearing = (a.ravel() for a in np.meshgrid(rings, rays, indexing="ij"))
+        points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
+        return cls(distance, bearing, points)
+
+
+@dataclass(frozen=True, slots=True)
+class MapEvaluation:
+    """Result of eq. (1).
+
+    Attributes:
+        psi: psi_lm in [0, 1].
+        counted: sample points outside the gaze region (n,).
+        under_confident: those of them with C < lambda_cf (n,).
+    """
+
+    psi: float
+    counted: Mask
+    under_confident: Mask
+
+
+def psi_local_map(
+    confidence: Array, in_gaze: Mask, parameters: EvaluationParameters
+) -> MapEvaluation:
+    """psi_lm, share of under-confident ground (Yoo & Kim, eq. (1)).
+
+    Args:
+        confidence: C of the sample points (n,).
+        in_gaze: whether a point lies in the gaze region R_g (n,).
+        parameters: `lambda_cf` and `map_ratio`.
+    """
+    counted = ~in_gaze
+    under = counted & (confidence < parameters.lambda_cf)
+    n_lp = int(np.count_nonzero(under))
+    n_cp = int(np.count_nonzero(counted)) - n_lp
+    whole = n_cp if parameters.map_ratio == "printed" else n_lp + n_cp
+    return MapEvaluation(min(1.0, n_lp / max(1, whole)), counted, under)
+
+
+def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:
+    """psi_sf, self-localization uncertainty (Yoo & Kim, eq. (2)).
+
+    Args:
+        pose_covariance: of x, y, heading (3, 3).
+        parameters: thresholds; `t_heading` = 0 ignores the heading.
+    """
+    psi = float(largest_deviation(pose_covariance[:2, :2])) / parameters.t_sf
+    if parameters.t_heading > 0.0:
+        psi = max(psi, float(np.sqrt(max(pose_covariance[2, 2], 0.0))) / parameters.t_heading)
+    return min(1.0, psi)
+
+
+def psi_obstacle(
+    obstacles: ObstacleSet, position: Array, velocity: Array, parameters: EvaluationParameters
+) -> Array:
+    """psi_ob of every obstacle: uncertain, closing and near (Yoo & Kim, eq. (3)).
+
+    Args:
+        obstacles: n obstacles in W.
+        position: of the robot in W (2,) [m].
+        velocity: of the robot in W (2,) [m/s].
+        parameters: `omega_o` and `gamma_o`.
+
+    Returns:
+        (n,), each in [0, 1].
+    """
+    relative = obstacles.velocity - velocity
+    offset = obstacles.position - position
+    distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), NEAREST)
+    speed = np.hypot(relative[:, 0], relative[:, 1])
+    alpha = parameters.omega_o * obstacles.sigma * speed / distance
+    return np.minimum(1.0, alpha / parameters.gamma_o)
+
+
+def psi_way(free_distance: float, parameters: EvaluationParameters) -> float:
+    """psi_way, how far the ground is free of obstacles (Yoo & Kim, eq. (4))."""
+    return min(1.0, max(0.0, free_distance) / parameters.d_n_thres)
+
+
+def obstacle_free_distance(position: Array, centres: Array, radii: Array, limit: float) -> float:
+    """d_of: distance to the nearest extended shape, bounded by `limit` [m].
+
+    Args:
+        position: of the robot (2,) [m].
+        centres: of the extended shapes (n, 2) [m].
+        radii: (n,) [m].
+        limit: d_nThres [m].
+    """
+    if len(centres) == 0:
+        return limit
+    offset = centres - position
+    gap = float(np.min(np.hypot(offset[:, 0], offset[:, 1]) - radii))
+    return min(limit, max(0.0, gap))
+
+
+def attended(obstacles: ObstacleSet, pose: Array, velocity: Array, reach: float) -> Mask:
+    """The set O: detected obstacles that are frontal or approach from behind.
+
+    Args:
+        obstacles: n obstacles in W.
+        pose: of the robot (3,) [m, m, rad].
+        velocity: of the robot in W (2,) [m/s].
+        reach: largest distance [m].
+    """
+    offset = obstacles.position - pose[:2]
+    distance = np.hypot(offset[:, 0], offset[:, 1])
+    bearing = wrap_array(np.arctan2(offset[:, 1], offset[:, 0]) - pose[2])
+    closing = np.sum((obstacles.velocity - velocity) * offset, axis=1) < 0.0
+    return (distance <= reach) & ((np.abs(bearing) < 0.5 * np.pi) | closing)
