@@ -55,7 +55,7 @@ class TrackingParameters:
     """Factor on the standard deviations of a detection cut by the image border [1]."""
     gate: Positive = 13.8
     """Squared Mahalanobis distance above which a detection belongs to another track [1]."""
-    birth_density: Positive = 0.01
+    birth_density: Positive = 0.1
     """Density of detections of new obstacles against which association competes [1/m²]."""
     birth_hits: Annotated[int, Ge(2)] = 2
     """Detections that make a track [1]."""
@@ -113,6 +113,8 @@ class TrackingParameters:
     """Distance up to which obstacles are detected [m]."""
     view_margin: NonNegative = 0.07
     """Distance from the border of the view inside which a detection is expected [rad]."""
+    hiding_slack: NonNegative = 0.08
+    """Widening of an obstacle within which it may hide what is behind it [m]."""
     miss_time: Positive = 0.2
     """Time in view without detection that counts as one miss [s]."""
     misses: Annotated[int, Ge(1)] = 5

@@ -157,9 +157,7 @@ class Localizer:
                 f"frames must come in the order of their capture: {frame.time:.3f} s came after "
                 f"{self._previous[0]:.3f} s"
             )
-        beacons = [
-            o for o in frame.observations if o.kind == "beacon" and o.label in self._beacons
-        ]
+        beacons = [o for o in frame.observations if o.kind == "beacon" and o.label in self._beacons]
         try:
             self._predict(frame)
             intervals = [self._remember(o, frame) for o in beacons]
