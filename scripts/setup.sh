@@ -65,10 +65,10 @@ started=$SECONDS
 "$venv/bin/python" -m pip --version >/dev/null 2>&1 || make_venv
 pip=("$venv/bin/python" -m pip --disable-pip-version-check --no-input)
 
-say "installing $(grep -c '^[a-z]' requirements.lock) locked packages (a few minutes the first time)"
-"${pip[@]}" install --quiet --require-hashes --no-deps --requirement requirements.lock
+say "installing the locked packages (about a minute the first time)"
+"${pip[@]}" install -qq --require-hashes --no-deps --requirement requirements.lock
 say "installing hsr8 itself, editable"
-"${pip[@]}" install --quiet --no-deps --no-build-isolation --no-index --editable .
+"${pip[@]}" install -qq --no-deps --no-build-isolation --no-index --editable .
 
 if ! gl_draws egl && ! gl_draws osmesa; then
     if ! { apt_install libegl1 libgl1 && gl_draws egl; }; then
