@@ -51,6 +51,7 @@ class GazeGrid:
 
     def __init__(
         self,
+        *,
         pan_limit: float,
         tilt_min: float,
         tilt_max: float,
@@ -69,8 +70,9 @@ class GazeGrid:
             half_tilt: half height of a box [rad].
         """
         columns = round(pan_limit / step)
-        self.pan: Array = np.arange(-columns, columns + 1) * step
-        self.tilt: Array = tilt_min + step * np.arange(round((tilt_max - tilt_min) / step) + 1)
+        self.pan: Array = step * np.arange(-columns, columns + 1, dtype=np.float64)
+        rows = round((tilt_max - tilt_min) / step) + 1
+        self.tilt: Array = tilt_min + step * np.arange(rows, dtype=np.float64)
         self.half_pan = half_pan
         self.half_tilt = half_tilt
 

@@ -145,4 +145,5 @@ def attended(obstacles: ObstacleSet, pose: Array, velocity: Array, reach: float)
     distance = np.hypot(offset[:, 0], offset[:, 1])
     bearing = wrap_array(np.arctan2(offset[:, 1], offset[:, 0]) - pose[2])
     closing = np.sum((obstacles.velocity - velocity) * offset, axis=1) < 0.0
-    return (distance <= reach) & ((np.abs(bearing) < 0.5 * np.pi) | closing)
+    members: Mask = (distance <= reach) & ((np.abs(bearing) < 0.5 * np.pi) | closing)
+    return members

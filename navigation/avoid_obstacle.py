@@ -1,0 +1,83 @@
+"""Avoid-obstacle univector field: the hyperbolic spiral, Yoo & Kim, eq. (9)."""
+
+from math import pi
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def spiral_turn(gap: ArrayLike, s_oe: ArrayLike, d_e: ArrayLike, k_r: float) -> Array:
+    """Angle between the outward direction and the spiral (Yoo & Kim, eq. (9)).
+
+    Args:
+        gap: rho_or - S_oe (...) [m], >= 0.
+        s_oe: extended radius (...) [m].
+        d_e: radius offset (...) [m].
+        k_r: curvature [m].
+
+    Returns:
+        From 0 on the circle over pi/2 at S_oe + d_e towards pi at infinity (...) [rad].
+    """
+    gap_, s, e = np.asarray(gap, np.float64), np.asarray(s_oe), np.asarray(d_e)
+    near = np.sqrt(np.maximum(gap_, 0.0) / e)
+    far = 2.0 - (s + e + k_r) / (np.maximum(gap_, 0.0) + s + k_r)
+    turn: Array = 0.5 * pi * np.where(gap_ < e, near, far)
+    return turn
+
+
+def avoid_obstacle(
+    position: Array,
+    target: Array,
+    centres: Array,
+    s_oe: Array,
+    *,
+    d_e: ArrayLike,
+    d_b: float,
+    k_r: float,
+    inside: Literal["zero", "outward"],
+    outward: Array | None = None,
+) -> Array:
+    """u_auf of every obstacle at every point (Yoo & Kim, eq. (9)).
+
+    theta_or points outward, from the obstacle to the robot. The sign takes the short way
+    round: counter-clockwise if cross(p_od, p_or) < 0. Obstacles beyond the destination or
+    behind the robot do nothing.
+
+    Args:
+        position: points in W (..., 2) [m].
+        target: destination (2,) [m].
+        centres: obstacles (n, 2) [m].
+        s_oe: extended radii (n,) [m].
+        d_e: radius offset, a number or (n,) [m].
+        d_b: boundary offset [m].
+        k_r: curvature [m].
+        inside: field inside the extended radius.
+        outward: outward angle to use where a point meets a centre (n,) [rad].
+
+    Returns:
+        Unit vectors or zeros (..., n, 2).
+    """
+    p_or = np.asarray(position)[..., None, :] - centres
+    p_rd = target - np.asarray(position)[..., None, :]
+    p_od = target - centres
+    rho = np.hypot(p_or[..., 0], p_or[..., 1])
+    angle = np.arctan2(p_or[..., 1], p_or[..., 0])
+    if outward is not None:
+        angle = np.where(rho < 0.01, outward, angle)
+    gap = rho - s_oe
+    cross = p_od[..., 0] * p_or[..., 1] - p_od[..., 1] * p_or[..., 0]
+    turn = np.where(cross < 0.0, 1.0, -1.0) * spiral_turn(gap, s_oe, d_e, k_r)
+    before_target = np.hypot(p_rd[..., 0], p_rd[..., 1]) + s_oe >= np.hypot(
+        p_od[..., 0], p_od[..., 1]
+    )
+    ahead = np.sum(p_or * p_rd, axis=-1) < 0.0
+    active = (gap >= 0.0) & (gap <= np.asarray(d_e) + d_b) & before_target & ahead
+    if inside == "outward":
+        turn = np.where(gap < 0.0, 0.0, turn)
+        active |= gap < 0.0
+    direction = angle + turn
+    field: Array = np.stack([np.cos(direction), np.sin(direction)], axis=-1) * active[..., None]
+    return field

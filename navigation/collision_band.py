@@ -1,0 +1,145 @@
+"""Collision band of a mover and the situations of Yoo & Kim, Fig. 4."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
+from math import hypot, inf, isfinite, sqrt
+
+
+class Situation(StrEnum):
+    """What a robot on a straight line has before it (letters of Fig. 4).
+
+    CROSSING: (a) outside the band, the line crosses it.
+    ESCAPE: (b) inside the band, some speed is free.
+    DEFINITE: (c) inside the band and no speed up to the largest is free.
+    RECEDING: (d) outside the band, walking at the mover itself; to stop is safe.
+    """
+
+    CROSSING = "a"
+    ESCAPE = "b"
+    DEFINITE = "c"
+    RECEDING = "d"
+
+
+@dataclass(frozen=True, slots=True)
+class Encounter:
+    """One mover as seen from a robot that walks along a line.
+
+    Everything in axes of the line: x along the robot's motion.
+
+    Attributes:
+        along, across: p_ro, from the robot to the mover [m].
+        forward, left: velocity v_o of the mover over ground [m/s].
+        radius: distance S below which the two collide [m].
+    """
+
+    along: float
+    across: float
+    forward: float
+    left: float
+    radius: float
+
+    def contact_time(self, speed: float) -> float:
+        """Time until contact at constant `speed` [m/s]; inf for none, 0 inside and closing [s]."""
+        u, w = self.forward - speed, self.left
+        c = self.along**2 + self.across**2 - self.radius**2
+        b = self.along * u + self.across * w
+        if b >= 0.0:
+            return inf
+        if c <= 0.0:
+            return 0.0
+        a = u * u + w * w
+        discriminant = b * b - a * c
+        if discriminant <= 0.0:
+            return inf
+        return max(0.0, (-b - sqrt(discriminant)) / a)
+
+    def band(self) -> tuple[float, float]:
+        """(al, lat): the robot's place along and left of the mover's path [m]."""
+        speed = hypot(self.forward, self.left)
+        if speed == 0.0:
+            return 0.0, inf
+        x, y = self.forward / speed, self.left / speed
+        return -(self.along * x + self.across * y), -(x * self.across - y * self.along)
+
+    def in_band(self) -> bool:
+        """Whether the mover sweeps over the robot if that stands."""
+        al, lat = self.band()
+        return abs(lat) < self.radius and al > 0.0
+
+    def crossing_speeds(self) -> tuple[float, ...]:
+        """Roots of A v² + B v + C: the speeds at which the robot just touches the mover.
+
+        A = b² - S², B = 2 (S² v_o.e - a b), C = a² - S² |v_o|², with a = cross(p_ro, v_o)
+        and b = cross(p_ro, e).
+        """
+        s2 = self.radius**2
+        a = self.along * self.left - self.across * self.forward
+        b = -self.across
+        qa = b * b - s2
+        qb = 2.0 * (s2 * self.forward - a * b)
+        qc = a * a - s2 * (self.forward**2 + self.left**2)
+        if abs(qa) < 1e-12:
+            return (-qc / qb,) if abs(qb) > 1e-12 else ()
+        discriminant = qb * qb - 4.0 * qa * qc
+        if discriminant < 0.0:
+            return ()
+        root = sqrt(discriminant)
+        low, high = sorted(((-qb - root) / (2.0 * qa), (-qb + root) / (2.0 * qa)))
+        return low, high
+
+    def breakpoints(self, horizon: float) -> tuple[float, ...]:
+        """Every speed at which the answer "contact before `horizon`" [s] can change [m/s]."""
+        points = list(self.crossing_speeds())
+        if self.along != 0.0:
+            points.append(self.forward + self.across * self.left / self.along)
+        if isfinite(horizon):
+            across = self.across + self.left * horizon
+            reach = self.radius**2 - across**2
+            if reach > 0.0:
+                along = self.along + self.forward * horizon
+                points += [(along - sqrt(reach)) / horizon, (along + sqrt(reach)) / horizon]
+        return tuple(points)
+
+    def situation(self, v_max: float) -> Situation | None:
+        """Letter of Fig. 4 for speeds up to `v_max` [m/s]; None: nothing to do about it.
+
+        Case (c) of the paper contains slower movers from behind, of which some speeds are
+        free; those are treated like (b).
+        """
+        meets_line = abs(self.across) < self.radius
+        if self.in_band():
+            if meets_line and not free_intervals((self,), v_max, inf):
+                return Situation.DEFINITE
+            return Situation.ESCAPE
+        if not any(isfinite(self.contact_time(v)) for v in self._probes(v_max)):
+            return None
+        return Situation.RECEDING if meets_line else Situation.CROSSING
+
+    def _probes(self, v_max: float) -> tuple[float, ...]:
+        cuts = _cuts((self,), v_max, inf)
+        return tuple(0.5 * (a + b) for a, b in pairwise(cuts))
+
+
+def free_intervals(
+    encounters: tuple[Encounter, ...], v_max: float, horizon: float
+) -> list[tuple[float, float]]:
+    """Closed intervals of speeds in [0, v_max] without contact before `horizon` [s].
+
+    The answer changes only at the breakpoints of the encounters, so one test between two
+    of them decides; several movers give the union of their colliding intervals.
+    """
+    cuts = _cuts(encounters, v_max, horizon)
+    intervals: list[tuple[float, float]] = []
+    for low, high in pairwise(cuts):
+        middle = 0.5 * (low + high)
+        if all(e.contact_time(middle) > horizon for e in encounters):
+            joins = bool(intervals) and intervals[-1][1] == low
+            start = intervals.pop()[0] if joins else low
+            intervals.append((start, high))
+    return intervals
+
+
+def _cuts(encounters: tuple[Encounter, ...], v_max: float, horizon: float) -> list[float]:
+    inner = {v for e in encounters for v in e.breakpoints(horizon) if 0.0 < v < v_max}
+    return sorted({0.0, v_max, *inner})

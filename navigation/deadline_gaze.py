@@ -1,0 +1,146 @@
+"""Deadline votes: how late a look is, measured by half the worst-case time to contact.
+
+The structure is the paper's: four evaluations, a gaze map, its highest centre. What fills
+the obstacle and map evaluations is the age of the knowledge over the time within which it
+must be renewed, and a lost mover votes wherever it may be.
+"""
+
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap_array
+from navigation.belief import Belief
+from navigation.decision_parameters import NavigationParameters
+from navigation.gaze_map import Votes
+from navigation.gaze_scene import AIM_HEIGHT, GazeScene, relative, to_field
+from navigation.integrated_gaze import beacon_votes
+
+Array = NDArray[np.float64]
+
+_FRAME = 0.1
+"""Age of what was seen in the latest frame, one decision [s]."""
+_HALF = 0.5
+_LEAST_TIME = 0.4
+"""Shortest time to contact counted [s]."""
+_CLEARANCE = 0.05
+"""Distance from contact at which it is too late [m]."""
+_AGE_LIMIT = 8.0
+"""Age of ground from which nothing grows worse [s]."""
+_RAYS = np.radians(np.linspace(-120.0, 120.0, 17))
+_RINGS = np.array([0.45, 0.8, 1.2, 1.7])
+_MAP_SPEED = 0.7
+"""Speed of unknown movers on unseen ground, share of the robot's."""
+_WAY_DISTANCE = 0.8
+"""Distance of the floor looked at along the way [m]."""
+
+
+def deadline_votes(
+    scene: GazeScene,
+    belief: Belief,
+    way: float,
+    speed: float,
+    parameters: NavigationParameters,
+) -> Votes:
+    """All deadline votes of this moment.
+
+    Args:
+        scene: partial evaluations.
+        belief: what the robot believes.
+        way: bearing of the planned velocity in R [rad].
+        speed: the robot's largest speed [m/s].
+        parameters: of the decisions.
+    """
+    p = parameters.gaze
+    height = scene.camera_height
+    votes = [
+        obstacle_deadlines(scene, belief, way, speed, parameters),
+        map_deadlines(scene, belief, way, speed, parameters),
+        Votes.one(
+            float(np.clip(way, -p.pan_limit, p.pan_limit)),
+            float(-np.arctan2(height, _WAY_DISTANCE)),
+            p.deadline.way_weight,
+        ),
+        beacon_votes(
+            scene, p.deadline.beacon_weight * self_urgency(belief, parameters), 0.5 * pi + pi
+        ),
+    ]
+    return Votes.join(votes)
+
+
+def self_urgency(belief: Belief, parameters: NavigationParameters) -> float:
+    """Uncertainty of the pose over what is tolerable, in [0, 1]."""
+    sigma = float(np.sqrt(max(np.linalg.eigvalsh(belief.pose_covariance[:2, :2])[-1], 0.0)))
+    turn = float(np.sqrt(max(belief.pose_covariance[2, 2], 0.0)))
+    e, d = parameters.evaluation, parameters.gaze.deadline
+    return min(1.0, max(sigma / e.t_sf, turn / d.t_heading))
+
+
+def obstacle_deadlines(
+    scene: GazeScene,
+    belief: Belief,
+    way: float,
+    speed: float,
+    parameters: NavigationParameters,
+) -> Votes:
+    """Votes of tracks and of the particles of lost ones; arguments as `deadline_votes`."""
+    p, d = parameters.gaze, parameters.gaze.deadline
+    o = scene.obstacles
+    lost = np.array([t.particles is not None for t in belief.tracks], dtype=np.bool_)
+    owner = [np.nonzero(~lost)[0]]
+    place = [o.position[~lost]]
+    share = [np.ones(int((~lost).sum()))]
+    for index, track in enumerate(belief.tracks):
+        if track.particles is not None:
+            owner.append(np.full(len(track.particles.weights), index))
+            place.append(track.particles.positions)
+            share.append(track.particles.weights)
+    index_ = np.concatenate(owner).astype(np.int64)
+    bearing, distance = relative(np.concatenate(place), belief.pose)
+    weight = np.concatenate(share)
+    reach = p.pan_limit + p.box_share * belief.view.horizontal_fov - 0.05
+    in_reach = (distance <= parameters.evaluation.attention_range) & (np.abs(bearing) <= reach)
+    index_, weight = index_[in_reach], weight[in_reach]
+    bearing, distance = bearing[in_reach], distance[in_reach]
+    static, moving = o.static[index_], o.moving[index_]
+    unknown = ~static & ~moving
+    feared = np.where(
+        static,
+        d.static_speed,
+        np.where(
+            moving,
+            np.minimum(d.mover_speed * speed, o.speed[index_] + 0.5 * o.speed_sigma[index_]),
+            d.unknown_speed * speed,
+        ),
+    )
+    approach = feared + speed * np.maximum(0.25, 0.5 + 0.5 * np.cos(bearing - way))
+    gap = distance - o.radius[index_] - parameters.univector.s_robot - _CLEARANCE
+    contact = np.maximum(_LEAST_TIME, gap / approach)
+    age = o.age[index_] + _FRAME + d.unknown_bonus * unknown
+    urgency = np.minimum(d.urgency_limit, age / (_HALF * contact)) ** d.exponent
+    value = weight * urgency * np.where(static, d.static_weight, 1.0)
+    tilt = np.arctan2(AIM_HEIGHT - scene.camera_height, np.maximum(distance, 0.05))
+    return Votes(bearing, tilt, value)
+
+
+def map_deadlines(
+    scene: GazeScene,
+    belief: Belief,
+    way: float,
+    speed: float,
+    parameters: NavigationParameters,
+) -> Votes:
+    """Votes of ground not seen for long; arguments as `deadline_votes`."""
+    p, d = parameters.gaze, parameters.gaze.deadline
+    reach = p.pan_limit + p.box_share * belief.view.horizontal_fov
+    rays = _RAYS[np.abs(_RAYS) <= reach]
+    distance, bearing = (a.ravel() for a in np.meshgrid(_RINGS, rays, indexing="ij"))
+    points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
+    age = np.minimum(_AGE_LIMIT, belief.local_map.age_at(to_field(points, belief.pose)))
+    approach = speed * (_MAP_SPEED + np.maximum(0.1, np.cos(bearing - way)))
+    room = distance - 2.0 * parameters.univector.s_robot
+    contact = np.maximum(_LEAST_TIME, room / approach)
+    value = d.map_weight * np.minimum(d.urgency_limit, age / contact) ** d.exponent
+    tilt = -np.arctan2(scene.camera_height, distance)
+    return Votes(wrap_array(bearing), tilt, value)

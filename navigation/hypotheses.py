@@ -1,0 +1,109 @@
+"""What the collision filter must not touch: tracks, particles of lost movers, reversals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.belief import Track
+from navigation.decision_parameters import FilterParameters
+from navigation.obstacle_set import ObstacleSet
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Hypotheses:
+    """m discs that may be where they say, moving at constant velocity.
+
+    Attributes:
+        position: in W (m, 2) [m].
+        velocity: (m, 2) [m/s].
+        radius: distance from the robot's centre at which they count as touched (m,) [m].
+        horizon: time to contact below which they count (m,) [s].
+        weight: of their penalty (m,).
+    """
+
+    position: Array
+    velocity: Array
+    radius: Array
+    horizon: Array
+    weight: Array
+
+    def __len__(self) -> int:
+        return len(self.radius)
+
+    def within_reach(self, position: Array, speed: float) -> "Hypotheses":
+        """Those a robot at `position` (2,) [m] could touch in time at up to `speed` [m/s]."""
+        offset = self.position - position
+        gap = np.hypot(offset[:, 0], offset[:, 1]) - self.radius
+        reach = (np.hypot(self.velocity[:, 0], self.velocity[:, 1]) + speed) * self.horizon
+        near = gap < reach
+        return Hypotheses(
+            self.position[near],
+            self.velocity[near],
+            self.radius[near],
+            self.horizon[near],
+            self.weight[near],
+        )
+
+
+def collision_hypotheses(
+    tracks: Sequence[Track], obstacles: ObstacleSet, s_robot: float, parameters: FilterParameters
+) -> Hypotheses:
+    """Build the hypotheses of all tracks.
+
+    A lost mover counts as its particles, a visible one also as its own reversal.
+
+    Args:
+        tracks: of the belief.
+        obstacles: the same tracks as arrays.
+        s_robot: radius of the robot [m].
+        parameters: horizons, weights and margins.
+    """
+    base = s_robot + obstacles.radius + parameters.margin
+    swollen = base + np.minimum(parameters.sigma_limit, obstacles.sigma)
+    lost = np.array([t.particles is not None for t in tracks], dtype=np.bool_)
+    seen = ~lost
+    still = obstacles.static[seen]
+    parts = [
+        Hypotheses(
+            obstacles.position[seen],
+            obstacles.velocity[seen],
+            np.where(still, base[seen], swollen[seen]),
+            np.where(still, parameters.static_horizon, parameters.moving_horizon),
+            np.ones(int(seen.sum())),
+        )
+    ]
+    reversing = seen & obstacles.moving
+    if parameters.reversal_weight > 0.0 and reversing.any():
+        n = int(reversing.sum())
+        parts.append(
+            Hypotheses(
+                obstacles.position[reversing],
+                -obstacles.velocity[reversing],
+                swollen[reversing],
+                np.full(n, parameters.reversal_horizon),
+                np.full(n, parameters.reversal_weight),
+            )
+        )
+    for index, track in enumerate(tracks):
+        if track.particles is not None:
+            n = len(track.particles.weights)
+            parts.append(
+                Hypotheses(
+                    track.particles.positions,
+                    track.particles.velocities,
+                    np.full(n, base[index]),
+                    np.full(n, parameters.moving_horizon),
+                    parameters.particle_weight * track.particles.weights,
+                )
+            )
+    return Hypotheses(
+        np.concatenate([p.position for p in parts]),
+        np.concatenate([p.velocity for p in parts]),
+        np.concatenate([p.radius for p in parts]),
+        np.concatenate([p.horizon for p in parts]),
+        np.concatenate([p.weight for p in parts]),
+    )

@@ -1,0 +1,69 @@
+"""Votes of the four partial evaluations, Yoo & Kim, eqs. (1)-(6)."""
+
+from math import atan2, hypot
+
+import numpy as np
+
+from navigation.angles import wrap
+from navigation.belief import Belief
+from navigation.decision import Task
+from navigation.decision_parameters import NavigationParameters
+from navigation.gaze_map import Votes
+from navigation.gaze_scene import AIM_HEIGHT, GazeScene
+
+
+def integrated_votes(
+    scene: GazeScene, belief: Belief, task: Task, parameters: NavigationParameters
+) -> Votes:
+    """All votes of eq. (6), each with its weight and partial evaluation.
+
+    Args:
+        scene: partial evaluations of this moment.
+        belief: what the robot believes.
+        task: the way point.
+        parameters: weights and forms.
+    """
+    p = parameters.gaze
+    votes = _map_votes(scene, p.w_lm, p.map_votes)
+    votes.append(_way_vote(scene, belief, task, p.w_way, parameters))
+    seen = scene.attended & scene.reachable
+    pan = np.clip(scene.bearing[seen], -p.pan_limit, p.pan_limit)
+    tilt = np.arctan2(AIM_HEIGHT - scene.camera_height, scene.distance[seen])
+    share = 1.0 / max(1, int(seen.sum())) if p.obstacle_votes == "mean" else 1.0
+    votes.append(Votes(pan, tilt, share * p.w_ob * scene.psi_ob[seen]))
+    if p.candidates == "obstacles":
+        votes.append(Votes(pan, tilt, np.full(len(pan), share * p.w_sf * scene.psi_sf)))
+    votes.append(beacon_votes(scene, p.w_sf * scene.psi_sf, p.pan_limit))
+    return Votes.join(votes)
+
+
+def beacon_votes(scene: GazeScene, value: float, pan_limit: float) -> Votes:
+    """One `value` shared by all beacons within reach, at the height of the horizon."""
+    bearings = scene.beacon_bearing
+    n = len(bearings)
+    return Votes(
+        np.clip(bearings, -pan_limit, pan_limit), np.zeros(n), np.full(n, value / max(1, n))
+    )
+
+
+def _map_votes(scene: GazeScene, weight: float, form: str) -> list[Votes]:
+    under = scene.map.under_confident
+    count = int(under.sum())
+    if count == 0:
+        return []
+    pan = scene.samples.bearing[under]
+    tilt = -np.arctan2(scene.camera_height, scene.samples.distance[under])
+    if form == "mean":
+        return [Votes.one(float(pan.mean()), float(tilt.mean()), weight * scene.map.psi)]
+    return [Votes(pan, tilt, np.full(count, weight * scene.map.psi / count))]
+
+
+def _way_vote(
+    scene: GazeScene, belief: Belief, task: Task, weight: float, parameters: NavigationParameters
+) -> Votes:
+    e, limit = parameters.evaluation, parameters.gaze.pan_limit
+    dx, dy = (task.target - belief.pose[:2]).tolist()
+    bearing = wrap(atan2(dy, dx) - float(belief.pose[2]))
+    distance = min(max(hypot(dx, dy), e.d_nm), e.d_fm)
+    pan = min(max(bearing, -limit), limit)
+    return Votes.one(pan, -atan2(scene.camera_height, distance), weight * scene.psi_way)

@@ -1,0 +1,118 @@
+"""Velocity modification: another speed on the same line, Yoo & Kim, section III-2."""
+
+from dataclasses import dataclass
+from math import inf
+
+from navigation.collision_band import Encounter, free_intervals
+
+_TOUCH = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class ModifiedSpeed:
+    """Result of velocity modification.
+
+    Attributes:
+        speed: to walk with [m/s].
+        situation: free, accelerate, brake, escape or path_change.
+    """
+
+    speed: float
+    situation: str
+
+
+def needed_acceleration(speed: float, wanted: float, contact_time: float, footstep: float) -> float:
+    """Acceleration a = 2 (|p_oc| - |v_r| t_c)/t_c², with |p_oc| = v_c t_c [m/s²].
+
+    Args:
+        speed: |v_r| now [m/s].
+        wanted: v_c, the speed that just touches [m/s].
+        contact_time: t_c [s].
+        footstep: the least time a speed can change in [s].
+    """
+    return 2.0 * (wanted - speed) / max(contact_time, footstep)
+
+
+def modify_speed(
+    encounters: tuple[Encounter, ...],
+    desired: float,
+    now: float,
+    *,
+    v_max: float,
+    acceleration: float,
+    footstep: float,
+    horizon: float,
+) -> ModifiedSpeed:
+    """Choose a free speed by the roots of the quadratic.
+
+    Keep the desired speed if it is free; else the lowest free speed above that can be
+    reached in time; else the highest free speed below, standing included; else give up
+    and let the path change.
+
+    Args:
+        encounters: the movers, in axes of the line of motion.
+        desired: speed asked for [m/s].
+        now: present speed [m/s].
+        v_max: largest speed [m/s].
+        acceleration: largest [m/s²].
+        footstep: duration of a footstep [s].
+        horizon: later contacts are ignored [s].
+    """
+    if all(e.contact_time(desired) > horizon for e in encounters):
+        return ModifiedSpeed(desired, "free")
+    intervals = free_intervals(encounters, v_max, horizon)
+    standing_hits = any(e.contact_time(0.0) <= horizon for e in encounters)
+    above = [low for low, _ in intervals if low > desired]
+    if above:
+        time = min((_touch_time(e, above[0]) for e in encounters), default=inf)
+        if needed_acceleration(now, above[0], time, footstep) <= acceleration:
+            situation = "escape" if standing_hits else "accelerate"
+            return ModifiedSpeed(min(v_max, above[0] + _TOUCH), situation)
+    below = [high for _, high in intervals if high < desired]
+    if below:
+        return ModifiedSpeed(max(0.0, below[-1] - _TOUCH), "brake")
+    return ModifiedSpeed(desired, "path_change")
+
+
+def _touch_time(encounter: Encounter, speed: float) -> float:
+    """t_c = -p_ro.w/|w|² with w = v_o - v e, if it is this mover that is touched [s]."""
+    u, w = encounter.forward - speed, encounter.left
+    square = u * u + w * w
+    if square == 0.0:
+        return inf
+    time = -(encounter.along * u + encounter.across * w) / square
+    gap = (encounter.along + u * time) ** 2 + (encounter.across + w * time) ** 2
+    touches = abs(gap - encounter.radius**2) < 1e-6
+    return time if touches and time > 0.0 else inf
+
+
+def sample_speed(
+    encounters: tuple[Encounter, ...],
+    desired: float,
+    now: float,
+    *,
+    v_max: float,
+    acceleration: float,
+    samples: int,
+    horizon: float,
+    acceleration_time: float,
+) -> ModifiedSpeed:
+    """The same choice among `samples` speeds from 0 to v_max.
+
+    A higher speed counts as reachable if it is gained within `acceleration_time` [s].
+    The other arguments are those of `modify_speed`.
+    """
+
+    def free(speed: float) -> bool:
+        return all(e.contact_time(speed) > horizon for e in encounters)
+
+    if free(desired):
+        return ModifiedSpeed(desired, "free")
+    speeds = [v_max * k / (samples - 1) for k in range(samples)]
+    for speed in speeds:
+        if speed > desired and speed - now <= acceleration * acceleration_time and free(speed):
+            return ModifiedSpeed(speed, "accelerate" if free(0.0) else "escape")
+    for speed in reversed(speeds):
+        if speed < desired and free(speed):
+            return ModifiedSpeed(speed, "brake")
+    return ModifiedSpeed(desired, "path_change")
