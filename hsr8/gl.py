@@ -1,0 +1,82 @@
+"""OpenGL without a display: the one place that chooses how MuJoCo draws.
+
+MuJoCo reads ``MUJOCO_GL`` once, when it is first imported. The package calls
+`choose_backend` before anything of it imports MuJoCo.
+"""
+
+import ctypes
+import os
+import sys
+from functools import cache
+
+from hsr8.errors import RenderingUnavailable
+
+APT_LINE = "apt-get install -y libegl1 libgl1"
+BACKENDS = ("egl", "osmesa")
+_LIBRARIES = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
+SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "software")
+
+
+def choose_backend() -> str:
+    """Set ``MUJOCO_GL`` unless the user did: EGL, else OSMesa, else no drawing at all.
+
+    Returns:
+        The backend in force; empty where MuJoCo is to choose by itself (not Linux).
+    """
+    chosen = os.environ.get("MUJOCO_GL", "")
+    if chosen or not sys.platform.startswith("linux"):
+        return chosen
+    # Without any library MuJoCo would fail on import, although physics needs none.
+    chosen = next((name for name in BACKENDS if _loads(_LIBRARIES[name])), "disable")
+    os.environ["MUJOCO_GL"] = chosen
+    return chosen
+
+
+@cache
+def require_gl() -> str:
+    """Make sure that MuJoCo can draw; asked once per process.
+
+    Returns:
+        Name of the renderer as OpenGL gives it, for example ``llvmpipe (LLVM 15.0.6, ...)``.
+
+    Raises:
+        RenderingUnavailable: no OpenGL draws here; the message says what to install.
+    """
+    choose_backend()
+    import mujoco  # noqa: PLC0415  the backend is chosen first
+
+    try:
+        context = mujoco.GLContext(16, 16)
+        context.make_current()
+        from OpenGL import GL  # noqa: PLC0415  binds to the platform of the context
+
+        name = GL.glGetString(GL.GL_RENDERER)
+        context.free()
+    except (ImportError, AttributeError, OSError, RuntimeError, TypeError, mujoco.FatalError) as e:
+        raise RenderingUnavailable(_advice(str(e))) from e
+    if name is None:
+        raise RenderingUnavailable(_advice("the OpenGL context does not answer"))
+    return str(name.decode())
+
+
+def is_software(renderer: str) -> bool:
+    """Whether this renderer draws on the processor."""
+    return any(word in renderer.lower() for word in SOFTWARE_RENDERERS)
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+def _advice(reason: str) -> str:
+    backend = os.environ.get("MUJOCO_GL", "") or "default"
+    return (
+        f"no OpenGL can draw here (MUJOCO_GL={backend}: {reason.splitlines()[0] if reason else '?'})"
+        f"\n  install it, as root:  {APT_LINE}"
+        "\n  or run without it:    --camera analytic"
+        "\n  details:              hsr8 doctor"
+    )
