@@ -18,16 +18,19 @@ SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "software")
 
 
 def choose_backend() -> str:
-    """Set ``MUJOCO_GL`` unless the user did: EGL, else OSMesa, else no drawing at all.
+    """Set ``MUJOCO_GL``: what the user asked for, else EGL, else OSMesa.
+
+    A backend whose library is missing is switched off, for it would make the import of
+    MuJoCo fail although physics needs no drawing.
 
     Returns:
         The backend in force; empty where MuJoCo is to choose by itself (not Linux).
     """
-    chosen = os.environ.get("MUJOCO_GL", "")
-    if chosen or not sys.platform.startswith("linux"):
-        return chosen
-    # Without any library MuJoCo would fail on import, although physics needs none.
-    chosen = next((name for name in BACKENDS if _loads(_LIBRARIES[name])), "disable")
+    asked = os.environ.get("MUJOCO_GL", "").lower()
+    if not sys.platform.startswith("linux") or (asked and asked not in BACKENDS):
+        return asked
+    wanted = (asked,) if asked else BACKENDS
+    chosen = next((name for name in wanted if _loads(_LIBRARIES[name])), "disable")
     os.environ["MUJOCO_GL"] = chosen
     return chosen
 
@@ -42,7 +45,8 @@ def require_gl() -> str:
     Raises:
         RenderingUnavailable: no OpenGL draws here; the message says what to install.
     """
-    choose_backend()
+    if choose_backend() == "disable":
+        raise RenderingUnavailable(_advice("no library to draw with was found"))
     import mujoco  # noqa: PLC0415  the backend is chosen first
 
     try:
@@ -74,8 +78,9 @@ def _loads(library: str) -> bool:
 
 def _advice(reason: str) -> str:
     backend = os.environ.get("MUJOCO_GL", "") or "default"
+    why = reason.splitlines()[0] if reason else "no reason given"
     return (
-        f"no OpenGL can draw here (MUJOCO_GL={backend}: {reason.splitlines()[0] if reason else '?'})"
+        f"no OpenGL can draw here (MUJOCO_GL={backend}: {why})"
         f"\n  install it, as root:  {APT_LINE}"
         "\n  or run without it:    --camera analytic"
         "\n  details:              hsr8 doctor"
