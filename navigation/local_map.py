@@ -112,16 +112,16 @@ class LocalMap:
         y: Array = (self._corner[1] + np.arange(self._count, dtype=np.float64) + 0.5) * self.cell
         rows, columns = np.nonzero(viewpoint.contains_grid(x[None, :], y[:, None]))
         points = np.stack([x[columns], y[rows]], axis=1)
-        clear = ~viewpoint.hidden(points, obstacles, radii)
-        rows, columns, points = rows[clear], columns[clear], points[clear]
-        self._seen_at[rows, columns] = time
         p = self._parameters
-        change = np.full(len(points), p.free_evidence)
-        if len(obstacles):
-            reach = (radii + 0.5 * self.cell) ** 2
-            dx = points[:, 0, None] - obstacles[:, 0]
-            dy = points[:, 1, None] - obstacles[:, 1]
-            change[(dx * dx + dy * dy < reach).any(axis=1)] = p.occupied_evidence
+        reach = (radii + 0.5 * self.cell) ** 2
+        dx = points[:, 0, None] - obstacles[:, 0]
+        dy = points[:, 1, None] - obstacles[:, 1]
+        occupied = (dx * dx + dy * dy < reach).any(axis=1)
+        # The ground under a detected obstacle counts as seen, although it hides half of it.
+        seen = occupied | ~viewpoint.hidden(points, obstacles, radii)
+        rows, columns = rows[seen], columns[seen]
+        self._seen_at[rows, columns] = time
+        change = np.where(occupied[seen], p.occupied_evidence, p.free_evidence)
         limit = p.evidence_limit
         self._log_odds[rows, columns] = np.clip(
             self._log_odds[rows, columns] + change, -limit, limit

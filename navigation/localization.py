@@ -157,7 +157,9 @@ class Localizer:
                 f"frames must come in the order of their capture: {frame.time:.3f} s came after "
                 f"{self._previous[0]:.3f} s"
             )
-        beacons = [o for o in frame.observations if o.kind == "beacon" and o.label in self._beacons]
+        # One blob split in two would otherwise count as two independent sightings.
+        seen = {o.label: o for o in reversed(frame.observations) if o.kind == "beacon"}
+        beacons = [o for name, o in seen.items() if name in self._beacons]
         try:
             self._predict(frame)
             intervals = [self._remember(o, frame) for o in beacons]
