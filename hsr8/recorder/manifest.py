@@ -1,0 +1,88 @@
+"""What a run was made of: versions, seed, machine, and how it ended."""
+
+import platform
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
+from importlib import metadata
+from pathlib import Path
+
+from hsr8 import __version__
+from hsr8.recorder import atomic
+
+LIBRARIES = (
+    "mujoco",
+    "rerun-sdk",
+    "numpy",
+    "scipy",
+    "pin",
+    "opencv-python-headless",
+    "filterpy",
+    "pydantic",
+    "av",
+)
+RUNNING = "running"
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """Written when a run starts and again when it ends.
+
+    Attributes:
+        scenario: name of the scenario.
+        seed: of the run.
+        command: command line that repeats it.
+        exit_reason: how it ended; ``running`` until then, and for ever after a kill.
+        started: wall-clock time, ISO 8601.
+        renderer: OpenGL renderer of the head camera; ``analytic`` without one.
+        hsr8: version.
+        python: version.
+        machine: operating system and processor.
+        libraries: version by name.
+    """
+
+    scenario: str
+    seed: int
+    command: str
+    exit_reason: str
+    started: str
+    renderer: str
+    hsr8: str
+    python: str
+    machine: str
+    libraries: dict[str, str]
+
+    @classmethod
+    def now(cls, scenario: str, seed: int, command: Sequence[str], renderer: str) -> "Manifest":
+        """Manifest of a run that starts now, on this machine."""
+        return cls(
+            scenario=scenario,
+            seed=seed,
+            command=" ".join(command),
+            exit_reason=RUNNING,
+            started=datetime.now(UTC).isoformat(timespec="seconds"),
+            renderer=renderer,
+            hsr8=__version__,
+            python=platform.python_version(),
+            machine=f"{platform.system()} {platform.release()} {platform.machine()}",
+            libraries=versions(),
+        )
+
+    def ended(self, exit_reason: str) -> "Manifest":
+        """The same run, ended."""
+        return replace(self, exit_reason=exit_reason)
+
+    def write(self, path: Path) -> None:
+        """Write to `path` at once."""
+        atomic.write_json(path, asdict(self))
+
+
+def versions() -> dict[str, str]:
+    """Installed version of every library that shapes a result."""
+    found = {}
+    for name in LIBRARIES:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "missing"
+    return found

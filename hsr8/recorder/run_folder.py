@@ -1,0 +1,116 @@
+"""The folder a run leaves behind: ``runs/<scenario>/<seed>-<id>/``.
+
+    scenario.toml    what was run, fully resolved
+    manifest.json    versions, seed, renderer, exit reason
+    metrics.json     results, at the end
+    events.jsonl     what happened, one line each
+    trajectory.bin   motion of robot and movers
+    frames.jsonl     belief and decisions, one camera frame a line
+    log.rrd          everything, for the Rerun viewer
+    video.mp4        after ``hsr8 render``
+    crash.txt        traceback of an internal error, if there was one
+
+Everything is written as it happens, so a killed run leaves a folder that can be read.
+"""
+
+import secrets
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TextIO
+
+from hsr8.errors import UsageError
+from hsr8.recorder import atomic, frame_summary
+from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.record import TickRecord
+from hsr8.recorder.trajectory import TrajectoryWriter
+
+SCENARIO = "scenario.toml"
+MANIFEST = "manifest.json"
+METRICS = "metrics.json"
+EVENTS = "events.jsonl"
+TRAJECTORY = "trajectory.bin"
+FRAMES = "frames.jsonl"
+LOG = "log.rrd"
+VIDEO = "video.mp4"
+CRASH = "crash.txt"
+
+FLUSH_PERIOD = 1.0  # a killed run loses so much of its motion at most [s]
+
+
+class RunFolder:
+    """Listener that writes the folder of one run.
+
+    Args:
+        path: new folder, see `create`.
+        manifest: of the run; written at once.
+        scenario: the resolved scenario as TOML.
+        movers: number of movers; they are the last of the obstacles.
+    """
+
+    def __init__(self, path: Path, manifest: Manifest, scenario: str, movers: int) -> None:
+        self.path = path
+        self._manifest = manifest
+        self._n_movers = movers
+        self._trajectory: TrajectoryWriter | None = None
+        self._flushed_at = 0.0
+        manifest.write(path / MANIFEST)
+        atomic.write_text(path / SCENARIO, scenario)
+        self._events: TextIO = (path / EVENTS).open("w", encoding="utf-8", buffering=1)
+        self._frames: TextIO = (path / FRAMES).open("w", encoding="utf-8")
+
+    @staticmethod
+    def create(out: Path, scenario: str, seed: int) -> Path:
+        """Make a new folder under `out`; it never overwrites one.
+
+        Raises:
+            UsageError: the folder cannot be made or written.
+        """
+        parent = out / scenario
+        try:
+            parent.mkdir(parents=True, exist_ok=True)
+            while True:
+                path = parent / f"{seed}-{secrets.token_hex(3)}"
+                try:
+                    path.mkdir()
+                except FileExistsError:
+                    continue
+                (path / EVENTS).touch()
+                return path
+        except OSError as error:
+            raise UsageError(
+                f"cannot write the run folder {parent}: {error.strerror}; choose another with --out"
+            ) from error
+
+    def on_record(self, record: TickRecord) -> None:
+        """Append the motion and, if there is one, the camera frame."""
+        truth = record.truth
+        movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
+        if self._trajectory is None:
+            self._trajectory = TrajectoryWriter(
+                self.path / TRAJECTORY, len(truth.qpos), self._n_movers
+            )
+        self._trajectory.append(record.time, truth.qpos, movers)
+        if record.frame is not None:
+            self._frames.write(frame_summary.to_line(record.frame, truth) + "\n")
+        if record.time - self._flushed_at >= FLUSH_PERIOD:
+            self._flushed_at = record.time
+            self._trajectory.flush()
+            self._frames.flush()
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Write one line."""
+        self._events.write(
+            atomic.dumps({"time": round(time, 4), "kind": kind, "text": text}) + "\n"
+        )
+
+    def close(self, exit_reason: str) -> None:
+        """Finish the files and note how the run ended."""
+        if self._trajectory is not None:
+            self._trajectory.close()
+        self._frames.close()
+        self._events.close()
+        self._manifest.ended(exit_reason).write(self.path / MANIFEST)
+
+    def write_metrics(self, metrics: Mapping[str, Any]) -> None:
+        """Write the results."""
+        atomic.write_json(self.path / METRICS, metrics)

@@ -1,0 +1,97 @@
+"""Reading a run folder back, also that of a run that was killed."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hsr8.errors import UsageError
+from hsr8.recorder import run_folder
+from hsr8.recorder.frame_summary import FrameSummary, read_frames
+from hsr8.recorder.trajectory import Trajectory, read_trajectory
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run folder.
+
+    Attributes:
+        path: the folder.
+        manifest: versions, seed, exit reason.
+    """
+
+    path: Path
+    manifest: dict[str, Any]
+
+    @property
+    def seed(self) -> int:
+        """Seed of the run."""
+        return int(self.manifest["seed"])
+
+    @property
+    def scenario_file(self) -> Path:
+        """The resolved scenario."""
+        return self.path / run_folder.SCENARIO
+
+    @property
+    def log_file(self) -> Path:
+        """The Rerun log, which a run with ``--no-log`` lacks."""
+        return self.path / run_folder.LOG
+
+    def metrics(self) -> dict[str, Any]:
+        """Results; empty if the run did not get there."""
+        file = self.path / run_folder.METRICS
+        return _json(file) if file.exists() else {}
+
+    def trajectory(self) -> Trajectory:
+        """Motion of robot and movers.
+
+        Raises:
+            UsageError: there is none.
+        """
+        return read_trajectory(self.path / run_folder.TRAJECTORY)
+
+    def frames(self) -> tuple[FrameSummary, ...]:
+        """Belief and decisions at every camera frame; empty if there were none."""
+        file = self.path / run_folder.FRAMES
+        return tuple(read_frames(file)) if file.exists() else ()
+
+    def events(self) -> tuple[dict[str, Any], ...]:
+        """What happened, each with ``time``, ``kind`` and ``text``."""
+        file = self.path / run_folder.EVENTS
+        lines = file.read_text(encoding="utf-8").splitlines(keepends=True) if file.exists() else []
+        return tuple(json.loads(line) for line in lines if line.endswith("\n"))
+
+
+def open_run(path: Path) -> Run:
+    """The run at `path`, or the newest run below it.
+
+    Raises:
+        UsageError: there is no run there.
+    """
+    if (path / run_folder.MANIFEST).is_file():
+        return Run(path, _json(path / run_folder.MANIFEST))
+    if not path.exists():
+        raise UsageError(f"there is no run folder {path}{_known(path.parent)}")
+    runs = sorted(path.glob(f"**/{run_folder.MANIFEST}"), key=lambda file: file.stat().st_mtime_ns)
+    if not runs:
+        raise UsageError(
+            f"{path} holds no run: a run folder has a {run_folder.MANIFEST}; "
+            "`hsr8 run SCENARIO` makes one"
+        )
+    return Run(runs[-1].parent, _json(runs[-1]))
+
+
+def _known(parent: Path) -> str:
+    names = sorted(p.name for p in parent.iterdir() if p.is_dir()) if parent.is_dir() else []
+    return f"; {parent} holds {', '.join(names[-8:])}" if names else ""
+
+
+def _json(path: Path) -> dict[str, Any]:
+    try:
+        value = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"cannot read {path}: {error}") from error
+    if not isinstance(value, dict):
+        raise UsageError(f"cannot read {path}: it is no JSON object")
+    return value
