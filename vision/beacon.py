@@ -1,0 +1,108 @@
+"""Beacons: posts with one reserved colour above another."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vision.blob import Blob
+from vision.cylinder import Candidate, RimCue
+from vision.outline import Outline, Rim, Side
+from vision.parameters import VisionParameters
+
+SEAM_SHARE = 0.6  # share of the upper colour's lower edge that must rest on the lower colour
+SIDE_TOLERANCE = 4.0  # how far the sides of the two colours may differ [standard deviations]
+RADIUS_SIGMA = 0.0005  # a beacon's radius is known this well [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Post:
+    """Two blobs that may be one beacon.
+
+    Attributes:
+        upper, lower: indices of the blobs.
+        candidate: its edges.
+    """
+
+    upper: int
+    lower: int
+    candidate: Candidate
+
+
+def find_posts(
+    blobs: Sequence[Blob],
+    outlines: Sequence[Outline],
+    indices: Sequence[int],
+    camera_height: float,
+    parameters: VisionParameters,
+) -> list[Post]:
+    """Pairs of blobs stacked like the two colours of a beacon.
+
+    Args:
+        blobs, outlines: of one image.
+        indices: the blobs of beacon colours.
+        camera_height: above the floor [m].
+        parameters: sizes of beacons.
+    """
+    posts = []
+    for i in indices:
+        seam = outlines[i].seam
+        if seam.covered < SEAM_SHARE:
+            continue
+        for j in indices:
+            if blobs[j].label != seam.neighbour or not _rests_on(blobs[i], blobs[j]):
+                continue
+            sides = _common_sides(outlines[i], outlines[j])
+            if sides is None:
+                continue
+            rims = _rims(outlines[i], outlines[j], camera_height, parameters)
+            candidate = Candidate(*sides, rims, parameters.beacon_radius, RADIUS_SIGMA)
+            posts.append(Post(i, j, candidate))
+    return posts
+
+
+def _rests_on(upper: Blob, lower: Blob) -> bool:
+    """Whether the boxes of two blobs touch or overlap."""
+    a, b = upper.box, lower.box
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+
+
+def _common_sides(upper: Outline, lower: Outline) -> tuple[Side, Side] | None:
+    """Left and right side of the whole post, None if the colours do not share them."""
+    left = _merge(upper.left, lower.left)
+    right = _merge(upper.right, lower.right)
+    if left is None or right is None or not (left.trusted or right.trusted):
+        return None
+    return left, right
+
+
+def _merge(a: Side, b: Side) -> Side | None:
+    """One side seen in both colours."""
+    hidden = a.hidden or b.hidden
+    low, high = min(a.low, b.low), max(a.high, b.high)
+    if not (a.trusted and b.trusted):
+        best = a if a.trusted else b
+        return Side(best.azimuth, best.sigma, best.low, best.high, best.trusted, hidden)
+    if abs(a.azimuth - b.azimuth) > SIDE_TOLERANCE * (a.sigma + b.sigma) / 2.0:
+        return None
+    # The longer part averages more pixels.
+    wa, wb = a.high - a.low + 1e-3, b.high - b.low + 1e-3
+    azimuth = (wa * a.azimuth + wb * b.azimuth) / (wa + wb)
+    return Side(azimuth, max(a.sigma, b.sigma), low, high, True, hidden)
+
+
+def _rims(
+    upper: Outline, lower: Outline, camera_height: float, parameters: VisionParameters
+) -> tuple[RimCue, ...]:
+    """Foot, seam and head of the post, those that have points."""
+    head = parameters.beacon_height
+    cues = (
+        RimCue(upper.seam, 0.5 * head, near=camera_height > 0.5 * head),
+        RimCue(lower.bottom, 0.0, near=True),
+        RimCue(upper.top, head, near=camera_height < head),
+    )
+    return tuple(cue for cue in cues if _has_points(cue.rim))
+
+
+def _has_points(rim: Rim) -> bool:
+    return bool(np.size(rim.slope))

@@ -1,0 +1,315 @@
+"""Upright cylinders on the floor, located from the edges seen of them.
+
+Unknown are the azimuth, the distance and the radius of the cylinder as the camera sees
+them. Both sides give azimuth +- asin(radius / distance). Every rim gives slopes
+(rim height - camera height) / (horizontal distance of the rim), with the near or the
+far part of the rim at distance * cos(phi) -+ sqrt(radius^2 - (distance * sin(phi))^2)
+in the direction phi off the axis. All are fused by Gauss-Newton with the full
+covariance of the measurements: pixels, independent, and the pose of the camera, which
+shifts all edges together.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import asin, cos, hypot, sin, atan2
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.outline import Rim, Side
+from vision.view import View
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 3
+MAX_RIMS = 3  # a beacon shows three
+SIDES = 2
+ROWS = SIDES + MAX_RIMS + 1  # two sides, the rims, the prior of the radius
+NO_INFORMATION = 1e3  # standard deviation of what was not measured
+RIM_WIDTH = 0.75  # share of the half width within which points of a rim are used
+OUTER = 0.92  # share of the half width where a rim is too steep to predict
+HIDDEN_WIDTH = 0.08  # how far a hidden side may reach beyond what is seen [m]
+MIN_DISTANCE, MAX_DISTANCE = 0.10, 12.0  # [m]
+MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
+MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
+
+
+@dataclass(frozen=True, slots=True)
+class RimCue:
+    """A rim taken for an edge of the cylinder.
+
+    Attributes:
+        rim: the points.
+        height: of the rim above the floor [m].
+        near: it is the near half of the circle and not the far one.
+    """
+
+    rim: Rim
+    height: float
+    near: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """Edges that belong to one cylinder.
+
+    Attributes:
+        left, right: sides of greater and smaller azimuth.
+        rims: at most three.
+        radius: known or typical radius [m].
+        radius_sigma: its standard deviation [m].
+    """
+
+    left: Side
+    right: Side
+    rims: tuple[RimCue, ...]
+    radius: float
+    radius_sigma: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A located cylinder, seen from the camera.
+
+    Attributes:
+        azimuth: of the axis from the heading of the camera [rad].
+        distance: horizontal, from the camera to the axis [m].
+        radius: [m].
+        covariance: of (azimuth, distance, radius) (3, 3).
+        misfit: sum of squared normalised residuals of the edges [1].
+        astray: share of rim points that do not follow the rim of one cylinder [1].
+        sides: number of sides that were trusted in the end.
+        ranged: number of rims used.
+    """
+
+    azimuth: float
+    distance: float
+    radius: float
+    covariance: Array
+    misfit: float
+    astray: float
+    sides: int
+    ranged: int
+
+
+def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array]:
+    """Distance [m], bearing [rad] and their covariance (2, 2) from the origin of R."""
+    azimuth = cylinder.azimuth + view.heading
+    x = view.x + cylinder.distance * cos(azimuth)
+    y = view.y + cylinder.distance * sin(azimuth)
+    distance = max(hypot(x, y), 1e-6)
+    bearing = atan2(y, x)
+    c, s = cos(azimuth - bearing), sin(azimuth - bearing)
+    d = cylinder.distance
+    J = np.array([[-d * s, c], [d * c / distance, s / distance]])
+    covariance: Array = J @ cylinder.covariance[:2, :2] @ J.T
+    return distance, bearing, 0.5 * (covariance + covariance.T)
+
+
+def locate(
+    candidates: Sequence[Candidate],
+    view: View,
+    roundness_sigma: float = 0.01,
+    step: float = 2.5,
+) -> list[Cylinder]:
+    """Cylinders that explain the edges of each candidate best.
+
+    Args:
+        candidates: edges of one cylinder each; at least one rim, or both sides trusted.
+        view: camera and pose.
+        roundness_sigma: standard deviation of the outline relative to the radius [1].
+        step: deviation from a rim that makes a point stray [standard deviations of 3/8
+            pixel ... see `VisionParameters.step`].
+    """
+    if not candidates:
+        return []
+    return _Problem(candidates, view, roundness_sigma).solve(step)
+
+
+class _Problem:
+    """All candidates of one image, solved together: arrays over candidates (n, ...)."""
+
+    def __init__(self, candidates: Sequence[Candidate], view: View, roundness_sigma: float):
+        n = len(candidates)
+        self.n = n
+        self.h = view.height
+        pose = view.pose
+        self.pose_variance = np.square(
+            [pose.tilt_sigma, pose.roll_sigma, pose.yaw_sigma, pose.height_sigma]
+        )
+        sides = [side for c in candidates for side in (c.left, c.right)]
+        self.side = np.array([s.azimuth for s in sides]).reshape(n, SIDES)
+        self.side_sigma = np.array([s.sigma for s in sides]).reshape(n, SIDES)
+        self.side_low = np.array([s.low for s in sides]).reshape(n, SIDES)
+        self.side_high = np.array([s.high for s in sides]).reshape(n, SIDES)
+        self.trusted = np.array([s.trusted for s in sides]).reshape(n, SIDES)
+        self.prior = np.array([c.radius for c in candidates])
+        self.prior_sigma = np.array([c.radius_sigma for c in candidates])
+        self.roundness = roundness_sigma
+        self.rim_height = np.zeros((n, MAX_RIMS))
+        self.rim_sign = np.ones((n, MAX_RIMS))
+        self.rim_sigma = np.full((n, MAX_RIMS), NO_INFORMATION)
+        self.top = np.zeros(n)
+        azimuths, slopes, owners = [], [], []
+        x = np.empty((n, 3))
+        for k, candidate in enumerate(candidates):
+            for j, cue in enumerate(candidate.rims):
+                self.rim_height[k, j] = cue.height
+                self.rim_sign[k, j] = 1.0 if cue.near else -1.0
+                self.rim_sigma[k, j] = cue.rim.sigma
+                self.top[k] = max(self.top[k], cue.height)
+                azimuths.append(cue.rim.azimuth)
+                slopes.append(cue.rim.slope)
+                owners.append((k * MAX_RIMS + j, len(cue.rim.azimuth)))
+            x[k] = self._guess(candidate)
+        self.x = x
+        rim = np.repeat([o for o, _ in owners], [m for _, m in owners]) if owners else np.zeros(0)
+        self._keep_inner(
+            np.concatenate(azimuths) if azimuths else np.zeros(0),
+            np.concatenate(slopes) if slopes else np.zeros(0),
+            rim.astype(np.intp),
+        )
+
+    def _guess(self, candidate: Candidate) -> tuple[float, float, float]:
+        """First azimuth, distance and radius."""
+        left, right, radius = candidate.left, candidate.right, candidate.radius
+        half = max(0.5 * (left.azimuth - right.azimuth), 1e-3)
+        distance = radius / sin(min(half, 1.2))
+        for cue in candidate.rims:
+            n = len(cue.rim.slope)
+            drop = cue.height - self.h
+            if n == 0 or abs(drop) < MIN_CLEARANCE:
+                continue
+            run = drop / (float(cue.rim.slope[n // 2]) or 1e-6)
+            if MIN_DISTANCE < run < MAX_DISTANCE:
+                distance = run + (radius if cue.near else -radius)
+                break
+        if left.trusted and right.trusted:
+            radius = distance * sin(min(half, 1.2))
+            radius = min(max(radius, 0.7 * candidate.radius), 1.5 * candidate.radius)
+        distance = max(distance, MIN_DISTANCE + radius)
+        azimuth = 0.5 * (left.azimuth + right.azimuth)
+        if left.trusted != right.trusted:
+            reach = asin(min(radius / distance, 0.9))
+            azimuth = left.azimuth - reach if left.trusted else right.azimuth + reach
+        return azimuth, distance, radius
+
+    def _keep_inner(self, azimuth: Array, slope: Array, rim: NDArray[np.intp]) -> None:
+        """Keep the points of each rim that are not near its ends."""
+        theta, d, r = self.x[rim // MAX_RIMS].T
+        t = np.sin(azimuth - theta) * d / r
+        inner = np.abs(t) < RIM_WIDTH
+        clearance = np.abs(self.rim_height.ravel()[rim] - self.h) >= MIN_CLEARANCE
+        keep = inner & clearance
+        self.azimuth, self.slope, self.rim = azimuth[keep], slope[keep], rim[keep]
+        self.owner = self.rim // MAX_RIMS
+        size = self.n * MAX_RIMS
+        self.count = np.bincount(self.rim, minlength=size)
+        self.share = 1.0 / np.maximum(self.count, 1)
+        self.seen = self.count.reshape(self.n, MAX_RIMS) > 0
+        self.drop = self.rim_height.ravel()[self.rim] - self.h
+        self.sign = self.rim_sign.ravel()[self.rim]
+
+    def _mean(self, values: Array) -> Array:
+        """Mean over the points of each rim (n, 3), 0 where there are none."""
+        total = np.bincount(self.rim, weights=values, minlength=len(self.share))
+        return (total * self.share).reshape(self.n, MAX_RIMS)
+
+    def solve(self, step: float) -> list[Cylinder]:
+        n = self.n
+        H = np.zeros((n, ROWS, 3))
+        H[:, 0, 0] = H[:, 1, 0] = H[:, 5, 2] = 1.0
+        residual = np.empty((n, ROWS))
+        for iteration in range(ITERATIONS):
+            theta, d, r = self.x.T
+            reach = np.sqrt(d * d - r * r)
+            half = np.arcsin(r / d)
+            residual[:, 0] = self.side[:, 0] - theta - half
+            residual[:, 1] = self.side[:, 1] - theta + half
+            H[:, 0, 1] = -r / (d * reach)
+            H[:, 0, 2] = 1.0 / reach
+            H[:, 1, 1:] = -H[:, 0, 1:]
+            point_residual = self._rims(H, residual)
+            residual[:, 5] = self.prior - r
+            if iteration < 2:  # what can be seen of the sides is clear by then
+                weight = np.linalg.inv(self._measurement_covariance(theta, d, reach))
+            HtW = np.swapaxes(H, 1, 2) @ weight
+            covariance = np.linalg.inv(HtW @ H)
+            if iteration == ITERATIONS - 1:
+                break
+            change = (covariance @ (HtW @ residual[:, :, None]))[:, :, 0]
+            self.x = self._bounded(self.x + change)
+        misfit = np.einsum("ni,nij,nj->n", residual, weight, residual)
+        x = self.x + (covariance @ (HtW @ residual[:, :, None]))[:, :, 0]
+        x = self._bounded(x)
+        sides = self.trusted.sum(axis=1).tolist()
+        ranged = self.seen.sum(axis=1).tolist()
+        astray = self._astray(point_residual, residual[:, SIDES:5], step).tolist()
+        return [
+            Cylinder(*x[k].tolist(), covariance[k], m, astray[k], sides[k], ranged[k])
+            for k, m in enumerate(misfit.tolist())
+        ]
+
+    @staticmethod
+    def _bounded(x: Array) -> Array:
+        radius = np.clip(x[:, 2], MIN_RADIUS, MAX_RADIUS)
+        distance = np.clip(x[:, 1], np.maximum(MIN_DISTANCE, 1.1 * radius), MAX_DISTANCE)
+        return np.stack([x[:, 0], distance, radius], axis=1)
+
+    def _rims(self, H: Array, residual: Array) -> Array:
+        """Fill the rows of the rims; return the residual of every point."""
+        theta, d, r = self.x[self.owner].T
+        phi = self.azimuth - theta
+        sine, cosine = np.sin(phi), np.cos(phi)
+        t = np.clip(d * sine / r, -OUTER, OUTER)
+        c = np.sqrt(1.0 - t * t)
+        lean = self.sign * t / c
+        run = np.maximum(d * cosine - self.sign * r * c, 0.02)
+        slope = self.drop / run
+        point_residual = self.slope - slope
+        gain = -slope / run  # d slope / d run
+        residual[:, SIDES:5] = self._mean(point_residual)
+        H[:, SIDES:5, 0] = self._mean(gain * d * (sine - lean * cosine))
+        H[:, SIDES:5, 1] = self._mean(gain * (cosine + lean * sine))
+        H[:, SIDES:5, 2] = self._mean(-gain * self.sign / c)
+        return point_residual
+
+    def _measurement_covariance(self, theta: Array, d: Array, reach: Array) -> Array:
+        """Covariance of the rows (n, 6, 6): pixels, roundness and pose of the camera."""
+        n = self.n
+        # A side is the edge of the cylinder only if seen between foot and head.
+        foot, head = (-self.h / reach)[:, None], ((self.top - self.h) / reach)[:, None]
+        slack = 0.5 * self.side_sigma
+        self.trusted &= (self.side_high >= foot - slack) & (self.side_low <= head + slack)
+        hidden = (HIDDEN_WIDTH / d)[:, None]
+        sigma = np.full((n, ROWS), NO_INFORMATION)
+        round_sigma = (self.roundness * self.x[:, 2] / d)[:, None]
+        sigma[:, :SIDES] = np.where(self.trusted, np.hypot(self.side_sigma, round_sigma), hidden)
+        slope = (self.rim_height - self.h) / d[:, None]
+        sigma[:, SIDES:5] = np.where(
+            self.seen, np.hypot(self.rim_sigma, slope * round_sigma), NO_INFORMATION
+        )
+        sigma[:, 5] = self.prior_sigma
+        # Small rotations of the camera: tilt about its left, roll about its heading,
+        # yaw; and an error of its height.
+        G = np.zeros((n, ROWS, 4))
+        s, c = np.sin(theta)[:, None], np.cos(theta)[:, None]
+        level = np.clip(0.5 * (self.side_low + self.side_high), -3.0, 3.0)
+        G[:, :SIDES, 0] = -level * s
+        G[:, :SIDES, 1] = -level * c
+        G[:, :SIDES, 2] = 1.0
+        lift = 1.0 + slope * slope
+        G[:, SIDES:5, 0] = -lift * c
+        G[:, SIDES:5, 1] = lift * s
+        G[:, SIDES:5, 3] = -1.0 / d[:, None]
+        R = (G * self.pose_variance) @ np.swapaxes(G, 1, 2)
+        index = np.arange(ROWS)
+        R[:, index, index] += sigma * sigma
+        return R
+
+    def _astray(self, residual: Array, mean: Array, step: float) -> Array:
+        """Share of rim points of each candidate off their rim by more than `step`."""
+        limit = step * self.rim_sigma.ravel()[self.rim]
+        far = np.abs(residual - mean.ravel()[self.rim]) > limit
+        total = np.bincount(self.owner, minlength=self.n)
+        return np.bincount(self.owner, weights=far, minlength=self.n) / np.maximum(total, 1)
