@@ -51,8 +51,7 @@ make_venv() {
 }
 
 gl_draws() {
-    MUJOCO_GL=$1 "$venv/bin/python" -c \
-        'import mujoco; context = mujoco.GLContext(16, 16); context.make_current(); context.free()' \
+    env -u MUJOCO_GL "$venv/bin/python" -c 'from hsr8.gl import require_gl; require_gl()' \
         >/dev/null 2>&1
 }
 
@@ -70,10 +69,8 @@ say "installing the locked packages (about a minute the first time)"
 say "installing hsr8 itself, editable"
 "${pip[@]}" install -qq --no-deps --no-build-isolation --no-index --editable .
 
-if ! gl_draws egl && ! gl_draws osmesa; then
-    if ! { apt_install libegl1 libgl1 && gl_draws egl; }; then
-        warn "no OpenGL to draw with: the head camera and videos need it; as root: apt-get install libegl1 libgl1"
-    fi
+if ! gl_draws && ! { apt_install libegl1 libgl1 && gl_draws; }; then
+    warn "no OpenGL to draw with: camera and videos need it; as root: apt-get install libegl1 libgl1"
 fi
 
 echo "$fingerprint" >"$stamp"
