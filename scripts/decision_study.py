@@ -385,6 +385,7 @@ def override(parameters: NavigationParameters, settings: tuple[str, ...]) -> Nav
 
 
 def main(
+    *,
     profile: Literal["paper", "extended"] = "extended",
     sensing: Literal["perfect", "camera"] = "perfect",
     first: int = 0,

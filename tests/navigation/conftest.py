@@ -5,6 +5,8 @@ from math import cos, sin
 import numpy as np
 import pytest
 
+from navigation.belief import Belief, Motion, Particles, Track
+from navigation.decision import SpeedLimits, Task
 from navigation.landmark import sighting
 from navigation.observation import CameraView, Frame, Observation
 
@@ -67,3 +69,83 @@ def observe():
 def frame():
     """Builds a `Frame` from time, odometry and observations."""
     return _frame
+
+
+class _Map:
+    """A local map that answers with given functions of points in W."""
+
+    def __init__(self, confidence, age):
+        self._confidence, self._age = confidence, age
+
+    def confidence_at(self, points):
+        return np.array([self._confidence(*p) for p in np.asarray(points).tolist()])
+
+    def age_at(self, points):
+        return np.array([self._age(*p) for p in np.asarray(points).tolist()])
+
+
+def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0, **details):
+    moving = Motion.MOVING if np.hypot(*velocity) > 0 else Motion.STATIC
+    cloud = details.pop("particles", None)
+    if cloud is not None:
+        places, velocities, weights = (np.array(a, float) for a in cloud)
+        cloud = Particles(places, velocities, weights)
+    return Track(
+        id=id,
+        label="red",
+        position=np.array(place, float),
+        velocity=np.array(velocity, float),
+        covariance=np.diag([sigma**2, sigma**2, 0.01**2, 0.01**2]),
+        radius=details.pop("radius", 0.08),
+        radius_sigma=0.005,
+        motion=motion or moving,
+        hits=20,
+        age=age,
+        last_seen=np.array(place, float),
+        visible=age == 0.0,
+        particles=cloud,
+    )
+
+
+def _belief(tracks=(), pose=(0.0, 0.0, 0.0), *, time=0.0, sigma=0.005, **details):
+    return Belief(
+        time=time,
+        pose=np.array(pose, float),
+        pose_covariance=np.diag([sigma**2, sigma**2, details.pop("turn_sigma", 0.005) ** 2]),
+        tracks=tuple(tracks),
+        local_map=_Map(
+            details.pop("confidence", lambda x, y: 1.0), details.pop("age", lambda x, y: 0.0)
+        ),
+        view=details.pop("camera", None) or _view(),
+        seen_beacons=(),
+        lost=details.pop("lost", False),
+        filter_faults=0,
+    )
+
+
+def _task(target=(2.0, 0.0), heading=0.0, *, is_goal=False, aligning=False, done=False):
+    return Task(np.array(target, float), heading, is_goal, 0, aligning, done)
+
+
+@pytest.fixture(scope="session")
+def track():
+    """Builds a `Track` from a place, a velocity and a verdict."""
+    return _track
+
+
+@pytest.fixture(scope="session")
+def belief():
+    """Builds a `Belief` from tracks and a pose; the local map is fresh unless told."""
+    return _belief
+
+
+@pytest.fixture(scope="session")
+def task():
+    """Builds a `Task`."""
+    return _task
+
+
+@pytest.fixture(scope="session")
+def limits():
+    """Envelope of the walking layer."""
+    return SpeedLimits(0.20, 0.10, 0.08, 0.8, 0.3, 0.34)

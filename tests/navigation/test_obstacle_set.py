@@ -1,0 +1,39 @@
+import numpy as np
+import pytest
+
+from navigation.belief import Motion
+from navigation.obstacle_set import ObstacleSet, largest_deviation
+
+
+def test_largest_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
+    rng = np.random.default_rng(0)
+    a = rng.normal(size=(50, 2, 2))
+    p = a @ a.transpose(0, 2, 1)
+    expected = np.sqrt(np.linalg.eigvalsh(p)[:, -1])
+    assert largest_deviation(p) == pytest.approx(expected)
+    c, s = np.cos(0.7), np.sin(0.7)
+    turn = np.array([[c, -s], [s, c]])
+    assert largest_deviation(turn @ p @ turn.T) == pytest.approx(expected)
+
+
+def test_static_tracks_have_no_speed(track):
+    o = ObstacleSet.from_tracks(
+        [track((1, 0), (0.1, 0), Motion.STATIC), track((1, 1), (0.1, 0), Motion.UNKNOWN)]
+    )
+    assert o.speed == pytest.approx([0.0, 0.1])
+    assert o.static.tolist() == [True, False]
+    assert not o.moving.any()
+
+
+def test_no_tracks_make_an_empty_set():
+    o = ObstacleSet.from_tracks([])
+    assert len(o) == 0
+    assert o.position.shape == (0, 2)
+
+
+def test_selection_keeps_rows_together(track):
+    tracks = [track((i, 2 * i), (0.1 * i, 0.0), id=i) for i in range(4)]
+    part = ObstacleSet.from_tracks(tracks).where(np.array([False, True, False, True]))
+    assert part.ids.tolist() == [1, 3]
+    assert part.position[:, 1] == pytest.approx([2, 6])
+    assert part.speed == pytest.approx([0.1, 0.3])

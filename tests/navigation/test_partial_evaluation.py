@@ -1,0 +1,152 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from navigation.belief_parameters import LocalMapParameters
+from navigation.decision_parameters import EvaluationParameters, NavigationParameters
+from navigation.obstacle_set import ObstacleSet
+from navigation.partial_evaluation import (
+    SamplePoints,
+    attended,
+    obstacle_free_distance,
+    psi_local_map,
+    psi_obstacle,
+    psi_self,
+    psi_way,
+)
+
+E = EvaluationParameters()
+PRINTED = NavigationParameters.paper().evaluation
+HERE, STILL = np.zeros(2), np.zeros(2)
+
+
+def test_sample_points_fill_the_printed_ring():
+    s = SamplePoints.polar(0.30, 1.30)
+    assert len(s.distance) == 114
+    assert s.distance.min() == pytest.approx(0.30)
+    assert s.distance.max() == pytest.approx(1.30)
+    assert np.abs(s.bearing).max() == pytest.approx(np.pi / 2)
+    assert np.hypot(*s.points.T) == pytest.approx(s.distance)
+
+
+@pytest.mark.parametrize("p", [E, PRINTED])
+def test_psi_lm_is_0_when_all_is_confident_and_1_when_nothing_is(p):
+    outside = np.zeros(114, bool)
+    assert psi_local_map(np.ones(114), outside, p).psi == 0.0
+    assert psi_local_map(np.zeros(114), outside, p).psi == 1.0
+    assert psi_local_map(np.zeros(114), ~outside, p).psi == 0.0
+
+
+@pytest.mark.parametrize("p", [E, PRINTED])
+def test_psi_lm_grows_with_the_under_confident_points(p):
+    outside = np.zeros(114, bool)
+    values = [psi_local_map(np.arange(114) >= n, outside, p).psi for n in range(115)]
+    assert np.all(np.diff(values) >= 0.0)
+    assert values[57] == pytest.approx(1.0 if p is PRINTED else 0.5)
+
+
+def test_a_cell_is_under_confident_five_seconds_after_the_last_look():
+    rate = LocalMapParameters().attenuation
+    ages = np.array([4.9, 5.1])
+    m = psi_local_map(1.0 + rate * ages, np.zeros(2, bool), E)
+    assert m.under_confident.tolist() == [False, True]
+
+
+def test_points_in_the_gaze_region_do_not_count():
+    m = psi_local_map(np.zeros(4), np.array([True, False, False, True]), E)
+    assert m.under_confident.tolist() == [False, True, True, False]
+    assert m.counted.sum() == 2
+
+
+def covariance(sigma, turn=0.0, angle=0.0):
+    c, s = np.cos(angle), np.sin(angle)
+    p = np.zeros((3, 3))
+    r = np.array([[c, -s], [s, c]])
+    p[:2, :2] = r @ np.diag([sigma**2, 0.0]) @ r.T
+    p[2, 2] = turn**2
+    return p
+
+
+def test_psi_sf_is_the_ratio_to_its_threshold():
+    assert psi_self(covariance(0.0), E) == 0.0
+    assert psi_self(covariance(E.t_sf), E) == pytest.approx(1.0)
+    assert psi_self(covariance(2 * E.t_sf), E) == 1.0
+    assert psi_self(covariance(0.4 * E.t_sf), E) == pytest.approx(0.4)
+    assert psi_self(covariance(0.4 * E.t_sf, angle=1.1), E) == pytest.approx(0.4)
+
+
+def test_psi_sf_hears_the_heading_only_in_extended():
+    assert psi_self(covariance(0.0, turn=E.t_heading), E) == pytest.approx(1.0)
+    assert psi_self(covariance(0.0, turn=E.t_heading), PRINTED) == 0.0
+
+
+def test_psi_ob_scales_with_sigma_and_inverse_distance(track):
+    def psi(distance, sigma):
+        o = ObstacleSet.from_tracks([track((distance, 0), (0.05, 0), sigma=sigma)])
+        return psi_obstacle(o, HERE, STILL, E)[0]
+
+    assert psi(1.0, 0.01) == pytest.approx(20 * 0.01 * 0.05 / 0.25)
+    assert psi(2.0, 0.01) == pytest.approx(0.5 * psi(1.0, 0.01))
+    assert psi(2.0, 0.03) == pytest.approx(3.0 * psi(2.0, 0.01))
+    assert psi(0.0, 10.0) == 1.0
+
+
+def test_psi_ob_is_about_relative_speed(track):
+    o = ObstacleSet.from_tracks([track((1, 0), (0.1, 0)), track((1, 0))])
+    assert psi_obstacle(o, HERE, np.array([0.1, 0.0]), E)[0] == 0.0
+    assert psi_obstacle(o, HERE, np.array([0.1, 0.0]), E)[1] > 0.0
+    mirrored = ObstacleSet.from_tracks([track((1, 0.5), (0.1, 0.1)), track((1, -0.5), (0.1, -0.1))])
+    left, right = psi_obstacle(mirrored, HERE, STILL, E)
+    assert left == pytest.approx(right)
+
+
+def test_free_distance_ends_at_the_nearest_shape():
+    centres, radii = np.array([[1.0, 0.0], [0.0, 0.5]]), np.array([0.2, 0.2])
+    assert obstacle_free_distance(HERE, centres, radii, 0.8) == pytest.approx(0.3)
+    assert obstacle_free_distance(HERE, np.zeros((0, 2)), np.zeros(0), 0.8) == 0.8
+    assert obstacle_free_distance(np.array([0.0, 0.4]), centres, radii, 0.8) == 0.0
+    assert psi_way(0.8, E) == 1.0
+    assert psi_way(0.0, E) == 0.0
+
+
+def test_psi_way_is_lipschitz():
+    rng = np.random.default_rng(1)
+    centres, radii = rng.uniform(-1, 1, (5, 2)), rng.uniform(0.1, 0.3, 5)
+    for _ in range(200):
+        a = rng.uniform(-1.5, 1.5, 2)
+        b = a + rng.normal(0, 0.1, 2)
+        pa, pb = (
+            psi_way(obstacle_free_distance(x, centres, radii, E.d_n_thres), E) for x in (a, b)
+        )
+        assert abs(pa - pb) <= np.hypot(*(a - b)) / E.d_n_thres + 1e-12
+
+
+def test_the_set_o_is_frontal_or_closing(track):
+    walking = np.array([0.1, 0.0])
+    cases = [
+        (track((-1, 0)), False),  # static behind a robot walking away
+        (track((1, 0)), True),
+        (track((-1, 0), (0.15, 0)), True),  # closing from behind
+        (track((-1, 0), (0.05, 0)), False),
+        (track((3, 0)), False),  # too far
+    ]
+    o = ObstacleSet.from_tracks([t for t, _ in cases])
+    found = attended(o, np.zeros(3), walking, E.attention_range)
+    assert found.tolist() == [wanted for _, wanted in cases]
+
+
+def test_the_set_o_does_not_depend_on_the_frame(track):
+    rng = np.random.default_rng(2)
+    places, speeds = rng.uniform(-2, 2, (30, 2)), rng.normal(0, 0.1, (30, 2))
+    a, shift = 0.8, np.array([3.0, -1.0])
+    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    here = ObstacleSet.from_tracks([track(p, v) for p, v in zip(places, speeds, strict=True)])
+    there = replace(here, position=here.position @ r.T + shift, velocity=here.velocity @ r.T)
+    v = np.array([0.1, 0.05])
+    one = attended(here, np.array([0.1, 0.2, 0.3]), v, 2.5)
+    pose = np.array([*(r @ [0.1, 0.2] + shift), 0.3 + a])
+    assert one.tolist() == attended(there, pose, r @ v, 2.5).tolist()
+    assert psi_obstacle(here, np.array([0.1, 0.2]), v, E) == pytest.approx(
+        psi_obstacle(there, pose[:2], r @ v, E)
+    )
