@@ -85,12 +85,10 @@ class TrackingParameters:
     """Log likelihood ratio below which a mover is static [1]."""
     manoeuvre_gate: Positive = 9.0
     """Normalised innovation squared above which a mover has changed its velocity [1]."""
-    manoeuvre_sigma: Positive = 0.03
+    manoeuvre_sigma: Positive = 0.06
     """Velocity uncertainty added to a mover in view that changes its velocity [m/s]."""
-    resighting_time: Positive = 0.5
-    """Time unseen after which a sighting off the prediction may be a reversal [s]."""
     line_width: Positive = 0.15
-    """Distance from its old line up to which a mover has reversed [m]."""
+    """Distance from where it could be at which a mover may still be found [m]."""
     reversal_sigma: Positive = 0.03
     """Standard deviation of the velocity of a mover that reversed [m/s]."""
     resighting_sigma: Positive = 0.08
@@ -109,8 +107,8 @@ class TrackingParameters:
     """Share of effective particles below which they are resampled [1]."""
     forget_time: Positive = 25.0
     """Time unseen after which a track that may move is dropped [s]."""
-    range: Positive = 2.5
-    """Distance up to which obstacles are detected [m]."""
+    sure_range: Positive = 2.2
+    """Distance up to which an obstacle in clear view is sure to be detected [m]."""
     view_margin: NonNegative = 0.07
     """Distance from the border of the view inside which a detection is expected [rad]."""
     hiding_slack: NonNegative = 0.08

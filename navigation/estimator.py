@@ -1,6 +1,7 @@
 """From camera frames to belief: localization, tracks and local map in their order."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,9 +66,10 @@ class Estimator:
             pose_sigma_limit=p.tracking.pose_sigma_limit,
             cut_inflation=p.tracking.cut_inflation,
         )
-        viewpoint = Viewpoint.of(frame.view, pose, p.tracking.range)
-        tracks = self._tracker.update(frame.time, seen, viewpoint)
-        self._map.update(frame.time, viewpoint, centre, seen.positions, seen.radii)
+        sure = Viewpoint.of(frame.view, pose, p.tracking.sure_range)
+        tracks = self._tracker.update(frame.time, seen, sure)
+        searched = replace(sure, range=p.local_map.range)
+        self._map.update(frame.time, searched, centre, seen.positions, seen.radii)
         return Belief(
             time=frame.time,
             pose=pose,

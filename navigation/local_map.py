@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from navigation.belief_parameters import LocalMapParameters
-from navigation.visibility import Viewpoint
+from navigation.visibility import Mask, Viewpoint
 
 Array = NDArray[np.float64]
 
@@ -116,9 +116,9 @@ class LocalMap:
         reach = (radii + 0.5 * self.cell) ** 2
         dx = points[:, 0, None] - obstacles[:, 0]
         dy = points[:, 1, None] - obstacles[:, 1]
-        occupied = (dx * dx + dy * dy < reach).any(axis=1)
+        occupied: Mask = np.any(dx * dx + dy * dy < reach, axis=1)
         # The ground under a detected obstacle counts as seen, although it hides half of it.
-        seen = occupied | ~viewpoint.hidden(points, obstacles, radii)
+        seen = np.logical_or(occupied, ~viewpoint.hidden(points, obstacles, radii))
         rows, columns = rows[seen], columns[seen]
         self._seen_at[rows, columns] = time
         change = np.where(occupied[seen], p.occupied_evidence, p.free_evidence)

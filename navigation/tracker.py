@@ -17,6 +17,7 @@ from navigation.belief import Motion, Track
 from navigation.belief_parameters import TrackingParameters
 from navigation.correlated_noise import variance_inflation
 from navigation.observation import Observation
+from navigation.resighting import found_again, resight_mover
 from navigation.sightings import Sightings
 from navigation.tracked_object import TrackedObject
 from navigation.visibility import Mask, Viewpoint
@@ -56,7 +57,7 @@ class Tracker:
         Args:
             time: of the frame [s].
             seen: its obstacles in W.
-            viewpoint: its camera in W.
+            viewpoint: its camera in W, with the range within which detection is sure.
         """
         dt = 0.0 if self._time is None else time - self._time
         self._time = time
@@ -149,9 +150,12 @@ class Tracker:
         surprise = track_filter.innovation(x[:, :2], P[:, :2, :2], z, raw).distance
         doubt = track_filter.innovation(s, S, z, raw).distance
         for i, o in enumerate(objects):
-            if surprise[i] > p.manoeuvre_gate and o.motion is not Motion.STATIC:
-                if time - o.last_time > p.resighting_time:
-                    x[i], P[i] = self._resighted(o, time, z[i], raw[i], doubt[i] < p.manoeuvre_gate)
+            gap = time - o.last_time
+            if o.motion is Motion.MOVING and gap > p.lost_time:
+                x[i], P[i] = resight_mover(x[i], P[i], (o.last_seen, gap), (z[i], raw[i]), p)
+            elif surprise[i] > p.manoeuvre_gate and o.motion is not Motion.STATIC:
+                if gap > p.lost_time:
+                    x[i], P[i] = found_again(z[i], raw[i], np.zeros(2), p.resighting_sigma)
                 else:
                     P[i, 2:, 2:] += p.manoeuvre_sigma**2 * np.eye(2)
         moving = track_filter.innovation(x[:, :2], P[:, :2, :2], z, R)
@@ -179,25 +183,6 @@ class Tracker:
             o.particles = None
             o.presence = 1.0
             o.classify(p)
-
-    def _resighted(
-        self, o: TrackedObject, time: float, z: Array, R: Array, where_it_stood: bool
-    ) -> tuple[Array, Array]:
-        """State of a mover found again off its prediction: it reversed, or stopped."""
-        p = self._parameters
-        speed = o.speed
-        velocity, sigma = np.zeros(2), p.resighting_sigma
-        if speed > p.moving_speed and not where_it_stood:
-            ahead = o.state[2:] / speed
-            gone = z - o.last_seen
-            along = float(gone @ ahead)
-            across = abs(float(ahead[0] * gone[1] - ahead[1] * gone[0]))
-            if across < p.line_width and along < speed * (time - o.last_time):
-                velocity, sigma = -o.state[2:], p.reversal_sigma
-        covariance = np.zeros((4, 4))
-        covariance[:2, :2] = R
-        covariance[2, 2] = covariance[3, 3] = sigma**2
-        return np.concatenate([z, velocity]), covariance
 
     def _widen(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
         """Fuse the radius, unless only part of the obstacle was seen."""
@@ -316,7 +301,7 @@ class Tracker:
     def _merge(self, time: float) -> None:
         """End one of two tracks of a colour that stand where only one obstacle fits."""
         p = self._parameters
-        objects = self._objects
+        objects = [o for o in self._objects if o.particles is None]
         if len(objects) < 2:
             return
         places = np.stack([o.position for o in objects])
@@ -333,4 +318,4 @@ class Tracker:
             worse = min(a, b, key=lambda o: (o.hits >= p.birth_hits, o.last_time, o.hits))
             ended.add(worse.id)
         if ended:
-            self._objects = [o for o in objects if o.id not in ended]
+            self._objects = [o for o in self._objects if o.id not in ended]

@@ -368,9 +368,9 @@ def run(seed: int, tally: Tally, parameters: BeliefParameters, duration: float) 
         tally.seen_share.append(len(set(matched.values())) / len(obstacles))
         for t in belief.tracks:
             if t.id in matched:
-                if owners.get(t.id, matched[t.id]) != matched[t.id]:
-                    tally.swaps += 1
-                owners[t.id] = matched[t.id]
+                if t.particles is None:
+                    tally.swaps += owners.get(t.id, matched[t.id]) != matched[t.id]
+                    owners[t.id] = matched[t.id]
             birth.setdefault(t.id, (time, 0.0))
             looked[t.id] = looked.get(t.id, 0.0) + dt * t.visible
             if t.motion is not Motion.UNKNOWN and t.id not in decided and t.id in matched:
@@ -415,7 +415,10 @@ def report(tally: Tally) -> None:
          f"{np.mean(tally.static_nees):.2f}"),
         ("visible mover position rmse [cm], NEES/4", f"{100 * rms(tally.mover_error):.1f}, "
          f"{np.mean(tally.track_nees):.2f}"),
-        ("visible mover velocity rmse [cm/s]", f"{100 * rms(tally.velocity_error):.2f}"),
+        (
+            "visible mover velocity error rms, median [cm/s]",
+            f"{100 * rms(tally.velocity_error):.1f}, {100 * np.median(tally.velocity_error):.1f}",
+        ),
         ("known share of obstacles", f"{100 * np.mean(tally.seen_share):.1f} %"),
         ("ghosts, duplicates per frame", f"{tally.ghosts / n:.4f}, {tally.duplicates / n:.4f}"),
         ("clouds, stray clouds per frame", f"{tally.clouds / n:.2f}, {tally.stray_clouds / n:.2f}"),

@@ -2,6 +2,7 @@ import pickle
 import subprocess
 import sys
 from math import cos, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -100,7 +101,7 @@ def test_kidnapped_the_robot_finds_itself_and_its_obstacles_again(view, observe,
 
 def test_the_belief_itself_does_not_need_filterpy():
     code = "import sys, navigation.belief; assert 'filterpy' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True)
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 
 def test_rotating_the_world_rotates_the_belief(view, observe, frame):

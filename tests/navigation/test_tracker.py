@@ -38,7 +38,7 @@ class Stage:
                 self.observe(pose, place[:2], label=label, noise=error, sigma=sigma, **details)
             )
         sightings = in_world(seen, pose, EXACT, pose_sigma_limit=0.1, cut_inflation=2.0)
-        viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.range)
+        viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.sure_range)
         self.tracks = self.tracker.update(self.time, sightings, viewpoint)
         return self.tracks
 
