@@ -1,0 +1,205 @@
+"""Motion laws: where a moving obstacle is at any time, exactly, with no integration."""
+
+from dataclasses import dataclass
+from math import cos, fmod, hypot, inf, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from hsr8.world.layout import Layout, Point
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Still:
+    """A mover that does not move.
+
+    Attributes:
+        at: where it stands [m].
+    """
+
+    at: "Point"
+
+    def position(self, time: float) -> "Point":
+        """Position at `time` [s]."""
+        return self.at
+
+    def velocity(self, time: float) -> "Point":
+        """Velocity at `time` [m/s]."""
+        return 0.0, 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Straight on at constant velocity.
+
+    Attributes:
+        start: position at time zero [m].
+        rate: velocity [m/s].
+    """
+
+    start: "Point"
+    rate: "Point"
+
+    def position(self, time: float) -> "Point":
+        """Position at `time` [s]."""
+        return self.start[0] + self.rate[0] * time, self.start[1] + self.rate[1] * time
+
+    def velocity(self, time: float) -> "Point":
+        """Velocity at `time` [m/s]."""
+        return self.rate
+
+
+@dataclass(frozen=True, slots=True)
+class Shuttle:
+    """Back and forth between two points at constant speed, turning about at once.
+
+    Attributes:
+        start: one end [m].
+        end: the other [m].
+        speed: [m/s].
+        offset: way it has gone at time zero, from `start` to `end` and back [m].
+    """
+
+    start: "Point"
+    end: "Point"
+    speed: float
+    offset: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """Distance between the ends [m]."""
+        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    def position(self, time: float) -> "Point":
+        """Position at `time` [s]."""
+        length = self.length
+        gone = fmod(self.offset + self.speed * time, 2.0 * length)
+        share = min(gone, 2.0 * length - gone) / length
+        return (
+            self.start[0] + share * (self.end[0] - self.start[0]),
+            self.start[1] + share * (self.end[1] - self.start[1]),
+        )
+
+    def velocity(self, time: float) -> "Point":
+        """Velocity at `time` [m/s]; at an end, the one it leaves with."""
+        length = self.length
+        gone = fmod(self.offset + self.speed * time, 2.0 * length)
+        rate = (self.speed if gone < length else -self.speed) / length
+        return rate * (self.end[0] - self.start[0]), rate * (self.end[1] - self.start[1])
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """Round a circle at constant speed.
+
+    Attributes:
+        centre: [m].
+        radius: of the path [m].
+        speed: counter-clockwise positive [m/s].
+        angle: where on the circle it is at time zero [rad].
+    """
+
+    centre: "Point"
+    radius: float
+    speed: float
+    angle: float = 0.0
+
+    def position(self, time: float) -> "Point":
+        """Position at `time` [s]."""
+        angle = self.angle + self.speed / self.radius * time
+        return (
+            self.centre[0] + self.radius * cos(angle),
+            self.centre[1] + self.radius * sin(angle),
+        )
+
+    def velocity(self, time: float) -> "Point":
+        """Velocity at `time` [m/s]."""
+        angle = self.angle + self.speed / self.radius * time
+        return -self.speed * sin(angle), self.speed * cos(angle)
+
+
+MotionLaw = Still | Line | Shuttle | Circle
+
+
+class Movers:
+    """All moving obstacles of a layout, evaluated together.
+
+    Straight laws are one formula: a point walks `rate` along a lane of some length, which
+    is infinite when it never turns about.
+    """
+
+    def __init__(self, laws: tuple[MotionLaw, ...]) -> None:
+        """Take the laws in layout order."""
+        self.laws = laws
+        straight = [k for k, law in enumerate(laws) if not isinstance(law, Circle)]
+        round_ = [k for k, law in enumerate(laws) if isinstance(law, Circle)]
+        self._straight = np.array(straight, dtype=np.intp)
+        self._round = np.array(round_, dtype=np.intp)
+        lanes = [_lane(laws[k]) for k in straight]
+        self._origin = np.array([lane[0] for lane in lanes], dtype=float).reshape(-1, 2)
+        self._way = np.array([lane[1] for lane in lanes], dtype=float).reshape(-1, 2)
+        self._speed = np.array([lane[2] for lane in lanes], dtype=float)
+        self._length = np.array([lane[3] for lane in lanes], dtype=float)
+        self._offset = np.array([lane[4] for lane in lanes], dtype=float)
+        circles = [law for law in laws if isinstance(law, Circle)]
+        self._centre = np.array([c.centre for c in circles], dtype=float).reshape(-1, 2)
+        self._radius = np.array([c.radius for c in circles], dtype=float)
+        self._rim_speed = np.array([c.speed for c in circles], dtype=float)
+        self._angle = np.array([c.angle for c in circles], dtype=float)
+
+    @classmethod
+    def of(cls, layout: "Layout") -> "Movers":
+        """The movers of `layout`."""
+        return cls(tuple(o.motion for o in layout.obstacles if o.motion is not None))
+
+    def __len__(self) -> int:
+        return len(self.laws)
+
+    def positions(self, time: float) -> Array:
+        """Positions at `time` [s], layout order (n, 2) [m]."""
+        gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
+        along = np.minimum(gone, 2.0 * self._length - gone)
+        straight = self._origin + along[:, None] * self._way
+        if len(self._round) == 0:
+            return straight
+        angle = self._angle + self._rim_speed / self._radius * time
+        rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return self._ordered(straight, self._centre + self._radius[:, None] * rim)
+
+    def velocities(self, time: float) -> Array:
+        """Velocities at `time` [s], layout order (n, 2) [m/s]."""
+        gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
+        speed = np.where(gone < self._length, self._speed, -self._speed)
+        straight = speed[:, None] * self._way
+        if len(self._round) == 0:
+            return straight
+        angle = self._angle + self._rim_speed / self._radius * time
+        rim = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+        return self._ordered(straight, self._rim_speed[:, None] * rim)
+
+    def _ordered(self, straight: Array, rim: Array) -> Array:
+        both = np.empty((len(self.laws), 2))
+        both[self._straight] = straight
+        both[self._round] = rim
+        return both
+
+
+def _lane(law: MotionLaw) -> tuple["Point", "Point", float, float, float]:
+    """Origin, unit direction, speed, length and offset of a straight law."""
+    if isinstance(law, Shuttle):
+        way = (
+            (law.end[0] - law.start[0]) / law.length,
+            (law.end[1] - law.start[1]) / law.length,
+        )
+        return law.start, way, law.speed, law.length, law.offset
+    if isinstance(law, Line):
+        speed = hypot(*law.rate)
+        way = (law.rate[0] / speed, law.rate[1] / speed) if speed > 0.0 else (0.0, 0.0)
+        return law.start, way, speed, inf, 0.0
+    if isinstance(law, Still):
+        return law.at, (0.0, 0.0), 0.0, inf, 0.0
+    raise TypeError(f"{type(law).__name__} is no straight law")
