@@ -4,13 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vision.blob import Blob
 from vision.cylinder import Candidate, RimCue
-from vision.outline import Outline, Rim, Side
+from vision.outline import Outline, Side
 from vision.parameters import VisionParameters
 
-SEAM_SHARE = 0.6  # share of the upper colour's lower edge that must rest on the lower colour
+Array = NDArray[np.float64]
+
+SEAM_SHARE = 0.5  # share of the upper colour's width that must rest on the lower colour
 SIDE_TOLERANCE = 4.0  # how far the sides of the two colours may differ [standard deviations]
 RADIUS_SIGMA = 0.0005  # a beacon's radius is known this well [m]
 
@@ -39,7 +42,8 @@ def find_posts(
     """Pairs of blobs stacked like the two colours of a beacon.
 
     Args:
-        blobs, outlines: of one image.
+        blobs: of one image.
+        outlines: of the blobs.
         indices: the blobs of beacon colours.
         camera_height: above the floor [m].
         parameters: sizes of beacons.
@@ -47,7 +51,8 @@ def find_posts(
     posts = []
     for i in indices:
         seam = outlines[i].seam
-        if seam.covered < SEAM_SHARE:
+        width = outlines[i].left.azimuth - outlines[i].right.azimuth
+        if not _has_points(seam.slope) or np.ptp(seam.azimuth) < SEAM_SHARE * width:
             continue
         for j in indices:
             if blobs[j].label != seam.neighbour or not _rests_on(blobs[i], blobs[j]):
@@ -101,8 +106,8 @@ def _rims(
         RimCue(lower.bottom, 0.0, near=True),
         RimCue(upper.top, head, near=camera_height < head),
     )
-    return tuple(cue for cue in cues if _has_points(cue.rim))
+    return tuple(cue for cue in cues if _has_points(cue.rim.slope))
 
 
-def _has_points(rim: Rim) -> bool:
-    return bool(np.size(rim.slope))
+def _has_points(points: Array) -> bool:
+    return points.size > 0

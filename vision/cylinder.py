@@ -11,7 +11,7 @@ shifts all edges together.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import asin, cos, hypot, sin, atan2
+from math import asin, atan2, cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ OUTER = 0.92  # share of the half width where a rim is too steep to predict
 HIDDEN_WIDTH = 0.08  # how far a hidden side may reach beyond what is seen [m]
 MIN_DISTANCE, MAX_DISTANCE = 0.10, 12.0  # [m]
 MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
+FAR_SLOPE = -0.5  # a thing whose foot is seen less steeply is far
+MIN_SLOPE = 1e-6
 MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
 
 
@@ -174,16 +176,9 @@ class _Problem:
         """First azimuth, distance and radius."""
         left, right, radius = candidate.left, candidate.right, candidate.radius
         half = max(0.5 * (left.azimuth - right.azimuth), 1e-3)
-        distance = radius / sin(min(half, 1.2))
-        for cue in candidate.rims:
-            n = len(cue.rim.slope)
-            drop = cue.height - self.h
-            if n == 0 or abs(drop) < MIN_CLEARANCE:
-                continue
-            run = drop / (float(cue.rim.slope[n // 2]) or 1e-6)
-            if MIN_DISTANCE < run < MAX_DISTANCE:
-                distance = run + (radius if cue.near else -radius)
-                break
+        distance = self._guess_distance(candidate.rims, radius)
+        if distance is None:
+            distance = radius / sin(min(half, 1.2))
         if left.trusted and right.trusted:
             radius = distance * sin(min(half, 1.2))
             radius = min(max(radius, 0.7 * candidate.radius), 1.5 * candidate.radius)
@@ -193,6 +188,26 @@ class _Problem:
             reach = asin(min(radius / distance, 0.9))
             azimuth = left.azimuth - reach if left.trusted else right.azimuth + reach
         return azimuth, distance, radius
+
+    def _guess_distance(self, rims: Sequence[RimCue], radius: float) -> float | None:
+        """First distance from the rims; None if they tell none."""
+        usable = [
+            (cue, float(cue.rim.slope[cue.rim.slope.size // 2]))
+            for cue in rims
+            if cue.rim.slope.size and abs(cue.height - self.h) >= MIN_CLEARANCE
+        ]
+        usable.sort(key=lambda pair: pair[0].height)
+        if not usable:
+            return None
+        (lowest, low), (highest, high) = usable[0], usable[-1]
+        if low > FAR_SLOPE and high > low:
+            # Far away an error of the tilt spoils each slope, but not their difference.
+            return min((highest.height - lowest.height) / (high - low), MAX_DISTANCE)
+        for cue, slope in usable:
+            run = (cue.height - self.h) / (slope or MIN_SLOPE)
+            if MIN_DISTANCE < run < MAX_DISTANCE:
+                return run + (radius if cue.near else -radius)
+        return None
 
     def _keep_inner(self, azimuth: Array, slope: Array, rim: NDArray[np.intp]) -> None:
         """Keep the points of each rim that are not near its ends."""

@@ -1,7 +1,9 @@
 """The detector: one image and the pose of its camera become detections."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import sqrt
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +17,12 @@ from vision.detection import Detection
 from vision.errors import VisionError
 from vision.outline import Outline, trace
 from vision.parameters import VisionParameters
+from vision.split import Part, split
 from vision.view import View
 
 COVERED = 0.1  # share of a rim next to another colour that makes a blob occluded
 ASTRAY = 0.2  # share of rim points off one cylinder's rim that shows another one
+DOUBT = 4.0  # the covariance of what fits badly grows at least so many times
 BEACON_MISFIT = 2.0  # beacons may misfit so many times more than one obstacle
 
 
@@ -47,9 +51,11 @@ class Detector:
             for c in self._table.classes
         )
         self._beacon_label = (False, *(c.kind == "beacon" for c in self._table.classes))
-        self._radius = 0.5 * (parameters.min_radius + parameters.max_radius)
-        # Standard deviation of a uniform distribution.
-        self._radius_sigma = (parameters.max_radius - parameters.min_radius) / sqrt(12.0)
+        # Mean and standard deviation of a uniform distribution.
+        self._radius = (
+            0.5 * (parameters.min_radius + parameters.max_radius),
+            (parameters.max_radius - parameters.min_radius) / sqrt(12.0),
+        )
         self._padded = np.full((camera.height + 2, camera.width + 2), OUTSIDE, dtype=np.uint8)
 
     def detect(self, image: NDArray[np.uint8], pose: CameraPose) -> tuple[Detection, ...]:
@@ -89,23 +95,57 @@ class Detector:
                 chosen.append(k)
                 candidates.append(candidate)
         found = []
+        parts: list[tuple[Blob, Part]] = []
         cylinders = self._locate(candidates, view)
         for k, candidate, cylinder in zip(chosen, candidates, cylinders, strict=True):
-            outline = outlines[k]
+            outline, blob = outlines[k], blobs[k]
+            doubtful = cylinder.astray > ASTRAY or cylinder.misfit > self._parameters.max_misfit
+            if doubtful:
+                pieces = split(
+                    blob,
+                    outline,
+                    self._padded,
+                    view=view,
+                    parameters=self._parameters,
+                    radius=self._radius,
+                )
+                if pieces:
+                    parts += [(blob, piece) for piece in pieces]
+                    continue
             occluded = (
-                outline.bottom.covered > COVERED or candidate.left.hidden or candidate.right.hidden
+                doubtful
+                or outline.bottom.covered > COVERED
+                or candidate.left.hidden
+                or candidate.right.hidden
             )
             found.append(
                 self._detection(
                     "obstacle",
-                    self._table.classes[blobs[k].label - 1].name,
-                    cylinder,
+                    self._doubted(cylinder) if doubtful else cylinder,
                     view,
-                    (blobs[k],),
+                    (blob,),
                     occluded,
                 )
             )
+        cylinders = self._locate([part.candidate for _, part in parts], view)
+        for (blob, part), cylinder in zip(parts, cylinders, strict=True):
+            if self._plausible(cylinder):
+                found.append(self._detection("obstacle", cylinder, view, (blob,), part.occluded))
         return [d for d in found if d is not None]
+
+    def _plausible(self, cylinder: Cylinder) -> bool:
+        """Whether a part of a blob is like one obstacle."""
+        parameters = self._parameters
+        slack = 0.3 * (parameters.max_radius - parameters.min_radius)
+        return (
+            cylinder.misfit < parameters.max_misfit
+            and parameters.min_radius - slack < cylinder.radius < parameters.max_radius + slack
+        )
+
+    def _doubted(self, cylinder: Cylinder) -> Cylinder:
+        """A cylinder that does not explain its edges, believed so much less."""
+        factor = max(DOUBT, cylinder.misfit / 2.0)
+        return replace(cylinder, covariance=factor * cylinder.covariance)
 
     def _obstacle(self, outline: Outline, view: View) -> Candidate | None:
         """Edges of a blob taken for one obstacle; None if they say too little."""
@@ -118,7 +158,7 @@ class Detector:
         left, right = outline.left, outline.right
         if not rims and not (left.trusted and right.trusted):
             return None
-        return Candidate(left, right, tuple(rims), self._radius, self._radius_sigma)
+        return Candidate(left, right, tuple(rims), *self._radius)
 
     def _beacons(
         self, blobs: Sequence[Blob], outlines: Sequence[Outline], view: View
@@ -150,8 +190,7 @@ class Detector:
             or candidate.left.hidden
             or candidate.right.hidden
         )
-        label = "/".join(self._table.classes[b.label - 1].name for b in (upper, lower))
-        return self._detection("beacon", label, cylinder, view, (upper, lower), occluded)
+        return self._detection("beacon", cylinder, view, (upper, lower), occluded)
 
     def _locate(self, candidates: Sequence[Candidate], view: View) -> list[Cylinder]:
         parameters = self._parameters
@@ -159,13 +198,12 @@ class Detector:
             candidates,
             view,
             parameters.roundness_sigma,
-            parameters.step / parameters.edge_sigma,
+            0.5 * parameters.step / parameters.edge_sigma,
         )
 
     def _detection(
         self,
-        kind: str,
-        label: str,
+        kind: Literal["obstacle", "beacon"],
         cylinder: Cylinder,
         view: View,
         blobs: Sequence[Blob],
@@ -179,8 +217,8 @@ class Detector:
             return None
         boxes = [blob.box for blob in blobs]
         return Detection(
-            kind="beacon" if kind == "beacon" else "obstacle",
-            label=label,
+            kind=kind,
+            label="/".join(self._table.classes[blob.label - 1].name for blob in blobs),
             bearing=bearing,
             distance=distance,
             covariance=covariance,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from vision.blob import Blob
 from vision.colour import OUTSIDE
-from vision.cylinder import Candidate, RimCue
+from vision.cylinder import MIN_CLEARANCE, Candidate, RimCue
 from vision.outline import Outline, Rim, Side
 from vision.parameters import VisionParameters
 from vision.view import View
@@ -24,6 +24,7 @@ Labels = NDArray[np.uint8]
 MAX_CELLS = 256  # of the grid in each direction
 MIN_COLUMNS = 3  # a piece of an outline needs so many columns
 EXTRA_RADIUS = 0.04  # a cylinder may seem thicker or thinner by so much when matched [m]
+SIDE_SIGMA = 0.5  # standard deviation of an end of a piece [column]
 SIDE_MATCH = 2.5  # columns by which the sides of matching pieces may differ
 
 
@@ -64,10 +65,10 @@ def split(
     blob: Blob,
     outline: Outline,
     padded: Labels,
+    *,
     view: View,
     parameters: VisionParameters,
-    radius: float,
-    radius_sigma: float,
+    radius: tuple[float, float],
 ) -> list[Part]:
     """Cylinders of a blob that one cylinder does not explain; empty if none are told apart.
 
@@ -77,28 +78,242 @@ def split(
         padded: labels of the image with a frame of `OUTSIDE` one pixel wide.
         view: camera and pose.
         parameters: sizes of obstacles.
-        radius, radius_sigma: typical radius and its standard deviation [m].
+        radius: typical radius and its standard deviation [m].
     """
     grid = _Grid(blob, outline, padded, view)
-    floor = -view.height
-    head = parameters.obstacle_height - view.height
     step = parameters.step
-    lower = grid.pieces(grid.low, grid.low_usable, grid.below, floor, step, nearer_is=-1.0)
-    upper = grid.pieces(grid.high, grid.high_usable, grid.above, head, step, nearer_is=-1.0)
-    if head > -0.05:
-        upper = []
+    head = parameters.obstacle_height - view.height
+    lower = grid.pieces(grid.low, grid.low_usable, -view.height, step, nearest=True)
+    upper = []
+    if head < -MIN_CLEARANCE:
+        upper = grid.pieces(grid.high, grid.high_usable, head, step, nearest=False)
     if len(lower) < 2 and len(upper) < 2:
         return []
-    tolerance = SIDE_MATCH * grid.azimuth_step
-    pairs = _match(lower, upper, parameters, tolerance)
-    used_lower = {i for i, _ in pairs}
-    used_upper = {j for _, j in pairs}
+    pairs = _match(
+        lower,
+        upper,
+        view=view,
+        pixel=grid.pixel,
+        tolerance=SIDE_MATCH * grid.azimuth_step,
+        parameters=parameters,
+    )
+    feet, heads = {i for i, _ in pairs}, {j for _, j in pairs}
     groups: list[tuple[_Piece | None, _Piece | None]] = [(lower[i], upper[j]) for i, j in pairs]
-    groups += [(p, None) for i, p in enumerate(lower) if i not in used_lower]
-    groups += [(None, p) for j, p in enumerate(upper) if j not in used_upper]
-    parts = []
-    for low, high in groups:
-        part = _part(low, high, grid, parameters, radius, radius_sigma)
-        if part is not None:
-            parts.append(part)
-    return parts if len(parts) > 1 else []
+    groups += [(piece, None) for i, piece in enumerate(lower) if i not in feet]
+    groups += [(None, piece) for j, piece in enumerate(upper) if j not in heads]
+    parts = [
+        _part(low, high, grid, view=view, parameters=parameters, radius=radius)
+        for low, high in groups
+    ]
+    return [part for part in parts if part is not None]
+
+
+class _Grid:
+    """The blob sampled on a grid of azimuth and slope, where cylinders stand upright."""
+
+    def __init__(self, blob: Blob, outline: Outline, padded: Labels, view: View) -> None:
+        left, top, right, bottom = blob.box
+        first, last = blob.row_extents()
+        rows = np.arange(top, bottom) + 0.5
+        high, low = blob.column_extents()
+        columns = np.arange(left, right) + 0.5
+        azimuths, slopes = view.angles(
+            np.concatenate([first, last, columns, columns]).astype(float),
+            np.concatenate([rows, rows, high, low]).astype(float),
+        )
+        centre = np.array([0.5 * (left + right)]), np.array([0.5 * (top + bottom)])
+        au, av, su, sv = (float(a[0]) for a in view.resolution(*centre))
+        self.start, width = float(azimuths.min()), float(np.ptp(azimuths))
+        bottom_slope, height = float(slopes.min()), float(np.ptp(slopes))
+        self.azimuth_step = max(au, av, width / MAX_CELLS)
+        self.pixel = max(su, sv)
+        slope_step = max(0.5 * self.pixel, height / MAX_CELLS)
+        n = max(1, round(width / self.azimuth_step))
+        self.azimuth_step = width / n
+        m = int(np.ceil(height / slope_step))
+        self.outer_right = outline.right.trusted and not outline.right.hidden
+        self.outer_left = outline.left.trusted and not outline.left.hidden
+        # Two more cells below and above tell what lies beyond.
+        self.slopes = bottom_slope + slope_step * (np.arange(-2, m + 2) + 0.5)
+        self.azimuths = self.start + self.azimuth_step * (np.arange(n) + 0.5)
+        u, v, ahead = view.pixels(self.azimuths[None, :], self.slopes[:, None])
+        width_px, height_px = view.camera.width, view.camera.height
+        column = np.clip(np.floor(u), -1, width_px).astype(np.intp)
+        row = np.clip(np.floor(v), -1, height_px).astype(np.intp)
+        labels = np.where(ahead, padded[row + 1, column + 1], OUTSIDE)
+        x, y = column - left, row - top
+        inside = ahead & (x >= 0) & (y >= 0) & (x < right - left) & (y < bottom - top)
+        inside[inside] = blob.mask[y[inside], x[inside]]
+        index = np.arange(n)
+        self.filled = inside.any(axis=0)
+        first_cell = inside.argmax(axis=0)
+        last_cell = inside.shape[0] - 1 - inside[::-1].argmax(axis=0)
+        self.low = self.slopes[first_cell] - 0.5 * slope_step
+        self.high = self.slopes[last_cell] + 0.5 * slope_step
+        below = labels[np.maximum(first_cell - 1, 0), index]
+        above = labels[np.minimum(last_cell + 1, len(self.slopes) - 1), index]
+        self.low_usable = self.filled & (below == 0)
+        self.high_usable = self.filled & (above != OUTSIDE)
+
+    def pieces(
+        self, envelope: Array, usable: NDArray[np.bool_], drop: float, step: float, nearest: bool
+    ) -> list[_Piece]:
+        """Pieces of the lower or the upper outline.
+
+        Args:
+            envelope: slope of the outline in each column (n,).
+            usable: columns where the outline is the edge of a thing (n,).
+            drop: height of the rim minus that of the camera [m].
+            step: that parts two pieces [pixel].
+            nearest: the outline shows the nearest thing of each column, not the farthest.
+        """
+        jumps = np.abs(np.diff(envelope))
+        starts = _merge_narrow(
+            [0, *(np.flatnonzero(jumps > step * self.pixel) + 1).tolist()],
+            jumps.tolist(),
+            len(envelope),
+        )
+        ends = [*starts[1:], len(envelope)]
+        pieces = []
+        for a, b in zip(starts, ends, strict=True):
+            chosen = np.flatnonzero(usable[a:b]) + a
+            if len(chosen) < MIN_COLUMNS or 2 * len(chosen) < b - a:
+                continue
+            slopes = envelope[chosen]
+            if (slopes * drop <= 0.0).any():
+                continue
+            pieces.append(
+                _Piece(
+                    right=self.start + a * self.azimuth_step,
+                    left=self.start + b * self.azimuth_step,
+                    right_true=self._ends(
+                        envelope, usable, a, a - 1, nearest=nearest, outer=self.outer_right
+                    ),
+                    left_true=self._ends(
+                        envelope, usable, b - 1, b, nearest=nearest, outer=self.outer_left
+                    ),
+                    run=float(np.quantile(drop / slopes, 0.1 if nearest else 0.9)),
+                    azimuth=self.azimuths[chosen],
+                    slope=slopes,
+                )
+            )
+        return pieces
+
+    @staticmethod
+    def _ends(
+        envelope: Array,
+        usable: NDArray[np.bool_],
+        last: int,
+        beyond: int,
+        *,
+        nearest: bool,
+        outer: bool,
+    ) -> bool:
+        """Whether a thing ends between its column `last` and the column `beyond`."""
+        if beyond < 0 or beyond >= len(envelope):
+            return outer
+        if not (usable[last] and usable[beyond]):
+            return False
+        # Slopes are negative: a farther rim has the greater one.
+        farther = bool(envelope[beyond] > envelope[last])
+        return farther if nearest else not farther
+
+
+def _merge_narrow(starts: list[int], jumps: list[float], n: int) -> list[int]:
+    """Join pieces of too few columns to the neighbour across the smaller step."""
+    starts = list(starts)
+    while len(starts) > 1:
+        ends = [*starts[1:], n]
+        widths = [b - a for a, b in zip(starts, ends, strict=True)]
+        k = min(range(len(widths)), key=lambda i: (widths[i], i))
+        if widths[k] >= MIN_COLUMNS:
+            break
+        before = jumps[starts[k] - 1] if k > 0 else float("inf")
+        after = jumps[ends[k] - 1] if k + 1 < len(starts) else float("inf")
+        del starts[k if before <= after else k + 1]
+    return starts
+
+
+def _match(
+    lower: Sequence[_Piece],
+    upper: Sequence[_Piece],
+    *,
+    view: View,
+    pixel: float,
+    tolerance: float,
+    parameters: VisionParameters,
+) -> list[tuple[int, int]]:
+    """Pairs of pieces that show the foot and the head of one cylinder."""
+    costs = []
+    fall = view.height - parameters.obstacle_height
+    for i, low in enumerate(lower):
+        for j, high in enumerate(upper):
+            common = min(low.left, high.left) - max(low.right, high.right)
+            shorter = min(low.left - low.right, high.left - high.right)
+            if common < 0.5 * shorter:
+                continue
+            slack = EXTRA_RADIUS + pixel * (low.run**2 / view.height + high.run**2 / fall)
+            radius = 0.5 * (high.run - low.run)
+            if not parameters.min_radius - slack < radius < parameters.max_radius + slack:
+                continue
+            gaps = [
+                abs(a - b)
+                for a, b, true in (
+                    (low.left, high.left, low.left_true and high.left_true),
+                    (low.right, high.right, low.right_true and high.right_true),
+                )
+                if true
+            ]
+            if any(gap > tolerance for gap in gaps):
+                continue
+            middle = 0.5 * (parameters.min_radius + parameters.max_radius)
+            costs.append((abs(radius - middle) / slack + sum(gaps) / tolerance, i, j))
+    pairs: list[tuple[int, int]] = []
+    for _, i, j in sorted(costs):
+        if all(i != a and j != b for a, b in pairs):
+            pairs.append((i, j))
+    return pairs
+
+
+def _part(
+    low: _Piece | None,
+    high: _Piece | None,
+    grid: _Grid,
+    *,
+    view: View,
+    parameters: VisionParameters,
+    radius: tuple[float, float],
+) -> Part | None:
+    """One cylinder from its foot, its head or both; None if neither side is seen."""
+    pieces = [p for p in (low, high) if p is not None]
+    right = [p.right for p in pieces if p.right_true]
+    left = [p.left for p in pieces if p.left_true]
+    if not right and not left:
+        return None
+    head = parameters.obstacle_height - view.height
+    near = low.run if low is not None else max(pieces[0].run - 2.0 * radius[0], 0.1)
+    far = high.run if high is not None else near + 2.0 * radius[0]
+    span = (-view.height / near, head / far)
+    sides = [
+        Side(
+            azimuth=sum(true) / len(true) if true else outermost,
+            sigma=SIDE_SIGMA * grid.azimuth_step,
+            low=span[0],
+            high=span[1],
+            trusted=bool(true),
+            hidden=not true,
+        )
+        for true, outermost in (
+            (left, max(p.left for p in pieces)),
+            (right, min(p.right for p in pieces)),
+        )
+    ]
+    rims = []
+    sigma = SIDE_SIGMA * grid.pixel
+    if low is not None:
+        rims.append(RimCue(Rim(low.azimuth, low.slope, sigma, 0.0, 0), 0.0, near=True))
+    if high is not None:
+        rim = Rim(high.azimuth, high.slope, sigma, 0.0, 0)
+        rims.append(RimCue(rim, parameters.obstacle_height, near=False))
+    whole = low is not None and low.left_true and low.right_true
+    return Part(Candidate(sides[0], sides[1], tuple(rims), *radius), occluded=not whole)

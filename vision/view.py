@@ -29,7 +29,7 @@ class View:
         self.camera = camera
         self.pose = pose
         self.x, self.y, self.height = pose.position.tolist()
-        self._R = pose.rotation.tolist()
+        self._R: list[list[float]] = pose.rotation.tolist()
         # The right axis is level but for roll, so it gives the heading even when the
         # camera looks straight down.
         self.heading = atan2(self._R[1][0], self._R[0][0]) + 0.5 * pi
@@ -43,21 +43,27 @@ class View:
 
     def pixels(self, azimuth: Array, slope: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Image point (u, v) of directions, and whether it lies before the camera."""
-        R = self.pose.rotation
         absolute = azimuth + self.heading
-        direction = np.stack([np.cos(absolute), np.sin(absolute), slope + 0.0 * absolute])
-        x, y, z = np.tensordot(R.T, direction, axes=1)
+        X, Y = np.cos(absolute), np.sin(absolute)
+        x, y, z = (
+            X * a + Y * b + slope * c
+            for a, b, c in zip(self._R[0], self._R[1], self._R[2], strict=True)
+        )
         ahead = z > 1e-3
         depth = np.where(ahead, z, 1.0)
         f = self.camera.focal
-        return 0.5 * self.camera.width + f * x / depth, 0.5 * self.camera.height + f * y / depth, ahead
+        return (
+            0.5 * self.camera.width + f * x / depth,
+            0.5 * self.camera.height + f * y / depth,
+            ahead,
+        )
 
     def upright(self, u: float, v: float) -> bool:
         """Whether vertical lines run rather along columns than along rows at (u, v)."""
         up_x, up_y, up_z = self._R[2]
         x = (u - 0.5 * self.camera.width) / self.camera.focal
         y = (v - 0.5 * self.camera.height) / self.camera.focal
-        return abs(up_y - y * up_z) >= abs(up_x - x * up_z)
+        return bool(abs(up_y - y * up_z) >= abs(up_x - x * up_z))
 
     def resolution(self, u: Array, v: Array) -> tuple[Array, Array, Array, Array]:
         """How much azimuth [rad] and slope [1] change per pixel.
