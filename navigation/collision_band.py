@@ -54,6 +54,11 @@ class Encounter:
             return inf
         return max(0.0, (-b - sqrt(discriminant)) / a)
 
+    def collides(self, speed: float, horizon: float) -> bool:
+        """Whether constant `speed` [m/s] leads to contact within `horizon` [s]."""
+        time = self.contact_time(speed)
+        return isfinite(time) and time <= horizon
+
     def band(self) -> tuple[float, float]:
         """(al, lat): the robot's place along and left of the mover's path [m]."""
         speed = hypot(self.forward, self.left)
@@ -133,7 +138,7 @@ def free_intervals(
     intervals: list[tuple[float, float]] = []
     for low, high in pairwise(cuts):
         middle = 0.5 * (low + high)
-        if all(e.contact_time(middle) > horizon for e in encounters):
+        if not any(e.collides(middle, horizon) for e in encounters):
             joins = bool(intervals) and intervals[-1][1] == low
             start = intervals.pop()[0] if joins else low
             intervals.append((start, high))

@@ -58,10 +58,10 @@ def modify_speed(
         footstep: duration of a footstep [s].
         horizon: later contacts are ignored [s].
     """
-    if all(e.contact_time(desired) > horizon for e in encounters):
+    if not any(e.collides(desired, horizon) for e in encounters):
         return ModifiedSpeed(desired, "free")
     intervals = free_intervals(encounters, v_max, horizon)
-    standing_hits = any(e.contact_time(0.0) <= horizon for e in encounters)
+    standing_hits = any(e.collides(0.0, horizon) for e in encounters)
     above = [low for low, _ in intervals if low > desired]
     if above:
         time = min((_touch_time(e, above[0]) for e in encounters), default=inf)
@@ -104,7 +104,7 @@ def sample_speed(
     """
 
     def free(speed: float) -> bool:
-        return all(e.contact_time(speed) > horizon for e in encounters)
+        return not any(e.collides(speed, horizon) for e in encounters)
 
     if free(desired):
         return ModifiedSpeed(desired, "free")

@@ -1,0 +1,97 @@
+from math import inf
+
+import numpy as np
+import pytest
+
+from navigation.collision_band import Encounter
+from navigation.velocity_modification import modify_speed, needed_acceleration, sample_speed
+
+V_MAX = 0.2
+
+
+def closed(encounters, desired=0.2, now=0.2, acceleration=0.3, horizon=6.0):
+    return modify_speed(
+        encounters, desired, now, v_max=V_MAX, acceleration=acceleration, footstep=0.34,
+        horizon=horizon,
+    )  # fmt: skip
+
+
+def sampled(encounters, desired=0.2, now=0.2, samples=21, horizon=6.0):
+    return sample_speed(
+        encounters, desired, now, v_max=V_MAX, acceleration=10.0, samples=samples,
+        horizon=horizon, acceleration_time=0.8,
+    )  # fmt: skip
+
+
+def scene(rng):
+    count = int(rng.integers(1, 4))
+    return tuple(
+        Encounter(*rng.uniform(-1, 1, 2).tolist(), *rng.normal(0, 0.1, 2).tolist(), 0.2)
+        for _ in range(count)
+    )
+
+
+def test_nothing_near_keeps_the_speed():
+    assert closed(()).speed == 0.2
+    assert closed(()).situation == "free"
+    assert sampled(()) == closed(())
+
+
+def test_the_chosen_speed_is_free_or_the_path_must_change():
+    rng = np.random.default_rng(0)
+    seen = set()
+    for _ in range(1500):
+        movers = scene(rng)
+        desired = float(rng.uniform(0.02, V_MAX))
+        choice = closed(movers, desired, desired)
+        seen.add(choice.situation)
+        if choice.situation == "path_change":
+            assert choice.speed == desired
+        else:
+            assert all(e.contact_time(choice.speed) > 6.0 for e in movers)
+    assert seen == {"free", "accelerate", "brake", "escape", "path_change"}
+
+
+def test_closed_form_and_samples_agree_within_one_sample():
+    rng = np.random.default_rng(1)
+    step = V_MAX / 200
+    same = 0
+    for _ in range(600):
+        movers = scene(rng)
+        desired = round(float(rng.uniform(0.02, V_MAX)) / step) * step
+        one = closed(movers, desired, desired, acceleration=inf)
+        other = sampled(movers, desired, desired, samples=201)
+        if {one.situation, other.situation} <= {"free", "brake"}:
+            assert abs(one.speed - other.speed) <= step + 1e-8
+            same += 1
+        elif one.situation == other.situation:
+            assert abs(one.speed - other.speed) <= step + 1e-8
+            same += 1
+    assert same > 590
+
+
+def test_it_overtakes_if_it_can_and_waits_if_it_cannot():
+    crossing = (Encounter(0.45, -0.7, 0.0, 0.1, 0.2),)
+    fast = closed(crossing, desired=0.06, now=0.06, acceleration=inf)
+    slow = closed(crossing, desired=0.06, now=0.06, acceleration=0.0)
+    assert fast.situation == "accelerate"
+    assert fast.speed > 0.06
+    assert slow.situation == "brake"
+    assert slow.speed < 0.06
+
+
+def test_a_definite_collision_changes_the_path():
+    assert closed((Encounter(0.6, 0.0, -0.1, 0.0, 0.3),)).situation == "path_change"
+
+
+def test_late_contacts_are_ignored():
+    far = (Encounter(1.9, 0.0, -0.05, 0.0, 0.3),)
+    assert closed(far, horizon=6.0).situation == "free"
+    assert closed(far, horizon=60.0).situation == "path_change"
+
+
+def test_the_needed_acceleration_brings_the_robot_there_in_time():
+    speed, wanted, time = 0.05, 0.15, 2.0
+    a = needed_acceleration(speed, wanted, time, 0.34)
+    assert speed * time + 0.5 * a * time**2 == pytest.approx(wanted * time)
+    assert needed_acceleration(speed, wanted, 0.0, 0.34) == pytest.approx(2 * 0.1 / 0.34)
