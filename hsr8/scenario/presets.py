@@ -1,0 +1,46 @@
+"""Names that stand for several values: the navigation profile and the camera's lens."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from hsr8.scenario.robot import LENSES
+from navigation.decision_parameters import NavigationParameters
+
+Table = dict[str, Any]
+
+PROFILES = {"extended": NavigationParameters.extended, "paper": NavigationParameters.paper}
+
+
+def expand_presets(data: Mapping[str, Any]) -> Table:
+    """`data` of a scenario with the values its profile and its lens stand for.
+
+    Values that are given stay as they are. Malformed tables stay too: reading them
+    against the schema reports them.
+    """
+    expanded = dict(data)
+    navigation, camera = data.get("navigation"), data.get("camera")
+    if isinstance(navigation, dict):
+        profile = navigation.get("profile")
+        if isinstance(profile, str) and profile in PROFILES:
+            expanded["navigation"] = _under(navigation, asdict(PROFILES[profile]()))
+    if isinstance(camera, dict):
+        expanded["camera"] = _with_lens(camera)
+    return expanded
+
+
+def _with_lens(camera: Table) -> Table:
+    lens, fov = camera.get("lens"), camera.get("vertical_fov_deg")
+    if lens is None and fov is not None and fov != LENSES["wide"]:
+        return {**camera, "lens": "custom"}
+    if fov is None and isinstance(lens, str) and lens in LENSES:
+        return {**camera, "vertical_fov_deg": LENSES[lens]}
+    return camera
+
+
+def _under(given: Table, defaults: Table) -> Table:
+    merged = {**defaults, **given}
+    for key, default in defaults.items():
+        if isinstance(default, dict) and isinstance(given.get(key), dict):
+            merged[key] = _under(given[key], default)
+    return merged

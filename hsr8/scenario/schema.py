@@ -1,0 +1,130 @@
+"""The scenario: everything that determines a run but its seed."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from annotated_types import Interval, Len
+from pydantic import Field
+
+from hsr8.scenario.mission import Course, Mission, Points, Stretch, Tour, Walk
+from hsr8.scenario.robot import Camera, Robot
+from hsr8.scenario.section import PeriodMs, Section
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.scenario.world import World
+from navigation.belief_parameters import BeliefParameters
+from navigation.decision import SpeedLimits
+from navigation.decision_parameters import NavigationParameters
+from vision.parameters import VisionParameters
+from walking.parameters import WalkingParameters
+
+
+@dataclass(frozen=True)
+class Navigation(NavigationParameters):
+    """Parameters of the decisions; the profile gives the defaults of all others."""
+
+    profile: Literal["extended", "paper"] = "extended"
+    """extended: our best; paper: the printed equations with the least repairs."""
+
+
+class Criteria(Section):
+    """What a run must achieve to pass."""
+
+    max_falls: Annotated[int, Interval(ge=0, le=1000)] = 0
+    """Falls that are still a pass [1]."""
+    max_collisions: Annotated[int, Interval(ge=0, le=100_000)] | None = None
+    """Contacts with obstacles that are still a pass, any number if left out [1]."""
+    goal_reached: bool = False
+    """Whether the goal must be reached."""
+    min_via_points: Annotated[int, Interval(ge=0, le=100_000)] = 0
+    """Via points that must be passed [1]."""
+
+
+class Recorder(Section):
+    """What is published and kept."""
+
+    period_ms: PeriodMs = 20
+    """Time between two records, a multiple of the control tick of 5 ms [ms]."""
+
+
+class Scenario(Section):
+    """A world, a robot in it, what it shall do, and what counts as success."""
+
+    name: Annotated[str, Len(1, 64), Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
+    """Name; run folders carry it."""
+    description: Annotated[str, Len(0, 2000)] = ""
+    """One or two sentences for `hsr8 list`."""
+    seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 0
+    """Draws the world and every noise [1]."""
+    duration: Annotated[float, Interval(gt=0.0, le=7200.0)] = 240.0
+    """Simulated time after which the run ends [s]."""
+    world: World = World()
+    """Field, obstacles, beacons and light."""
+    mission: Mission
+    """What the robot is asked to do."""
+    robot: Robot = Robot()
+    """Body, start and speeds."""
+    camera: Camera = Camera()
+    """The head camera."""
+    sensors: SensorNoise = SensorNoise()
+    """Noise of the body's sensors."""
+    walking: WalkingParameters = WalkingParameters()
+    """The walking engine."""
+    vision: VisionParameters = VisionParameters()
+    """The detector."""
+    belief: BeliefParameters = BeliefParameters()
+    """Localization, obstacle tracks and local map."""
+    navigation: Navigation = Navigation()
+    """Gaze and motion planning."""
+    criteria: Criteria = Criteria()
+    """What passes."""
+    recorder: Recorder = Recorder()
+    """What is published and kept."""
+
+    def sensor_noise(self) -> SensorNoise:
+        """Noise of the body's sensors."""
+        return self.sensors
+
+    def walking_parameters(self) -> WalkingParameters:
+        """Parameters of the walking engine."""
+        return self.walking
+
+    def vision_parameters(self) -> VisionParameters:
+        """Parameters of the detector."""
+        return self.vision
+
+    def belief_parameters(self) -> BeliefParameters:
+        """Parameters of the belief."""
+        return self.belief
+
+    def navigation_parameters(self) -> NavigationParameters:
+        """Parameters of the decisions."""
+        return self.navigation
+
+    def speed_limits(self) -> SpeedLimits:
+        """Speed envelope navigation plans with; a command lasts for one footstep."""
+        speed = self.robot.speed
+        return SpeedLimits(
+            forward=speed.forward,
+            backward=speed.backward,
+            lateral=speed.lateral,
+            turn=speed.turn,
+            acceleration=speed.acceleration,
+            footstep=self.walking.gait.footstep_time,
+        )
+
+
+__all__ = [
+    "Camera",
+    "Course",
+    "Criteria",
+    "Mission",
+    "Navigation",
+    "Points",
+    "Recorder",
+    "Robot",
+    "Scenario",
+    "Stretch",
+    "Tour",
+    "Walk",
+    "World",
+]

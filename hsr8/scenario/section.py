@@ -1,0 +1,45 @@
+"""What all sections of a scenario share: strict reading, units in words, common ranges."""
+
+from typing import Annotated, Literal
+
+from annotated_types import Interval, MultipleOf
+from pydantic import AfterValidator, BaseModel, ConfigDict
+
+CONTROL_PERIOD_MS = 5
+
+
+class Section(BaseModel):
+    """A table of a scenario file: no unknown keys, no guessed types, no changes afterwards.
+
+    The parameter dataclasses of the libraries are sections too: pydantic reads their
+    constraints and attribute docstrings, and these settings hold for them as well.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        strict=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+    )
+
+
+def _ordered(bounds: tuple[float, float]) -> tuple[float, float]:
+    if bounds[0] > bounds[1]:
+        raise ValueError("the smaller bound comes first")
+    return bounds
+
+
+PeriodMs = Annotated[int, Interval(ge=CONTROL_PERIOD_MS, le=10_000), MultipleOf(CONTROL_PERIOD_MS)]
+Count = Annotated[int, Interval(ge=0, le=64)]
+Metres = Annotated[float, Interval(ge=-50.0, le=50.0)]
+Point = tuple[Metres, Metres]
+Radius = Annotated[float, Interval(gt=0.0, le=0.5)]
+Speed = Annotated[float, Interval(gt=0.0, le=2.0)]
+Degrees = Annotated[float, Interval(ge=-360.0, le=360.0)]
+Ratio = Annotated[float, Interval(gt=0.0, le=3.0)]
+Length = Annotated[float, Interval(gt=0.0, le=20.0)]
+RadiusRange = Annotated[tuple[Radius, Radius], AfterValidator(_ordered)]
+RatioRange = Annotated[tuple[Ratio, Ratio], AfterValidator(_ordered)]
+LengthRange = Annotated[tuple[Length, Length], AfterValidator(_ordered)]
+Colour = Literal["red", "green", "blue", "violet"]

@@ -1,0 +1,130 @@
+"""The world a scenario describes: what is drawn from the seed and what is placed by hand."""
+
+from typing import Annotated, Literal
+
+from annotated_types import Interval, Len
+from pydantic import Field
+
+from hsr8.scenario.section import (
+    Colour,
+    Count,
+    Degrees,
+    LengthRange,
+    Metres,
+    Point,
+    Radius,
+    RadiusRange,
+    RatioRange,
+    Section,
+    Speed,
+)
+
+Side = Annotated[float, Interval(ge=1.0, le=20.0)]
+
+
+class StaticObstacle(Section):
+    """A cylinder that stands still."""
+
+    position: Point
+    """Axis of the cylinder in W, x and y [m]."""
+    radius: Radius = 0.08
+    """Radius [m]."""
+    colour: Colour = "red"
+    """Colour; it says nothing about size or motion."""
+
+
+class _Mover(Section):
+    radius: Radius = 0.08
+    """Radius [m]."""
+    colour: Colour = "blue"
+    """Colour; it says nothing about size or motion."""
+    speed: Speed = 0.10
+    """Speed along its lane, constant [m/s]."""
+
+
+class ShuttleMover(_Mover):
+    """A cylinder that goes back and forth between two points and turns about at the ends."""
+
+    motion: Literal["shuttle"]
+    """Back and forth."""
+    start: Point
+    """Where it is at time zero, one end of its lane in W [m]."""
+    end: Point
+    """Other end of its lane in W [m]."""
+
+
+class LineMover(_Mover):
+    """A cylinder that goes straight on and never turns about."""
+
+    motion: Literal["line"]
+    """One way."""
+    start: Point
+    """Where it is at time zero in W [m]."""
+    heading_deg: Degrees
+    """Direction in which it goes, counter-clockwise from x of W [deg]."""
+
+
+class CircleMover(_Mover):
+    """A cylinder that goes round a circle."""
+
+    motion: Literal["circle"]
+    """Round."""
+    centre: Point
+    """Centre of the circle in W [m]."""
+    path_radius: Annotated[float, Interval(gt=0.0, le=10.0)]
+    """Radius of the circle [m]."""
+    angle_deg: Degrees = 0.0
+    """Where on the circle it is at time zero, counter-clockwise from x of W [deg]."""
+    clockwise: bool = False
+    """Sense of the motion."""
+
+
+Mover = Annotated[ShuttleMover | LineMover | CircleMover, Field(discriminator="motion")]
+
+
+class World(Section):
+    """Field, obstacles and light. Drawn obstacles join those placed by hand."""
+
+    size: tuple[Side, Side] = (5.0, 5.0)
+    """Extent of the field along x and y of W, centred on the origin [m]."""
+    n_static: Count = 12
+    """Static obstacles to draw [1]."""
+    n_moving: Count = 4
+    """Moving obstacles to draw [1]."""
+    radius: RadiusRange = (0.05, 0.12)
+    """Smallest and largest radius of a drawn obstacle [m]."""
+    speed_ratio: RatioRange = (0.3, 0.7)
+    """Slowest and fastest drawn mover, relative to the robot's forward speed [1]."""
+    motions: Annotated[tuple[Literal["shuttle", "circle"], ...], Len(1, 2)] = ("shuttle",)
+    """Motions drawn for movers, each as likely as the other."""
+    lane: LengthRange = (0.8, 1.8)
+    """Shortest and longest lane of a drawn mover; of a circle, its diameter's range [m]."""
+    beacons: bool = True
+    """Whether the six beacons stand around the field."""
+    brightness: Annotated[float, Interval(ge=0.1, le=2.0)] = 1.0
+    """Strength of all lights, relative to the usual [1]."""
+    obstacle: Annotated[tuple[StaticObstacle, ...], Len(0, 64)] = ()
+    """Static obstacles placed by hand."""
+    mover: Annotated[tuple[Mover, ...], Len(0, 64)] = ()
+    """Moving obstacles placed by hand."""
+
+
+class Start(Section):
+    """Where the robot stands at time zero; what is left out is drawn."""
+
+    position: Point | None = None
+    """In W, x and y [m]; drawn if left out."""
+    heading_deg: Degrees | None = None
+    """Counter-clockwise from x of W [deg]; drawn if left out."""
+
+
+__all__ = [
+    "CircleMover",
+    "LineMover",
+    "Metres",
+    "Mover",
+    "ShuttleMover",
+    "Start",
+    "StaticObstacle",
+    "World",
+]
