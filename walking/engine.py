@@ -1,0 +1,303 @@
+"""The walking engine: one control tick from sensors and commands to joint targets."""
+
+from math import cos, hypot, sin
+
+import numpy as np
+
+from walking.command import HeadTarget, VelocityCommand
+from walking.estimator import ErrorFilter, TiltFilter, TouchDown
+from walking.feedforward import FeedForward
+from walking.footsteps import FootstepPlanner, Velocity
+from walking.gait import Gait
+from walking.head import Head
+from walking.joints import HEAD
+from walking.leg_kinematics import foot_pose
+from walking.lipm import Lipm
+from walking.measurement import BodyMeasurement, measure
+from walking.odometry import LegOdometry
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.pattern import PendulumState, dcm_reference, make_generator
+from walking.posture import Posture
+from walking.robot_model import RobotModel
+from walking.rotation import roll_pitch_yaw
+from walking.sensing import BodySensors
+from walking.snapshot import PlanToOdometry, camera_pose
+from walking.stabilizer import Stabilizer
+from walking.state import Footstep, WalkingState
+from walking.support import SupportRegion, support_region
+from walking.targets import JointTargets
+from walking.velocity import VelocitySlew
+
+STILL = VelocityCommand()
+
+
+class WalkingEngine:
+    """Walks HSR-VIII: call `step` once per control tick of 5 ms.
+
+    The engine starts in the ready posture, stands until it is told to move, and stops with
+    the feet side by side when it is told to stand.
+
+    Args:
+        robot: the robot's numbers.
+        parameters: of the engine.
+    """
+
+    def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
+        self._robot = robot
+        self._parameters = parameters
+        pattern = parameters.pattern
+        self._lipm = Lipm(pattern.lipm_height)
+        self._generator = make_generator(self._lipm, pattern)
+        self._planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
+        stance = _stance(robot)
+        self._gait = Gait(parameters, self._planner, stance)
+        zmp = self._gait.plan(stance[1], (0.0, 0.0, 0.0), moving=False)[-1]
+        self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
+        self._slew = VelocitySlew(parameters.limits)
+        self._tilt = TiltFilter(parameters.estimator)
+        self._error = ErrorFilter(self._lipm.omega, parameters.estimator)
+        self._touch = TouchDown(parameters.estimator)
+        self._stabilizer = Stabilizer(robot, parameters.stabilizer, self._lipm.omega)
+        self._posture = Posture(robot, parameters)
+        self._feedforward = FeedForward(robot, parameters.stabilizer)
+        self._odometry = LegOdometry()
+        ready = robot.ready[HEAD].tolist()
+        self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
+        self._pelvis = self._posture.pelvis(self._gait, (self._pendulum.x, self._pendulum.y))
+        self._planned_com = robot.com(robot.ready)
+        self._turn_rate = 0.0
+        self._zmp_shift = (0.0, 0.0)
+        self._weight = self._gait.right_weight
+        self._held_turn = 0.0
+        self._last_opening_left = False
+        self._ticks = 0
+        self._sensors: BodySensors | None = None
+        self._body: BodyMeasurement | None = None
+        self._reference = (zmp.bx, zmp.by)
+
+    @property
+    def parameters(self) -> WalkingParameters:
+        """Parameters of the engine, its speed limits among them."""
+        return self._parameters
+
+    def step(
+        self, sensors: BodySensors, command: VelocityCommand, head: HeadTarget
+    ) -> JointTargets:
+        """One control tick.
+
+        Args:
+            sensors: read at the start of the tick.
+            command: velocity wanted; limited to what the legs can do.
+            head: direction to look; limited to what the neck can do.
+
+        Returns:
+            set-points of all joints.
+        """
+        body = self._sense(sensors)
+        error = self._estimate(body)
+        self._command(command, error)
+        velocity = self._velocity(body)
+        moving = self._slew.moving
+        gait = self._gait
+        if not gait.stepping:
+            self._maybe_start(velocity, error, moving=moving)
+        self._place_foot(body, velocity, error, moving=moving)
+        ramps = gait.plan(gait.landing, velocity, moving=moving)
+        self._reference = dcm_reference(self._lipm, ramps)
+        pattern = self._parameters.pattern
+        pendulum = self._pendulum
+        region = self._region(pattern.sole_margin)
+        self._generator.advance(pendulum, ramps, self._reference, region)
+        zmp = (pendulum.zmp_x, pendulum.zmp_y)
+        load = self._right_load(region, zmp)
+        wide = self._region(self._parameters.stabilizer.sole_margin)
+        self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, wide)
+        gait.advance(moving=moving)
+        return self._realize(body, zmp, load, self._head.advance(head))
+
+    def state(self) -> WalkingState:
+        """Snapshot after the last tick; it changes nothing.
+
+        Raises:
+            RuntimeError: no tick has been made yet.
+        """
+        if self._sensors is None or self._body is None:
+            raise RuntimeError("the walking engine has no state before its first tick")
+        body, gait, pendulum = self._body, self._gait, self._pendulum
+        odometry = self._odometry.pose()
+        plan = PlanToOdometry(gait.footholds[gait.support], body, gait.support, odometry)
+        w = self._lipm.omega
+        c, s = cos(odometry.yaw), sin(odometry.yaw)
+        x, y, _ = body.com
+        return WalkingState(
+            phase=gait.phase,
+            odometry=odometry,
+            camera=camera_pose(self._robot, self._sensors, body),
+            given=np.array([self._slew.forward, self._slew.left, self._slew.turn]),
+            footsteps=tuple(plan.footstep(step) for step in gait.footsteps()),
+            zmp=plan.point(pendulum.zmp_x, pendulum.zmp_y),
+            dcm=plan.point(pendulum.x + pendulum.vx / w, pendulum.y + pendulum.vy / w),
+            com=np.array([odometry.x + c * x - s * y, odometry.y + s * x + c * y]),
+            roll=body.roll,
+            pitch=body.pitch,
+            step_count=gait.completed,
+            fallen=hypot(body.roll, body.pitch) > self._parameters.estimator.fall_tilt,
+        )
+
+    def _sense(self, sensors: BodySensors) -> BodyMeasurement:
+        w, x, y, z = sensors.orientation.tolist()
+        roll, pitch, heading = roll_pitch_yaw((w, x, y, z))
+        self._tilt.update(roll, pitch, sensors.gyro.tolist())
+        body = measure(self._robot, sensors, self._tilt.roll, self._tilt.pitch, heading)
+        left, right = body.feet
+        self._odometry.update(heading, ((left.x, left.y), (right.x, right.y)), body.right_load)
+        self._sensors, self._body = sensors, body
+        self._ticks += 1
+        return body
+
+    def _estimate(self, body: BodyMeasurement) -> tuple[float, float]:
+        """DCM error of the body against the pendulum, in the plan frame [m]."""
+        pelvis, gait = self._pelvis, self._gait
+        c, s = cos(pelvis.yaw), sin(pelvis.yaw)
+        px, py, _ = self._planned_com
+        planned = (pelvis.x + c * px - s * py, pelvis.y + s * px + c * py)
+        errors, arms = [], []
+        for foot, reference in zip(body.feet, gait.feet, strict=True):
+            # Measured arm from the foot to the mass centre, the foot taken as planned.
+            turned = reference.yaw.position - foot.yaw
+            ct, st = cos(turned), sin(turned)
+            dx, dy = body.com[0] - foot.x, body.com[1] - foot.y
+            arm = (ct * dx - st * dy, st * dx + ct * dy)
+            arms.append(arm)
+            errors.append(
+                (
+                    arm[0] + reference.x.position - planned[0],
+                    arm[1] + reference.y.position - planned[1],
+                )
+            )
+        weight = gait.right_weight
+        (lx, ly), (rx, ry) = errors
+        moved = weight - self._weight
+        self._weight = weight
+        if moved != 0.0:
+            self._error.shift(moved * (rx - lx), moved * (ry - ly))
+        rest = 1.0 - weight
+        arm_x = rest * arms[0][0] + weight * arms[1][0]
+        arm_y = rest * arms[0][1] + weight * arms[1][1]
+        slip = body.gyro[2] - self._turn_rate
+        self._error.update(
+            (rest * lx + weight * rx, rest * ly + weight * ry),
+            self._zmp_shift,
+            (-slip * arm_y, slip * arm_x),
+        )
+        w = self._lipm.omega
+        e = self._error
+        return e.x + e.vx / w, e.y + e.vy / w
+
+    def _command(self, command: VelocityCommand, error: tuple[float, float]) -> None:
+        settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
+        if hypot(*error) < self._parameters.stabilizer.slew_error:
+            self._slew.follow(command if settled else STILL)
+
+    def _velocity(self, body: BodyMeasurement) -> Velocity:
+        """Velocity of the footsteps: the given one with the heading hold."""
+        p = self._parameters.stabilizer
+        slew = self._slew
+        if not self._gait.stepping:
+            # Standing, the plan takes the heading as it is.
+            self._held_turn = self._pelvis.yaw - self._odometry.yaw
+            return slew.forward, slew.left, slew.turn
+        missing = self._pelvis.yaw - self._odometry.yaw - self._held_turn
+        rate = min(p.heading_rate, max(-p.heading_rate, p.heading_gain * missing))
+        self._held_turn += rate * CONTROL_PERIOD
+        return slew.forward, slew.left, slew.turn + rate
+
+    def _maybe_start(self, velocity: Velocity, error: tuple[float, float], *, moving: bool) -> None:
+        gait = self._gait
+        pushed = self._stabilizer.exceeds(
+            gait.footholds[0], error, self._parameters.stabilizer.step_error
+        )
+        if not moving and not pushed:
+            return
+        opening_left = self._planner.opening_left(velocity)
+        if opening_left is None:
+            opening_left = not self._last_opening_left
+        self._last_opening_left = opening_left
+        gait.start(1 if opening_left else 0)
+        self._touch.reset()
+
+    def _place_foot(
+        self,
+        body: BodyMeasurement,
+        velocity: Velocity,
+        error: tuple[float, float],
+        *,
+        moving: bool,
+    ) -> None:
+        """Decide on the landing of the swing foot."""
+        gait = self._gait
+        if not gait.stepping:
+            return
+        if gait.adjustable:
+            landing = gait.nominal(velocity)
+            if not gait.double:
+                ramps = gait.plan(landing, velocity, moving=moving)
+                rx, ry = dcm_reference(self._lipm, ramps)
+                p, w = self._pendulum, self._lipm.omega
+                off = (p.x + p.vx / w + error[0] - rx, p.y + p.vy / w + error[1] - ry)
+                support = gait.footholds[gait.support]
+                landing = self._stabilizer.capture(
+                    self._planner, support, landing, off, gait.ticks_left
+                )
+            gait.aim(landing)
+        if not gait.held and not gait.double:
+            force = body.feet[gait.swing].force
+            if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
+                gait.touch_down()
+
+    def _region(self, margin: float) -> SupportRegion:
+        first, second = self._gait.support_feet
+        return support_region(self._robot.sole, first, second, margin)
+
+    def _right_load(self, region: SupportRegion, zmp: tuple[float, float]) -> float:
+        """Planned share of the weight on the right foot."""
+        gait = self._gait
+        loading = region.share(*zmp) if gait.double else 1.0
+        return loading if gait.support == 1 else 1.0 - loading
+
+    def _realize(
+        self,
+        body: BodyMeasurement,
+        zmp: tuple[float, float],
+        right_load: float,
+        head: tuple[float, float],
+    ) -> JointTargets:
+        gait, pendulum = self._gait, self._pendulum
+        before = self._pelvis.yaw
+        pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
+        self._turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
+        self._pelvis = pelvis
+        angles, legs = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
+        position = np.array(angles)
+        self._planned_com = self._robot.com(position)
+        c, s = cos(pelvis.yaw), sin(pelvis.yaw)
+        dx, dy = zmp[0] - pelvis.x, zmp[1] - pelvis.y
+        point = (c * dx + s * dy, c * dy - s * dx)
+        offset = self._feedforward.offsets(position, legs, point, right_load)
+        for index, load in ((0, 1.0 - right_load), (1, right_load)):
+            ankle = self._stabilizer.ankles(gait.footholds[index], load, self._zmp_shift, body.gyro)
+            offset[6 * index + 4] += ankle.pitch
+            offset[6 * index + 5] += ankle.roll
+        return JointTargets(position=position, offset=offset)
+
+
+def _stance(robot: RobotModel) -> tuple[Footstep, Footstep]:
+    """Feet of the ready posture; the plan frame has its origin under the hips."""
+    a, b, c, d, e, f = robot.ready[:6].tolist()
+    left = foot_pose(robot.legs[0], (a, b, c, d, e, f))
+    a, b, c, d, e, f = robot.ready[6:12].tolist()
+    right = foot_pose(robot.legs[1], (a, b, c, d, e, f))
+    return (
+        Footstep(left=True, x=left.x, y=left.y, yaw=left.yaw),
+        Footstep(left=False, x=right.x, y=right.y, yaw=right.yaw),
+    )

@@ -1,0 +1,278 @@
+"""The gait: which foot carries, where the other lands, and what that asks of the ZMP."""
+
+from math import cos, sin
+
+from walking.footsteps import FootstepPlanner, Velocity
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.pattern import ZmpRamp
+from walking.state import Footstep, Phase
+from walking.swing import MinimumJerk, lift_profile
+
+Point = tuple[float, float]
+
+
+class FootReference:
+    """Reference of one foot in the plan frame: on the floor, or on its way.
+
+    Attributes:
+        x, y, yaw: horizontal coordinates, each with its rate [m, m, rad].
+        height: of the sole above the floor [m].
+    """
+
+    __slots__ = ("height", "x", "y", "yaw")
+
+    def __init__(self, foothold: Footstep) -> None:
+        self.x = MinimumJerk(foothold.x)
+        self.y = MinimumJerk(foothold.y)
+        self.yaw = MinimumJerk(foothold.yaw)
+        self.height = 0.0
+
+    def stand(self, foothold: Footstep) -> None:
+        """Rest on a foothold."""
+        self.x.rest(foothold.x)
+        self.y.rest(foothold.y)
+        self.yaw.rest(foothold.yaw)
+
+    def advance(self, landing: Footstep, ticks_left: int) -> None:
+        """Move one tick towards the landing."""
+        self.x.advance(landing.x, ticks_left)
+        self.y.advance(landing.y, ticks_left)
+        self.yaw.advance(landing.yaw, ticks_left)
+
+
+class Gait:
+    """Sequence of double and single supports, counted in control ticks.
+
+    Feet are indexed 0 left, 1 right. A footstep is a double support, in which the ZMP moves
+    onto the support foot, and a single support, in which the other foot swings. The plan
+    frame is that of the first stance.
+
+    Args:
+        parameters: of the engine.
+        planner: places the footholds.
+        stance: left and right foothold at the start.
+
+    Attributes:
+        stepping: whether a footstep is under way.
+        support: index of the support foot of this footstep.
+        footholds: where the feet stand, or last stood.
+        feet: reference of both feet.
+        landing: where the swing foot is about to land.
+        completed: number of completed footsteps.
+        held: whether the swing foot has met the floor before its time.
+    """
+
+    def __init__(
+        self,
+        parameters: WalkingParameters,
+        planner: FootstepPlanner,
+        stance: tuple[Footstep, Footstep],
+    ) -> None:
+        gait = parameters.gait
+        ticks = round(gait.footstep_time / CONTROL_PERIOD)
+        self._planner = planner
+        self._zmp_forward = parameters.pattern.zmp_forward
+        self._zmp_inward = parameters.pattern.zmp_inward
+        self._lift = gait.lift
+        self._contact_decay = parameters.stabilizer.contact_decay
+        self._double = max(1, round(gait.double_support * ticks))
+        self._single = ticks - self._double
+        self._start = round(gait.start_time / CONTROL_PERIOD)
+        self._stop = round(gait.stop_time / CONTROL_PERIOD)
+        self._swing_first = round(gait.swing_start * self._single)
+        self._swing_last = round(gait.swing_end * self._single)
+        self._freeze = gait.landing_freeze
+        self._move = gait.landing_speed * CONTROL_PERIOD
+        self.stepping = False
+        self.support = 0
+        self.footholds = list(stance)
+        self.feet = (FootReference(stance[0]), FootReference(stance[1]))
+        self.landing = stance[1]
+        self.completed = 0
+        self.held = False
+        self._tick = self._stop
+        self._ramp_ticks = self._stop
+        self._origin = self._centre(*stance)
+        self._weight_origin = 0.5
+        self._ends = True
+        self._future: list[Footstep] = []
+
+    @property
+    def swing(self) -> int:
+        """Index of the foot that swings in this footstep."""
+        return 1 - self.support
+
+    @property
+    def double(self) -> bool:
+        """Whether both feet are meant to carry."""
+        return not self.stepping or self._tick < self._ramp_ticks
+
+    @property
+    def phase(self) -> Phase:
+        """Phase of the gait."""
+        if not self.stepping:
+            return Phase.STANDING
+        if self.double:
+            return Phase.DOUBLE_SUPPORT
+        return Phase.RIGHT_SUPPORT if self.support else Phase.LEFT_SUPPORT
+
+    @property
+    def right_weight(self) -> float:
+        """Scheduled share of the weight on the right foot [1]."""
+        goal = float(self.support) if self.stepping else 0.5
+        share = min(1.0, self._tick / self._ramp_ticks)
+        return self._weight_origin + share * (goal - self._weight_origin)
+
+    @property
+    def swing_phase(self) -> float:
+        """Progress of the swing, 0 before and 1 after it [1]."""
+        if not self.stepping:
+            return 1.0
+        elapsed = self._tick - self._ramp_ticks - self._swing_first
+        return min(1.0, max(0.0, elapsed / (self._swing_last - self._swing_first)))
+
+    @property
+    def ticks_left(self) -> int:
+        """Control ticks until the end of single support."""
+        return self._ramp_ticks + self._single - self._tick
+
+    @property
+    def adjustable(self) -> bool:
+        """Whether the landing may still move."""
+        return self.stepping and not self.held and self.swing_phase < self._freeze
+
+    @property
+    def support_feet(self) -> tuple[Footstep, Footstep]:
+        """The unloading and the loading foot in double support, the same foot twice in single."""
+        loading = self.footholds[self.support]
+        return (self.footholds[self.swing] if self.double else loading), loading
+
+    def start(self, support: int) -> None:
+        """Begin to walk with a first long double support onto foot `support`."""
+        self._begin(support, self._start, self._zmp_reference(), self.right_weight)
+
+    def nominal(self, velocity: Velocity) -> Footstep:
+        """Landing that the velocity asks for."""
+        return self._planner.landing(self.footholds[self.support], velocity)
+
+    def aim(self, wanted: Footstep) -> None:
+        """Move the landing towards `wanted`, in the air no faster than allowed."""
+        if self.swing_phase == 0.0:
+            self.landing = wanted
+            return
+        dx, dy = wanted.x - self.landing.x, wanted.y - self.landing.y
+        largest = max(abs(dx), abs(dy))
+        share = min(1.0, self._move / largest) if largest > 0.0 else 1.0
+        self.landing = Footstep(
+            left=wanted.left,
+            x=self.landing.x + share * dx,
+            y=self.landing.y + share * dy,
+            yaw=wanted.yaw,
+        )
+
+    def plan(self, landing: Footstep, velocity: Velocity, *, moving: bool) -> list[ZmpRamp]:
+        """ZMP reference from now on if the swing foot lands at `landing`."""
+        if not self.stepping:
+            here, centre = self._zmp_reference(), self._centre(*self.footholds)
+            self._future, self._ends = [], True
+            return [ZmpRamp(max(1, self._ramp_ticks - self._tick), *here, *centre)]
+        support = self.footholds[self.support]
+        steps, ends = self._planner.sequence(support, landing, velocity, moving=moving)
+        self._future, self._ends = steps, ends
+        last = self._zmp_point(support)
+        ramps = []
+        if self._tick < self._ramp_ticks:
+            here = self._zmp_reference()
+            ramps.append(ZmpRamp(self._ramp_ticks - self._tick, *here, *last))
+            ramps.append(ZmpRamp(self._single, *last, *last))
+        else:
+            ramps.append(ZmpRamp(self.ticks_left, *last, *last))
+        before = support
+        for step in steps[:-1] if ends else steps:
+            point = self._zmp_point(step)
+            ramps.append(ZmpRamp(self._double, *last, *point))
+            ramps.append(ZmpRamp(self._single, *point, *point))
+            before, last = step, point
+        if ends:
+            ramps.append(ZmpRamp(self._stop, *last, *self._centre(before, steps[-1])))
+        return ramps
+
+    def footsteps(self) -> tuple[Footstep, ...]:
+        """Planned footholds in the plan frame, the support foot first."""
+        support = self.footholds[self.support]
+        if not self.stepping:
+            return support, self.footholds[self.swing]
+        return support, *self._future
+
+    def touch_down(self) -> None:
+        """The swing foot has met the floor early: leave it where it is."""
+        foot = self.feet[self.swing]
+        self.held = True
+        self.landing = Footstep(
+            self.swing == 0, foot.x.position, foot.y.position, foot.yaw.position
+        )
+
+    def advance(self, *, moving: bool) -> None:
+        """Move the feet one tick, and go over to the next footstep when this one is done."""
+        for foot in self.feet:
+            foot.height *= self._contact_decay
+        self._tick += 1
+        if not self.stepping:
+            return
+        self._move_swing()
+        if self.ticks_left == 0:
+            self._land(moving=moving)
+
+    def _move_swing(self) -> None:
+        elapsed = self._tick - self._ramp_ticks
+        if self.held or elapsed <= self._swing_first:
+            return
+        foot = self.feet[self.swing]
+        left = self._swing_last - elapsed
+        if left >= 0:
+            foot.advance(self.landing, left + 1)
+            foot.height = self._lift * lift_profile(self.swing_phase)
+
+    def _land(self, *, moving: bool) -> None:
+        support, swing = self.support, self.swing
+        self.footholds[swing] = self.landing
+        self.feet[swing].stand(self.landing)
+        self.completed += 1
+        here = self._zmp_point(self.footholds[support])
+        if not moving and self._planner.parallel(self.footholds[support], self.landing):
+            self.stepping = False
+            self._tick, self._ramp_ticks = 0, self._stop
+            self._origin, self._weight_origin = here, float(support)
+            return
+        self._begin(swing, self._double, here, float(support))
+
+    def _begin(self, support: int, ticks: int, origin: Point, weight: float) -> None:
+        self.stepping = True
+        self.support = support
+        self.held = False
+        self._tick, self._ramp_ticks = 0, ticks
+        self._origin, self._weight_origin = origin, weight
+        self.landing = self.nominal((0.0, 0.0, 0.0))
+
+    def _zmp_reference(self) -> Point:
+        """ZMP reference at this tick."""
+        goal = (
+            self._zmp_point(self.footholds[self.support])
+            if self.stepping
+            else self._centre(*self.footholds)
+        )
+        share = min(1.0, self._tick / self._ramp_ticks)
+        (ox, oy), (gx, gy) = self._origin, goal
+        return ox + share * (gx - ox), oy + share * (gy - oy)
+
+    def _zmp_point(self, foot: Footstep) -> Point:
+        inward = -self._zmp_inward if foot.left else self._zmp_inward
+        c, s = cos(foot.yaw), sin(foot.yaw)
+        return (
+            foot.x + c * self._zmp_forward - s * inward,
+            foot.y + s * self._zmp_forward + c * inward,
+        )
+
+    def _centre(self, one: Footstep, other: Footstep) -> Point:
+        (ax, ay), (bx, by) = self._zmp_point(one), self._zmp_point(other)
+        return 0.5 * (ax + bx), 0.5 * (ay + by)

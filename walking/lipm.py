@@ -1,0 +1,60 @@
+"""Closed forms of the linear inverted pendulum: x'' = ω² (x - p).
+
+Kajita et al., IROS 2001; the divergent component of motion ξ = x + x'/ω is that of
+Takenaka et al., IROS 2009.
+"""
+
+from dataclasses import dataclass
+from math import cosh, exp, sinh, sqrt
+
+from walking.parameters import CONTROL_PERIOD, GRAVITY
+
+
+@dataclass(frozen=True, slots=True)
+class RampCoefficients:
+    """ξ(h) = growth ξ(0) - first p(0) - last p(h) for a ZMP linear over a time h.
+
+    Attributes:
+        growth: e^{ωh} [1].
+        first, last: weight of the ZMP at the start and at the end [1].
+    """
+
+    growth: float
+    first: float
+    last: float
+
+
+class Lipm:
+    """Pendulum of a given height, advanced one control tick at a time.
+
+    Args:
+        height: of the pendulum [m].
+
+    Attributes:
+        omega: ω = √(g / height) [1/s].
+    """
+
+    def __init__(self, height: float) -> None:
+        self.omega = sqrt(GRAVITY / height)
+        wh = self.omega * CONTROL_PERIOD
+        self._cosh, self._sinh = cosh(wh), sinh(wh)
+        self._ramps: dict[int, RampCoefficients] = {}
+
+    def step(self, position: float, velocity: float, zmp: float) -> tuple[float, float]:
+        """Position [m] and velocity [m/s] one tick later under a constant ZMP."""
+        d, w = position - zmp, self.omega
+        return (
+            zmp + d * self._cosh + velocity / w * self._sinh,
+            d * w * self._sinh + velocity * self._cosh,
+        )
+
+    def ramp(self, ticks: int) -> RampCoefficients:
+        """How the DCM moves over `ticks` of a ZMP that moves linearly."""
+        found = self._ramps.get(ticks)
+        if found is None:
+            wh = self.omega * CONTROL_PERIOD * ticks
+            growth = exp(wh)
+            last = (growth - 1.0) / wh - 1.0 if ticks else 0.0
+            found = RampCoefficients(growth, growth - 1.0 - last, last)
+            self._ramps[ticks] = found
+        return found

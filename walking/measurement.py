@@ -1,0 +1,80 @@
+"""One reading of the sensors, put into the level frame of the trunk's heading."""
+
+from dataclasses import dataclass
+from math import cos, sin
+
+from walking.joints import LEFT_LEG, RIGHT_LEG
+from walking.leg_kinematics import Vector, foot_pose
+from walking.robot_model import RobotModel
+from walking.sensing import BodySensors
+
+
+@dataclass(frozen=True, slots=True)
+class FootMeasurement:
+    """A foot seen from the hips: origin in base_link, z up, x along the heading.
+
+    Attributes:
+        x, y, z: position of the foot frame [m].
+        yaw: its direction [rad].
+        force: load under the sole [N].
+    """
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+    force: float
+
+
+@dataclass(frozen=True, slots=True)
+class BodyMeasurement:
+    """Body as measured, in the level frame at base_link, x along the heading.
+
+    Attributes:
+        roll, pitch: filtered tilt of the trunk [rad].
+        heading: heading as the IMU reports it [rad].
+        gyro: angular velocity of the trunk [rad/s].
+        feet: left and right foot.
+        com: centre of mass [m].
+    """
+
+    roll: float
+    pitch: float
+    heading: float
+    gyro: list[float]
+    feet: tuple[FootMeasurement, FootMeasurement]
+    com: Vector
+
+    @property
+    def right_load(self) -> float:
+        """Share of the load on the right foot; half in the air [1]."""
+        left, right = self.feet[0].force, self.feet[1].force
+        return right / (left + right) if left + right > 0.0 else 0.5
+
+
+def measure(
+    robot: RobotModel, sensors: BodySensors, roll: float, pitch: float, heading: float
+) -> BodyMeasurement:
+    """Kinematics of the measured joints under the given tilt [rad]."""
+    cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
+
+    def level(x: float, y: float, z: float) -> Vector:
+        depth = sr * y + cr * z
+        return cp * x + sp * depth, cr * y - sr * z, cp * depth - sp * x
+
+    feet = []
+    for leg, part, pads in zip(
+        robot.legs, (LEFT_LEG, RIGHT_LEG), sensors.foot_force.tolist(), strict=True
+    ):
+        a, b, c, d, e, f = sensors.joint_position[part].tolist()
+        foot = foot_pose(leg, (a, b, c, d, e, f))
+        x, y, z = level(foot.x, foot.y, foot.z)
+        feet.append(FootMeasurement(x, y, z, foot.yaw, sum(pads)))
+    return BodyMeasurement(
+        roll=roll,
+        pitch=pitch,
+        heading=heading,
+        gyro=sensors.gyro.tolist(),
+        feet=(feet[0], feet[1]),
+        com=level(*robot.com(sensors.joint_position)),
+    )

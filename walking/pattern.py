@@ -1,0 +1,190 @@
+"""The ZMP pattern: what the footholds ask of the pendulum, and the pendulum that obeys.
+
+Both generators preview the same piecewise-linear reference and are recomputed from it in
+every control tick, so a foothold may move at any time.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from walking.lipm import Lipm
+from walking.parameters import PatternParameters
+from walking.preview import preview_gains
+from walking.support import SupportRegion
+
+
+@dataclass(frozen=True, slots=True)
+class ZmpRamp:
+    """A stretch of the ZMP reference, linear in time.
+
+    Attributes:
+        ticks: its duration in control ticks.
+        ax, ay: ZMP at its start [m].
+        bx, by: ZMP at its end [m].
+    """
+
+    ticks: int
+    ax: float
+    ay: float
+    bx: float
+    by: float
+
+
+def dcm_reference(lipm: Lipm, ramps: list[ZmpRamp]) -> tuple[float, float]:
+    """DCM from which the reference is walked for ever: the recursion run backward.
+
+    Beyond the last ramp the ZMP stays and the DCM rests on it; a reference s seconds ahead
+    weighs ω e^{-ωs}, which is preview control in the limit of free jerk.
+    """
+    x, y = ramps[-1].bx, ramps[-1].by
+    for ramp in reversed(ramps):
+        c = lipm.ramp(ramp.ticks)
+        x = (x + c.first * ramp.ax + c.last * ramp.bx) / c.growth
+        y = (y + c.first * ramp.ay + c.last * ramp.by) / c.growth
+    return x, y
+
+
+@dataclass(slots=True)
+class PendulumState:
+    """State of the pendulum in the plan frame.
+
+    Attributes:
+        x, y: position [m].
+        vx, vy: velocity [m/s].
+        zmp_x, zmp_y: ZMP of the last tick [m].
+    """
+
+    x: float
+    y: float
+    vx: float = 0.0
+    vy: float = 0.0
+    zmp_x: float = 0.0
+    zmp_y: float = 0.0
+
+
+class PatternGenerator(Protocol):
+    """Moves the pendulum one tick along the reference."""
+
+    def advance(
+        self,
+        state: PendulumState,
+        ramps: list[ZmpRamp],
+        dcm: tuple[float, float],
+        region: SupportRegion,
+    ) -> None:
+        """Advance `state` in place; its ZMP never leaves `region`.
+
+        Args:
+            state: of the pendulum.
+            ramps: ZMP reference from now on.
+            dcm: `dcm_reference` of the ramps [m].
+            region: where the ZMP may be.
+        """
+
+
+class DcmGenerator:
+    """Tracks the DCM of the reference by the ZMP.
+
+    Args:
+        lipm: pendulum.
+        parameters: gain of the DCM error.
+    """
+
+    def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
+        self._lipm = lipm
+        self._gain = parameters.dcm_gain
+
+    def advance(
+        self,
+        state: PendulumState,
+        ramps: list[ZmpRamp],
+        dcm: tuple[float, float],
+        region: SupportRegion,
+    ) -> None:
+        """Advance `state` in place; its ZMP never leaves `region`.
+
+        Args:
+            state: of the pendulum.
+            ramps: ZMP reference from now on.
+            dcm: `dcm_reference` of the ramps [m].
+            region: where the ZMP may be.
+        """
+        lipm, first = self._lipm, ramps[0]
+        ref_x, ref_y = dcm
+        middle = 0.5 / first.ticks
+        px = first.ax + (first.bx - first.ax) * middle
+        py = first.ay + (first.by - first.ay) * middle
+        px += self._gain * (state.x + state.vx / lipm.omega - ref_x)
+        py += self._gain * (state.y + state.vy / lipm.omega - ref_y)
+        px, py = region.clip(px, py)
+        state.x, state.vx = lipm.step(state.x, state.vx, px)
+        state.y, state.vy = lipm.step(state.y, state.vy, py)
+        state.zmp_x, state.zmp_y = px, py
+
+
+class PreviewGenerator:
+    """Kajita's preview regulator on the same reference.
+
+    The preview sum over a piecewise-linear reference is closed form in running sums of the
+    gains, so no reference is ever sampled.
+
+    Args:
+        lipm: pendulum.
+        parameters: horizon and weight.
+    """
+
+    def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
+        self._lipm = lipm
+        self._gains = preview_gains(lipm, parameters)
+
+    def advance(
+        self,
+        state: PendulumState,
+        ramps: list[ZmpRamp],
+        dcm: tuple[float, float],
+        region: SupportRegion,
+    ) -> None:
+        """Advance `state` in place; its ZMP never leaves `region`.
+
+        Args:
+            state: of the pendulum.
+            ramps: ZMP reference from now on.
+            dcm: `dcm_reference` of the ramps [m].
+            region: where the ZMP may be.
+        """
+        lipm, gains = self._lipm, self._gains
+        ahead_x, ahead_y = self._preview(ramps)
+        px = state.zmp_x * (1.0 - gains.zmp) + ahead_x
+        py = state.zmp_y * (1.0 - gains.zmp) + ahead_y
+        px -= gains.position * state.x + gains.velocity * state.vx
+        py -= gains.position * state.y + gains.velocity * state.vy
+        px, py = region.clip(px, py)
+        state.x, state.vx = lipm.step(state.x, state.vx, px)
+        state.y, state.vy = lipm.step(state.y, state.vy, py)
+        state.zmp_x, state.zmp_y = px, py
+
+    def _preview(self, ramps: list[ZmpRamp]) -> tuple[float, float]:
+        """Σ_j f_j p_ref(j) over the horizon; the rest weighs on its last point."""
+        sums, moments = self._gains.sums, self._gains.moments
+        horizon = len(sums) - 1
+        x = y = 0.0
+        start, end_x, end_y = 0, ramps[-1].bx, ramps[-1].by
+        for ramp in ramps:
+            stop = min(start + ramp.ticks, horizon)
+            weight = sums[stop] - sums[start]
+            slope = (moments[stop] - moments[start] - start * weight) / ramp.ticks
+            x += weight * ramp.ax + slope * (ramp.bx - ramp.ax)
+            y += weight * ramp.ay + slope * (ramp.by - ramp.ay)
+            start = stop
+            if stop == horizon:
+                end_x, end_y = ramp.bx, ramp.by
+                break
+        rest = self._gains.total - sums[start]
+        return x + rest * end_x, y + rest * end_y
+
+
+def make_generator(lipm: Lipm, parameters: PatternParameters) -> PatternGenerator:
+    """The generator that the parameters name."""
+    if parameters.generator == "preview":
+        return PreviewGenerator(lipm, parameters)
+    return DcmGenerator(lipm, parameters)

@@ -1,0 +1,57 @@
+"""The engine's state as others see it, in the odometry frame."""
+
+from math import cos, sin
+
+import numpy as np
+
+from walking.joints import HEAD
+from walking.measurement import BodyMeasurement
+from walking.robot_model import RobotModel
+from walking.sensing import BodySensors
+from walking.state import Footstep, HeadCameraPose, Odometry
+
+
+class PlanToOdometry:
+    """Rigid transform that puts the planned support foot where odometry sees it.
+
+    Args:
+        planned: support foot in the plan frame.
+        body: measured body.
+        support: index of the support foot.
+        odometry: pose of the robot frame.
+    """
+
+    def __init__(
+        self, planned: Footstep, body: BodyMeasurement, support: int, odometry: Odometry
+    ) -> None:
+        foot = body.feet[support]
+        c, s = cos(odometry.yaw), sin(odometry.yaw)
+        self.yaw = odometry.yaw + foot.yaw - planned.yaw
+        self._c, self._s = cos(self.yaw), sin(self.yaw)
+        self._x = odometry.x + c * foot.x - s * foot.y - self._c * planned.x + self._s * planned.y
+        self._y = odometry.y + s * foot.x + c * foot.y - self._s * planned.x - self._c * planned.y
+
+    def point(self, x: float, y: float) -> np.ndarray:
+        """A point of the plan frame in the odometry frame (2,) [m]."""
+        return np.array([self._x + self._c * x - self._s * y, self._y + self._s * x + self._c * y])
+
+    def footstep(self, step: Footstep) -> Footstep:
+        """A foothold of the plan frame in the odometry frame."""
+        x, y = self.point(step.x, step.y).tolist()
+        return Footstep(left=step.left, x=x, y=y, yaw=step.yaw + self.yaw)
+
+
+def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
+    """Head camera in the robot frame: tilt by IMU, height by the loaded leg."""
+    R_BC, p_BC = robot.camera_pose(sensors.joint_position)
+    cr, sr, cp, sp = cos(body.roll), sin(body.roll), cos(body.pitch), sin(body.pitch)
+    R_RB = np.array([[cp, sp * sr, sp * cr], [0.0, cr, -sr], [-sp, cp * sr, cp * cr]])
+    load = body.right_load
+    height = -(1.0 - load) * body.feet[0].z - load * body.feet[1].z
+    pan, tilt = sensors.joint_position[HEAD].tolist()
+    return HeadCameraPose(
+        rotation=R_RB @ R_BC,
+        position=R_RB @ p_BC + np.array([0.0, 0.0, height]),
+        pan=pan,
+        tilt=tilt,
+    )

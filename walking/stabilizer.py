@@ -1,0 +1,110 @@
+"""Balance: what the ankles can do now and what only the next foothold can."""
+
+from dataclasses import dataclass
+from math import cos, exp, sin
+
+from walking.footsteps import FootstepPlanner
+from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
+from walking.robot_model import RobotModel
+from walking.state import Footstep
+from walking.support import SupportRegion
+
+
+@dataclass(frozen=True, slots=True)
+class AnkleOffsets:
+    """Change of the set-points of one ankle.
+
+    Attributes:
+        pitch, roll: [rad].
+    """
+
+    pitch: float
+    roll: float
+
+
+class Stabilizer:
+    """Feedback of the DCM error on ZMP and footholds.
+
+    Args:
+        robot: mass and sole.
+        parameters: gains.
+        omega: of the pendulum [1/s].
+    """
+
+    def __init__(self, robot: RobotModel, parameters: StabilizerParameters, omega: float) -> None:
+        self._parameters = parameters
+        self._omega = omega
+        self._weight = robot.mass * GRAVITY
+        self._stiffness = float(robot.stiffness[4])
+        sole = robot.sole
+        self._room = (
+            sole.half_length - parameters.sole_margin,
+            sole.half_width - parameters.sole_margin,
+        )
+
+    def zmp_shift(
+        self, zmp: tuple[float, float], error: tuple[float, float], region: SupportRegion
+    ) -> tuple[float, float]:
+        """By how much the ankles move the ZMP against a DCM error, inside the region [m]."""
+        gain = self._parameters.dcm_gain
+        x, y = region.clip(zmp[0] + gain * error[0], zmp[1] + gain * error[1])
+        return x - zmp[0], y - zmp[1]
+
+    def ankles(
+        self, foot: Footstep, load: float, shift: tuple[float, float], gyro: list[float]
+    ) -> AnkleOffsets:
+        """Set-points that move the ZMP of a foot carrying a share `load` of the weight."""
+        if load <= 0.0:
+            return AnkleOffsets(0.0, 0.0)
+        c, s = cos(foot.yaw), sin(foot.yaw)
+        x = c * shift[0] + s * shift[1]
+        y = c * shift[1] - s * shift[0]
+        lever = self._weight * load / self._stiffness
+        damping = self._parameters.gyro_gain * load
+        return AnkleOffsets(
+            pitch=lever * x + damping * gyro[1], roll=-lever * y + damping * gyro[0]
+        )
+
+    def exceeds(self, foot: Footstep, error: tuple[float, float], share: float) -> bool:
+        """Whether a DCM error is more than a share of the room that the ZMP has [m]."""
+        x, y = self._in_foot(foot, error)
+        return abs(x) > share * self._room[0] or abs(y) > share * self._room[1]
+
+    def capture(
+        self,
+        planner: FootstepPlanner,
+        support: Footstep,
+        landing: Footstep,
+        error: tuple[float, float],
+        ticks_left: int,
+    ) -> Footstep:
+        """Landing that catches what the ankles cannot hold of a DCM error.
+
+        Left alone, the error grows by e^{ωt} until touch-down; moving the foothold by that
+        much puts the foot under it (Pratt et al., Humanoids 2006).
+        """
+        p = self._parameters
+        x, y = self._in_foot(support, error)
+        x = _beyond(x, p.capture_dead_zone * self._room[0])
+        y = _beyond(y, p.capture_dead_zone * self._room[1])
+        if x == 0.0 and y == 0.0:
+            return landing
+        growth = exp(self._omega * ticks_left * CONTROL_PERIOD)
+        x = min(p.capture_forward, max(-p.capture_forward, growth * x))
+        y = min(p.capture_side, max(-p.capture_side, growth * y))
+        c, s = cos(support.yaw), sin(support.yaw)
+        return planner.reachable(support, landing, c * x - s * y, s * x + c * y)
+
+    @staticmethod
+    def _in_foot(foot: Footstep, vector: tuple[float, float]) -> tuple[float, float]:
+        c, s = cos(foot.yaw), sin(foot.yaw)
+        return c * vector[0] + s * vector[1], c * vector[1] - s * vector[0]
+
+
+def _beyond(value: float, dead_zone: float) -> float:
+    """What exceeds a dead zone."""
+    if value > dead_zone:
+        return value - dead_zone
+    if value < -dead_zone:
+        return value + dead_zone
+    return 0.0

@@ -1,0 +1,57 @@
+"""What the legs make of a velocity command: limits and slew."""
+
+from math import sqrt
+
+from walking.command import VelocityCommand
+from walking.parameters import CONTROL_PERIOD, LimitParameters
+
+
+def limited(command: VelocityCommand, limits: LimitParameters) -> tuple[float, float, float]:
+    """The command with every component within its limit and all together in an ellipsoid.
+
+    Returns:
+        forward [m/s], left [m/s], turn [rad/s]; the direction of the command is kept when
+        the ellipsoid binds.
+    """
+    forward = min(limits.forward, max(-limits.backward, command.forward))
+    left = min(limits.lateral, max(-limits.lateral, command.left))
+    turn = min(limits.turn, max(-limits.turn, command.turn))
+    longest = limits.forward if forward >= 0.0 else limits.backward
+    norm = sqrt((forward / longest) ** 2 + (left / limits.lateral) ** 2 + (turn / limits.turn) ** 2)
+    if norm > limits.combined:
+        scale = limits.combined / norm
+        return forward * scale, left * scale, turn * scale
+    return forward, left, turn
+
+
+class VelocitySlew:
+    """Velocity that follows the command with bounded acceleration.
+
+    Args:
+        limits: speed and acceleration limits.
+
+    Attributes:
+        forward, left, turn: velocity given to the footsteps [m/s, m/s, rad/s].
+    """
+
+    def __init__(self, limits: LimitParameters) -> None:
+        self._limits = limits
+        self._steps = (
+            limits.forward_acceleration * CONTROL_PERIOD,
+            limits.lateral_acceleration * CONTROL_PERIOD,
+            limits.turn_acceleration * CONTROL_PERIOD,
+        )
+        self.forward = self.left = self.turn = 0.0
+
+    @property
+    def moving(self) -> bool:
+        """Whether any component differs from zero."""
+        return self.forward != 0.0 or self.left != 0.0 or self.turn != 0.0
+
+    def follow(self, command: VelocityCommand) -> None:
+        """Approach the limited command by one tick's acceleration."""
+        forward, left, turn = limited(command, self._limits)
+        a, b, c = self._steps
+        self.forward += min(a, max(-a, forward - self.forward))
+        self.left += min(b, max(-b, left - self.left))
+        self.turn += min(c, max(-c, turn - self.turn))
