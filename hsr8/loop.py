@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hsr8.assemble_robot import build_robot
 from hsr8.errors import SimulationDiverged
 from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.robot import SensorFrame
+from hsr8.robot_builder import build_robot
 from hsr8.scenario.schema import Scenario
 from hsr8.world.analytic import AnalyticCamera
-from hsr8.world.assembly import assemble
+from hsr8.world.assembly import Optics, assemble
 from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
 from hsr8.world.generator import draw_layout
@@ -63,21 +63,22 @@ class Simulation:
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
 
-    def __init__(
-        self, scenario: Scenario, seed: int, listeners: Sequence[Listener] = ()
-    ) -> None:
+    def __init__(self, scenario: Scenario, seed: int, listeners: Sequence[Listener] = ()) -> None:
         self.scenario = scenario
         self.seed = seed
         self.listeners = list(listeners)
         self.layout = draw_layout(scenario, seed)
         camera = scenario.camera
-        self.model = assemble(self.layout, quality="vision", scenario=scenario)
+        fov = float(np.radians(camera.vertical_fov_deg))
+        self.model = assemble(
+            self.layout,
+            "vision",
+            Optics(camera.width, camera.height, fov, scenario.world.brightness),
+        )
         body_rng = named_rng(seed, "body")
         kind: Callable[..., Body] = PhysicsBody if scenario.robot.body == "full" else KinematicBody
         self._body = kind(self.model, self.layout, scenario.sensor_noise(), body_rng)
-        self._pinhole = PinholeCamera.from_vertical_fov(
-            camera.width, camera.height, float(np.radians(camera.vertical_fov_deg))
-        )
+        self._pinhole = PinholeCamera.from_vertical_fov(camera.width, camera.height, fov)
         self._robot = build_robot(scenario, self.layout, self._pinhole, named_rng(seed, "belief"))
         self._watch = _EventWatch(self._tell)
         self._interrupted = False
@@ -204,9 +205,7 @@ class _EventWatch:
             self._touched[contact.obstacle] = truth.time
             if truth.time - before >= EPISODE_GAP:
                 what = "mover" if contact.moving else "obstacle"
-                self._tell(
-                    "collision", f"{contact.robot_geom} touches {what} {contact.obstacle}"
-                )
+                self._tell("collision", f"{contact.robot_geom} touches {what} {contact.obstacle}")
         if frame is None:
             return
         if frame.task.index > self._index:
@@ -217,4 +216,6 @@ class _EventWatch:
             self._tell("goal", "goal reached")
         if frame.belief.lost != self._lost:
             self._lost = frame.belief.lost
-            self._tell(*(("lost", "localization is lost") if self._lost else ("found", "localized again")))
+            self._tell(
+                *(("lost", "localization is lost") if self._lost else ("found", "localized again"))
+            )

@@ -160,18 +160,14 @@ class Robot:
         self, time: float, state: WalkingState, belief: Belief, task: Task
     ) -> MotionDecision:
         """A new decision once per footstep, or after a footstep's time when standing."""
-        due = (
-            state.step_count != self._planned_step or time - self._planned_at >= self._footstep
-        )
+        due = state.step_count != self._planned_step or time - self._planned_at >= self._footstep
         if self._motion is None or due:
             self._motion = self._planner.plan(belief, task)
             self._planned_at = time
             self._planned_step = state.step_count
         return self._motion
 
-    def _frame(
-        self, time: float, state: WalkingState, detections: tuple[Detection, ...]
-    ) -> Frame:
+    def _frame(self, time: float, state: WalkingState, detections: tuple[Detection, ...]) -> Frame:
         odometry, head = state.odometry, state.camera
         return Frame(
             time=time,

@@ -142,9 +142,7 @@ class PhysicsBody:
 
     def state_bytes(self) -> bytes:
         """MuJoCo's integration state."""
-        mujoco.mj_getState(
-            self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION
-        )
+        mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
         return self._state.tobytes()
 
     def _move_obstacles(self) -> None:

@@ -1,0 +1,55 @@
+"""Builds the robot side for a scenario: the only place where its parts meet."""
+
+import numpy as np
+
+from hsr8.robot import Goes, Moves, Robot
+from hsr8.scenario.schema import Scenario
+from hsr8.script import ScriptedMission, ScriptedPlanner
+from hsr8.world.layout import Layout
+from hsr8.world.models import models_dir
+from navigation.estimator import Estimator
+from navigation.gaze import GazePlanner
+from navigation.mission import Mission
+from navigation.planner import Planner
+from vision.camera import PinholeCamera
+from vision.detector import Detector
+from walking.engine import WalkingEngine
+from walking.robot_model import RobotModel
+
+START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m, m, rad]
+
+
+def build_robot(
+    scenario: Scenario, layout: Layout, camera: PinholeCamera, rng: np.random.Generator
+) -> Robot:
+    """The robot of `scenario`, placed by `layout`; `rng` draws its particles."""
+    beacons = {b.name: b.position for b in layout.beacons}
+    limits = scenario.speed_limits()
+    navigation = scenario.navigation_parameters()
+    mission: Goes
+    planner: Moves
+    if scenario.mission.kind == "walk":
+        mission = ScriptedMission()
+        planner = ScriptedPlanner(scenario.mission)
+    else:
+        mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
+        planner = Planner(navigation, limits)
+    return Robot(
+        walking=WalkingEngine(
+            RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml"),
+            scenario.walking_parameters(),
+        ),
+        camera=camera,
+        vision=Detector(camera, scenario.vision_parameters()),
+        belief=Estimator(
+            scenario.belief_parameters(),
+            beacons,
+            np.array(layout.start),
+            np.diag(np.square(START_SIGMA)),
+            rng,
+        ),
+        mission=mission,
+        gaze=GazePlanner(navigation, limits, beacons, camera.horizontal_fov, camera.vertical_fov),
+        planner=planner,
+        footstep=limits.footstep,
+    )
