@@ -1,0 +1,179 @@
+"""What the robot believes, drawn over the true world."""
+
+from math import cos, pi, sin
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder import ellipse, palette
+from hsr8.recorder.channel import Channel
+from hsr8.recorder.record import FrameRecord
+from navigation.belief import Belief, Motion
+
+Array = NDArray[np.float64]
+
+SIGMAS = 2.0  # ellipses show so many standard deviations
+HEADING_LENGTH = 0.35  # [m]
+VELOCITY_SCALE = 2.0  # an arrow shows the way of so many seconds [s]
+VIEW_RANGE = 1.5  # drawn length of the field of view [m]
+MAP_PERIOD = 0.5  # [s]
+MAP_HEIGHT, MARK_HEIGHT = 0.002, 0.012  # heights at which flat things are drawn [m]
+FLAT = 0.004  # and their thickness [m]
+SEEN, UNSEEN = 255, 110  # opacity of tracks in view and out of it
+
+
+class BeliefLayer:
+    """Logs pose, tracks, local map, virtual obstacles and destination."""
+
+    def __init__(self, stream: rr.RecordingStream) -> None:
+        self._stream = stream
+        self._map_at = -MAP_PERIOD
+        solid = rr.components.FillMode.Solid
+        lines = rr.components.FillMode.MajorWireframe
+        for path, style in (
+            ("/belief/pose", rr.Arrows3D.from_fields(colors=[palette.BELIEF], radii=[0.015])),
+            ("/belief/uncertainty", _rings(palette.BELIEF, lines)),
+            ("/belief/tracks", rr.Cylinders3D.from_fields(fill_mode=solid)),
+            ("/belief/track_uncertainty", _rings(palette.BELIEF, lines)),
+            ("/belief/velocities", rr.Arrows3D.from_fields(colors=[palette.BELIEF], radii=[0.01])),
+            (
+                "/belief/virtual_obstacles",
+                rr.Cylinders3D.from_fields(
+                    colors=[palette.VIRTUAL], fill_mode=lines, line_radii=[0.006]
+                ),
+            ),
+            ("/belief/view", rr.LineStrips3D.from_fields(colors=[palette.VIEW], radii=[0.008])),
+            ("/belief/target", rr.Points3D.from_fields(colors=[palette.TARGET], radii=[0.05])),
+        ):
+            stream.log(path, style, static=True)
+        self._pose = Channel(stream, "/belief/pose", rr.Arrows3D.columns)
+        self._uncertainty = Channel(stream, "/belief/uncertainty", rr.Ellipsoids3D.columns)
+        self._tracks = Channel(stream, "/belief/tracks", rr.Cylinders3D.columns)
+        self._spread = Channel(stream, "/belief/track_uncertainty", rr.Ellipsoids3D.columns)
+        self._velocities = Channel(stream, "/belief/velocities", rr.Arrows3D.columns)
+        self._virtual = Channel(stream, "/belief/virtual_obstacles", rr.Cylinders3D.columns)
+        self._view = Channel(stream, "/belief/view", rr.LineStrips3D.columns)
+        self._target = Channel(stream, "/belief/target", rr.Points3D.columns)
+        self._map = Channel(stream, "/belief/local_map", rr.GridMap.columns)
+        self._channels = (
+            self._pose,
+            self._uncertainty,
+            self._tracks,
+            self._spread,
+            self._velocities,
+            self._virtual,
+            self._view,
+            self._target,
+            self._map,
+        )
+
+    def add(self, frame: FrameRecord) -> None:
+        """Take one camera frame."""
+        time, belief = frame.time, frame.belief
+        x, y, heading = belief.pose.tolist()
+        self._pose.add(
+            time,
+            origins=np.array([[x, y, MARK_HEIGHT]]),
+            vectors=HEADING_LENGTH * np.array([[cos(heading), sin(heading), 0.0]]),
+        )
+        centres = np.array([[x, y, MARK_HEIGHT]])
+        self._ellipses(self._uncertainty, time, centres, belief.pose_covariance[None, :2, :2])
+        self._add_tracks(time, belief)
+        self._add_virtual(frame)
+        self._view.add(time, strips=[_wedge(belief)])
+        self._target.add(time, positions=np.array([[*frame.task.target.tolist(), 0.05]]))
+        if time - self._map_at >= MAP_PERIOD - 1e-9:
+            self._map_at = time
+            self._add_map(time, belief)
+
+    def flush(self) -> None:
+        """Send the block."""
+        for channel in self._channels:
+            channel.flush()
+
+    def _add_tracks(self, time: float, belief: Belief) -> None:
+        tracks = belief.tracks
+        n = len(tracks)
+        centres = np.full((n, 3), MARK_HEIGHT)
+        centres[:, :2] = np.array([t.position for t in tracks]).reshape(n, 2)
+        self._tracks.add(
+            time,
+            centers=centres,
+            lengths=np.full(n, FLAT),
+            radii=np.array([t.radius for t in tracks]),
+            colors=np.array(
+                [
+                    palette.packed(palette.of_label(t.label), SEEN if t.visible else UNSEEN)
+                    for t in tracks
+                ],
+                dtype=np.uint32,
+            ),
+        )
+        covariances = np.array([t.covariance[:2, :2] for t in tracks]).reshape(n, 2, 2)
+        self._ellipses(self._spread, time, centres, covariances)
+        moving = [i for i, t in enumerate(tracks) if t.motion is not Motion.STATIC]
+        vectors = np.zeros((len(moving), 3))
+        vectors[:, :2] = np.array([tracks[i].velocity for i in moving]).reshape(-1, 2)
+        self._velocities.add(time, origins=centres[moving], vectors=VELOCITY_SCALE * vectors)
+
+    def _add_virtual(self, frame: FrameRecord) -> None:
+        virtual = frame.motion.virtual_obstacles
+        centres = np.full((len(virtual), 3), MARK_HEIGHT)
+        centres[:, :2] = np.array([o.position for o in virtual]).reshape(-1, 2)
+        self._virtual.add(
+            frame.time,
+            centers=centres,
+            lengths=np.full(len(virtual), FLAT),
+            radii=np.array([o.radius for o in virtual]),
+        )
+
+    def _add_map(self, time: float, belief: Belief) -> None:
+        grid = belief.local_map
+        # The first row of an image is its top, the first row of the map its least y.
+        cells = np.round(255.0 * grid.confidence[::-1]).astype(np.uint8)
+        image_format = rr.components.ImageFormat(
+            width=cells.shape[1],
+            height=cells.shape[0],
+            color_model=rr.ColorModel.L,
+            channel_datatype=rr.ChannelDatatype.U8,
+        )
+        self._map.add(
+            time,
+            data=[cells.tobytes()],
+            format=[image_format],
+            cell_size=[grid.cell],
+            translation=[[*grid.origin, MAP_HEIGHT]],
+            opacity=[0.45],
+        )
+
+    @staticmethod
+    def _ellipses(channel: Channel, time: float, centres: Array, covariances: Array) -> None:
+        half, direction = ellipse.axes(covariances)
+        n = len(half)
+        quaternions = np.zeros((n, 4))
+        quaternions[:, 2], quaternions[:, 3] = np.sin(direction / 2), np.cos(direction / 2)
+        channel.add(
+            time,
+            centers=centres,
+            half_sizes=np.column_stack([SIGMAS * half, np.full(n, FLAT)]),
+            quaternions=quaternions,
+        )
+
+
+def _rings(colour: palette.Colour, fill: rr.components.FillMode) -> rr.Ellipsoids3D:
+    return rr.Ellipsoids3D.from_fields(colors=[colour], fill_mode=fill, line_radii=[0.004])
+
+
+def _wedge(belief: Belief) -> Array:
+    """Outline of the field of view on the floor (n, 3) [m]."""
+    x, y, heading = belief.pose.tolist()
+    axis = belief.view.rotation[:, 2]
+    middle = heading + float(np.arctan2(axis[1], axis[0]))
+    half = min(0.5 * belief.view.horizontal_fov, pi)
+    angles = middle + half * np.linspace(-1.0, 1.0, 9)
+    rim = np.column_stack([x + VIEW_RANGE * np.cos(angles), y + VIEW_RANGE * np.sin(angles)])
+    outline = np.full((len(rim) + 2, 3), MARK_HEIGHT)
+    outline[0, :2] = outline[-1, :2] = x, y
+    outline[1:-1, :2] = rim
+    return outline

@@ -1,0 +1,118 @@
+"""The head camera: its pose in the world, its image, what was recognised, the gaze map."""
+
+from math import radians, tan
+
+import cv2
+import mujoco
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder import palette
+from hsr8.recorder.channel import Channel
+from hsr8.recorder.record import FrameRecord, Image
+
+Array = NDArray[np.float64]
+
+CAMERA = "egocentric"
+JPEG_QUALITY = 75
+PAN_LIMIT = radians(90.0)  # the gaze map spans the head's range [rad]
+TILT_MIN, TILT_MAX = radians(-60.0), radians(20.0)
+
+
+class CameraLayer:
+    """Logs the camera.
+
+    Args:
+        stream: where it goes.
+        model: compiled world, which has the camera.
+        width, height: of the image [pixel].
+    """
+
+    def __init__(
+        self, stream: rr.RecordingStream, model: mujoco.MjModel, width: int, height: int
+    ) -> None:
+        self._id = model.camera(CAMERA).id
+        focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
+        stream.log(
+            "/world/camera",
+            rr.Pinhole(
+                focal_length=focal,
+                width=width,
+                height=height,
+                camera_xyz=rr.ViewCoordinates.RDF,
+                image_plane_distance=0.25,
+            ),
+            static=True,
+        )
+        stream.log(
+            "/world/camera/image",
+            rr.EncodedImage.from_fields(media_type="image/jpeg"),
+            static=True,
+        )
+        stream.log("/gaze/choice", rr.Points2D.from_fields(radii=[0.8]), static=True)
+        self._pose = Channel(stream, "/world/camera", rr.Transform3D.columns)
+        self._image = Channel(stream, "/world/camera/image", rr.EncodedImage.columns)
+        self._boxes = Channel(stream, "/world/camera/detections", rr.Boxes2D.columns)
+        self._gaze_map = Channel(stream, "/gaze/map", rr.EncodedImage.columns)
+        self._choice = Channel(stream, "/gaze/choice", rr.Points2D.columns)
+        stream.log("/gaze/map", rr.EncodedImage.from_fields(media_type="image/png"), static=True)
+
+    def add_pose(self, time: float, data: mujoco.MjData) -> None:
+        """Take the camera's true pose from `data`."""
+        rotation = data.cam_xmat[self._id].reshape(3, 3)
+        # MuJoCo's camera looks along -z with y up; Rerun's as the project's along z, y down.
+        self._pose.add(
+            time,
+            translation=data.cam_xpos[self._id][None].copy(),
+            mat3x3=(rotation * (1.0, -1.0, -1.0))[None],
+        )
+
+    def add_frame(self, frame: FrameRecord) -> None:
+        """Take one camera frame."""
+        if frame.image is not None:
+            self._image.add(frame.time, blob=[_jpeg(frame.image)])
+        boxes = np.array([d.box for d in frame.detections], dtype=float).reshape(-1, 4)
+        self._boxes.add(
+            frame.time,
+            centers=0.5 * (boxes[:, :2] + boxes[:, 2:]),
+            half_sizes=0.5 * (boxes[:, 2:] - boxes[:, :2]),
+            colors=np.array(
+                [palette.packed(palette.of_label(d.label)) for d in frame.detections],
+                dtype=np.uint32,
+            ),
+            labels=[f"{d.label} {d.distance:.2f} m" for d in frame.detections],
+        )
+        self._add_gaze(frame)
+
+    def flush(self) -> None:
+        """Send the block."""
+        for channel in (self._pose, self._image, self._boxes, self._gaze_map, self._choice):
+            channel.flush()
+
+    def _add_gaze(self, frame: FrameRecord) -> None:
+        gaze_map = frame.gaze.gaze_map
+        if gaze_map.size == 0:
+            return
+        top = float(gaze_map.max())
+        shades = np.zeros(gaze_map.shape, np.uint8)
+        if top > 0.0:
+            shades = np.round(255.0 * gaze_map / top).astype(np.uint8)
+        # Left and up in the head are left and up in the picture.
+        coloured = cv2.applyColorMap(np.ascontiguousarray(shades[::-1, ::-1]), cv2.COLORMAP_MAGMA)
+        self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", coloured)[1].ravel()])
+        rows, columns = gaze_map.shape
+        u = (PAN_LIMIT - frame.gaze.pan) / (2.0 * PAN_LIMIT) * (columns - 1) + 0.5
+        v = (TILT_MAX - frame.gaze.tilt) / (TILT_MAX - TILT_MIN) * (rows - 1) + 0.5
+        self._choice.add(
+            frame.time,
+            positions=np.array([[u, v]]),
+            colors=np.array([palette.packed(palette.BELIEF)], dtype=np.uint32),
+        )
+
+
+def _jpeg(image: Image) -> NDArray[np.uint8]:
+    bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+    encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1]
+    blob: NDArray[np.uint8] = encoded.ravel()
+    return blob

@@ -1,0 +1,33 @@
+"""Colours of people's pictures: log, plots and video agree on them."""
+
+Colour = tuple[int, int, int]
+
+LABELS: dict[str, Colour] = {
+    "red": (214, 60, 52),
+    "green": (76, 168, 78),
+    "blue": (52, 112, 206),
+    "violet": (146, 84, 196),
+    "yellow": (226, 190, 40),
+    "cyan": (44, 184, 200),
+    "magenta": (214, 64, 160),
+}
+UNKNOWN: Colour = (150, 150, 150)
+
+BELIEF: Colour = (20, 150, 240)
+TRUTH: Colour = (60, 60, 64)
+TARGET: Colour = (240, 140, 20)
+VIEW: Colour = (250, 200, 60)
+VIRTUAL: Colour = (230, 70, 130)
+LEFT_FOOT: Colour = (70, 130, 220)
+RIGHT_FOOT: Colour = (220, 110, 70)
+
+
+def of_label(label: str) -> Colour:
+    """Colour of an obstacle's class, or of the top of a beacon ``top/bottom``."""
+    return LABELS.get(label.partition("/")[0], UNKNOWN)
+
+
+def packed(colour: Colour, alpha: int = 255) -> int:
+    """0xRRGGBBAA."""
+    red, green, blue = colour
+    return (red << 24) | (green << 16) | (blue << 8) | alpha

@@ -1,0 +1,144 @@
+"""Curves and state lanes: what went on, over time."""
+
+from collections.abc import Sequence
+from math import cos, degrees, sin
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder import palette
+from hsr8.recorder.channel import Channel
+from hsr8.recorder.record import FrameRecord, TickRecord
+from navigation.angles import wrap
+
+Array = NDArray[np.float64]
+
+BLUE, ORANGE, GREEN, GREY = (52, 112, 206), (240, 140, 20), (76, 168, 78), (130, 130, 134)
+FORCE_NEEDED = 1.0  # no centre of pressure is shown under feet lighter than this [N]
+
+
+class Curves:
+    """Several curves in one plot.
+
+    Args:
+        stream: where they go.
+        path: entity of the plot.
+        curves: name and colour of each.
+    """
+
+    def __init__(
+        self,
+        stream: rr.RecordingStream,
+        path: str,
+        curves: Sequence[tuple[str, palette.Colour]],
+    ) -> None:
+        names, colours = zip(*curves, strict=True)
+        stream.log(path, rr.SeriesLines(names=list(names), colors=list(colours)), static=True)
+        self._channel = Channel(stream, path, rr.Scalars.columns)
+
+    def add(self, time: float, *values: float) -> None:
+        """One value of every curve; NaN leaves a gap."""
+        self._channel.add(time, scalars=np.array(values))
+
+    def flush(self) -> None:
+        """Send the block."""
+        self._channel.flush()
+
+
+class Lane:
+    """A state over time; only changes are logged."""
+
+    def __init__(self, stream: rr.RecordingStream, path: str) -> None:
+        self._channel = Channel(stream, path, rr.StateChange.columns)
+        self._state = ""
+
+    def add(self, time: float, state: str) -> None:
+        """The state at `time`."""
+        if state != self._state:
+            self._state = state
+            self._channel.add(time, state=[state])
+
+    def flush(self) -> None:
+        """Send the block."""
+        self._channel.flush()
+
+
+class PlotLayer:
+    """All plots and state lanes."""
+
+    def __init__(self, stream: rr.RecordingStream) -> None:
+        zmp = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN))
+        self._forward = Curves(stream, "/plots/zmp_forward", zmp)
+        self._lateral = Curves(stream, "/plots/zmp_left", zmp)
+        self._speed = Curves(
+            stream,
+            "/plots/speed",
+            (("forward [m/s]", BLUE), ("left [m/s]", GREEN), ("turn [rad/s]", ORANGE)),
+        )
+        self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
+        self._clearance = Curves(stream, "/plots/clearance", (("clearance [m]", BLUE),))
+        self._partial = Curves(
+            stream,
+            "/plots/partial",
+            (("ψ local map", GREY), ("ψ self", BLUE), ("ψ obstacle", ORANGE), ("ψ way", GREEN)),
+        )
+        self._error = Curves(
+            stream,
+            "/plots/pose_error",
+            (("position error [m]", BLUE), ("2σ [m]", GREY), ("heading error [rad]", ORANGE)),
+        )
+        self._phase = Lane(stream, "/state/gait")
+        self._situation = Lane(stream, "/state/planner")
+        self._localization = Lane(stream, "/state/localization")
+        self._parts = (
+            self._forward,
+            self._lateral,
+            self._speed,
+            self._tilt,
+            self._clearance,
+            self._partial,
+            self._error,
+            self._phase,
+            self._situation,
+            self._localization,
+        )
+
+    def add(self, record: TickRecord) -> None:
+        """Take one record."""
+        time, truth, walking = record.time, record.truth, record.walking
+        odometry = walking.odometry
+        here = (odometry.x, odometry.y, odometry.yaw)
+        planned = _seen_from(here, walking.zmp)
+        com = _seen_from(here, walking.com)
+        measured = [float("nan")] * 2
+        if float(truth.foot_force.sum()) > FORCE_NEEDED:
+            measured = _seen_from(tuple(truth.robot.tolist()), truth.zmp)
+        self._forward.add(time, planned[0], measured[0], com[0])
+        self._lateral.add(time, planned[1], measured[1], com[1])
+        self._speed.add(time, *walking.given.tolist())
+        self._tilt.add(time, degrees(walking.roll), degrees(walking.pitch))
+        self._clearance.add(time, truth.clearance if np.isfinite(truth.clearance) else np.nan)
+        self._phase.add(time, str(walking.phase))
+
+    def add_frame(self, frame: FrameRecord, truth: Array) -> None:
+        """Take a camera frame and the true pose (3,) at that time."""
+        gaze, belief = frame.gaze, frame.belief
+        self._partial.add(frame.time, gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
+        dx, dy, turn = (belief.pose - truth).tolist()
+        spread = 2.0 * float(np.sqrt(np.linalg.eigvalsh(belief.pose_covariance[:2, :2])[-1]))
+        self._error.add(frame.time, float(np.hypot(dx, dy)), spread, abs(wrap(turn)))
+        self._situation.add(frame.time, frame.motion.situation)
+        self._localization.add(frame.time, "lost" if belief.lost else "localized")
+
+    def flush(self) -> None:
+        """Send the block."""
+        for part in self._parts:
+            part.flush()
+
+
+def _seen_from(pose: tuple[float, ...], point: Array) -> list[float]:
+    """A point (2,) in the frame of `pose` x, y, yaw."""
+    dx, dy = (point - pose[:2]).tolist()
+    c, s = cos(pose[2]), sin(pose[2])
+    return [c * dx + s * dy, c * dy - s * dx]

@@ -1,0 +1,184 @@
+"""The log of a run for the Rerun viewer: a listener that writes ``log.rrd``."""
+
+from collections.abc import Sequence
+from math import cos, sin
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder import palette
+from hsr8.recorder.belief_layer import BeliefLayer
+from hsr8.recorder.blueprint import blueprint
+from hsr8.recorder.camera_layer import CameraLayer
+from hsr8.recorder.channel import TIMELINE, Channel
+from hsr8.recorder.geometry import Scene
+from hsr8.recorder.plot_layer import PlotLayer
+from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.world.layout import Layout
+from walking.state import Footstep
+
+Array = NDArray[np.float64]
+
+APRON = 1.0  # the floor shown is larger than the field by this [m]
+BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one [s]
+POSE_PERIOD = 0.04  # [s]
+FRAME_PERIOD = 0.12  # of camera frames [s]
+FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
+TRAIL = 60.0  # the path shown behind the robot [s]
+LEVELS = {"fall": "ERROR", "diverged": "ERROR", "collision": "WARN", "lost": "WARN"}
+
+
+class RerunLog:
+    """Listener that logs a run.
+
+    Args:
+        path: file to write.
+        model: compiled world.
+        layout: what stands where.
+        image_size: width and height of the head camera's image [pixel].
+        name: of the recording, shown by the viewer.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        model: mujoco.MjModel,
+        layout: Layout,
+        image_size: tuple[int, int],
+        name: str,
+    ) -> None:
+        self._stream = rr.RecordingStream("hsr8", recording_id=path.parent.name)
+        self._stream.set_log_time_enabled(False)
+        self._stream.save(path, default_blueprint=blueprint(max(layout.field_size)))
+        self._stream.send_recording_name(name)
+        self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        self._n_movers = len(layout.movers)
+        width, depth = layout.field_size
+        self._scene = Scene(self._stream, model, (width + APRON, depth + APRON))
+        self._camera = CameraLayer(self._stream, model, *image_size)
+        self._belief = BeliefLayer(self._stream)
+        self._plots = PlotLayer(self._stream)
+        self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D.columns)
+        self._path = Channel(self._stream, "/world/path", rr.LineStrips3D.columns)
+        self._trail: list[list[float]] = []
+        self._log_way_points(layout)
+        self._block_at = 0.0
+        self._pose_at = -POSE_PERIOD
+        self._frame_at = -FRAME_PERIOD
+
+    def on_record(self, record: TickRecord) -> None:
+        """Log one record."""
+        time, truth = record.time, record.truth
+        if time - self._block_at >= BLOCK - 1e-9:
+            self._flush()
+            self._block_at = time
+        if time - self._pose_at >= POSE_PERIOD - 1e-9:
+            self._pose_at = time
+            movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
+            self._scene.add(time, truth.qpos, movers)
+            self._camera.add_pose(time, self._scene.data)
+            self._plots.add(record)
+        if record.frame is not None and time - self._frame_at >= FRAME_PERIOD - 1e-9:
+            self._frame_at = time
+            self._add_frame(record, record.frame)
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Log one event."""
+        self._stream.set_time(TIMELINE, duration=time)
+        level = LEVELS.get(kind, "INFO")
+        self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
+
+    def close(self, exit_reason: str) -> None:
+        """Write what is left and finish the file."""
+        self.on_event(self._block_at, "end", exit_reason)
+        self._flush()
+        self._stream.disconnect()
+
+    def _add_frame(self, record: TickRecord, frame: FrameRecord) -> None:
+        self._camera.add_frame(frame)
+        self._belief.add(frame)
+        self._plots.add_frame(frame, record.truth.robot)
+        x, y, yaw = record.truth.robot.tolist()
+        self._trail.append([x, y, 0.003])
+        odometry = record.walking.odometry
+        # Planned footholds are known in the odometry frame; they are drawn from the true pose.
+        turn = yaw - odometry.yaw
+        c, s = cos(turn), sin(turn)
+        steps = record.walking.footsteps
+        placed = [
+            Footstep(
+                left=f.left,
+                x=x + c * (f.x - odometry.x) - s * (f.y - odometry.y),
+                y=y + s * (f.x - odometry.x) + c * (f.y - odometry.y),
+                yaw=f.yaw + turn,
+            )
+            for f in steps
+        ]
+        self._footsteps.add(
+            frame.time,
+            strips=[_sole(f) for f in placed],
+            colors=_colours([palette.LEFT_FOOT if f.left else palette.RIGHT_FOOT for f in placed]),
+            radii=np.full(len(placed), 0.004),
+        )
+
+    def _flush(self) -> None:
+        if self._trail:
+            self._path.add(
+                self._block_at,
+                strips=[np.array(self._trail)],
+                colors=_colours([palette.TRUTH]),
+                radii=np.array([0.006]),
+            )
+            del self._trail[: -round(TRAIL / FRAME_PERIOD)]
+        for part in (self._scene, self._camera, self._belief, self._plots):
+            part.flush()
+        self._footsteps.flush()
+        self._path.flush()
+
+    def _log_way_points(self, layout: Layout) -> None:
+        points = np.asarray(layout.waypoints, float).reshape(-1, 2)
+        if len(points) == 0:
+            return
+        has_goal = layout.goal_heading is not None and not layout.endless
+        labels = [str(i + 1) for i in range(len(points))]
+        if has_goal:
+            labels[-1] = "goal"
+        self._stream.log(
+            "/world/way_points",
+            rr.Points3D(
+                np.column_stack([points, np.full(len(points), 0.01)]),
+                radii=0.03,
+                colors=[palette.TARGET],
+                labels=labels,
+                show_labels=True,
+            ),
+            static=True,
+        )
+        if has_goal and layout.goal_heading is not None:
+            direction = [cos(layout.goal_heading), sin(layout.goal_heading), 0.0]
+            self._stream.log(
+                "/world/way_points/heading",
+                rr.Arrows3D(
+                    origins=[[*points[-1].tolist(), 0.01]],
+                    vectors=[0.25 * np.array(direction)],
+                    colors=[palette.TARGET],
+                    radii=0.01,
+                ),
+                static=True,
+            )
+
+
+def _sole(step: Footstep) -> Array:
+    """Outline of a foot on the floor (5, 3) [m]."""
+    front, back = FOOT_AHEAD + FOOT_LENGTH / 2, FOOT_AHEAD - FOOT_LENGTH / 2
+    side = FOOT_WIDTH / 2
+    c, s = cos(step.yaw), sin(step.yaw)
+    corners = ((front, side), (front, -side), (back, -side), (back, side), (front, side))
+    return np.array([[step.x + c * u - s * v, step.y + s * u + c * v, 0.004] for u, v in corners])
+
+
+def _colours(colours: Sequence[palette.Colour]) -> NDArray[np.uint32]:
+    return np.array([palette.packed(c) for c in colours], dtype=np.uint32)

@@ -1,0 +1,209 @@
+"""Fixtures that stand in for the loop: a small world and records of any moment in it."""
+
+from math import cos, sin
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.world.assembly import Optics, assemble
+from hsr8.world.layout import Beacon, Layout, Obstacle
+from hsr8.world.motion import Shuttle
+from hsr8.world.truth import Contact, Truth
+from navigation.belief import Belief, Motion, Track
+from navigation.belief_parameters import LocalMapParameters
+from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObstacle
+from navigation.local_map import LocalMap
+from navigation.observation import CameraView
+from vision.detection import Detection
+from walking.command import HeadTarget, VelocityCommand
+from walking.state import Footstep, HeadCameraPose, Odometry, Phase, WalkingState
+
+NQ = 33
+READY = np.concatenate([[0.0, 0.0, 0.245, 1.0, 0.0, 0.0, 0.0], np.zeros(NQ - 7)])
+BEACONS = (
+    Beacon("yellow/cyan", (2.3, 0.0), "yellow", "cyan"),
+    Beacon("magenta/cyan", (-2.3, 1.0), "magenta", "cyan"),
+)
+ROTATION = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
+
+@pytest.fixture(scope="session")
+def layout():
+    """Two static obstacles and a mover, a via point and a goal."""
+    mover = Shuttle((1.0, -1.0), (1.0, 1.0), 0.1)
+    return Layout(
+        field_size=(4.0, 4.0),
+        obstacles=(
+            Obstacle((0.8, 0.6), 0.10, 0.30, "red"),
+            Obstacle((-0.7, 0.2), 0.06, 0.30, "green"),
+            Obstacle((1.0, -1.0), 0.08, 0.30, "blue", mover),
+        ),
+        beacons=BEACONS,
+        start=(0.0, 0.0, 0.0),
+        waypoints=np.array([[1.0, 0.0], [1.5, 1.0]]),
+        goal_heading=1.0,
+        endless=False,
+    )
+
+
+@pytest.fixture(scope="session")
+def model(layout):
+    return assemble(layout, "vision", Optics())
+
+
+def _track(layout, index, time, error=(0.0, 0.0), velocity=None):
+    obstacle = layout.obstacles[index]
+    law = obstacle.motion
+    position = law.position(time) if law else obstacle.position
+    moving = (0.0, 0.0) if law is None else law.velocity(time)
+    return Track(
+        id=index,
+        label=obstacle.colour,
+        position=np.add(position, error),
+        velocity=np.array(moving if velocity is None else velocity),
+        covariance=np.diag([4e-4, 1e-4, 1e-4, 1e-4]),
+        radius=obstacle.radius,
+        radius_sigma=0.01,
+        motion=Motion.STATIC if law is None else Motion.MOVING,
+        hits=10,
+        age=0.0,
+        last_seen=np.array(position),
+        visible=index == 0,
+    )
+
+
+def _frame(layout, time, pose, **change):
+    """Camera frame at a believed `pose`; every part can be replaced."""
+    belief = {
+        "time": time,
+        "pose": np.asarray(pose, float),
+        "pose_covariance": np.diag([1e-4, 1e-4, 1e-4]),
+        "tracks": tuple(_track(layout, i, time) for i in range(len(layout.obstacles))),
+        "local_map": LocalMap(LocalMapParameters(), (float(pose[0]), float(pose[1])), time),
+        "view": CameraView(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3, 1.5, 1.22),
+        "seen_beacons": (),
+        "lost": False,
+        "filter_faults": 0,
+    }
+    gaze_map = np.zeros((17, 37))
+    gaze_map[4:9, 10:20] = 1.0
+    task = {
+        "target": layout.waypoints[0],
+        "heading": 0.0,
+        "is_goal": False,
+        "index": 0,
+        "aligning": False,
+        "done": False,
+    }
+    task |= {k: v for k, v in change.items() if k in task}
+    belief |= {k: v for k, v in change.items() if k in belief}
+    return FrameRecord(
+        index=round(time / 0.06),
+        time=time,
+        image=change.get("image", np.full((240, 320, 3), 128, np.uint8)),
+        detections=(
+            Detection(
+                kind="obstacle",
+                label="red",
+                bearing=0.1,
+                distance=1.0,
+                covariance=np.eye(2) * 1e-4,
+                radius=0.1,
+                radius_sigma=0.01,
+                cut=False,
+                occluded=False,
+                box=(100, 80, 140, 160),
+            ),
+        ),
+        belief=Belief(**belief),
+        gaze=GazeDecision(0.3, -0.3, 0.2, 0.4, 0.6, 0.1, gaze_map),
+        motion=MotionDecision(
+            velocity=np.array([0.2, 0.0, 0.1]),
+            direction=0.0,
+            speed=0.2,
+            situation="free",
+            virtual_obstacles=(VirtualObstacle(np.array([1.0, 0.2]), 0.2, 2),),
+            extended_radii=((0, 0.4),),
+        ),
+        task=Task(**task),
+    )
+
+
+def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, frame=None, **truth):
+    """Record of a robot truly at `pose`; contacts are obstacle indices."""
+    x, y, yaw = pose
+    qpos = READY.copy()
+    qpos[:2] = x, y
+    qpos[3], qpos[6] = cos(yaw / 2), sin(yaw / 2)
+    moving = [o.motion for o in layout.obstacles]
+    positions = [m.position(time) if m else o.position for o, m in zip(layout.obstacles, moving)]
+    fields = {
+        "time": time,
+        "qpos": qpos,
+        "robot": np.asarray(pose, float),
+        "obstacle_positions": np.array(positions),
+        "obstacle_velocities": np.array([m.velocity(time) if m else (0.0, 0.0) for m in moving]),
+        "contacts": tuple(
+            Contact(
+                obstacle=i,
+                moving=layout.obstacles[i].motion is not None,
+                robot_geom="l_sole",
+                force=3.0,
+                closing=layout.obstacles[i].motion is None,
+            )
+            for i in contacts
+        ),
+        "clearance": 0.5,
+        "joint_torque": np.zeros(26),
+        "foot_force": np.array([17.0, 17.0]),
+        "zmp": np.array([x, y]),
+        "fallen": fallen,
+    }
+    return TickRecord(
+        tick=round(time / 0.005),
+        time=time,
+        truth=Truth(**(fields | truth)),
+        walking=WalkingState(
+            phase=Phase.LEFT_SUPPORT if int(time / 0.34) % 2 else Phase.RIGHT_SUPPORT,
+            odometry=Odometry(x, y, yaw),
+            camera=HeadCameraPose(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3),
+            given=np.array([0.2, 0.0, 0.0]),
+            footsteps=(Footstep(True, x, y + 0.035, yaw), Footstep(False, x + 0.05, y - 0.035, yaw)),
+            zmp=np.array([x, y]),
+            dcm=np.array([x, y]),
+            com=np.array([x, y]),
+            roll=0.01,
+            pitch=0.02,
+            step_count=int(time / 0.34),
+            fallen=fallen,
+        ),
+        command=VelocityCommand(0.2, 0.0, 0.0),
+        head=HeadTarget(),
+        frame=frame,
+    )
+
+
+@pytest.fixture(scope="session")
+def fake(layout):
+    """What the loop would publish: ``record``, ``frame`` and ``track`` of any moment."""
+    return SimpleNamespace(
+        record=lambda time, pose=(0.0, 0.0, 0.0), **change: _record(layout, time, pose, **change),
+        frame=lambda time, pose=(0.0, 0.0, 0.0), **change: _frame(layout, time, pose, **change),
+        track=lambda index, time, **change: _track(layout, index, time, **change),
+    )
+
+
+@pytest.fixture(scope="session")
+def walk(fake):
+    """Records of a straight walk at 0.2 m/s, 50 Hz with a camera frame every 60 ms."""
+
+    def records(duration, **change):
+        for k in range(round(duration * 50) + 1):
+            time = k * 0.02
+            pose = (0.2 * time, 0.0, 0.0)
+            frame = fake.frame(time, pose) if k % 3 == 0 else None
+            yield fake.record(time, pose, frame=frame, **change)
+
+    return records
