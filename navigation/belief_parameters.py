@@ -13,17 +13,17 @@ NonNegative = Annotated[float, Ge(0.0)]
 class LocalizationParameters:
     """Unscented Kalman filter of the robot's pose from odometry and beacons."""
 
-    slip: NonNegative = 0.08
+    slip: NonNegative = 0.06
     """Standard deviation of a footstep's displacement and turn, as a share of it [1]."""
     drift: NonNegative = 0.006
     """Standard deviation of the odometry's speed error over a footstep while stepping [m/s]."""
-    turn_drift: NonNegative = 0.03
+    turn_drift: NonNegative = 0.02
     """Standard deviation of the odometry's turn rate error over a footstep [rad/s]."""
     footstep: Positive = 0.34
     """Time over which an odometry error stays the same, one footstep [s]."""
     standing_drift: NonNegative = 0.0005
     """Random walk of the position while standing; of the heading in radians [m/s^0.5]."""
-    correlation_time: NonNegative = 0.10
+    correlation_time: NonNegative = 0.08
     """Correlation time of the error of successive sightings of one beacon [s]."""
     gate: Positive = 13.8
     """Normalised innovation squared above which a beacon sighting is rejected [1]."""
@@ -49,7 +49,7 @@ class TrackingParameters:
     """Random walk of the static filter [m²/s]."""
     velocity_sigma: Positive = 0.06
     """Standard deviation of the velocity of a new track [m/s]."""
-    correlation_time: NonNegative = 0.10
+    correlation_time: NonNegative = 0.08
     """Correlation time of the error of successive detections of one obstacle [s]."""
     cut_inflation: Annotated[float, Ge(1.0)] = 2.0
     """Factor on the standard deviations of a detection cut by the image border [1]."""

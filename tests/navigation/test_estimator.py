@@ -123,3 +123,41 @@ def test_rotating_the_world_rotates_the_belief(view, observe, frame):
         assert a.motion is b.motion
         assert np.allclose(R @ a.position, b.position, atol=2e-3)
         assert np.allclose(R @ a.velocity, b.velocity, atol=2e-3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nonsense_in_frames_does_no_lasting_harm(view, observe, frame, seed):
+    """Random blobs of all kinds: no exception, no NaN, covariances stay positive."""
+    rng = np.random.default_rng(seed)
+    e = estimator(seed)
+    time, odometry = 0.0, np.zeros(3)
+    for _ in range(150):
+        time += float(rng.choice([0.005, 0.06, 0.06, 3.0]))
+        odometry += rng.normal(0, [0.05, 0.05, 0.3])
+        seen = [
+            observe(
+                np.zeros(3),
+                tuple(rng.uniform(-2.5, 2.5, 2).tolist()),
+                kind=kind,
+                label=str(rng.choice(["a/b", "b/a", "x/y", "red", "blue"])),
+                sigma=tuple(rng.uniform(1e-3, 0.3, 2).tolist()),
+                cut=bool(rng.random() < 0.3),
+                occluded=bool(rng.random() < 0.3),
+            )
+            for kind in rng.choice(["obstacle", "beacon"], int(rng.integers(0, 12)))
+        ]
+        camera = view(pan=rng.uniform(-1.5, 1.5), tilt=rng.uniform(-1.0, 0.3))
+        belief = e.update(frame(time, odometry, seen, camera, walking=bool(rng.random() < 0.5)))
+        assert np.isfinite(belief.pose).all()
+        assert np.linalg.eigvalsh(belief.pose_covariance)[0] > 0
+        assert len({t.id for t in belief.tracks}) == len(belief.tracks)
+        for t in belief.tracks:
+            assert np.isfinite(t.position).all()
+            assert np.isfinite(t.velocity).all()
+            assert np.linalg.eigvalsh(t.covariance)[0] > -1e-9
+            assert t.particles is None or t.particles.weights.sum() == pytest.approx(1.0)
+    for f in frames(view, observe, frame, 6.0, seed):
+        good = frame(time + f.time, odometry + f.odometry * [1, 1, 1], f.observations, f.view)
+        belief = e.update(good)
+    assert np.hypot(*belief.pose[:2]) < 0.15
+    assert not belief.lost

@@ -1,0 +1,229 @@
+"""The 2-D world of the belief study: cylinders, a walking robot, and a noisy camera."""
+
+from dataclasses import dataclass
+from math import asin, atan2, cos, hypot, pi, sin, sqrt
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap
+from navigation.observation import CameraView, Observation
+
+Array = NDArray[np.float64]
+Kind = Literal["obstacle", "beacon"]
+
+Thing = tuple[Kind, str, Array, float]
+"""Kind, label, position in W [m] and radius [m]."""
+
+COLOURS = ("red", "green", "blue", "violet")
+CAMERA_HEIGHT = 0.47
+HFOV, VFOV = 1.50, 1.22
+FOCAL = 171.0
+RANGE, BEACON_RANGE = 2.5, 5.0
+PITCH_SIGMA, YAW_SIGMA = 0.009, 0.006
+FRAME, HEAD_SPEED, TILT = 0.06, 6.0, -0.44
+
+
+@dataclass
+class Obstacle:
+    """A cylinder, shuttling between two ends if it has a speed."""
+
+    label: str
+    start: Array
+    end: Array
+    speed: float
+    radius: float
+    phase: float = 0.0
+
+    def state(self, time: float) -> tuple[Array, Array]:
+        """Position and velocity at a time."""
+        length = float(np.linalg.norm(self.end - self.start))
+        if self.speed == 0.0:
+            return self.start, np.zeros(2)
+        along = (self.phase + self.speed * time) % (2.0 * length)
+        way = (self.end - self.start) / length
+        if along < length:
+            return self.start + along * way, self.speed * way
+        return self.end - (along - length) * way, -self.speed * way
+
+
+class Smooth:
+    """First-order Gauss-Markov error."""
+
+    def __init__(self, sigma: float, tau: float, rng: np.random.Generator) -> None:
+        self.sigma, self.tau, self.rng = sigma, tau, rng
+        self.value = sigma * float(rng.standard_normal())
+
+    def step(self, dt: float) -> float:
+        """Advance and return the error."""
+        a = float(np.exp(-dt / self.tau))
+        self.value = a * self.value + self.sigma * sqrt(1 - a * a) * float(
+            self.rng.standard_normal()
+        )
+        return self.value
+
+
+def random_world(rng: np.random.Generator, statics: int, movers: int) -> list[Obstacle]:
+    """Cylinders with gaps of at least 0.4 m; movers keep clear of the still ones."""
+    placed: list[Array] = []
+    obstacles: list[Obstacle] = []
+    while len(obstacles) < statics:
+        p = rng.uniform(-2.2, 2.2, 2)
+        if all(np.linalg.norm(p - q) > 0.58 for q in placed):
+            placed.append(p)
+            label = COLOURS[len(obstacles) % 4]
+            obstacles.append(Obstacle(label, p, p, 0.0, float(rng.uniform(0.06, 0.11))))
+    while len(obstacles) < statics + movers:
+        a, way = rng.uniform(-2.2, 2.2, 2), float(rng.uniform(-pi, pi))
+        b = a + rng.uniform(0.8, 1.8) * np.array([cos(way), sin(way)])
+        line = a + np.linspace(0, 1, 20)[:, None] * (b - a)
+        clear = np.linalg.norm(line[:, None] - np.array(placed), axis=2).min() > 0.40
+        if np.abs(b).max() < 2.3 and clear:
+            label = COLOURS[int(rng.integers(4))]
+            speed, phase = float(rng.uniform(0.06, 0.14)), float(rng.uniform(0, 2))
+            obstacles.append(Obstacle(label, a, b, speed, float(rng.uniform(0.06, 0.11)), phase))
+    return obstacles
+
+
+BEACONS = {
+    name: (2.9 * cos(a), 2.9 * sin(a))
+    for name, a in zip(
+        ("yellow/cyan", "cyan/yellow", "yellow/magenta", "magenta/yellow", "cyan/magenta",
+         "magenta/cyan"),
+        (np.arange(6) * pi / 3 + 0.3).tolist(),
+        strict=True,
+    )
+}  # fmt: skip
+
+
+class Camera:
+    """Noisy detector: what one frame of a walking robot's head camera yields."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self.rng = rng
+        self.pitch = Smooth(0.006, 0.15, rng)
+        self.pitch_bias = 0.002 * float(rng.standard_normal())
+        self.yaw = Smooth(0.004, 0.15, rng)
+        self.sway_phase = float(rng.uniform(0, 2 * pi))
+        self.size: dict[int, Smooth] = {}
+
+    def observe(
+        self, time: float, pose: Array, pan: float, things: list[Thing]
+    ) -> tuple[Observation, ...]:
+        """Observations of `things` (kind, label, position, radius) from a true pose."""
+        rng = self.rng
+        dt = FRAME
+        pitch = self.pitch.step(dt) + self.pitch_bias
+        pitch += 0.006 * sin(2 * pi * 1.5 * time + self.sway_phase)
+        yaw = self.yaw.step(dt)
+        polar: list[tuple[int, Kind, str, float, float, float]] = []
+        for i, (kind, label, p, radius) in enumerate(things):
+            dx, dy = p[0] - pose[0], p[1] - pose[1]
+            d = hypot(dx, dy)
+            polar.append((i, kind, label, d, wrap(atan2(dy, dx) - pose[2]), radius))
+        seen = []
+        for i, kind, label, d, b, radius in polar:
+            own = self.size.setdefault(i, Smooth(1.0, 0.1, rng)).step(dt)
+            half = asin(min(0.9, radius / d))
+            off = abs(wrap(b - pan)) - 0.5 * HFOV
+            if d > (RANGE if kind == "obstacle" else BEACON_RANGE) or d < 0.2 or off > 0.5 * half:
+                continue
+            hidden = max(
+                (
+                    min(1.0, (half + asin(min(0.9, r2 / d2)) - abs(wrap(b - b2))) / (2 * half))
+                    for j, k2, _, d2, b2, r2 in polar
+                    if j != i and d2 < d and k2 == "obstacle"
+                ),
+                default=0.0,
+            )
+            # A beacon is twice as tall and shows above whatever stands before it.
+            if (kind == "obstacle" and hidden > 0.7) or rng.random() > 0.97:
+                continue
+            cut = off > -half
+            occluded = hidden > 0.05 and kind == "obstacle"
+            worse = (3.0 if cut else 1.0) * (1.5 if occluded else 1.0)
+            ground_gain = (CAMERA_HEIGHT**2 + d * d) / CAMERA_HEIGHT
+            size_sigma = 0.4 * worse * d * d / (FOCAL * radius) + 0.003
+            ground_sigma = ground_gain * PITCH_SIGMA * worse + 0.003
+            weight = size_sigma**2 / (size_sigma**2 + ground_sigma**2)
+            error = weight * ground_gain * pitch * worse + (1 - weight) * size_sigma * own
+            variance = 1.0 / (1.0 / size_sigma**2 + 1.0 / ground_sigma**2)
+            bearing_sigma = sqrt(YAW_SIGMA**2 + (0.002 * worse) ** 2)
+            bias = 0.5 * (off + half) if cut else 0.0
+            bearing = b + yaw + 0.002 * worse * float(rng.standard_normal())
+            bearing -= bias * (1.0 if wrap(b - pan) > 0 else -1.0)
+            if cut:
+                bearing_sigma = hypot(bearing_sigma, half)
+            radius_sigma = worse * (0.05 * radius + 0.4 * d / FOCAL)
+            seen.append(
+                Observation(
+                    kind=kind,
+                    label=label,
+                    distance=max(0.1, d + error),
+                    bearing=bearing,
+                    covariance=np.diag([variance, bearing_sigma**2]),
+                    radius=max(0.02, radius + radius_sigma * own),
+                    radius_sigma=radius_sigma,
+                    cut=cut,
+                    occluded=occluded,
+                )
+            )
+        if rng.random() < 0.005:
+            seen.append(
+                Observation(
+                    "obstacle",
+                    COLOURS[int(rng.integers(4))],
+                    float(rng.uniform(0.4, RANGE)),
+                    pan + float(rng.uniform(-0.7, 0.7)),
+                    np.diag([0.01, 1e-4]),
+                    0.08,
+                    0.03,
+                )
+            )
+        return tuple(seen)
+
+
+def view(pan: float, tilt: float) -> CameraView:
+    """Camera at a pan and tilt."""
+    cp, sp, ct, st = cos(pan), sin(pan), cos(tilt), sin(tilt)
+    forward = np.array([cp * ct, sp * ct, st])
+    right = np.array([sp, -cp, 0.0])
+    down = np.cross(forward, right)
+    rotation = np.stack([right, down, forward], axis=1)
+    return CameraView(rotation, np.array([0.0, 0.0, CAMERA_HEIGHT]), pan, tilt, HFOV, VFOV)
+
+
+class Walker:
+    """The robot on a random tour: true pose, slipping odometry and a head that looks around."""
+
+    def __init__(self, rng: np.random.Generator, legs: np.random.Generator) -> None:
+        self.rng, self.legs = rng, legs
+        self.pose = np.array([*rng.uniform(-1.5, 1.5, 2), rng.uniform(-pi, pi)])
+        self.odometry = np.zeros(3)
+        self.pan = self.pan_goal = self.dwell = self.step_end = 0.0
+        self.target = self.pose[:2]
+        self.scale = 1 + 0.03 * float(legs.standard_normal())
+        self.slip = self.drift = np.zeros(3)
+
+    def step(self, time: float, dt: float) -> None:
+        """Walk on and turn the head for one frame."""
+        if np.hypot(*(self.target - self.pose[:2])) < 0.2:
+            self.target = self.rng.uniform(-1.8, 1.8, 2)
+        error = wrap(atan2(*(self.target - self.pose[:2])[::-1].tolist()) - float(self.pose[2]))
+        felt = np.array([0.18 * max(0.0, cos(error)), 0.0, max(-0.8, min(0.8, 1.5 * error))])
+        if time >= self.step_end:
+            self.step_end += 0.34
+            self.slip = self.legs.normal(0, [0.06, 0.06, 0.04])
+            self.drift = self.legs.normal(0, [0.005, 0.005, 0.02])
+        done = felt * (1 + self.slip) * [self.scale, 1, 1] + self.drift
+        for body, pose in ((done, self.pose), (felt, self.odometry)):
+            heading = pose[2] + 0.5 * body[2] * dt
+            pose[0] += dt * (cos(heading) * body[0] - sin(heading) * body[1])
+            pose[1] += dt * (sin(heading) * body[0] + cos(heading) * body[1])
+            pose[2] += dt * body[2]
+        if time >= self.dwell:
+            self.pan_goal = float(self.rng.uniform(-1.5, 1.5))
+            turn = abs(self.pan_goal - self.pan) / HEAD_SPEED
+            self.dwell = time + turn + float(self.rng.uniform(0.2, 0.9))
+        self.pan += max(-HEAD_SPEED * dt, min(HEAD_SPEED * dt, self.pan_goal - self.pan))
