@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+
+from navigation.belief import Motion
+from navigation.deadline_gaze import map_deadlines, obstacle_deadlines, self_urgency
+from navigation.decision_parameters import NavigationParameters
+from navigation.gaze_scene import gaze_scene
+from navigation.partial_evaluation import SamplePoints
+
+P = NavigationParameters.extended()
+SAMPLES = SamplePoints.polar(0.3, 1.3)
+
+
+def votes(b, way=0.0):
+    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
+    return obstacle_deadlines(scene, b, way, 0.2, P)
+
+
+def value(b, way=0.0):
+    (v,) = votes(b, way).value
+    return v
+
+
+def test_a_vote_grows_with_age_up_to_its_limit(belief, track):
+    values = [value(belief([track((1, 0), (-0.05, 0), age=a)])) for a in (0, 0.5, 1, 2, 9)]
+    assert np.all(np.diff(values) >= 0)
+    assert values[0] < 0.1
+    assert values[-1] == pytest.approx(P.gaze.deadline.urgency_limit**1.5)
+
+
+def test_it_is_1_at_half_the_worst_case_time_to_contact(belief, track):
+    gap = 1.0 - 0.08 - P.univector.s_robot - 0.05
+    contact = gap / (0.05 + 0.5 * 0.01 + 0.2)
+    age = 0.5 * contact - 0.1
+    assert value(belief([track((1, 0), (-0.05, 0), age=age)])) == pytest.approx(1.0)
+
+
+def test_near_before_far_and_on_the_way_before_beside(belief, track):
+    def v(place, way=0.0):
+        return value(belief([track(place, (-0.05, 0), age=0.3)]), way)
+
+    assert v((0.6, 0)) > v((1.2, 0))
+    assert v((1, 0)) > v((0, 1))
+    assert v((0, 1), way=np.pi / 2) == pytest.approx(v((1, 0)))
+
+
+def test_undecided_before_mover_before_static(belief, track):
+    v = [value(belief([track((1, 0), (0.0, 0.05), m, age=0.3)])) for m in Motion]
+    by = dict(zip(Motion, v, strict=True))
+    assert by[Motion.UNKNOWN] > by[Motion.MOVING] > by[Motion.STATIC]
+
+
+def test_a_lost_mover_votes_where_it_may_be(belief, track):
+    cloud = ([[1, 0.5], [1, -0.5], [-3, 0]], np.zeros((3, 2)), [0.5, 0.3, 0.2])
+    v = votes(belief([track((1, 0), (0.1, 0), age=3.0, particles=cloud)]))
+    assert v.pan == pytest.approx([np.arctan2(0.5, 1), -np.arctan2(0.5, 1)])
+    assert v.value[0] / v.value[1] == pytest.approx(0.5 / 0.3)
+
+
+def test_votes_are_not_clipped_to_the_pan_stop(belief, track):
+    angle = np.radians(115)
+    v = votes(belief([track((np.cos(angle), np.sin(angle)), (0.0, -0.1))]))
+    assert v.pan == pytest.approx([angle])
+    assert len(votes(belief([track((-1, 0.1), (0.1, 0))])).pan) == 0
+
+
+def test_fresh_ground_does_not_vote_and_old_ground_does(belief):
+    b = belief(age=lambda x, y: 3.0 if y > 0 else 0.0)
+    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
+    v = map_deadlines(scene, b, 0.0, 0.2, P)
+    assert np.all(v.value[v.pan < -0.01] == 0.0)
+    assert np.all(v.value[v.pan > 0.01] > 0.0)
+    never = belief(age=lambda x, y: np.inf)
+    assert np.isfinite(map_deadlines(scene, never, 0.0, 0.2, P).value).all()
+
+
+def test_mirror_symmetry(belief, track):
+    left = votes(belief([track((1, 0.4), (-0.1, 0.05), age=0.5)]), 0.3)
+    right = votes(belief([track((1, -0.4), (-0.1, -0.05), age=0.5)]), -0.3)
+    assert left.pan == pytest.approx(-right.pan)
+    assert left.value == pytest.approx(right.value)
+
+
+def test_self_urgency_hears_position_and_heading(belief):
+    assert self_urgency(belief(sigma=0.025, turn_sigma=0.0), P) == pytest.approx(0.5)
+    assert self_urgency(belief(sigma=0.0, turn_sigma=0.03), P) == pytest.approx(0.5)
+    assert self_urgency(belief(sigma=1.0), P) == 1.0

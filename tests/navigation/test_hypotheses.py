@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+
+from navigation.belief import Motion
+from navigation.decision_parameters import FilterParameters
+from navigation.hypotheses import collision_hypotheses
+from navigation.obstacle_set import ObstacleSet
+
+P = FilterParameters()
+
+
+def build(*tracks):
+    return collision_hypotheses(tracks, ObstacleSet.from_tracks(tracks), 0.12, P)
+
+
+def test_static_obstacles_matter_briefly_and_without_their_sigma(track):
+    h = build(track((1, 0), sigma=0.05))
+    assert h.radius == pytest.approx([0.12 + 0.08 + P.margin])
+    assert h.horizon.tolist() == [P.static_horizon]
+    assert h.weight.tolist() == [1.0]
+
+
+def test_a_visible_mover_may_reverse(track):
+    h = build(track((1, 0), (0.1, 0.0), sigma=0.05))
+    assert h.velocity == pytest.approx(np.array([[0.1, 0.0], [-0.1, 0.0]]))
+    assert h.weight == pytest.approx([1.0, P.reversal_weight])
+    assert h.horizon == pytest.approx([P.moving_horizon, P.reversal_horizon])
+    assert h.radius == pytest.approx(2 * [0.20 + P.margin + 0.05])
+
+
+def test_the_undecided_keep_their_velocity_and_do_not_reverse(track):
+    h = build(track((1, 0), (0.1, 0.0), Motion.UNKNOWN, sigma=1.0))
+    assert len(h) == 1
+    assert h.horizon.tolist() == [P.moving_horizon]
+    assert h.radius == pytest.approx([0.20 + P.margin + P.sigma_limit])
+
+
+def test_a_lost_mover_is_its_particles(track):
+    cloud = ([[1, 0], [2, 0]], [[0.1, 0], [-0.1, 0]], [0.25, 0.75])
+    h = build(track((1.5, 0), (0.1, 0), age=3.0, particles=cloud), track((0, 1)))
+    assert h.position.tolist() == [[0, 1], [1, 0], [2, 0]]
+    assert h.weight == pytest.approx([1.0, 0.25 * P.particle_weight, 0.75 * P.particle_weight])
+
+
+def test_only_what_can_be_reached_in_time_is_kept(track):
+    h = build(track((0.6, 0)), track((2, 0)), track((0, 2), (0.0, 0.1)), track((0, 2.5)))
+    near = h.within_reach(np.zeros(2), 0.2)
+    assert near.position.tolist() == [[0.6, 0], [0, 2]]
+
+
+def test_no_tracks_are_no_hypotheses():
+    assert len(build()) == 0

@@ -1,0 +1,148 @@
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from navigation.belief import Motion
+from navigation.decision_parameters import NavigationParameters
+from navigation.planner import Planner
+
+EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
+BOTH = pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
+
+
+@BOTH
+def test_a_free_way_is_walked_at_full_speed(p, belief, task, limits):
+    decision = Planner(p, limits).plan(belief(), task())
+    assert decision.velocity == pytest.approx([limits.forward, 0.0, 0.0])
+    assert decision.direction == pytest.approx(0.0)
+    assert decision.situation == "free"
+
+
+@BOTH
+def test_done_or_lost_stands(p, belief, task, limits):
+    for b, t in ((belief(), task(done=True)), (belief(lost=True), task())):
+        assert Planner(p, limits).plan(b, t).velocity == pytest.approx(0.0)
+
+
+@BOTH
+def test_at_the_goal_it_turns_in_place(p, belief, task, limits):
+    t = task((0.0, 0.0), 1.0, is_goal=True, aligning=True)
+    decision = Planner(p, limits).plan(belief(), t)
+    assert decision.velocity[:2] == pytest.approx(0.0)
+    assert decision.velocity[2] == pytest.approx(limits.turn)
+    near = task((0.0, 0.0), 0.1, is_goal=True, aligning=True)
+    assert Planner(p, limits).plan(belief(), near).velocity[2] == pytest.approx(0.15)
+
+
+def test_a_waiting_robot_steps_aside_for_a_mover(belief, task, track, limits):
+    mover = track((0.6, 0.0), (-0.14, 0.0))
+    t = task((0.0, 0.0), 0.0, is_goal=True, aligning=True)
+    decision = Planner(EXTENDED, limits).plan(belief([mover]), t)
+    assert np.hypot(*decision.velocity[:2]) > 0.02
+
+
+@BOTH
+def test_it_slows_down_at_the_goal_but_not_at_a_via_point(p, belief, task, limits):
+    speeds = [
+        Planner(p, limits).plan(belief(), task((0.1, 0.0), is_goal=g)).velocity[0]
+        for g in (True, False)
+    ]
+    assert speeds[0] < 0.5 * limits.forward
+    assert speeds[1] == pytest.approx(limits.forward)
+
+
+def test_near_the_goal_the_body_faces_the_goals_heading(belief, task, limits):
+    t = task((0.3, 0.0), pi / 2, is_goal=True)
+    assert Planner(EXTENDED, limits).plan(belief(), t).velocity[2] > 0.5
+
+
+def test_unseen_ground_ahead_is_walked_slowly(belief, task, limits):
+    blind = belief(confidence=lambda x, y: 0.0 if x > 0.4 else 1.0)
+    assert Planner(EXTENDED, limits).plan(blind, task()).speed == EXTENDED.gate.speed
+    assert Planner(EXTENDED, limits).plan(belief(), task()).speed == limits.forward
+    behind = belief(confidence=lambda x, y: 0.0 if x < 0.2 else 1.0)
+    assert Planner(EXTENDED, limits).plan(behind, task()).speed == limits.forward
+
+
+def test_decisions_do_not_depend_on_the_frame(belief, task, track, limits):
+    rng = np.random.default_rng(0)
+    a, shift = 1.2, np.array([0.7, -2.0])
+    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    for p in (EXTENDED, PAPER):
+        for _ in range(10):
+            places, speeds = rng.uniform(-1.5, 1.5, (8, 2)), rng.normal(0, 0.1, (8, 2))
+            speeds[:5] = 0.0
+            here = [track(x, v, id=i) for i, (x, v) in enumerate(zip(places, speeds, strict=True))]
+            there = [
+                track(r @ x + shift, r @ v, id=i)
+                for i, (x, v) in enumerate(zip(places, speeds, strict=True))
+            ]
+            one = Planner(p, limits).plan(belief(here), task((1.0, 0.5), 0.3))
+            pose = (*shift.tolist(), a)
+            target = r @ [1.0, 0.5] + shift
+            other = Planner(p, limits).plan(belief(there, pose), task(target, 0.3 + a))
+            assert other.velocity == pytest.approx(one.velocity, abs=1e-6)
+            assert other.situation == one.situation
+
+
+def test_the_order_of_tracks_is_irrelevant(belief, task, track, limits):
+    rng = np.random.default_rng(1)
+    tracks = [track(c, id=i) for i, c in enumerate(rng.uniform(-1, 1, (10, 2)))]
+    one = Planner(EXTENDED, limits).plan(belief(tracks), task())
+    other = Planner(EXTENDED, limits).plan(belief(tracks[::-1]), task())
+    assert one.velocity == pytest.approx(other.velocity)
+    assert sorted(one.extended_radii) == sorted(other.extended_radii)
+
+
+def test_long_lost_movers_leave_the_field_to_the_filter(belief, task, track, limits):
+    cloud = ([[3.0, 3.0]], [[0.0, 0.0]], [1.0])
+    lost = track((0.5, 0.0), (0.0, 0.05), age=4.0, particles=cloud)
+    fresh = track((0.5, 0.0), (0.0, 0.05), age=0.2)
+    assert Planner(EXTENDED, limits).plan(belief([lost]), task()).extended_radii == ()
+    assert len(Planner(EXTENDED, limits).plan(belief([fresh]), task()).extended_radii) == 1
+
+
+def test_a_mover_crossing_the_way_is_answered_by_speed_in_the_paper(belief, task, track, limits):
+    mover = track((0.9, -0.8), (0.0, 0.12))
+    decision = Planner(PAPER, limits).plan(belief([mover]), task())
+    assert decision.situation in {"accelerate", "brake"}
+    assert decision.speed < limits.forward
+
+
+def test_a_definite_collision_makes_a_virtual_obstacle_in_the_paper(belief, task, track, limits):
+    mover = track((0.6, 0.1), (-0.12, 0.0))
+    decision = Planner(PAPER, limits).plan(belief([mover]), task())
+    assert decision.situation == "path_change"
+    assert [v.track_id for v in decision.virtual_obstacles] == [1]
+    assert abs(decision.direction) > 0.05
+
+
+@pytest.mark.parametrize("motion", [Motion.STATIC, Motion.UNKNOWN])
+def test_it_walks_around_what_stands_in_the_way(motion, belief, task, track, limits):
+    pose = np.array([0.0, 0.02, 0.0])
+    planner = Planner(EXTENDED, limits)
+    least = 9.0
+    for _ in range(40):
+        decision = planner.plan(belief([track((0.8, 0.0), motion=motion)], pose), task((1.6, 0.0)))
+        forward, left, turn = decision.velocity.tolist()
+        h = pose[2] + 0.17 * turn
+        pose = pose + 0.34 * np.array(
+            [np.cos(h) * forward - np.sin(h) * left, np.sin(h) * forward + np.cos(h) * left, turn]
+        )
+        least = min(least, float(np.hypot(pose[0] - 0.8, pose[1])))
+        if np.hypot(*(pose[:2] - [1.6, 0.0])) < 0.1:
+            break
+    assert np.hypot(*(pose[:2] - [1.6, 0.0])) < 0.15
+    assert least > 0.20
+
+
+def test_switches_of_the_movers_can_be_turned_off(belief, task, track, limits):
+    off = replace(
+        PAPER,
+        mover=replace(PAPER.mover, virtual_obstacle="off", velocity_modification="off"),
+    )
+    decision = Planner(off, limits).plan(belief([track((0.9, 0.1), (-0.12, 0.0))]), task())
+    assert decision.speed == limits.forward
+    assert decision.virtual_obstacles == ()
