@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 import tyro
-from belief_study import BEACONS, COLOURS, HFOV, VFOV, Camera, Obstacle, view
+from belief_world import BEACONS, COLOURS, HFOV, VFOV, Camera, Obstacle, view
 from numpy.typing import NDArray
 
 from navigation.angles import wrap

@@ -1,5 +1,6 @@
 import ast
 from dataclasses import fields, is_dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -40,7 +41,7 @@ def test_every_parameter_has_a_docstring_with_a_unit_or_is_a_choice():
     tree = ast.parse(Path(module.__file__).read_text())
     for group in (n for n in tree.body if isinstance(n, ast.ClassDef)):
         body = group.body
-        for here, after in zip(body, body[1:], strict=False):
+        for here, after in pairwise(body):
             if isinstance(here, ast.AnnAssign):
                 name = f"{group.name}.{ast.unparse(here.target)}"
                 assert isinstance(after, ast.Expr), name

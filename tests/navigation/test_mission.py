@@ -17,12 +17,12 @@ def test_via_points_come_in_order_and_point_to_the_next():
     mission = Mission(SQUARE, 1.0, False, MissionParameters())
     headings = [0.0, pi / 2, pi, 1.0]
     for index, (point, heading) in enumerate(zip(SQUARE, headings, strict=True)):
-        task = mission.update(at(*(point + [0.4, 0.4])))
+        task = mission.update(at(*(point + 0.4)))
         assert task.index == index
         assert task.target == pytest.approx(point)
         assert task.heading == pytest.approx(heading)
         assert task.is_goal == (index == 3)
-        mission.update(at(*(point + [0.1, 0.1])))
+        mission.update(at(*(point + 0.1)))
 
 
 def test_a_point_is_passed_within_its_radius_only():
