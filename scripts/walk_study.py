@@ -9,7 +9,9 @@ Tune on seeds 0-99, report on seeds from 1000.
 """
 
 import argparse
+import cProfile
 import dataclasses
+import pstats
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -289,9 +291,6 @@ def main() -> None:
         return WalkingEngine(robot, parameters)
 
     if options.study == "profile":
-        import cProfile
-        import pstats
-
         body, walker = Body(np.random.default_rng(0)), engine()
         frames = []
         for _ in range(2000):

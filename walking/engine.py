@@ -16,7 +16,7 @@ from walking.lipm import Lipm
 from walking.measurement import BodyMeasurement, measure
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import PendulumState, dcm_reference, make_generator
+from walking.pattern import PendulumState, ZmpRamp, dcm_reference, make_generator
 from walking.posture import Posture
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
@@ -73,7 +73,6 @@ class WalkingEngine:
         self._ticks = 0
         self._sensors: BodySensors | None = None
         self._body: BodyMeasurement | None = None
-        self._reference = (zmp.bx, zmp.by)
 
     @property
     def parameters(self) -> WalkingParameters:
@@ -101,13 +100,11 @@ class WalkingEngine:
         gait = self._gait
         if not gait.stepping:
             self._maybe_start(velocity, error, moving=moving)
-        self._place_foot(body, velocity, error, moving=moving)
-        ramps = gait.plan(gait.landing, velocity, moving=moving)
-        self._reference = dcm_reference(self._lipm, ramps)
+        ramps, dcm = self._plan(body, velocity, error, moving=moving)
         pattern = self._parameters.pattern
         pendulum = self._pendulum
         region = self._region(pattern.sole_margin)
-        self._generator.advance(pendulum, ramps, self._reference, region)
+        self._generator.advance(pendulum, ramps, dcm, region)
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
         wide = self._region(self._parameters.stabilizer.sole_margin)
@@ -224,36 +221,36 @@ class WalkingEngine:
             opening_left = not self._last_opening_left
         self._last_opening_left = opening_left
         gait.start(1 if opening_left else 0)
-        self._touch.reset()
 
-    def _place_foot(
+    def _plan(
         self,
         body: BodyMeasurement,
         velocity: Velocity,
         error: tuple[float, float],
         *,
         moving: bool,
-    ) -> None:
-        """Decide on the landing of the swing foot."""
-        gait = self._gait
-        if not gait.stepping:
-            return
-        if gait.adjustable:
-            landing = gait.nominal(velocity)
-            if not gait.double:
-                ramps = gait.plan(landing, velocity, moving=moving)
-                rx, ry = dcm_reference(self._lipm, ramps)
-                p, w = self._pendulum, self._lipm.omega
-                off = (p.x + p.vx / w + error[0] - rx, p.y + p.vy / w + error[1] - ry)
-                support = gait.footholds[gait.support]
-                landing = self._stabilizer.capture(
-                    self._planner, support, landing, off, gait.ticks_left
-                )
-            gait.aim(landing)
-        if not gait.held and not gait.double:
+    ) -> tuple[list[ZmpRamp], tuple[float, float]]:
+        """Decide on the landing of the swing foot; the ZMP reference and its DCM."""
+        gait, lipm = self._gait, self._lipm
+        if gait.stepping and not gait.double and not gait.held:
             force = body.feet[gait.swing].force
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touch_down()
+        nominal = gait.nominal(velocity) if gait.adjustable else gait.landing
+        ramps = gait.plan(nominal, velocity, moving=moving)
+        dcm = dcm_reference(lipm, ramps)
+        caught = nominal
+        if gait.adjustable and not gait.double:
+            # What the nominal footholds do not catch of the measured DCM.
+            p, w = self._pendulum, lipm.omega
+            off = (p.x + p.vx / w + error[0] - dcm[0], p.y + p.vy / w + error[1] - dcm[1])
+            support = gait.footholds[gait.support]
+            caught = self._stabilizer.capture(self._planner, support, nominal, off, gait.ticks_left)
+        gait.aim(caught)
+        if gait.landing != nominal:
+            ramps = gait.plan(gait.landing, velocity, moving=moving)
+            dcm = dcm_reference(lipm, ramps)
+        return ramps, dcm
 
     def _region(self, margin: float) -> SupportRegion:
         first, second = self._gait.support_feet

@@ -128,10 +128,6 @@ class TouchDown:
         self._phase = parameters.contact_phase
         self._count = 0
 
-    def reset(self) -> None:
-        """Forget everything at the start of a swing."""
-        self._count = 0
-
     def update(self, phase: float, force: float) -> bool:
         """Whether the foot is down at `phase` of its swing under `force` [N]."""
         self._count = self._count + 1 if phase >= self._phase and force > self._force else 0

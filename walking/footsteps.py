@@ -8,6 +8,7 @@ from walking.state import Footstep
 
 Velocity = tuple[float, float, float]
 
+STILL: Velocity = (0.0, 0.0, 0.0)
 PLACE_TOLERANCE = 1e-3  # of a foothold that counts as parallel [m, rad]
 
 
@@ -28,6 +29,9 @@ class FootstepPlanner:
         self._gait = gait
         self._limits = limits
         self._sole = sole
+        self._velocity: Velocity = STILL
+        self._rest = (self._stride(STILL, -1.0), self._stride(STILL, 1.0))
+        self._strides = self._rest
 
     def opening_left(self, velocity: Velocity) -> bool | None:
         """Whether the left foot opens the stance for `velocity`; None when neither does."""
@@ -42,9 +46,16 @@ class FootstepPlanner:
             support: the foot on the floor.
             velocity: forward, left, turn [m/s, m/s, rad/s].
         """
+        if velocity != self._velocity:
+            self._velocity = velocity
+            self._strides = (self._stride(velocity, -1.0), self._stride(velocity, 1.0))
+        x, y, turned = self._strides[0 if support.left else 1]
+        return self._at(support, x, y, turned)
+
+    def _stride(self, velocity: Velocity, side: float) -> tuple[float, float, float]:
+        """Landing in the frame of the support foot; `side` is that of the swing foot."""
         forward, left, turn = velocity
         gait, limits = self._gait, self._limits
-        side = -1.0 if support.left else 1.0  # of the swing foot
         time = gait.footstep_time
         dx = min(limits.step_forward, max(-limits.step_forward, forward * time))
         dy = 2.0 * left * time if left * side > 0.0 else 0.0
@@ -57,7 +68,7 @@ class FootstepPlanner:
         stance = side * gait.half_stance
         x = ch * dx - sh * dy - stance * sin(turned)
         y = stance + sh * dx + ch * dy + stance * cos(turned)
-        return self._at(support, x, self._clear(y, turned, side), turned)
+        return x, self._clear(y, turned, side), turned
 
     def reachable(self, support: Footstep, landing: Footstep, dx: float, dy: float) -> Footstep:
         """`landing` moved by dx, dy [m], kept within reach and clear of the support foot."""
@@ -96,7 +107,7 @@ class FootstepPlanner:
 
     def parallel(self, support: Footstep, other: Footstep) -> bool:
         """Whether the two feet stand side by side as for standing."""
-        rest = self.landing(support, (0.0, 0.0, 0.0))
+        rest = self._at(support, *self._rest[0 if support.left else 1])
         return (
             abs(other.x - rest.x) < PLACE_TOLERANCE
             and abs(other.y - rest.y) < PLACE_TOLERANCE

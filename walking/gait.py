@@ -2,7 +2,7 @@
 
 from math import cos, sin
 
-from walking.footsteps import FootstepPlanner, Velocity
+from walking.footsteps import STILL, FootstepPlanner, Velocity
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import ZmpRamp
 from walking.state import Footstep, Phase
@@ -252,7 +252,7 @@ class Gait:
         self.held = False
         self._tick, self._ramp_ticks = 0, ticks
         self._origin, self._weight_origin = origin, weight
-        self.landing = self.nominal((0.0, 0.0, 0.0))
+        self.landing = self.nominal(STILL)
 
     def _zmp_reference(self) -> Point:
         """ZMP reference at this tick."""

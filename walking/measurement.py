@@ -8,6 +8,8 @@ from walking.leg_kinematics import Vector, foot_pose
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 
+LIGHT_LOAD = 4.0  # the noise of a foot's pads stays below this [N]
+
 
 @dataclass(frozen=True, slots=True)
 class FootMeasurement:
@@ -48,7 +50,8 @@ class BodyMeasurement:
     @property
     def right_load(self) -> float:
         """Share of the load on the right foot; half in the air [1]."""
-        left, right = self.feet[0].force, self.feet[1].force
+        left = max(0.0, self.feet[0].force - LIGHT_LOAD)
+        right = max(0.0, self.feet[1].force - LIGHT_LOAD)
         return right / (left + right) if left + right > 0.0 else 0.5
 
 
