@@ -5,8 +5,6 @@ the obstacle and map evaluations is the age of the knowledge over the time withi
 must be renewed, and a lost mover votes wherever it may be.
 """
 
-from math import pi
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,12 +14,14 @@ from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
 from navigation.gaze_scene import AIM_HEIGHT, GazeScene, relative, to_field
 from navigation.integrated_gaze import beacon_votes
+from navigation.obstacle_set import largest_deviation
 
 Array = NDArray[np.float64]
 
 _FRAME = 0.1
 """Age of what was seen in the latest frame, one decision [s]."""
 _HALF = 0.5
+"""Share of the time to contact within which to look again."""
 _LEAST_TIME = 0.4
 """Shortest time to contact counted [s]."""
 _CLEARANCE = 0.05
@@ -62,16 +62,14 @@ def deadline_votes(
             float(-np.arctan2(height, _WAY_DISTANCE)),
             p.deadline.way_weight,
         ),
-        beacon_votes(
-            scene, p.deadline.beacon_weight * self_urgency(belief, parameters), 0.5 * pi + pi
-        ),
+        beacon_votes(scene, p.deadline.beacon_weight * self_urgency(belief, parameters)),
     ]
     return Votes.join(votes)
 
 
 def self_urgency(belief: Belief, parameters: NavigationParameters) -> float:
     """Uncertainty of the pose over what is tolerable, in [0, 1]."""
-    sigma = float(np.sqrt(max(np.linalg.eigvalsh(belief.pose_covariance[:2, :2])[-1], 0.0)))
+    sigma = float(largest_deviation(belief.pose_covariance[:2, :2]))
     turn = float(np.sqrt(max(belief.pose_covariance[2, 2], 0.0)))
     e, d = parameters.evaluation, parameters.gaze.deadline
     return min(1.0, max(sigma / e.t_sf, turn / d.t_heading))

@@ -33,17 +33,16 @@ def integrated_votes(
     votes.append(Votes(pan, tilt, share * p.w_ob * scene.psi_ob[seen]))
     if p.candidates == "obstacles":
         votes.append(Votes(pan, tilt, np.full(len(pan), share * p.w_sf * scene.psi_sf)))
-    votes.append(beacon_votes(scene, p.w_sf * scene.psi_sf, p.pan_limit))
+    beacons = beacon_votes(scene, p.w_sf * scene.psi_sf)
+    within = np.clip(beacons.pan, -p.pan_limit, p.pan_limit)
+    votes.append(Votes(within, beacons.tilt, beacons.value))
     return Votes.join(votes)
 
 
-def beacon_votes(scene: GazeScene, value: float, pan_limit: float) -> Votes:
+def beacon_votes(scene: GazeScene, value: float) -> Votes:
     """One `value` shared by all beacons within reach, at the height of the horizon."""
-    bearings = scene.beacon_bearing
-    n = len(bearings)
-    return Votes(
-        np.clip(bearings, -pan_limit, pan_limit), np.zeros(n), np.full(n, value / max(1, n))
-    )
+    n = len(scene.beacon_bearing)
+    return Votes(scene.beacon_bearing, np.zeros(n), np.full(n, value / max(1, n)))
 
 
 def _map_votes(scene: GazeScene, weight: float, form: str) -> list[Votes]:
