@@ -132,7 +132,9 @@ class Scene:
         extent: size of the floor shown along x and y [m].
     """
 
-    def __init__(self, stream: rr.RecordingStream, model: mujoco.MjModel, extent: tuple[float, float]) -> None:
+    def __init__(
+        self, stream: rr.RecordingStream, model: mujoco.MjModel, extent: tuple[float, float]
+    ) -> None:
         self._model = model
         self._data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, self._data)

@@ -1,0 +1,46 @@
+"""Our own mistakes: people get one line, the traceback goes into a file."""
+
+import tempfile
+import traceback
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from hsr8.errors import Hsr8Error
+
+FILE = "crash.txt"
+
+
+class InternalError(Hsr8Error):
+    """A mistake in hsr8 itself."""
+
+
+class CrashReport:
+    """Turns unexpected exceptions into `InternalError` and keeps their traceback.
+
+    Args:
+        folder: where ``crash.txt`` goes; a new temporary folder by default.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if not isinstance(error, Exception) or isinstance(error, Hsr8Error):
+            return
+        folder = self._folder or Path(tempfile.mkdtemp(prefix="hsr8-"))
+        file = folder / FILE
+        file.write_text("".join(traceback.format_exception(error)), encoding="utf-8")
+        what = str(error).strip().splitlines()
+        raise InternalError(
+            f"internal error, {type(error).__name__}: {what[0] if what else 'no message'}"
+            f"\n  traceback: {file}"
+        ) from error

@@ -1,0 +1,72 @@
+"""The command line ``hsr8``."""
+
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import tyro
+
+from hsr8 import __version__
+from hsr8.cli import options
+from hsr8.cli.crash import CrashReport
+from hsr8.errors import Hsr8Error
+
+DESCRIPTION = f"""hsr8 {__version__}: a small humanoid walks among moving obstacles and sees \
+only through its own camera.
+
+First steps: `hsr8 doctor`, `hsr8 run quick`, `hsr8 render runs/quick`, `hsr8 replay runs/quick`."""
+
+# A command's module is imported when it is called: MuJoCo, Rerun and SciPy take seconds.
+MODULES: dict[type, str] = {
+    options.Run: "hsr8.cli.run",
+    options.List: "hsr8.cli.list",
+    options.Check: "hsr8.cli.check",
+    options.Doctor: "hsr8.cli.doctor",
+    options.Render: "hsr8.cli.render",
+    options.Replay: "hsr8.cli.replay",
+}
+INTERRUPTED = 130
+
+Commands = (
+    Annotated[options.Run, tyro.conf.subcommand("run")]
+    | Annotated[options.List, tyro.conf.subcommand("list")]
+    | Annotated[options.Check, tyro.conf.subcommand("check")]
+    | Annotated[options.Doctor, tyro.conf.subcommand("doctor")]
+    | Annotated[options.Render, tyro.conf.subcommand("render")]
+    | Annotated[options.Replay, tyro.conf.subcommand("replay")]
+)
+
+
+def entry(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        arguments: without the program's name; those of the process by default.
+
+    Returns:
+        0 done or passed, 1 ran but failed its criteria, 2 usage or scenario error,
+        3 diverged or internal error, 130 interrupted.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        command = tyro.cli(
+            Commands,  # type: ignore[arg-type]  # tyro takes unions; mypy has no type for them
+            prog="hsr8",
+            description=DESCRIPTION,
+            args=given or ["--help"],
+            config=(tyro.conf.FlagCreatePairsOff,),
+        )
+    except SystemExit as stop:
+        return stop.code if isinstance(stop.code, int) else 2
+    try:
+        with CrashReport():
+            module = importlib.import_module(MODULES[type(command)])
+            code: int = module.main(command)
+    except Hsr8Error as error:
+        print(f"hsr8: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print("hsr8: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    return code

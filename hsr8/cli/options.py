@@ -1,0 +1,124 @@
+"""The commands and their options; nothing heavy is imported, so that ``--help`` is quick."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+from tyro.conf import Positional, UseAppendAction
+
+
+def _arg(metavar: str, text: str) -> object:
+    return tyro.conf.arg(metavar=metavar, help=text)
+
+
+ScenarioName = Annotated[str, _arg("SCENARIO", "name (see `hsr8 list`) or TOML file")]
+Settings = UseAppendAction[
+    Annotated[
+        tuple[tuple[str, ...], ...],
+        _arg("KEY=VALUE", "any setting, e.g. --set world.n_moving=8; may be repeated"),
+    ]
+]
+RunPath = Annotated[
+    Path, tyro.conf.arg(metavar="RUN", help="run folder, or a folder whose newest run is meant")
+]
+
+
+@dataclass(frozen=True)
+class Run:
+    """Run a scenario: physics, head camera, belief, gaze, walking; all of it logged."""
+
+    scenario: Positional[ScenarioName]
+    seed: Annotated[int | None, _arg("N", "seed of world and noise; else the scenario's")] = None
+    out: Path = Path("runs")
+    """Folder for run folders."""
+    duration: Annotated[
+        float | None, _arg("S", "simulated time at most [s]; else the scenario's")
+    ] = None
+    set: Settings = ()
+    body: Annotated[
+        Literal["full", "kinematic"] | None,
+        _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
+    ] = None
+    camera: Annotated[
+        Literal["egl", "analytic"] | None,
+        _arg("{egl,analytic}", "rendered head camera, or geometry alone, without OpenGL"),
+    ] = None
+    no_log: bool = False
+    """Write no Rerun log."""
+    json: bool = False
+    """Print the results as one JSON object, and nothing else, on standard output."""
+    quiet: bool = False
+    """No progress line, no result table."""
+
+
+@dataclass(frozen=True)
+class List:
+    """List the scenarios that come with hsr8."""
+
+    json: bool = False
+    """Print one JSON object."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """Check a scenario without running it: settings, world, fairness."""
+
+    scenario: Positional[ScenarioName]
+    seed: Annotated[int | None, _arg("N", "seed of the world; else the scenario's")] = None
+    set: Settings = ()
+    json: bool = False
+    """Print one JSON object."""
+
+
+@dataclass(frozen=True)
+class Doctor:
+    """Look whether everything is in place: OpenGL, libraries, models, disk."""
+
+    json: bool = False
+    """Print one JSON object."""
+
+
+@dataclass(frozen=True)
+class Render:
+    """Draw the video of a run: H.264, with a thumbnail beside it."""
+
+    run: Positional[RunPath]
+    camera: str = "dashboard"
+    """dashboard, follow, head, top, or any camera of the model."""
+    fps: int = 25
+    """Frames per second of the video [1/s]."""
+    size: str = "960x540"
+    """Width x height [pixel]."""
+    out: Annotated[Path | None, _arg("FILE", "by default video.mp4 in the run folder")] = None
+    start: float = 0.0
+    """Simulated time at which the video begins [s]."""
+    stop: Annotated[float | None, _arg("S", "simulated time at which it ends [s]")] = None
+    speed: Annotated[
+        float | None,
+        _arg("X", "simulated seconds per second of video; else 1, and 2 to 8 for long runs"),
+    ] = None
+    json: bool = False
+    """Print one JSON object."""
+    quiet: bool = False
+    """No progress bar."""
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Open the log of a run in the Rerun viewer."""
+
+    run: Positional[RunPath]
+    screenshot: Annotated[
+        Path | None, _arg("PNG", "write a picture of the viewer instead; needs no display")
+    ] = None
+    time: Annotated[
+        float | None, _arg("S", "simulated time of the picture [s]; else the middle of the run")
+    ] = None
+    size: str = "1600x900"
+    """Width x height of the window [pixel]."""
+    json: bool = False
+    """Print one JSON object."""
+
+
+Command = Run | List | Check | Doctor | Render | Replay

@@ -1,0 +1,71 @@
+"""The result of a run, for people."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from hsr8.evaluation.verdict import Check
+from hsr8.recorder import run_folder
+
+ROWS: tuple[tuple[str, str, str], ...] = (
+    ("ended", "exit_reason", "{}"),
+    ("success", "success", "{}"),
+    ("falls", "falls", "{}"),
+    ("collisions", "collisions", "{}"),
+    ("  with movers / standing", "collisions_moving", "{} / {collisions_static}"),
+    ("via points passed", "via_points_passed", "{}"),
+    ("time to goal", "time_to_goal_s", "{:.1f} s"),
+    ("arrival error", "arrival_error_deg", "{:.1f} deg"),
+    ("path length", "path_length_m", "{:.1f} m"),
+    ("least clearance", "min_clearance_m", "{:.3f} m"),
+    ("localization RMSE", "localization_rmse_m", "{:.3f} m"),
+    ("heading RMSE", "heading_rmse_deg", "{:.2f} deg"),
+    ("NEES / 3", "nees_mean", "{:.2f}"),
+    ("obstacle speed RMSE", "obstacle_speed_rmse_mps", "{:.3f} m/s"),
+    ("largest tilt", "max_tilt_deg", "{:.1f} deg"),
+    ("simulated time", "sim_time_s", "{:.1f} s"),
+    ("wall time", "wall_time_s", "{:.1f} s, {real_time_factor:.1f}x real time"),
+)
+
+
+def show(
+    title: str,
+    *,
+    results: Mapping[str, Any],
+    checks: Sequence[Check],
+    path: Path,
+    command: Sequence[str],
+    console: Console | None = None,
+) -> None:
+    """Print results, criteria, and what can be done with the run."""
+    console = console or Console()
+    table = Table(title=title, title_justify="left", show_header=False)
+    for label, key, form in ROWS:
+        if results.get(key) is not None:
+            table.add_row(label, _say(form, results[key], results))
+    console.print(table)
+    if checks:
+        console.print(_criteria(checks))
+    log = path / run_folder.LOG
+    console.print(f"run folder  {path}", highlight=False, soft_wrap=True)
+    if log.exists():
+        console.print(f"look at it  hsr8 replay {path}", highlight=False, soft_wrap=True)
+    console.print(f"video       hsr8 render {path}", highlight=False, soft_wrap=True)
+    console.print(f"again       {' '.join(command)}", highlight=False, soft_wrap=True)
+
+
+def _criteria(checks: Sequence[Check]) -> Table:
+    table = Table("criterion", "wanted", "found", "")
+    for check in checks:
+        verdict = "[green]passed[/]" if check.passed else "[red]failed[/]"
+        table.add_row(check.name, check.wanted, check.found, verdict)
+    return table
+
+
+def _say(form: str, value: Any, results: Mapping[str, Any]) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return form.format(value, **results)

@@ -1,0 +1,49 @@
+"""Contacts counted as people count them: one touch is one collision, however long it lasts."""
+
+from dataclasses import dataclass
+
+from hsr8.world.truth import Contact
+
+GAP = 0.5  # a contact after a pause as long as this is a new collision [s]
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """One contact episode with one obstacle.
+
+    Attributes:
+        time: when it began [s].
+        obstacle: index in the layout.
+        moving: whether the obstacle moves.
+        closing: the robot's own motion closed the gap when it began.
+    """
+
+    time: float
+    obstacle: int
+    moving: bool
+    closing: bool
+
+
+class Episodes:
+    """Groups contacts into collisions."""
+
+    def __init__(self) -> None:
+        self._touched_at: dict[int, float] = {}
+        self.collisions: list[Collision] = []
+
+    def add(self, time: float, contacts: tuple[Contact, ...]) -> None:
+        """Take the contacts of one record; several geoms touching one obstacle are one."""
+        for obstacle in sorted({contact.obstacle for contact in contacts}):
+            before = self._touched_at.get(obstacle)
+            self._touched_at[obstacle] = time
+            if before is not None and time - before < GAP - 1e-9:
+                continue
+            touching = [c for c in contacts if c.obstacle == obstacle]
+            self.collisions.append(
+                Collision(
+                    time=time,
+                    obstacle=obstacle,
+                    moving=touching[0].moving,
+                    closing=any(c.closing for c in touching),
+                )
+            )

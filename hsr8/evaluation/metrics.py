@@ -1,0 +1,219 @@
+"""Results of a run: a listener that compares what happened with what was believed."""
+
+import time as clock
+from math import degrees, hypot, inf, isfinite, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.evaluation.episodes import Episodes
+from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.world.layout import Layout
+from hsr8.world.truth import Truth
+from navigation.angles import wrap
+from navigation.belief import Track
+
+Array = NDArray[np.float64]
+Value = float | int | bool | str | None
+
+TOLERANCE = 0.10  # the true position may be so much farther from a point than the believed [m]
+HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
+MATCHED = 0.4  # a track farther from every true obstacle is of none [m]
+SACCADE = 0.17  # a change of the wanted gaze as large as this is a saccade [rad]
+STILL = 0.02  # the robot stands below this speed [m/s]
+STILL_WINDOW = 1.0  # its speed is measured over this time, longer than a step [s]
+
+
+class Metrics:
+    """Listener that computes the results of a run.
+
+    Args:
+        layout: of the run's world.
+        r_via: distance at which a via point counts as passed [m].
+        r_goal: distance at which the goal counts as reached [m].
+    """
+
+    def __init__(self, layout: Layout, r_via: float, r_goal: float) -> None:
+        self._layout = layout
+        self._points = np.asarray(layout.waypoints, float).reshape(-1, 2)
+        self._has_goal = len(self._points) > 0 and not layout.endless
+        self._r_via = r_via
+        self._r_goal = r_goal
+        self._started = clock.perf_counter()
+        self._wall: float | None = None
+        self._episodes = Episodes()
+        self._via = 0
+        self._via_missed = 0
+        self._done_at: float | None = None
+        self._goal_near = False
+        self._goal_turned = False
+        self._last: Truth | None = None
+        self._tilt = 0.0
+        self._path = 0.0
+        self._paused = 0.0
+        self._anchor: tuple[float, float, float] | None = None
+        self._clearance = inf
+        self._fallen = False
+        self._falls = 0
+        self._frames = 0
+        self._squares = np.zeros(2)
+        self._nees = 0.0
+        self._speed_squares = 0.0
+        self._speeds = 0
+        self._lost = 0
+        self._faults = 0
+        self._gaze: tuple[float, float] | None = None
+        self._saccades = 0
+
+    def on_record(self, record: TickRecord) -> None:
+        """Take one record."""
+        truth = record.truth
+        self._move(truth)
+        self._episodes.add(truth.time, truth.contacts)
+        self._clearance = min(self._clearance, truth.clearance)
+        if truth.fallen and not self._fallen:
+            self._falls += 1
+        self._fallen = truth.fallen
+        if not self._fallen:
+            self._tilt = max(self._tilt, hypot(record.walking.roll, record.walking.pitch))
+        if record.frame is not None:
+            self._look(record.frame, truth)
+        self._last = truth
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Events follow from the records."""
+
+    def close(self, exit_reason: str) -> None:
+        """Stop the clock."""
+        self._wall = clock.perf_counter() - self._started
+
+    def result(self, exit_reason: str, state_hash: str) -> dict[str, Value]:
+        """All results by name, in the units their names end with.
+
+        What was not measured, for example the localization of a robot without a camera
+        frame, is None.
+        """
+        time = self._last.time if self._last is not None else 0.0
+        wall = self._wall if self._wall is not None else clock.perf_counter() - self._started
+        collisions = self._episodes.collisions
+        moving = sum(c.moving for c in collisions)
+        error = self._arrival_error()
+        goal_reached = self._done_at is not None and self._goal_near and self._goal_turned
+        n = self._frames
+        return {
+            "success": self._success(exit_reason, goal_reached),
+            "collisions": len(collisions),
+            "falls": self._falls,
+            "via_points_total": self._via_total(),
+            "via_points_passed": self._via - self._via_missed,
+            "goal_reached": goal_reached,
+            "arrival_error_deg": error,
+            "time_to_goal_s": self._done_at,
+            "path_length_m": self._path,
+            "min_clearance_m": _measured(self._clearance),
+            "localization_rmse_m": sqrt(self._squares[0] / n) if n else None,
+            "heading_rmse_deg": degrees(sqrt(self._squares[1] / n)) if n else None,
+            "nees_mean": self._nees / n if n else None,
+            "obstacle_speed_rmse_mps": (
+                sqrt(self._speed_squares / self._speeds) if self._speeds else None
+            ),
+            "sim_time_s": time,
+            "wall_time_s": wall,
+            "real_time_factor": time / wall if wall > 0.0 else None,
+            "state_hash": state_hash,
+            "exit_reason": exit_reason,
+            "collisions_moving": moving,
+            "collisions_static": len(collisions) - moving,
+            "collisions_closing": sum(c.closing for c in collisions),
+            "contacts_per_metre": len(collisions) / self._path if self._path > 0.0 else None,
+            "via_points_missed": self._via_missed,
+            "max_tilt_deg": degrees(self._tilt),
+            "time_standing_s": self._paused,
+            "saccades_per_s": self._saccades / time if time > 0.0 else None,
+            "lost_share": self._lost / n if n else None,
+            "filter_faults": self._faults,
+            "camera_frames": n,
+        }
+
+    def _via_total(self) -> int:
+        """Via points of the mission; of a tour, those of one round."""
+        return len(self._points) - (1 if self._has_goal else 0)
+
+    def _success(self, exit_reason: str, goal_reached: bool) -> bool:
+        if self._falls or self._episodes.collisions or self._via_missed:
+            return False
+        if self._has_goal:
+            return goal_reached and exit_reason == "goal"
+        return exit_reason in ("completed", "goal")
+
+    def _arrival_error(self) -> float | None:
+        """Heading error where the mission ended, or where the run stopped [deg]."""
+        if self._done_at is None or self._layout.goal_heading is None or self._last is None:
+            return None
+        return degrees(abs(wrap(float(self._last.robot[2]) - self._layout.goal_heading)))
+
+    def _move(self, truth: Truth) -> None:
+        """Path length and pauses, measured over more than a step so that sway is no way."""
+        x, y, _ = truth.robot.tolist()
+        if self._anchor is None:
+            self._anchor = (truth.time, x, y)
+            return
+        then, x0, y0 = self._anchor
+        if truth.time - then < STILL_WINDOW - 1e-9:
+            return
+        moved = hypot(x - x0, y - y0)
+        self._path += moved
+        if moved < STILL * (truth.time - then):
+            self._paused += truth.time - then
+        self._anchor = (truth.time, x, y)
+
+    def _look(self, frame: FrameRecord, truth: Truth) -> None:
+        belief = frame.belief
+        dx, dy, turn = (belief.pose - truth.robot).tolist()
+        error = np.array([dx, dy, wrap(turn)])
+        self._frames += 1
+        self._squares += (dx * dx + dy * dy, error[2] ** 2)
+        self._nees += float(error @ np.linalg.solve(belief.pose_covariance, error)) / 3.0
+        self._lost += belief.lost
+        self._faults = belief.filter_faults
+        for track in belief.tracks:
+            self._match(track, truth)
+        gaze = (frame.gaze.pan, frame.gaze.tilt)
+        if self._gaze is not None:
+            pan, tilt = self._gaze
+            self._saccades += hypot(gaze[0] - pan, gaze[1] - tilt) > SACCADE
+        self._gaze = gaze
+        self._follow_mission(frame, truth)
+
+    def _match(self, track: Track, truth: Truth) -> None:
+        if len(truth.obstacle_positions) == 0:
+            return
+        away = truth.obstacle_positions - track.position
+        distance = np.hypot(away[:, 0], away[:, 1])
+        nearest = int(np.argmin(distance))
+        if distance[nearest] > MATCHED:
+            return
+        wrong = track.velocity - truth.obstacle_velocities[nearest]
+        self._speed_squares += float(wrong @ wrong)
+        self._speeds += 1
+
+    def _follow_mission(self, frame: FrameRecord, truth: Truth) -> None:
+        """Check what the mission believes it has passed or reached against the truth."""
+        task = frame.task
+        x, y, heading = truth.robot.tolist()
+        while self._via < task.index and len(self._points):
+            px, py = self._points[self._via % len(self._points)].tolist()
+            if hypot(px - x, py - y) > self._r_via + TOLERANCE:
+                self._via_missed += 1
+            self._via += 1
+        if self._has_goal and task.done and self._done_at is None:
+            self._done_at = frame.time
+            px, py = self._points[-1].tolist()
+            self._goal_near = hypot(px - x, py - y) <= self._r_goal + TOLERANCE
+            wanted = self._layout.goal_heading
+            error = 0.0 if wanted is None else degrees(abs(wrap(heading - wanted)))
+            self._goal_turned = error <= HEADING_TOLERANCE
+
+
+def _measured(value: float) -> float | None:
+    return value if isfinite(value) else None

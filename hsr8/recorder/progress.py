@@ -1,0 +1,78 @@
+"""What a person sees while a run goes on: one line on standard error."""
+
+import sys
+import time as clock
+from typing import TextIO
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from hsr8.recorder.record import TickRecord
+
+REFRESH = 0.1  # wall time between two updates of the live line [s]
+PLAIN_PERIOD = 10.0  # simulated time between two lines without a terminal [s]
+COUNTED = ("collision", "via_point", "fall")
+
+
+class Progress:
+    """Listener that shows how the run gets on.
+
+    A terminal gets one live line, anything else a plain line every 10 simulated seconds.
+
+    Args:
+        duration: of the run at most [s].
+        stream: where to write; standard error by default.
+    """
+
+    def __init__(self, duration: float, stream: TextIO | None = None) -> None:
+        self._stream = stream or sys.stderr
+        self._duration = duration
+        self._console = Console(file=self._stream)
+        self._live: Live | None = None
+        if self._console.is_terminal:
+            self._live = Live(console=self._console, auto_refresh=False, transient=True)
+            self._live.start()
+        self._counts = dict.fromkeys(COUNTED, 0)
+        self._started = clock.perf_counter()
+        self._shown_at = self._started
+        self._next_line = PLAIN_PERIOD
+        self._situation = "starting"
+
+    def on_record(self, record: TickRecord) -> None:
+        """Show the record, if it is time to."""
+        if record.frame is not None:
+            task = record.frame.task
+            self._counts["via_point"] = task.index
+            self._situation = "lost" if record.frame.belief.lost else record.frame.motion.situation
+        if self._live is None:
+            if record.time >= self._next_line - 1e-9:
+                self._next_line += PLAIN_PERIOD
+                print(self.line(record), file=self._stream, flush=True)
+            return
+        now = clock.perf_counter()
+        if now - self._shown_at >= REFRESH:
+            self._shown_at = now
+            self._live.update(Text(self.line(record), style="cyan"), refresh=True)
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Count it; a fall or a collision is worth a line of its own on a terminal."""
+        if kind in ("collision", "fall"):
+            self._counts[kind] += 1
+            if self._live is not None:
+                self._live.console.print(f"[yellow]{time:7.1f} s  {text}[/]")
+
+    def close(self, exit_reason: str) -> None:
+        """Remove the live line."""
+        if self._live is not None:
+            self._live.stop()
+            self._live = None
+
+    def line(self, record: TickRecord) -> str:
+        """The line for `record`."""
+        elapsed = max(clock.perf_counter() - self._started, 1e-6)
+        return (
+            f"{record.time:6.1f} / {self._duration:.1f} s   {record.time / elapsed:4.1f}x real time"
+            f"   via points {self._counts['via_point']:3d}   collisions "
+            f"{self._counts['collision']}   {record.walking.phase:<8}   {self._situation}"
+        )
