@@ -1,0 +1,123 @@
+"""What a scenario must satisfy beyond the type and range of each key."""
+
+from collections.abc import Iterator
+from math import hypot
+
+from hsr8.scenario.mission import Course, Points, Tour, Walk
+from hsr8.scenario.problem import Path, Problem
+from hsr8.scenario.schema import Scenario
+from hsr8.scenario.section import Point
+from hsr8.scenario.world import CircleMover, ShuttleMover
+
+ROBOT_RADIUS = 0.12
+"""Radius of the circle in which the walking robot fits, S_robot [m]."""
+
+
+def check(scenario: Scenario) -> list[Problem]:
+    """Everything that does not fit together, empty when all does."""
+    return [
+        *_speeds(scenario),
+        *_mission(scenario),
+        *_inside(scenario),
+        *_free(scenario),
+    ]
+
+
+def _speeds(scenario: Scenario) -> Iterator[Problem]:
+    speed, limits = scenario.robot.speed, scenario.walking.limits
+    for name in ("forward", "backward", "lateral", "turn"):
+        asked, possible = getattr(speed, name), getattr(limits, name)
+        if asked > possible:
+            yield Problem(
+                ("robot", "speed", name),
+                f"{asked:g} is more than walking can: walking.limits.{name} = {possible:g}",
+            )
+
+
+def _mission(scenario: Scenario) -> Iterator[Problem]:
+    mission, criteria = scenario.mission, scenario.criteria
+    has_goal = isinstance(mission, Course) or (isinstance(mission, Points) and not mission.endless)
+    if criteria.goal_reached and not has_goal:
+        yield Problem(
+            ("criteria", "goal_reached"), f'a mission of kind "{mission.kind}" has no goal'
+        )
+    if criteria.min_via_points and isinstance(mission, Walk):
+        yield Problem(("criteria", "min_via_points"), 'a mission of kind "walk" has no via points')
+    if isinstance(mission, Points) and mission.endless and len(mission.points) == 1:
+        yield Problem(("mission", "points"), "an endless tour needs at least 2 points, got 1")
+    if isinstance(mission, Tour | Course):
+        diagonal = hypot(*scenario.world.size)
+        if mission.leg[0] > 0.7 * diagonal:
+            yield Problem(
+                ("mission", "leg"),
+                f"legs of at least {mission.leg[0]:g} m do not fit into a field of "
+                f"{scenario.world.size[0]:g} m x {scenario.world.size[1]:g} m",
+            )
+
+
+def _inside(scenario: Scenario) -> Iterator[Problem]:
+    """Things placed by hand stand in the field."""
+    half_x, half_y = (0.5 * side for side in scenario.world.size)
+    for path, point, room in _places(scenario):
+        if abs(point[0]) > half_x - room or abs(point[1]) > half_y - room:
+            yield Problem(
+                path,
+                f"{list(point)} is outside the field, which reaches from "
+                f"{[-half_x, -half_y]} to {[half_x, half_y]}"
+                + (f", with {room:g} m to spare" if room else ""),
+            )
+
+
+def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
+    world, mission = scenario.world, scenario.mission
+    if scenario.robot.start.position is not None:
+        yield ("robot", "start", "position"), scenario.robot.start.position, ROBOT_RADIUS
+    for i, obstacle in enumerate(world.obstacle):
+        yield ("world", "obstacle", i, "position"), obstacle.position, obstacle.radius
+    for i, mover in enumerate(world.mover):
+        if isinstance(mover, CircleMover):
+            room = mover.path_radius + mover.radius
+            yield ("world", "mover", i, "centre"), mover.centre, room
+            continue
+        yield ("world", "mover", i, "start"), mover.start, mover.radius
+        if isinstance(mover, ShuttleMover):
+            yield ("world", "mover", i, "end"), mover.end, mover.radius
+    if isinstance(mission, Points):
+        for i, point in enumerate(mission.points):
+            yield ("mission", "points", i), point, ROBOT_RADIUS
+
+
+def _free(scenario: Scenario) -> Iterator[Problem]:
+    """No obstacle placed by hand stands on the robot, on a point, or in another obstacle."""
+    world, mission = scenario.world, scenario.mission
+    start = scenario.robot.start.position
+    points = mission.points if isinstance(mission, Points) else ()
+    for i, obstacle in enumerate(world.obstacle):
+        path: Path = ("world", "obstacle", i, "position")
+        reach = obstacle.radius + ROBOT_RADIUS
+        if start is not None and _apart(obstacle.position, start) < reach:
+            yield Problem(
+                path,
+                f"{list(obstacle.position)} is on the start of the robot at {list(start)}: "
+                f"they must be {reach:g} m apart (radius {obstacle.radius:g} and robot "
+                f"{ROBOT_RADIUS:g})",
+            )
+        for k, point in enumerate(points):
+            if _apart(obstacle.position, point) < reach:
+                yield Problem(path, f"stands on mission.points[{k}] = {list(point)}")
+        for k, other in enumerate(world.obstacle[:i]):
+            if _apart(obstacle.position, other.position) < obstacle.radius + other.radius:
+                yield Problem(path, f"stands in world.obstacle[{k}] at {list(other.position)}")
+    for i, mover in enumerate(world.mover):
+        if isinstance(mover, CircleMover):
+            continue
+        if isinstance(mover, ShuttleMover) and mover.start == mover.end:
+            yield Problem(("world", "mover", i, "end"), "is the same point as start")
+        if start is not None and _apart(mover.start, start) < mover.radius + ROBOT_RADIUS:
+            yield Problem(
+                ("world", "mover", i, "start"), f"is on the start of the robot at {list(start)}"
+            )
+
+
+def _apart(a: Point, b: Point) -> float:
+    return hypot(a[0] - b[0], a[1] - b[1])

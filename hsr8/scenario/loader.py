@@ -1,0 +1,245 @@
+"""Scenario files: found, inherited, overridden, checked, and written again."""
+
+import json
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import Any
+
+from pydantic import ValidationError
+
+from hsr8.errors import ScenarioError
+from hsr8.scenario.checks import check
+from hsr8.scenario.presets import expand_presets
+from hsr8.scenario.problem import Path, Problem, problems_of, suggestion
+from hsr8.scenario.schema import Scenario
+from hsr8.scenario.toml_lines import locate, nearest
+from hsr8.scenario.toml_writer import write_toml
+
+BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
+LARGEST = 1_000_000  # a scenario file is not longer than this [byte]
+DEEPEST = 8  # files that may extend one another
+
+Table = dict[str, Any]
+
+
+def built_in_names() -> list[str]:
+    """Names of the scenarios that come with the program."""
+    return sorted(path.stem for path in BUILT_IN.glob("*.toml"))
+
+
+def load(name_or_path: str, overrides: Sequence[str] = (), seed: int | None = None) -> Scenario:
+    """Read a scenario.
+
+    Args:
+        name_or_path: name of a built-in scenario, or a TOML file.
+        overrides: ``key=value`` with dots in the key and a TOML value; text needs no quotes.
+        seed: replaces the seed of the file.
+
+    Raises:
+        ScenarioError: the file or an override is wrong; the message lists every mistake
+            with its place and what is allowed.
+    """
+    file = _find(name_or_path)
+    draft = _read(file, ())
+    for override in overrides:
+        draft.add(_parse_override(override, draft.data), f"--set {override}")
+    if seed is not None:
+        draft.add({"seed": seed}, "--seed")
+    return draft.finish(name_or_path)
+
+
+def loads(text: str, name: str = "scenario") -> Scenario:
+    """Read a scenario from TOML text; it may extend built-in scenarios only.
+
+    Raises:
+        ScenarioError: as `load`.
+    """
+    return _layered(text, name, name, BUILT_IN, ()).finish(name)
+
+
+def dump(scenario: Scenario) -> str:
+    """TOML text of `scenario`, every key resolved; reading it gives an equal scenario."""
+    return write_toml(json.loads(scenario.model_dump_json(exclude_none=True)))
+
+
+@dataclass
+class _Draft:
+    """Tables merged so far, and where each key was given."""
+
+    data: Table = field(default_factory=dict)
+    places: dict[Path, str] = field(default_factory=dict)
+
+    def add(self, table: Table, place: str, lines: dict[Path, int] | None = None) -> None:
+        """Put `table` over what is there; `place` names its source."""
+        lines = lines or {}
+        self.data = self._merged(self.data, table, ())
+        for path in _paths(table, ()):
+            line = nearest(lines, path)
+            self.places[path] = place if line is None else f"{place}:{line}"
+
+    def finish(self, name: str) -> Scenario:
+        """Check everything."""
+        data = expand_presets(self.data)
+        try:
+            scenario = Scenario.model_validate_json(json.dumps(data, default=str))
+        except ValidationError as error:
+            raise self._error(name, problems_of(error, data)) from None
+        problems = check(scenario)
+        if problems:
+            raise self._error(name, problems)
+        return scenario
+
+    def _merged(self, base: Table, over: Table, path: Path) -> Table:
+        # Another kind of mission or mover has other keys: nothing of the old one is kept.
+        changed = "kind" in over and over["kind"] != base.get("kind", over["kind"])
+        merged = {} if changed else dict(base)
+        for key, value in over.items():
+            here = (*path, key)
+            if isinstance(value, dict) and isinstance(merged.get(key), dict):
+                merged[key] = self._merged(merged[key], value, here)
+            else:
+                merged[key] = value
+                self._forget(here)
+        return merged
+
+    def _forget(self, path: Path) -> None:
+        for known in [p for p in self.places if p[: len(path)] == path]:
+            del self.places[known]
+
+    def _error(self, name: str, problems: list[Problem]) -> ScenarioError:
+        count = "1 mistake" if len(problems) == 1 else f"{len(problems)} mistakes"
+        lines = [f"{count} in scenario {name!r}"]
+        for problem in problems:
+            place = nearest(self.places, problem.path)
+            where = f"{place}: " if place else ""
+            lines.append(f"  {where}{problem.key()}: {problem.text}")
+        return ScenarioError("\n".join(lines))
+
+
+def _find(name_or_path: str) -> FilePath:
+    names = built_in_names()
+    if name_or_path in names:
+        return BUILT_IN / f"{name_or_path}.toml"
+    path = FilePath(name_or_path)
+    if path.suffix == ".toml" or len(path.parts) > 1:
+        return path
+    hint = suggestion(name_or_path, names)
+    raise ScenarioError(
+        f"no scenario is called {name_or_path!r}{hint} "
+        f"(built in: {', '.join(names)}; or give a .toml file)"
+    )
+
+
+def _read(file: FilePath, above: tuple[FilePath, ...]) -> _Draft:
+    try:
+        if not file.is_file():
+            reason = "is no file" if file.exists() else "does not exist"
+            raise ScenarioError(f"scenario file {str(file)!r} {reason}")
+        with file.open("rb") as stream:
+            raw = stream.read(LARGEST + 1)
+    except (OSError, ValueError) as error:
+        raise ScenarioError(f"scenario file {str(file)!r} cannot be read: {error}") from None
+    if len(raw) > LARGEST:
+        raise ScenarioError(f"scenario file {str(file)!r} is longer than {LARGEST:,} bytes")
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ScenarioError(f"scenario file {str(file)!r} is no UTF-8 text: {error}") from None
+    return _layered(text, str(file), file.stem, file.parent, (*above, file))
+
+
+def _layered(
+    text: str, source: str, stem: str, folder: FilePath, files: tuple[FilePath, ...]
+) -> _Draft:
+    """What `text` extends, and `text` over it."""
+    try:
+        data = tomllib.loads(text)
+    except RecursionError:
+        raise ScenarioError(f"{source}: tables or lists are nested too deeply") from None
+    except ValueError as error:
+        raise ScenarioError(f"{source}: no valid TOML: {error}") from None
+    lines = locate(text, data)
+    data.setdefault("name", stem)
+    draft = _Draft()
+    if "extends" in data:
+        place = f"{source}:{lines.get(('extends',), 1)}: extends"
+        draft = _read(_parent(data.pop("extends"), place, folder, files), files)
+    draft.add(data, source, lines)
+    return draft
+
+
+def _parent(name: object, place: str, folder: FilePath, files: tuple[FilePath, ...]) -> FilePath:
+    """File of a scenario that another one extends: built in, or in the same folder."""
+    if not isinstance(name, str):
+        raise ScenarioError(f"{place}: must be the name of a scenario, got {name!r}")
+    if name in built_in_names():
+        parent = BUILT_IN / f"{name}.toml"
+    elif name.endswith(".toml") and FilePath(name).name == name:
+        parent = folder / name
+    else:
+        hint = suggestion(name, built_in_names())
+        raise ScenarioError(
+            f"{place}: no scenario is called {name!r}{hint} (built in: "
+            f"{', '.join(built_in_names())}; or a .toml file in the same folder)"
+        )
+    if parent in files or len(files) >= DEEPEST:
+        chain = " -> ".join(str(f) for f in (*files, parent))
+        raise ScenarioError(f"{place}: scenarios extend one another in a circle: {chain}")
+    return parent
+
+
+def _parse_override(override: str, data: Table) -> Table:
+    """Nested table of ``a.b=value``; lists are copied with one entry changed."""
+    key, equals, text = override.partition("=")
+    parts = key.strip().split(".")
+    if not equals or not all(parts):
+        raise ScenarioError(
+            f"--set {override}: must be key=value, for example --set camera.period_ms=80"
+        )
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        parsed = {"value": text.strip()}
+    value = parsed["value"] if len(parsed) == 1 else text
+    for k in range(len(parts) - 1, -1, -1):
+        value = _put(parts[k], value, _at(data, parts[:k]), override)
+    table: Table = value
+    return table
+
+
+def _put(part: str, value: Any, there: Any, override: str) -> Any:
+    if not isinstance(there, list):
+        return {part: value}
+    if not part.isdecimal() or int(part) >= len(there):
+        raise ScenarioError(
+            f"--set {override}: {part!r} is no entry of a list of {len(there)}, count from 0"
+        )
+    old = there[int(part)]
+    if isinstance(old, dict) and isinstance(value, dict):
+        value = {**old, **value}
+    return [*there[: int(part)], value, *there[int(part) + 1 :]]
+
+
+def _at(data: Any, parts: Sequence[str]) -> Any:
+    for part in parts:
+        if isinstance(data, list) and part.isdecimal() and int(part) < len(data):
+            data = data[int(part)]
+        elif isinstance(data, dict):
+            data = data.get(part)
+        else:
+            return None
+    return data
+
+
+def _paths(value: Any, path: Path) -> list[Path]:
+    """Every table, key and list entry in `value`."""
+    paths = [path] if path else []
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            paths += _paths(inner, (*path, key))
+    elif isinstance(value, list):
+        for k, inner in enumerate(value):
+            paths += _paths(inner, (*path, k))
+    return paths
