@@ -3,17 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from vision.blob import Blob
 from vision.cylinder import Candidate, RimCue
-from vision.outline import Outline, Side
+from vision.outline import Outline, Rim, Side
 from vision.parameters import VisionParameters
 
-Array = NDArray[np.float64]
-
-SEAM_SHARE = 0.5  # share of the upper colour's width that must rest on the lower colour
+SEAM_SHARE = 0.6  # share of the upper colour's width that must rest on the lower colour
 SIDE_TOLERANCE = 4.0  # how far the sides of the two colours may differ [standard deviations]
 RADIUS_SIGMA = 0.0005  # a beacon's radius is known this well [m]
 
@@ -50,17 +45,17 @@ def find_posts(
     """
     posts = []
     for i in indices:
-        seam = outlines[i].seam
-        width = outlines[i].left.azimuth - outlines[i].right.azimuth
-        if not _has_points(seam.slope) or np.ptp(seam.azimuth) < SEAM_SHARE * width:
-            continue
+        bottom = outlines[i].bottom
         for j in indices:
-            if blobs[j].label != seam.neighbour or not _rests_on(blobs[i], blobs[j]):
+            seam = bottom.against(blobs[j].label)
+            if not seam.slope.size or seam.slope.size < SEAM_SHARE * bottom.slope.size:
+                continue
+            if not _rests_on(blobs[i], blobs[j]):
                 continue
             sides = _common_sides(outlines[i], outlines[j])
             if sides is None:
                 continue
-            rims = _rims(outlines[i], outlines[j], camera_height, parameters)
+            rims = _rims(seam, outlines[i].top, outlines[j].bottom, camera_height, parameters)
             candidate = Candidate(*sides, rims, parameters.beacon_radius, RADIUS_SIGMA)
             posts.append(Post(i, j, candidate))
     return posts
@@ -97,17 +92,13 @@ def _merge(a: Side, b: Side) -> Side | None:
 
 
 def _rims(
-    upper: Outline, lower: Outline, camera_height: float, parameters: VisionParameters
+    seam: Rim, top: Rim, bottom: Rim, camera_height: float, parameters: VisionParameters
 ) -> tuple[RimCue, ...]:
-    """Foot, seam and head of the post, those that have points."""
+    """Seam, foot and head of the post, those that have points."""
     head = parameters.beacon_height
     cues = (
-        RimCue(upper.seam, 0.5 * head, near=camera_height > 0.5 * head),
-        RimCue(lower.bottom, 0.0, near=True),
-        RimCue(upper.top, head, near=camera_height < head),
+        RimCue(seam, 0.5 * head, near=camera_height > 0.5 * head),
+        RimCue(bottom.free(), 0.0, near=True),
+        RimCue(top, head, near=camera_height < head),
     )
-    return tuple(cue for cue in cues if _has_points(cue.rim.slope))
-
-
-def _has_points(points: Array) -> bool:
-    return points.size > 0
+    return tuple(cue for cue in cues if cue.rim.slope.size)

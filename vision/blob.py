@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from vision.colour import Labels
 
 Mask = NDArray[np.bool_]
-Index = NDArray[np.intp]
+Index = NDArray[np.signedinteger]
 
 
 @dataclass(frozen=True, slots=True)

@@ -103,7 +103,8 @@ class ColourTable:
             )
         packed = cv2.cvtColor(np.ascontiguousarray(image), cv2.COLOR_RGB2BGR555)
         codes = packed.view(np.uint16).reshape(image.shape[:2])
-        return np.take(self._table, codes)
+        labels: Labels = np.take(self._table, codes)
+        return labels
 
 
 def _hsv_of_table() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

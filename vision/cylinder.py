@@ -257,12 +257,13 @@ class _Problem:
         misfit = np.einsum("ni,nij,nj->n", residual, weight, residual)
         x = self.x + (covariance @ (HtW @ residual[:, :, None]))[:, :, 0]
         x = self._bounded(x)
+        misfit_list = misfit.tolist()
         sides = self.trusted.sum(axis=1).tolist()
         ranged = self.seen.sum(axis=1).tolist()
         astray = self._astray(point_residual, residual[:, SIDES:5], step).tolist()
         return [
-            Cylinder(*x[k].tolist(), covariance[k], m, astray[k], sides[k], ranged[k])
-            for k, m in enumerate(misfit.tolist())
+            Cylinder(azimuth, d, r, covariance[k], misfit_list[k], astray[k], sides[k], ranged[k])
+            for k, (azimuth, d, r) in enumerate(x.tolist())
         ]
 
     @staticmethod

@@ -1,14 +1,14 @@
 """The detector: one image and the pose of its camera become detections."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import sqrt
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.beacon import Post, find_posts
+from vision.beacon import find_posts
 from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
 from vision.colour import OUTSIDE, ColourTable
@@ -17,13 +17,32 @@ from vision.detection import Detection
 from vision.errors import VisionError
 from vision.outline import Outline, trace
 from vision.parameters import VisionParameters
-from vision.split import Part, split
+from vision.split import split
 from vision.view import View
 
 COVERED = 0.1  # share of a rim next to another colour that makes a blob occluded
 ASTRAY = 0.2  # share of rim points off one cylinder's rim that shows another one
 DOUBT = 4.0  # the covariance of what fits badly grows at least so many times
-BEACON_MISFIT = 2.0  # beacons may misfit so many times more than one obstacle
+BEACON_MISFIT = 5.0  # beacons may misfit so many times more than obstacles
+
+
+@dataclass(frozen=True, slots=True)
+class _Sighting:
+    """Something that may be one cylinder.
+
+    Attributes:
+        kind: obstacle or beacon.
+        blobs: of an obstacle one, of a beacon the upper and the lower.
+        outline: of the last blob.
+        candidate: edges.
+        occluded: something hides part of it.
+    """
+
+    kind: Literal["obstacle", "beacon"]
+    blobs: tuple[Blob, ...]
+    outline: Outline
+    candidate: Candidate
+    occluded: bool
 
 
 class Detector:
@@ -78,146 +97,127 @@ class Detector:
         self._padded[1:-1, 1:-1] = labels
         view = View(self._camera, pose)
         outlines = trace(blobs, self._padded, view, self._parameters.edge_sigma)
-        found = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
-        return tuple(sorted(found, key=lambda d: (d.distance, d.label, d.bearing)))
+        sightings = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
+        found: list[Detection | None] = []
+        again: list[_Sighting] = []
+        # One call for all: its cost hardly depends on their number.
+        for sighting, cylinder in zip(sightings, self._locate(sightings, view), strict=True):
+            if self._explains(sighting, cylinder):
+                found.append(self._detection(sighting, cylinder, view))
+            elif sighting.kind == "obstacle":
+                parts = self._split(sighting, view)
+                again += parts
+                if not parts:
+                    found.append(self._detection(*_doubted(sighting, cylinder), view))
+        for sighting, cylinder in zip(again, self._locate(again, view), strict=True):
+            if self._plausible(cylinder):
+                found.append(self._detection(sighting, cylinder, view))
+        return tuple(
+            sorted(
+                (d for d in found if d is not None),
+                key=lambda d: (d.distance, d.label, d.bearing),
+            )
+        )
 
     def _obstacles(
         self, blobs: Sequence[Blob], outlines: Sequence[Outline], view: View
-    ) -> list[Detection]:
-        """Detections of obstacles."""
-        chosen = []
-        candidates = []
-        for k, blob in enumerate(blobs):
+    ) -> list[_Sighting]:
+        """Blobs of obstacle colours, each taken for one obstacle, if they say enough."""
+        head = self._parameters.obstacle_height
+        sightings = []
+        for blob, outline in zip(blobs, outlines, strict=True):
             if self._beacon_label[blob.label]:
                 continue
-            candidate = self._obstacle(outlines[k], view)
-            if candidate is not None:
-                chosen.append(k)
-                candidates.append(candidate)
-        found = []
-        parts: list[tuple[Blob, Part]] = []
-        cylinders = self._locate(candidates, view)
-        for k, candidate, cylinder in zip(chosen, candidates, cylinders, strict=True):
-            outline, blob = outlines[k], blobs[k]
-            doubtful = cylinder.astray > ASTRAY or cylinder.misfit > self._parameters.max_misfit
-            if doubtful:
-                pieces = split(
-                    blob,
-                    outline,
-                    self._padded,
-                    view=view,
-                    parameters=self._parameters,
-                    radius=self._radius,
-                )
-                if pieces:
-                    parts += [(blob, piece) for piece in pieces]
-                    continue
-            occluded = (
-                doubtful
-                or outline.bottom.covered > COVERED
-                or candidate.left.hidden
-                or candidate.right.hidden
-            )
-            found.append(
-                self._detection(
+            rims = []
+            bottom = outline.bottom.free()
+            if bottom.slope.size:
+                rims.append(RimCue(bottom, 0.0, near=True))
+            if outline.top.slope.size and view.height > head:
+                rims.append(RimCue(outline.top, head, near=False))
+            left, right = outline.left, outline.right
+            if not rims and not (left.trusted and right.trusted):
+                continue
+            sightings.append(
+                _Sighting(
                     "obstacle",
-                    self._doubted(cylinder) if doubtful else cylinder,
-                    view,
                     (blob,),
-                    occluded,
+                    outline,
+                    Candidate(left, right, tuple(rims), *self._radius),
+                    outline.bottom.covered > COVERED or left.hidden or right.hidden,
                 )
             )
-        cylinders = self._locate([part.candidate for _, part in parts], view)
-        for (blob, part), cylinder in zip(parts, cylinders, strict=True):
-            if self._plausible(cylinder):
-                found.append(self._detection("obstacle", cylinder, view, (blob,), part.occluded))
-        return [d for d in found if d is not None]
+        return sightings
+
+    def _beacons(
+        self, blobs: Sequence[Blob], outlines: Sequence[Outline], view: View
+    ) -> list[_Sighting]:
+        """Pairs of blobs of beacon colours that may be beacons."""
+        indices = [k for k, blob in enumerate(blobs) if self._beacon_label[blob.label]]
+        return [
+            _Sighting(
+                "beacon",
+                (blobs[post.upper], blobs[post.lower]),
+                outlines[post.lower],
+                post.candidate,
+                outlines[post.lower].bottom.covered > COVERED
+                or post.candidate.left.hidden
+                or post.candidate.right.hidden,
+            )
+            for post in find_posts(blobs, outlines, indices, view.height, self._parameters)
+        ]
+
+    def _split(self, sighting: _Sighting, view: View) -> list[_Sighting]:
+        """The obstacles of a blob that is not one obstacle, if they can be told apart."""
+        (blob,) = sighting.blobs
+        parts = split(
+            blob,
+            sighting.outline,
+            self._padded,
+            view=view,
+            parameters=self._parameters,
+            radius=self._radius,
+        )
+        return [
+            replace(sighting, candidate=part.candidate, occluded=part.occluded) for part in parts
+        ]
+
+    def _explains(self, sighting: _Sighting, cylinder: Cylinder) -> bool:
+        """Whether one cylinder explains what was seen."""
+        limit = self._parameters.max_misfit
+        if sighting.kind == "beacon":
+            return cylinder.misfit < BEACON_MISFIT * limit
+        return cylinder.astray <= ASTRAY and cylinder.misfit <= limit
 
     def _plausible(self, cylinder: Cylinder) -> bool:
         """Whether a part of a blob is like one obstacle."""
         parameters = self._parameters
         slack = 0.3 * (parameters.max_radius - parameters.min_radius)
         return (
-            cylinder.misfit < parameters.max_misfit
+            cylinder.misfit < 2.0 * parameters.max_misfit
             and parameters.min_radius - slack < cylinder.radius < parameters.max_radius + slack
         )
 
-    def _doubted(self, cylinder: Cylinder) -> Cylinder:
-        """A cylinder that does not explain its edges, believed so much less."""
-        factor = max(DOUBT, cylinder.misfit / 2.0)
-        return replace(cylinder, covariance=factor * cylinder.covariance)
-
-    def _obstacle(self, outline: Outline, view: View) -> Candidate | None:
-        """Edges of a blob taken for one obstacle; None if they say too little."""
-        rims = []
-        if outline.bottom.slope.size:
-            rims.append(RimCue(outline.bottom, 0.0, near=True))
-        height = self._parameters.obstacle_height
-        if outline.top.slope.size and view.height > height:
-            rims.append(RimCue(outline.top, height, near=False))
-        left, right = outline.left, outline.right
-        if not rims and not (left.trusted and right.trusted):
-            return None
-        return Candidate(left, right, tuple(rims), *self._radius)
-
-    def _beacons(
-        self, blobs: Sequence[Blob], outlines: Sequence[Outline], view: View
-    ) -> list[Detection]:
-        """Detections of beacons."""
-        indices = [k for k, blob in enumerate(blobs) if self._beacon_label[blob.label]]
-        posts = find_posts(blobs, outlines, indices, view.height, self._parameters)
-        limit = BEACON_MISFIT * self._parameters.max_misfit
-        cylinders = self._locate([post.candidate for post in posts], view)
-        found = [
-            self._beacon(blobs, outlines, post, cylinder, view)
-            for post, cylinder in zip(posts, cylinders, strict=True)
-            if cylinder.misfit < limit
-        ]
-        return [d for d in found if d is not None]
-
-    def _beacon(
-        self,
-        blobs: Sequence[Blob],
-        outlines: Sequence[Outline],
-        post: Post,
-        cylinder: Cylinder,
-        view: View,
-    ) -> Detection | None:
-        upper, lower = blobs[post.upper], blobs[post.lower]
-        candidate = post.candidate
-        occluded = (
-            outlines[post.lower].bottom.covered > COVERED
-            or candidate.left.hidden
-            or candidate.right.hidden
-        )
-        return self._detection("beacon", cylinder, view, (upper, lower), occluded)
-
-    def _locate(self, candidates: Sequence[Candidate], view: View) -> list[Cylinder]:
+    def _locate(self, sightings: Sequence[_Sighting], view: View) -> list[Cylinder]:
         parameters = self._parameters
         return locate(
-            candidates,
+            [sighting.candidate for sighting in sightings],
             view,
             parameters.roundness_sigma,
             0.5 * parameters.step / parameters.edge_sigma,
         )
 
-    def _detection(
-        self,
-        kind: Literal["obstacle", "beacon"],
-        cylinder: Cylinder,
-        view: View,
-        blobs: Sequence[Blob],
-        occluded: bool,
-    ) -> Detection | None:
+    def _detection(self, sighting: _Sighting, cylinder: Cylinder, view: View) -> Detection | None:
         """Detection of a located cylinder; None if it is too far or too uncertain."""
         parameters = self._parameters
-        limit = parameters.beacon_range if kind == "beacon" else parameters.obstacle_range
+        beacon = sighting.kind == "beacon"
+        limit = parameters.beacon_range if beacon else parameters.obstacle_range
         distance, bearing, covariance = polar_in_robot(cylinder, view)
         if distance > limit or covariance[0, 0] > (parameters.max_relative_sigma * distance) ** 2:
             return None
+        blobs = sighting.blobs
         boxes = [blob.box for blob in blobs]
         return Detection(
-            kind=kind,
+            kind=sighting.kind,
             label="/".join(self._table.classes[blob.label - 1].name for blob in blobs),
             bearing=bearing,
             distance=distance,
@@ -225,7 +225,7 @@ class Detector:
             radius=cylinder.radius,
             radius_sigma=sqrt(float(cylinder.covariance[2, 2])),
             cut=any(blob.cut for blob in blobs),
-            occluded=occluded,
+            occluded=sighting.occluded,
             box=(
                 min(b[0] for b in boxes),
                 min(b[1] for b in boxes),
@@ -233,3 +233,12 @@ class Detector:
                 max(b[3] for b in boxes),
             ),
         )
+
+
+def _doubted(sighting: _Sighting, cylinder: Cylinder) -> tuple[_Sighting, Cylinder]:
+    """A cylinder that does not explain its edges: taken for occluded, believed less."""
+    factor = max(DOUBT, 0.5 * cylinder.misfit)
+    return (
+        replace(sighting, occluded=True),
+        replace(cylinder, covariance=factor * cylinder.covariance),
+    )

@@ -9,17 +9,20 @@ because the camera stands higher than the obstacles.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.blob import Blob
+from vision.blob import Blob, Index
 from vision.colour import OUTSIDE
 from vision.view import View
 
 Array = NDArray[np.float64]
 
 LOW_SHARE = 0.25  # share of a side, from below, that tells whether a nearer thing hides it
+END_SHARE = 0.1  # share of the width near each side that is left out of rims
+END_PIXELS = 0.8  # and at least so much of it [pixel]
 ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [pixel]
 OUTLIERS = 8  # one pixel in so many may stick out of a side
 
@@ -46,21 +49,35 @@ class Side:
 
 @dataclass(frozen=True, slots=True)
 class Rim:
-    """Lower or upper edge of a blob, where it can be trusted.
+    """Lower or upper edge of a blob, without its ends and what the border cuts.
 
     Attributes:
         azimuth: of its points from the heading of the camera (n,) [rad].
         slope: of its points (n,) [1].
+        outer: label beyond each point, 0 for the background (n,).
         sigma: standard deviation of one slope [1].
-        covered: share of the edge next to another colour class.
-        neighbour: commonest label among those neighbours, 0 if none.
     """
 
     azimuth: Array
     slope: Array
+    outer: NDArray[np.uint8]
     sigma: float
-    covered: float
-    neighbour: int
+
+    @property
+    def covered(self) -> float:
+        """Share of the edge next to another colour class."""
+        return int(np.count_nonzero(self.outer)) / max(self.outer.size, 1)
+
+    def free(self) -> "Rim":
+        """The part next to the background."""
+        return self._part(self.outer == 0) if self.outer.any() else self
+
+    def against(self, label: int) -> "Rim":
+        """The part next to things of colour class `label`."""
+        return self._part(self.outer == label)
+
+    def _part(self, chosen: NDArray[np.bool_]) -> "Rim":
+        return Rim(self.azimuth[chosen], self.slope[chosen], self.outer[chosen], self.sigma)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,17 +85,16 @@ class Outline:
     """Edges of one blob.
 
     Attributes:
-        left, right: sides of greater and smaller azimuth.
-        bottom, top: rims of smaller and greater slope.
-        seam: the points of `bottom` next to another colour class; where two
-            colours of a beacon meet, this is the true edge.
+        left: side of greater azimuth.
+        right: side of smaller azimuth.
+        bottom: rim of smaller slopes.
+        top: rim of greater slopes.
     """
 
     left: Side
     right: Side
     bottom: Rim
     top: Rim
-    seam: Rim
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +121,10 @@ def trace(
     """
     if not blobs:
         return []
-    chunks: list[tuple[NDArray[np.float64], ...]] = []
+    u_parts: list[NDArray[Any]] = []
+    v_parts: list[NDArray[Any]] = []
+    row_parts: list[Index] = []
+    column_parts: list[Index] = []
     across: list[bool] = []
     sizes = []
     for blob in blobs:
@@ -114,16 +133,15 @@ def trace(
         rows = np.arange(top, bottom)
         first, last = blob.row_extents()
         high, low = blob.column_extents()
-        chunks.append((first, rows + 0.5, rows, first - 1))
-        chunks.append((last, rows + 0.5, rows, last))
-        chunks.append((columns + 0.5, high, high - 1, columns))
-        chunks.append((columns + 0.5, low, low, columns))
+        u_parts += [first, last, columns + 0.5, columns + 0.5]
+        v_parts += [rows + 0.5, rows + 0.5, high, low]
+        row_parts += [rows, rows, high - 1, low]
+        column_parts += [first - 1, last, columns, columns]
         sizes += [len(rows), len(rows), len(columns), len(columns)]
         across.append(view.upright(0.5 * (left + right), 0.5 * (top + bottom)))
-    u, v, outer_row, outer_column = (
-        np.concatenate([chunk[i] for chunk in chunks]) for i in range(4)
-    )
-    outer = padded[outer_row.astype(np.intp) + 1, outer_column.astype(np.intp) + 1]
+    u, v = np.concatenate(u_parts), np.concatenate(v_parts)
+    # The frame shifts pixel (row, column) to (row + 1, column + 1).
+    outer = padded[np.concatenate(row_parts) + 1, np.concatenate(column_parts) + 1]
     azimuth, slope = view.angles(u, v)
     ends = np.cumsum(sizes)
     middle = ends - (np.asarray(sizes) + 1) // 2
@@ -149,15 +167,9 @@ def trace(
         sides, rims = (edges[:2], edges[2:]) if upright else (edges[2:], edges[:2])
         sides.sort(key=lambda e: float(e.azimuth[len(e.azimuth) // 2]))
         rims.sort(key=lambda e: float(e.slope[len(e.slope) // 2]))
-        outlines.append(
-            Outline(
-                left=_side(sides[1], +1.0, edge_sigma),
-                right=_side(sides[0], -1.0, edge_sigma),
-                bottom=_rim(rims[0], rims[0].outer == 0),
-                top=_rim(rims[1], rims[1].outer != OUTSIDE),
-                seam=_rim(rims[0], (rims[0].outer != 0) & (rims[0].outer != OUTSIDE)),
-            )
-        )
+        left, right = _side(sides[1], +1.0, edge_sigma), _side(sides[0], -1.0, edge_sigma)
+        bottom, top = (_rim(rim, left, right, edge_sigma) for rim in rims)
+        outlines.append(Outline(left, right, bottom, top))
     return outlines
 
 
@@ -182,13 +194,13 @@ def _side(edge: _Edge, sign: float, edge_sigma: float) -> Side:
     return Side(sign * azimuth, edge.azimuth_sigma, min(span), max(span), True, hidden)
 
 
-def _rim(edge: _Edge, usable: NDArray[np.bool_]) -> Rim:
-    """Points of an edge where `usable`."""
-    others = edge.outer[(edge.outer != 0) & (edge.outer != OUTSIDE)]
-    return Rim(
-        edge.azimuth[usable],
-        edge.slope[usable],
-        edge.slope_sigma,
-        len(others) / len(edge.outer),
-        int(np.bincount(others).argmax()) if len(others) else 0,
+def _rim(edge: _Edge, left: Side, right: Side, edge_sigma: float) -> Rim:
+    """Points of an edge; close to the ends it may run along a side: they are left out."""
+    pixel = left.sigma / edge_sigma
+    margin = max(END_SHARE * (left.azimuth - right.azimuth), END_PIXELS * pixel)
+    inner = (
+        (edge.azimuth > right.azimuth + margin)
+        & (edge.azimuth < left.azimuth - margin)
+        & (edge.outer != OUTSIDE)
     )
+    return Rim(edge.azimuth[inner], edge.slope[inner], edge.outer[inner], edge.slope_sigma)

@@ -34,7 +34,7 @@ class VisionParameters:
     """Standard deviation of a cylinder's outline, relative to its radius [1]."""
     step: Annotated[float, Gt(0.0)] = 2.5
     """An outline that leaves one cylinder's by so much shows another cylinder [pixel]."""
-    max_misfit: Annotated[float, Gt(0.0)] = 20.0
+    max_misfit: Annotated[float, Gt(0.0)] = 8.0
     """Sum of squared normalised residuals above which a blob is not one cylinder [1]."""
     max_relative_sigma: Annotated[float, Gt(0.0)] = 0.35
     """Detections whose distance is less certain, relative to itself, are dropped [1]."""

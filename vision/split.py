@@ -89,7 +89,7 @@ def split(
         upper = grid.pieces(grid.high, grid.high_usable, head, step, nearest=False)
     if len(lower) < 2 and len(upper) < 2:
         return []
-    pairs = _match(
+    groups = _match(
         lower,
         upper,
         view=view,
@@ -97,10 +97,6 @@ def split(
         tolerance=SIDE_MATCH * grid.azimuth_step,
         parameters=parameters,
     )
-    feet, heads = {i for i, _ in pairs}, {j for _, j in pairs}
-    groups: list[tuple[_Piece | None, _Piece | None]] = [(lower[i], upper[j]) for i, j in pairs]
-    groups += [(piece, None) for i, piece in enumerate(lower) if i not in feet]
-    groups += [(None, piece) for j, piece in enumerate(upper) if j not in heads]
     parts = [
         _part(low, high, grid, view=view, parameters=parameters, radius=radius)
         for low, high in groups
@@ -242,8 +238,8 @@ def _match(
     pixel: float,
     tolerance: float,
     parameters: VisionParameters,
-) -> list[tuple[int, int]]:
-    """Pairs of pieces that show the foot and the head of one cylinder."""
+) -> list[tuple[_Piece | None, _Piece | None]]:
+    """Foot and head of each cylinder, None for the one that is not seen."""
     costs = []
     fall = view.height - parameters.obstacle_height
     for i, low in enumerate(lower):
@@ -269,10 +265,23 @@ def _match(
             middle = 0.5 * (parameters.min_radius + parameters.max_radius)
             costs.append((abs(radius - middle) / slack + sum(gaps) / tolerance, i, j))
     pairs: list[tuple[int, int]] = []
+    feet, heads = set(range(len(lower))), set(range(len(upper)))
     for _, i, j in sorted(costs):
         if all(i != a and j != b for a, b in pairs):
             pairs.append((i, j))
-    return pairs
+        # A piece that could pair with one already paired is another part of that thing,
+        # seen on the other side of what divides it.
+        feet.discard(i)
+        heads.discard(j)
+    return [
+        *((lower[i], upper[j]) for i, j in pairs),
+        *((lower[i], None) for i in sorted(feet)),
+        *((None, upper[j]) for j in sorted(heads)),
+    ]
+
+
+def _rim(piece: _Piece, sigma: float) -> Rim:
+    return Rim(piece.azimuth, piece.slope, np.zeros(len(piece.slope), np.uint8), sigma)
 
 
 def _part(
@@ -311,9 +320,9 @@ def _part(
     rims = []
     sigma = SIDE_SIGMA * grid.pixel
     if low is not None:
-        rims.append(RimCue(Rim(low.azimuth, low.slope, sigma, 0.0, 0), 0.0, near=True))
+        rims.append(RimCue(_rim(low, sigma), 0.0, near=True))
     if high is not None:
-        rim = Rim(high.azimuth, high.slope, sigma, 0.0, 0)
+        rim = _rim(high, sigma)
         rims.append(RimCue(rim, parameters.obstacle_height, near=False))
     whole = low is not None and low.left_true and low.right_true
     return Part(Candidate(sides[0], sides[1], tuple(rims), *radius), occluded=not whole)
