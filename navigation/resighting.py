@@ -54,7 +54,7 @@ def resight_mover(
     y = z - state[:2]
     goes_on = (1.0 - turned) * exp(-0.5 * float(y @ np.linalg.solve(S, y)))
     goes_on /= 2.0 * pi * sqrt(float(np.linalg.det(S)))
-    ahead = state[2:] / max(speed, 1e-9)
+    ahead = state[2:] / speed if speed > 1e-9 else np.array([1.0, 0.0])
     aside = np.array([-ahead[1], ahead[0]])
     gone = z - last_seen
     along, across = float(gone @ ahead), float(gone @ aside)
