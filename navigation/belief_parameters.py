@@ -79,6 +79,8 @@ class TrackingParameters:
     """Time from first to last detection without which no track is static [s]."""
     static_hits: Annotated[int, Ge(1)] = 6
     """Detections without which no track is static [1]."""
+    static_speed: Positive = 0.04
+    """Speed above which no undecided track is static [m/s]."""
     doubt_evidence: float = 1.25
     """Log likelihood ratio above which a static track is undecided again [1]."""
     stopped_evidence: Annotated[float, Lt(0.0)] = -4.0

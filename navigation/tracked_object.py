@@ -86,6 +86,7 @@ class TrackedObject:
             self.evidence < p.static_evidence
             and self.hits >= p.static_hits
             and self.last_time - self.first_time > p.static_time
+            and self.speed < p.static_speed
         ):
             self.motion = Motion.STATIC
 

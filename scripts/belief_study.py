@@ -11,7 +11,7 @@ are unknown to the estimator.
 
 from dataclasses import dataclass, field
 from math import hypot
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 import tyro
@@ -198,9 +198,9 @@ def run(seed: int, tally: Tally, parameters: BeliefParameters, duration: float) 
         things: list[Thing] = [("obstacle", o.label, o.state(time)[0], o.radius) for o in obstacles]
         seen = camera.observe(time, walker.pose, walker.pan, things + posts)
         frame = Frame(time, walker.odometry.copy(), True, view(walker.pan, TILT), seen)
-        began = perf_counter()
+        began = process_time()
         belief = estimator.update(frame)
-        tally.milliseconds.append(1e3 * (perf_counter() - began))
+        tally.milliseconds.append(1e3 * (process_time() - began))
         tally.frames += 1
         tally.add_pose(belief, walker.pose)
         matched = tally.add_tracks(belief.tracks, obstacles, time)

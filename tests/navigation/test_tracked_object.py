@@ -12,7 +12,7 @@ def make(**changes):
     values = {
         "id": 3,
         "label": "red",
-        "state": np.array([1.0, 2.0, 0.1, 0.0]),
+        "state": np.array([1.0, 2.0, 0.03, 0.0]),
         "covariance": np.eye(4) * 1e-3,
         "still": np.array([0.9, 2.0]),
         "still_covariance": np.eye(2) * 1e-4,
@@ -52,6 +52,7 @@ def test_verdicts_have_hysteresis(motion, evidence, verdict):
         {"evidence": 6.0, "state": np.array([0.0, 0.0, 0.01, 0.0])},
         {"evidence": -5.0, "hits": 5},
         {"evidence": -5.0, "first_time": 3.5},
+        {"evidence": -5.0, "state": np.array([0.0, 0.0, 0.0, 0.05])},
     ],
 )
 def test_evidence_alone_is_not_enough(changes):
@@ -63,7 +64,7 @@ def test_evidence_alone_is_not_enough(changes):
 def test_each_verdict_publishes_its_own_filter():
     moving = make(motion=Motion.MOVING).track(5.0)
     assert moving.position.tolist() == [1.0, 2.0]
-    assert moving.velocity.tolist() == [0.1, 0.0]
+    assert moving.velocity.tolist() == [0.03, 0.0]
     static = make(motion=Motion.STATIC).track(5.5)
     assert static.position.tolist() == [0.9, 2.0]
     assert static.velocity.tolist() == [0.0, 0.0]
