@@ -17,9 +17,6 @@ status=0
 # 1: the run ended by itself but missed a criterion; the table said so, and the video is worth seeing.
 ((status <= 1)) || exit "$status"
 
-run=$(find "$out/paper" -mindepth 1 -maxdepth 1 -type d -printf '%T@ %p\n' | sort -n | tail -1 | cut -d' ' -f2-)
-.venv/bin/hsr8 render "$run"
+.venv/bin/hsr8 render "$out/paper"  # its newest run
 echo
-echo "  video   $run/video.mp4"
-echo "  log     .venv/bin/hsr8 replay $run"
-echo "  result  $run/metrics.json"
+echo "the log, opened:  .venv/bin/hsr8 replay $out/paper"
