@@ -10,7 +10,7 @@ simulated head camera that sees what the gaze shows it). A run ends at its first
 
 import json
 from dataclasses import dataclass, field, replace
-from math import atan2, cos, hypot, pi, sin, sqrt
+from math import atan2, cos, degrees, hypot, pi, sin, sqrt
 from pathlib import Path
 from time import perf_counter
 from typing import Literal
@@ -318,7 +318,7 @@ class Run:
             task.index,
             round(clearance, 3),
             round(position, 3),
-            round(np.degrees(heading), 1),
+            round(degrees(heading), 1),
             plan_ms=1e3 * float(np.mean(self.times["plan"])),
             gaze_ms=1e3 * float(np.mean(self.times["gaze"])),
         )
@@ -351,7 +351,7 @@ class Run:
         return {
             "moving": obstacle.speed > 0,
             "speed": round(obstacle.speed, 3),
-            "bearing": round(np.degrees(bearing)),
+            "bearing": round(degrees(bearing)),
             "robot_speed": round(hypot(body[0], body[1]), 3),
             "head_on": round(float(velocity @ (pose[:2] - position)) / 0.2, 2),
             "known": looks,

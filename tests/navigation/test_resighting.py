@@ -54,3 +54,11 @@ def test_is_the_same_in_every_direction(turn, along, aside):
     assert np.allclose(turned, both @ plain, atol=1e-9)
     assert np.allclose(D, both @ C @ both.T, atol=1e-9)
     assert np.linalg.eigvalsh(D)[0] > 0
+
+
+def test_a_mover_whose_velocity_was_given_up_is_found_again():
+    start, covariance = found_again(SEEN, R, np.zeros(2), P.resighting_sigma)
+    x, C = predict_moving(start[None], covariance[None], 1.0, P.acceleration_noise)
+    state, widened = resight_mover(x[0], C[0], (SEEN, 1.0), (np.array([0.02, 0.01]), R), P)
+    assert np.isfinite(state).all()
+    assert np.linalg.eigvalsh(widened)[0] > 0
