@@ -4,7 +4,7 @@ import rerun.blueprint as rrb
 
 from hsr8.recorder.channel import TIMELINE
 
-ABOVE = 5.6  # height of the eye over a field of 5 m [m]
+ABOVE = 8.5  # height of the eye over a field of 5 m [m]
 
 
 def blueprint(field_size: float) -> rrb.Blueprint:
@@ -24,7 +24,7 @@ def blueprint(field_size: float) -> rrb.Blueprint:
             position=(-1.3, -1.0, 0.9),
             look_target=(0.0, 0.0, 0.25),
             eye_up=(0.0, 0.0, 1.0),
-            tracking_entity="/world/robot",
+            tracking_entity="/world/robot/ellipsoids",
         ),
     )
     belief = rrb.Spatial3DView(
@@ -65,7 +65,7 @@ def blueprint(field_size: float) -> rrb.Blueprint:
     )
     events = rrb.TextLogView(name="Events", origin="/events")
     left = rrb.Vertical(robot, rrb.Horizontal(camera, gaze), row_shares=[3, 2])
-    right = rrb.Vertical(belief, states, curves, events, row_shares=[5, 2, 3, 1.5])
+    right = rrb.Vertical(belief, states, curves, events, row_shares=[5, 1.8, 2.7, 1.5])
     return rrb.Blueprint(
         rrb.Horizontal(left, right, column_shares=[1, 1]),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),

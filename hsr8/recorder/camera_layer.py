@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.channel import Channel
+from hsr8.recorder.geometry import xyzw
 from hsr8.recorder.record import FrameRecord, Image
 
 Array = NDArray[np.float64]
@@ -60,12 +61,14 @@ class CameraLayer:
 
     def add_pose(self, time: float, data: mujoco.MjData) -> None:
         """Take the camera's true pose from `data`."""
-        rotation = data.cam_xmat[self._id].reshape(3, 3)
         # MuJoCo's camera looks along -z with y up; Rerun's as the project's along z, y down.
+        rotation = data.cam_xmat[self._id].reshape(3, 3) * (1.0, -1.0, -1.0)
+        quaternion = np.empty(4)
+        mujoco.mju_mat2Quat(quaternion, rotation.ravel())
         self._pose.add(
             time,
             translation=data.cam_xpos[self._id][None].copy(),
-            mat3x3=(rotation * (1.0, -1.0, -1.0))[None],
+            quaternion=xyzw(quaternion)[None],
         )
 
     def add_frame(self, frame: FrameRecord) -> None:

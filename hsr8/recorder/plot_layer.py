@@ -15,6 +15,16 @@ from navigation.angles import wrap
 Array = NDArray[np.float64]
 
 BLUE, ORANGE, GREEN, GREY = (52, 112, 206), (240, 140, 20), (76, 168, 78), (130, 130, 134)
+RED, VIOLET, SAND = (206, 60, 56), (146, 84, 196), (196, 178, 130)
+GAIT = {"standing": GREY, "double": SAND, "left": BLUE, "right": ORANGE}
+SITUATIONS = {
+    "free": GREEN,
+    "accelerate": BLUE,
+    "brake": ORANGE,
+    "escape": RED,
+    "path_change": VIOLET,
+}
+LOCALIZATION = {"localized": GREEN, "lost": RED}
 FORCE_NEEDED = 1.0  # no centre of pressure is shown under feet lighter than this [N]
 
 
@@ -47,9 +57,19 @@ class Curves:
 
 
 class Lane:
-    """A state over time; only changes are logged."""
+    """A state over time; only changes are logged.
 
-    def __init__(self, stream: rr.RecordingStream, path: str) -> None:
+    Args:
+        stream: where it goes.
+        path: entity of the lane.
+        states: colour of every state.
+    """
+
+    def __init__(
+        self, stream: rr.RecordingStream, path: str, states: dict[str, palette.Colour]
+    ) -> None:
+        look = rr.StateConfiguration(values=list(states), colors=list(states.values()))
+        stream.log(path, look, static=True)
         self._channel = Channel(stream, path, rr.StateChange.columns)
         self._state = ""
 
@@ -88,9 +108,9 @@ class PlotLayer:
             "/plots/pose_error",
             (("position error [m]", BLUE), ("2σ [m]", GREY), ("heading error [rad]", ORANGE)),
         )
-        self._phase = Lane(stream, "/state/gait")
-        self._situation = Lane(stream, "/state/planner")
-        self._localization = Lane(stream, "/state/localization")
+        self._phase = Lane(stream, "/state/gait", GAIT)
+        self._situation = Lane(stream, "/state/planner", SITUATIONS)
+        self._localization = Lane(stream, "/state/localization", LOCALIZATION)
         self._parts = (
             self._forward,
             self._lateral,

@@ -1,0 +1,122 @@
+"""The Rerun viewer that belongs to the installed library, bound to this machine only."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time as clock
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rerun.experimental import ViewerClient
+
+from hsr8.errors import UsageError
+
+TIMELINE = "sim_time"
+START_LIMIT = 30.0  # the viewer must answer within this wall time [s]
+SETTLE = 6.0  # notices fade and views load in this wall time [s]
+VULKAN_LINE = "apt-get install -y mesa-vulkan-drivers"
+
+
+def executable() -> str:
+    """Path of the viewer.
+
+    Raises:
+        UsageError: it is not installed.
+    """
+    beside = Path(sys.executable).with_name("rerun")
+    found = str(beside) if beside.exists() else shutil.which("rerun")
+    if found is None:
+        raise UsageError("the Rerun viewer is missing; `pip install rerun-sdk` brings it")
+    return found
+
+
+def has_display() -> bool:
+    """Whether a window can be opened."""
+    if not sys.platform.startswith("linux"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def show(log: Path) -> int:
+    """Open `log` in a window and wait until it is closed; the viewer's exit status."""
+    return subprocess.run(_command(log, _free_port()), check=False).returncode
+
+
+def screenshot(log: Path, time: float, size: tuple[int, int]) -> bytes:
+    """Picture (PNG) of the viewer with `log` at simulated `time` [s].
+
+    Args:
+        log: file of a run.
+        time: [s].
+        size: width and height of the window [pixel].
+
+    Raises:
+        UsageError: the viewer did not start, for example for want of Vulkan.
+    """
+    port = _free_port()
+    window = ("--headless", "--window-size", f"{size[0]}x{size[1]}")
+    with _running([*_command(log, port), *window]) as viewer:
+        client = _connect(viewer, port)
+        _wait_for_recording(client, viewer)
+        client.set_time(TIMELINE, duration=time, play_state="paused")
+        clock.sleep(SETTLE)
+        return bytes(client.take_screenshot())
+
+
+def _command(log: Path, port: int) -> list[str]:
+    return [executable(), str(log), "--bind", "127.0.0.1", "--port", str(port)]
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+@contextmanager
+def _running(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
+    # The launcher starts a second process: a group of their own ends both.
+    viewer = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True
+    )
+    try:
+        yield viewer
+    finally:
+        if viewer.poll() is None:
+            os.killpg(viewer.pid, signal.SIGTERM)
+        viewer.communicate()
+
+
+def _connect(viewer: subprocess.Popen[bytes], port: int) -> ViewerClient:
+    end = clock.monotonic() + START_LIMIT
+    while clock.monotonic() < end and viewer.poll() is None:
+        try:
+            with socket.create_connection(("127.0.0.1", port), timeout=1.0):
+                return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        except OSError:
+            clock.sleep(0.2)
+    raise _failed(viewer)
+
+
+def _wait_for_recording(client: ViewerClient, viewer: subprocess.Popen[bytes]) -> None:
+    end = clock.monotonic() + START_LIMIT
+    while clock.monotonic() < end and viewer.poll() is None:
+        if client.get_state().recordings:
+            return
+        clock.sleep(0.2)
+    raise _failed(viewer)
+
+
+def _failed(viewer: subprocess.Popen[bytes]) -> UsageError:
+    said = ""
+    if viewer.poll() is not None and viewer.stderr is not None:
+        lines = viewer.stderr.read().decode(errors="replace").strip().splitlines()
+        said = f": {lines[-1]}" if lines else ""
+    return UsageError(
+        f"the Rerun viewer did not start{said}"
+        f"\n  without a graphics card it needs Vulkan in software; as root:  {VULKAN_LINE}"
+    )
