@@ -45,7 +45,7 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     _set_quality(spec, quality, optics)
     _add_light(spec, quality, optics.brightness)
     _add_floor(spec, layout.field_size, quality)
-    _add_cameras(spec, layout.field_size)
+    _add_cameras(spec, max(layout.field_size))
     camera = spec.camera("egocentric")
     camera.fovy = float(np.degrees(optics.vertical_fov))
     camera.resolution = [optics.width, optics.height]
@@ -110,8 +110,8 @@ def _add_light(spec: mujoco.MjSpec, quality: Quality, brightness: float) -> None
     )
 
 
-def _add_floor(spec: mujoco.MjSpec, field_size: float, quality: Quality) -> None:
-    half = 0.5 * field_size
+def _add_floor(spec: mujoco.MjSpec, field_size: tuple[float, float], quality: Quality) -> None:
+    half = 0.5 * max(field_size)
     floor = spec.worldbody.add_geom(
         name="floor",
         type=mujoco.mjtGeom.mjGEOM_PLANE,
@@ -184,9 +184,7 @@ def _paint(spec: mujoco.MjSpec, colour: str, quality: Quality) -> str:
     return name
 
 
-def _add_obstacle(
-    spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Quality
-) -> None:
+def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Quality) -> None:
     body = spec.worldbody.add_body(
         name=name,
         pos=[*obstacle.position, 0.5 * obstacle.height],
