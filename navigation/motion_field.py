@@ -83,29 +83,42 @@ class MotionField:
         p = self._univector
         phi = move_to_goal(points, heading, scene.target, scene.target_heading, p, side=scene.side)
         u_muf = np.stack([np.cos(phi), np.sin(phi)], axis=-1)
-        centres, radii = scene.obstacles.position, scene.s_oe
         if p.blend == "weights":
-            outward = None
-            if forces:
-                n = len(radii)
-                centres = np.concatenate([centres, [f.obstacle.position for f in forces]])
-                radii = np.concatenate([radii, [f.obstacle.radius for f in forces]])
-                outward = np.concatenate([np.zeros(n), [f.outward for f in forces]])
-            u_auf = avoid_obstacle(
-                points,
-                scene.target,
-                centres,
-                radii,
-                d_e=p.d_e,
-                d_b=p.d_b,
-                k_r=p.k_r,
-                inside=p.inside,
-                outward=outward,
-            )
-            return weighted_sum(u_muf, u_auf, p.w_muf, p.w_auf)
+            return self._weighted(points, u_muf, scene, forces)
+        return self._blended(points, u_muf, scene, forces)
+
+    def _weighted(
+        self, points: Array, u_muf: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]
+    ) -> Array:
+        """The printed sum: a virtual obstacle is one more obstacle with S_oe = R_vo."""
+        p = self._univector
+        centres, radii, outward = scene.obstacles.position, scene.s_oe, None
+        if forces:
+            outward = np.concatenate([np.zeros(len(radii)), [f.outward for f in forces]])
+            centres = np.concatenate([centres, [f.obstacle.position for f in forces]])
+            radii = np.concatenate([radii, [f.obstacle.radius for f in forces]])
+        u_auf = avoid_obstacle(
+            points,
+            scene.target,
+            centres,
+            radii,
+            d_e=p.d_e,
+            d_b=p.d_b,
+            k_r=p.k_r,
+            inside=p.inside,
+            outward=outward,
+        )
+        return weighted_sum(u_muf, u_auf, p.w_muf, p.w_auf)
+
+    def _blended(
+        self, points: Array, u_muf: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]
+    ) -> Array:
+        """The sum by distance, with radii that leave the destination reachable."""
+        p = self._univector
+        centres = scene.obstacles.position
         offset = centres - scene.target
         radii, d_e = shrunk_for_goal(
-            radii,
+            scene.s_oe,
             physical_radius(scene.obstacles, p),
             np.hypot(offset[:, 0], offset[:, 1]),
             p.d_e,
