@@ -134,7 +134,7 @@ class _Problem:
     def __init__(self, candidates: Sequence[Candidate], view: View, roundness_sigma: float):
         n = len(candidates)
         self.n = n
-        self.h = view.height
+        self.h: float = view.height
         pose = view.pose
         self.pose_variance = np.square(
             [pose.tilt_sigma, pose.roll_sigma, pose.yaw_sigma, pose.height_sigma]
@@ -202,7 +202,7 @@ class _Problem:
         (lowest, low), (highest, high) = usable[0], usable[-1]
         if low > FAR_SLOPE and high > low:
             # Far away an error of the tilt spoils each slope, but not their difference.
-            return min((highest.height - lowest.height) / (high - low), MAX_DISTANCE)
+            return float(min((highest.height - lowest.height) / (high - low), MAX_DISTANCE))
         for cue, slope in usable:
             run = (cue.height - self.h) / (slope or MIN_SLOPE)
             if MIN_DISTANCE < run < MAX_DISTANCE:
@@ -327,5 +327,6 @@ class _Problem:
         """Share of rim points of each candidate off their rim by more than `step`."""
         limit = step * self.rim_sigma.ravel()[self.rim]
         far = np.abs(residual - mean.ravel()[self.rim]) > limit
+        strays = np.bincount(self.owner, weights=far, minlength=self.n)
         total = np.bincount(self.owner, minlength=self.n)
-        return np.bincount(self.owner, weights=far, minlength=self.n) / np.maximum(total, 1)
+        return strays / np.maximum(total, 1)

@@ -125,7 +125,7 @@ def trace(
     v_parts: list[NDArray[Any]] = []
     row_parts: list[Index] = []
     column_parts: list[Index] = []
-    across: list[bool] = []
+    uprights: list[bool] = []
     sizes = []
     for blob in blobs:
         left, top, right, bottom = blob.box
@@ -138,21 +138,21 @@ def trace(
         row_parts += [rows, rows, high - 1, low]
         column_parts += [first - 1, last, columns, columns]
         sizes += [len(rows), len(rows), len(columns), len(columns)]
-        across.append(view.upright(0.5 * (left + right), 0.5 * (top + bottom)))
+        uprights.append(view.upright(0.5 * (left + right), 0.5 * (top + bottom)))
     u, v = np.concatenate(u_parts), np.concatenate(v_parts)
     # The frame shifts pixel (row, column) to (row + 1, column + 1).
     outer = padded[np.concatenate(row_parts) + 1, np.concatenate(column_parts) + 1]
     azimuth, slope = view.angles(u, v)
-    ends = np.cumsum(sizes)
-    middle = ends - (np.asarray(sizes) + 1) // 2
+    stops = np.cumsum(sizes)
+    middle = stops - (np.asarray(sizes) + 1) // 2
     per_pixel = [(edge_sigma * a).tolist() for a in view.resolution(u[middle], v[middle])]
-    ends_list = ends.tolist()
+    stop = stops.tolist()
 
     outlines = []
-    for k, upright in enumerate(across):
+    for k, upright in enumerate(uprights):
         edges = []
         for j in range(4 * k, 4 * k + 4):
-            part = slice(ends_list[j] - sizes[j], ends_list[j])
+            part = slice(stop[j] - sizes[j], stop[j])
             # An edge of rows is known along u, an edge of columns along v.
             vertical = j - 4 * k < 2
             edges.append(
@@ -167,9 +167,14 @@ def trace(
         sides, rims = (edges[:2], edges[2:]) if upright else (edges[2:], edges[:2])
         sides.sort(key=lambda e: float(e.azimuth[len(e.azimuth) // 2]))
         rims.sort(key=lambda e: float(e.slope[len(e.slope) // 2]))
-        left, right = _side(sides[1], +1.0, edge_sigma), _side(sides[0], -1.0, edge_sigma)
-        bottom, top = (_rim(rim, left, right, edge_sigma) for rim in rims)
-        outlines.append(Outline(left, right, bottom, top))
+        ends = (_side(sides[1], +1.0, edge_sigma), _side(sides[0], -1.0, edge_sigma))
+        outlines.append(
+            Outline(
+                *ends,
+                bottom=_rim(rims[0], *ends, edge_sigma),
+                top=_rim(rims[1], *ends, edge_sigma),
+            )
+        )
     return outlines
 
 

@@ -130,8 +130,9 @@ class _Grid:
         self.outer_right = outline.right.trusted and not outline.right.hidden
         self.outer_left = outline.left.trusted and not outline.left.hidden
         # Two more cells below and above tell what lies beyond.
-        self.slopes = bottom_slope + slope_step * (np.arange(-2, m + 2) + 0.5)
-        self.azimuths = self.start + self.azimuth_step * (np.arange(n) + 0.5)
+        cells = np.arange(-2, m + 2, dtype=np.float64) + 0.5
+        self.slopes = bottom_slope + slope_step * cells
+        self.azimuths = self.start + self.azimuth_step * (np.arange(n, dtype=np.float64) + 0.5)
         u, v, ahead = view.pixels(self.azimuths[None, :], self.slopes[:, None])
         width_px, height_px = view.camera.width, view.camera.height
         column = np.clip(np.floor(u), -1, width_px).astype(np.intp)

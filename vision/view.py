@@ -28,7 +28,10 @@ class View:
     def __init__(self, camera: PinholeCamera, pose: CameraPose) -> None:
         self.camera = camera
         self.pose = pose
-        self.x, self.y, self.height = pose.position.tolist()
+        x, y, z = pose.position.tolist()
+        self.x: float = x
+        self.y: float = y
+        self.height: float = z
         self._R: list[list[float]] = pose.rotation.tolist()
         # The right axis is level but for roll, so it gives the heading even when the
         # camera looks straight down.

@@ -1,0 +1,103 @@
+"""A small ray caster: images of cylinders on a grey floor, without OpenGL."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, hypot, radians, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vision.camera import CameraPose, PinholeCamera
+from vision.colour import COLOUR_CLASSES
+
+FLOOR = (0.62, 0.61, 0.58)
+SKY = (0.05, 0.05, 0.06)
+CAMERA = PinholeCamera.from_vertical_fov(320, 240, radians(70.0))
+HEIGHT = 0.47
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """An upright cylinder from `low` to `high`, painted in a colour class."""
+
+    x: float
+    y: float
+    colour: str
+    radius: float = 0.08
+    low: float = 0.0
+    high: float = 0.30
+
+
+def beacon(x: float, y: float, top: str, bottom: str) -> list[Cylinder]:
+    return [Cylinder(x, y, bottom, 0.05, 0.0, 0.30), Cylinder(x, y, top, 0.05, 0.30, 0.60)]
+
+
+def pose(
+    pan: float = 0.0,
+    tilt: float = 0.0,
+    roll: float = 0.0,
+    position: tuple[float, float, float] = (0.0, 0.0, HEIGHT),
+    sigma: float = 0.0,
+) -> CameraPose:
+    """Pose of a camera that looks `pan` to the left and `tilt` upwards [rad]."""
+    cy, sy, cp, sp, cr, sr = cos(pan), sin(pan), cos(tilt), sin(tilt), cos(roll), sin(roll)
+    Rz = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    Ry = np.array([[cp, 0.0, -sp], [0.0, 1.0, 0.0], [sp, 0.0, cp]])
+    Rx = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    level = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    return CameraPose(
+        rotation=Rz @ Rx @ Ry @ level,
+        position=np.array(position),
+        tilt_sigma=sigma,
+        roll_sigma=sigma,
+        yaw_sigma=0.2 * sigma,
+        height_sigma=0.003 if sigma else 0.0,
+    )
+
+
+def paint(
+    things: Sequence[Cylinder],
+    view: CameraPose,
+    brightness: float = 1.0,
+    camera: PinholeCamera = CAMERA,
+) -> NDArray[np.uint8]:
+    """RGB image of `things`; sides are shaded by how much they face the camera."""
+    v, u = np.mgrid[0 : camera.height, 0 : camera.width]
+    rays = camera.rays(u + 0.5, v + 0.5) @ view.rotation.T
+    X, Y, Z = np.moveaxis(rays, -1, 0)
+    px, py, pz = view.position.tolist()
+    down = Z < -1e-9
+    nearest = np.where(down, -pz / np.where(down, Z, -1.0), np.inf)
+    image = np.where(down[..., None], FLOOR, SKY)
+    a = np.maximum(X * X + Y * Y, 1e-12)
+    for thing in sorted(things, key=lambda c: (c.x, c.y, c.low)):
+        ox, oy = px - thing.x, py - thing.y
+        b, c = X * ox + Y * oy, ox * ox + oy * oy - thing.radius**2
+        hit = b * b - a * c > 0.0
+        side = (-b - np.sqrt(np.where(hit, b * b - a * c, 0.0))) / a
+        z = pz + side * Z
+        hit &= (side > 0.0) & (z >= thing.low) & (z < thing.high) & (side < nearest)
+        facing = -(X * (ox + side * X) + Y * (oy + side * Y)) / (thing.radius * np.sqrt(a))
+        shade = 0.45 + 0.5 * np.clip(facing, 0.0, 1.0)
+        lid = np.where(down, (thing.high - pz) / np.where(down, Z, -1.0), -1.0)
+        on_lid = (
+            (lid > 0.0)
+            & (np.hypot(ox + lid * X, oy + lid * Y) <= thing.radius)
+            & (lid < nearest)
+            & ~(hit & (side < lid))
+        )
+        rgb = np.array(COLOUR_CLASSES[thing.colour].rgb)
+        image[hit] = rgb * shade[hit][:, None]
+        image[on_lid] = rgb
+        nearest = np.where(on_lid, lid, np.where(hit, side, nearest))
+    return np.clip(np.round(255.0 * brightness * image), 0, 255).astype(np.uint8)
+
+
+def at(distance: float, bearing_deg: float, colour: str, radius: float = 0.08) -> Cylinder:
+    """An obstacle at a distance [m] and bearing [degree] from the origin of R."""
+    bearing = radians(bearing_deg)
+    return Cylinder(distance * cos(bearing), distance * sin(bearing), colour, radius)
+
+
+def true_polar(thing: Cylinder) -> tuple[float, float]:
+    return hypot(thing.x, thing.y), float(np.arctan2(thing.y, thing.x))

@@ -1,0 +1,62 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vision.blob import find_blobs
+
+SMALLEST = (1,) * 7
+
+
+@given(seed=st.integers(0, 10_000), share=st.floats(0.0, 1.0))
+def test_blobs_partition_the_coloured_pixels(seed: int, share: float) -> None:
+    rng = np.random.default_rng(seed)
+    labels = rng.integers(1, 8, (12, 17)).astype(np.uint8)
+    labels[rng.random(labels.shape) < share] = 0
+    covered = np.zeros(labels.shape, dtype=int)
+    for blob in find_blobs(labels, SMALLEST):
+        left, top, right, bottom = blob.box
+        part = labels[top:bottom, left:right]
+        assert (part[blob.mask] == blob.label).all()
+        assert blob.area == blob.mask.sum()
+        assert blob.mask.any(axis=0).all()
+        assert blob.mask.any(axis=1).all()
+        covered[top:bottom, left:right] += blob.mask
+    assert np.array_equal(covered, (labels > 0).astype(int))
+
+
+def test_extents_bound_every_row_and_column() -> None:
+    labels = np.zeros((8, 10), np.uint8)
+    labels[2:6, 3:7] = 1
+    labels[2, 3] = 0
+    (blob,) = find_blobs(labels, SMALLEST)
+    first, last = blob.row_extents()
+    assert first.tolist() == [4, 3, 3, 3]
+    assert last.tolist() == [7, 7, 7, 7]
+    high, low = blob.column_extents()
+    assert high.tolist() == [3, 2, 2, 2]
+    assert low.tolist() == [6, 6, 6, 6]
+
+
+def test_borders_are_flagged_one_by_one() -> None:
+    labels = np.zeros((6, 8), np.uint8)
+    labels[0:2, 3:5] = 1
+    labels[3:5, 0:2] = 2
+    labels[3:5, 6:8] = 3
+    labels[4:6, 3:5] = 4
+    labels[2:4, 3:5] = 5
+    touches = {blob.label: blob.touches for blob in find_blobs(labels, SMALLEST)}
+    assert touches == {
+        1: (False, True, False, False),
+        2: (True, False, False, False),
+        3: (False, False, True, False),
+        4: (False, False, False, True),
+        5: (False, False, False, False),
+    }
+
+
+def test_small_blobs_are_left_out() -> None:
+    labels = np.zeros((10, 10), np.uint8)
+    labels[1, 1:4] = 1
+    labels[5:8, 5:8] = 1
+    assert [blob.area for blob in find_blobs(labels, (4,))] == [9]
+    assert [blob.area for blob in find_blobs(labels, (3,))] == [3, 9]

@@ -1,0 +1,236 @@
+from math import degrees, hypot, radians
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.vision.scene import CAMERA, Cylinder, at, beacon, paint, pose, true_polar
+from vision.colour import COLOUR_CLASSES
+from vision.detection import Detection
+from vision.detector import Detector
+from vision.errors import VisionError
+from vision.parameters import VisionParameters
+
+DETECTOR = Detector(CAMERA, VisionParameters())
+
+
+def see(things, view=None, brightness=1.0) -> tuple[Detection, ...]:
+    view = view or pose()
+    return DETECTOR.detect(paint(things, view, brightness), view)
+
+
+def assert_located(detection: Detection, thing: Cylinder, sigmas: float = 4.0) -> None:
+    """The detection is right within its own standard deviations."""
+    distance, bearing = true_polar(thing)
+    error = np.array([detection.distance - distance, detection.bearing - bearing])
+    assert error @ np.linalg.solve(detection.covariance, error) < sigmas**2
+    assert abs(detection.radius - thing.radius) < sigmas * detection.radius_sigma
+
+
+@settings(max_examples=60)
+@given(
+    distance=st.floats(0.45, 2.5),
+    bearing=st.floats(-30.0, 30.0),
+    radius=st.floats(0.05, 0.12),
+    tilt=st.floats(-0.55, -0.1),
+    roll=st.floats(-0.08, 0.08),
+    pan=st.floats(-1.4, 1.4),
+)
+def test_a_lone_obstacle_is_located_wherever_the_head_looks(
+    distance, bearing, radius, tilt, roll, pan
+) -> None:
+    thing = at(distance, degrees(pan) + bearing, "green", radius)
+    view = pose(pan, tilt, roll, position=(0.03, 0.01, 0.47))
+    found = [d for d in see([thing], view) if not d.cut]
+    if not found:  # it may leave the image at the edges of what is drawn
+        assert all(d.cut for d in see([thing], view))
+        return
+    (detection,) = found
+    assert detection.label == "green"
+    assert not detection.occluded
+    assert_located(detection, thing)
+    assert abs(detection.distance - distance) < 0.02 + 0.03 * distance
+    assert abs(detection.bearing - np.arctan2(thing.y, thing.x)) < radians(0.6)
+
+
+@pytest.mark.parametrize("colour", [n for n, c in COLOUR_CLASSES.items() if c.kind == "obstacle"])
+@pytest.mark.parametrize("brightness", [0.4, 1.0, 1.6])
+def test_light_changes_neither_colour_nor_place(colour: str, brightness: float) -> None:
+    (detection,) = see([at(1.2, 10.0, colour)], brightness=brightness)
+    (reference,) = see([at(1.2, 10.0, colour)])
+    assert detection.label == colour
+    assert detection.distance == pytest.approx(reference.distance, abs=1e-9)
+    assert detection.bearing == pytest.approx(reference.bearing, abs=1e-9)
+
+
+@settings(max_examples=25)
+@given(
+    distances=st.lists(st.floats(0.5, 2.3), min_size=3, max_size=3),
+    tilt=st.floats(-0.5, -0.15),
+)
+def test_a_mirrored_scene_gives_mirrored_detections(distances, tilt) -> None:
+    bearings = (-25.0, 2.0, 24.0)
+    colours = ("red", "green", "blue")
+    scene = [at(d, b, c) for d, b, c in zip(distances, bearings, colours, strict=True)]
+    mirror = [Cylinder(c.x, -c.y, c.colour, c.radius) for c in scene]
+    seen, seen_mirrored = see(scene, pose(tilt=tilt)), see(mirror, pose(tilt=tilt))
+    assert len(seen) == len(seen_mirrored) > 0
+    for a, b in zip(seen, seen_mirrored, strict=True):
+        assert (a.label, a.cut, a.occluded) == (b.label, b.cut, b.occluded)
+        assert a.distance == pytest.approx(b.distance, abs=2e-3)
+        assert a.bearing == pytest.approx(-b.bearing, abs=2e-3)
+
+
+def test_turning_the_head_leaves_the_place_in_the_robot_frame() -> None:
+    thing = at(1.3, 20.0, "blue")
+    for pan in (-10.0, 0.0, 20.0, 45.0):
+        (detection,) = see([thing], pose(radians(pan), -0.3))
+        assert_located(detection, thing)
+
+
+def test_detections_are_sorted_and_independent_of_what_was_seen_before() -> None:
+    scene = [at(2.0, -20.0, "red"), at(0.8, 0.0, "green"), at(1.4, 18.0, "violet")]
+    first = see(scene)
+    see([at(1.0, 5.0, "blue")])
+    second = see(scene)
+    assert [d.label for d in first] == ["green", "violet", "red"]
+    assert [(d.distance, d.bearing) for d in first] == [(d.distance, d.bearing) for d in second]
+
+
+def test_wrong_tilt_is_within_the_told_uncertainty() -> None:
+    thing = at(2.0, 8.0, "red")
+    truth = pose(tilt=-0.25)
+    image = paint([thing], truth)
+    for error in (-1.0, 1.0):
+        told = pose(tilt=-0.25 + radians(error), sigma=radians(0.7))
+        (detection,) = DETECTOR.detect(image, told)
+        assert_located(detection, thing, sigmas=3.0)
+        blind = pose(tilt=-0.25 + radians(error))
+        assert (
+            DETECTOR.detect(image, told)[0].covariance[0, 0]
+            > 1.2 * (see([thing], truth)[0].covariance[0, 0])
+        )
+        assert blind.tilt_sigma == 0.0
+
+
+def test_an_occluded_obstacle_is_still_located_and_flagged() -> None:
+    front, back = at(0.9, 3.0, "red"), at(1.5, 0.0, "green")
+    found = {d.label: d for d in see([front, back], pose(tilt=-0.3))}
+    assert not found["red"].occluded
+    assert found["green"].occluded
+    assert_located(found["red"], front)
+    assert_located(found["green"], back)
+
+
+def test_an_obstacle_cut_by_the_border_is_flagged_and_less_certain() -> None:
+    thing = at(1.0, 0.0, "blue")
+    (whole,) = see([thing], pose(tilt=-0.3))
+    (cut,) = see([thing], pose(pan=radians(-42.0), tilt=-0.3))
+    assert not whole.cut
+    assert cut.cut
+    assert cut.covariance[1, 1] > 4.0 * whole.covariance[1, 1]
+    assert_located(cut, thing)
+
+
+def test_an_obstacle_whose_foot_is_out_of_the_image_is_located_by_its_head() -> None:
+    thing = at(0.45, 0.0, "violet", 0.1)
+    (detection,) = see([thing], pose(tilt=0.0))
+    assert detection.cut
+    assert_located(detection, thing)
+
+
+@pytest.mark.parametrize(
+    ("near", "far"),
+    [
+        (at(0.8, 2.0, "green", 0.07), at(1.3, -3.0, "green", 0.07)),
+        (at(1.0, 0.0, "green", 0.11), at(1.7, 0.0, "green", 0.06)),
+        (at(1.5, 3.0, "green", 0.06), at(2.2, 0.5, "green", 0.10)),
+    ],
+    ids=["beside", "behind", "far"],
+)
+def test_overlapping_obstacles_of_one_colour_are_told_apart(near: Cylinder, far: Cylinder) -> None:
+    first, second = see([near, far], pose(tilt=-0.3))
+    assert_located(first, near)
+    assert_located(second, far)
+    assert second.occluded
+    assert first.box == second.box
+
+
+def test_beacons_are_named_top_over_bottom_and_located() -> None:
+    for top, bottom in (("yellow", "cyan"), ("cyan", "yellow"), ("magenta", "cyan")):
+        for x, y in ((1.5, 0.3), (3.0, -0.8), (4.5, 0.6)):
+            (detection,) = see(beacon(x, y, top, bottom), pose(tilt=-0.1))
+            assert detection.kind == "beacon"
+            assert detection.label == f"{top}/{bottom}"
+            assert detection.radius == pytest.approx(0.05, abs=0.002)
+            assert_located(detection, Cylinder(x, y, top, 0.05))
+            assert abs(detection.distance - hypot(x, y)) < 0.03 * hypot(x, y)
+
+
+def test_a_beacon_behind_an_obstacle_keeps_its_name_or_is_not_seen() -> None:
+    for distance in np.linspace(0.5, 2.9, 13).tolist():
+        scene = [*beacon(3.0, 0.0, "yellow", "magenta"), at(distance, 0.5, "red", 0.12)]
+        names = [d.label for d in see(scene, pose(tilt=-0.1)) if d.kind == "beacon"]
+        assert names in ([], ["yellow/magenta"])
+
+
+def test_one_reserved_colour_alone_is_no_beacon() -> None:
+    half = Cylinder(2.0, 0.1, "yellow", 0.05, 0.0, 0.30)
+    assert see([half]) == ()
+
+
+def test_beacons_close_to_each_other_in_the_image_do_not_swap_colours() -> None:
+    names = {"yellow/cyan", "magenta/yellow"}
+    for y in np.linspace(0.0, 0.4, 9).tolist():
+        scene = beacon(2.5, 0.0, "yellow", "cyan") + beacon(3.2, y, "magenta", "yellow")
+        assert {d.label for d in see(scene, pose(tilt=-0.1))} <= names
+
+
+@pytest.mark.parametrize("value", [0, 128, 255])
+def test_a_grey_image_shows_nothing(value: int) -> None:
+    assert DETECTOR.detect(np.full((240, 320, 3), value, np.uint8), pose()) == ()
+
+
+@pytest.mark.parametrize("colour", COLOUR_CLASSES.values(), ids=lambda c: c.name)
+def test_an_image_of_one_colour_locates_nothing(colour) -> None:
+    image = np.broadcast_to((255 * np.array(colour.rgb)).astype(np.uint8), (240, 320, 3))
+    assert DETECTOR.detect(image, pose()) == ()
+
+
+@pytest.mark.parametrize("tilt", [-1.2, -0.4, 0.4])
+def test_noise_yields_nothing_but_finite_detections(tilt: float) -> None:
+    rng = np.random.default_rng(7)
+    image = rng.integers(0, 256, (240, 320, 3), dtype=np.uint8)
+    for detection in DETECTOR.detect(image, pose(tilt=tilt, sigma=0.01)):
+        assert np.isfinite([detection.distance, detection.bearing, detection.radius]).all()
+        assert np.linalg.eigvalsh(detection.covariance).min() > 0.0
+
+
+def test_pixel_noise_moves_a_detection_by_no_more_than_its_uncertainty() -> None:
+    thing = at(1.4, -12.0, "violet")
+    image = paint([thing], pose(tilt=-0.2)).astype(float)
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        noisy = np.clip(np.round(image + rng.normal(0.0, 6.0, image.shape)), 0, 255)
+        (detection,) = DETECTOR.detect(noisy.astype(np.uint8), pose(tilt=-0.2))
+        assert_located(detection, thing)
+
+
+@pytest.mark.parametrize(
+    "image",
+    [
+        np.zeros((120, 160, 3), np.uint8),
+        np.zeros((240, 320), np.uint8),
+        np.zeros((240, 320, 3), np.float32),
+    ],
+    ids=["size", "grey", "dtype"],
+)
+def test_other_images_are_refused(image: np.ndarray) -> None:
+    with pytest.raises(VisionError, match="image"):
+        DETECTOR.detect(image, pose())
+
+
+def test_radii_must_span_an_interval() -> None:
+    with pytest.raises(VisionError, match="min_radius"):
+        Detector(CAMERA, VisionParameters(min_radius=0.1, max_radius=0.1))
