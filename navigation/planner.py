@@ -64,20 +64,7 @@ class Planner:
         scene, radii = self._scene(belief, task)
         wanted = self._wanted(belief, task, scene)
         facing = self._facing(belief, task)
-        velocity = np.array([cos(wanted.direction), sin(wanted.direction)]) * wanted.speed
-        course, speed = wanted.direction, wanted.speed
-        if self._parameters.filter.enabled:
-            everything = ObstacleSet.from_tracks(belief.tracks)
-            discs = collision_hypotheses(
-                belief.tracks,
-                everything,
-                self._parameters.univector.s_robot,
-                self._parameters.filter,
-            )
-            velocity = self._filter.choose(
-                belief.pose, velocity, course, facing=facing, body_now=self._body, discs=discs
-            )
-            course, speed = direction_and_speed(velocity, course)
+        course, speed = self._filtered(belief, wanted, facing)
         self._body = body_velocity(
             course,
             speed,
@@ -87,6 +74,29 @@ class Planner:
             turn_gain=self._parameters.body.turn_gain,
         )
         return replace(wanted, velocity=self._body, extended_radii=radii)
+
+    def _filtered(
+        self, belief: Belief, wanted: MotionDecision, facing: float | None
+    ) -> tuple[float, float]:
+        """Direction [rad] and speed [m/s] that touch nothing soon."""
+        p = self._parameters
+        if not p.filter.enabled:
+            return wanted.direction, wanted.speed
+        discs = collision_hypotheses(
+            belief.tracks,
+            ObstacleSet.from_tracks(belief.tracks),
+            p.univector.s_robot,
+            p.filter,
+        )
+        velocity = self._filter.choose(
+            belief.pose,
+            wanted.speed * np.array([cos(wanted.direction), sin(wanted.direction)]),
+            wanted.direction,
+            facing=facing,
+            body_now=self._body,
+            discs=discs,
+        )
+        return direction_and_speed(velocity, wanted.direction)
 
     def _scene(
         self, belief: Belief, task: Task
