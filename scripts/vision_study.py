@@ -88,9 +88,7 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
         specular=np.zeros(3),
         castshadow=False,
     )
-    root.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 0.05), rgba=(0.6, 0.59, 0.56, 1)
-    )
+    root.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 0.05), rgba=(0.6, 0.59, 0.56, 1))
     root.add_camera(name="eye", mode=mujoco.mjtCamLight.mjCAMLIGHT_FIXED, fovy=70.0)
 
     things: list[Thing] = []
@@ -137,7 +135,9 @@ def rotation_of(yaw: float, pitch: float, roll: float) -> Array:
 def silhouette(thing: Thing, camera: PinholeCamera, R: Array, p: Array) -> tuple[Array, bool]:
     """Mask of the whole cylinder as if alone, and whether the border cuts it."""
     angle = np.arange(48) * (2.0 * np.pi / 48)
-    ring = np.stack([thing.x + thing.radius * np.cos(angle), thing.y + thing.radius * np.sin(angle)])
+    ring = np.stack(
+        [thing.x + thing.radius * np.cos(angle), thing.y + thing.radius * np.sin(angle)]
+    )
     points = np.concatenate(
         [np.stack([*ring, np.full(48, z)], axis=1) for z in (0.0, thing.height)]
     )
@@ -217,7 +217,9 @@ def annotate(image: NDArray[np.uint8], found: tuple[Detection, ...], path: Path)
         cv2.rectangle(big, (x0, y0), (x1, y1), (255, 255, 255), 1)
         flags = ("c" if d.cut else "") + ("o" if d.occluded else "")
         text = f"{d.label[:3]} {d.distance:.2f}({d.covariance[0, 0] ** 0.5:.2f}) r{d.radius:.2f}{flags}"
-        cv2.putText(big, text, (x0, max(12, y0 - 3)), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (255, 255, 255))
+        cv2.putText(
+            big, text, (x0, max(12, y0 - 3)), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (255, 255, 255)
+        )
     cv2.imwrite(str(path), big)
 
 
@@ -272,7 +274,9 @@ def judge(found, geoms, R, p, things, camera, tallies) -> list[str]:
         options = [
             (hypot(x - thing.x, y - thing.y), i)
             for i, (d, x, y) in enumerate(places)
-            if i not in used and d.kind == thing.kind and d.label == thing.label
+            if i not in used
+            and d.label == thing.label
+            and abs(d.bearing - atan2(thing.y, thing.x)) < 0.08 + 0.08 / distance
         ]
         gap, best = min(options, default=(9.0, -1))
         limit = max(MAX_MATCH, 0.2 * distance)
@@ -289,14 +293,25 @@ def judge(found, geoms, R, p, things, camera, tallies) -> list[str]:
             tally.seen += 1
             tally.hit += matched
             if not matched and unhidden:
-                mistakes.append(f"missed {thing.label} at {distance:.2f} ({pixels} px, hidden {hidden:.2f})")
+                mistakes.append(
+                    f"missed {thing.label} at {distance:.2f} ({pixels} px, hidden {hidden:.2f})"
+                )
         if matched:
             d = places[best][0]
             bearing = d.bearing - atan2(thing.y, thing.x)
             e = np.array([d.distance - distance, atan2(sin(bearing), cos(bearing))])
             nees = float(e @ np.linalg.solve(d.covariance, e))
-            row = (distance, e[0], e[1], nees, d.radius - thing.radius, d.radius_sigma,
-                   float(d.occluded), float(d.cut), hidden)
+            row = (
+                distance,
+                e[0],
+                e[1],
+                nees,
+                d.radius - thing.radius,
+                d.radius_sigma,
+                float(d.occluded),
+                float(d.cut),
+                hidden,
+            )
             tally.errors.append(row)
             if nees > 20:
                 mistakes.append(

@@ -318,7 +318,7 @@ class _Problem:
         G[:, SIDES:5, 0] = -lift * c
         G[:, SIDES:5, 1] = lift * s
         G[:, SIDES:5, 3] = -1.0 / d[:, None]
-        R = (G * self.pose_variance) @ np.swapaxes(G, 1, 2)
+        R: Array = (G * self.pose_variance) @ np.swapaxes(G, 1, 2)
         index = np.arange(ROWS)
         R[:, index, index] += sigma * sigma
         return R
@@ -329,4 +329,5 @@ class _Problem:
         far = np.abs(residual - mean.ravel()[self.rim]) > limit
         strays = np.bincount(self.owner, weights=far, minlength=self.n)
         total = np.bincount(self.owner, minlength=self.n)
-        return strays / np.maximum(total, 1)
+        share: Array = strays / np.maximum(total, 1)
+        return share

@@ -9,6 +9,7 @@ because the camera stands higher than the obstacles.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ LOW_SHARE = 0.25  # share of a side, from below, that tells whether a nearer thi
 END_SHARE = 0.1  # share of the width near each side that is left out of rims
 END_PIXELS = 0.8  # and at least so much of it [pixel]
 ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [pixel]
+MAX_OVERHANG = 2.5  # a side does not lie farther inside what is seen than this [pixel]
 OUTLIERS = 8  # one pixel in so many may stick out of a side
 
 
@@ -188,10 +190,13 @@ def _side(edge: _Edge, sign: float, edge_sigma: float) -> Side:
     lowest = bottom + LOW_SHARE * (top - bottom)
     low = [o for s, o in zip(slopes, outer, strict=True) if s <= lowest]
     hidden = 2 * sum(o not in (0, OUTSIDE) for o in low) > len(low)
-    if not free:
-        return Side(sign * max(azimuths), edge.azimuth_sigma, bottom, top, False, hidden)
-    outermost = free[-1 - len(free) // OUTLIERS][0]
-    limit = outermost - ENVELOPE * edge.azimuth_sigma / edge_sigma
+    pixel = edge.azimuth_sigma / edge_sigma
+    furthest = max(azimuths)
+    outermost = free[-1 - len(free) // OUTLIERS][0] if free else -inf
+    if furthest > outermost + MAX_OVERHANG * pixel:
+        # Where it reaches furthest, the thing goes on behind something or off the image.
+        return Side(sign * furthest, edge.azimuth_sigma, bottom, top, False, hidden)
+    limit = outermost - ENVELOPE * pixel
     chosen = [pair for pair in free if pair[0] >= limit]
     n = len(chosen)
     azimuth = 0.5 * (chosen[(n - 1) // 2][0] + chosen[n // 2][0])
