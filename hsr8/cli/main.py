@@ -51,7 +51,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
         command = tyro.cli(
-            Commands,  # type: ignore[arg-type]  # tyro takes unions; mypy has no type for them
+            Commands,
             prog="hsr8",
             description=DESCRIPTION,
             args=given or ["--help"],

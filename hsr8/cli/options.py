@@ -9,7 +9,7 @@ from tyro.conf import Positional, UseAppendAction
 
 
 def _arg(metavar: str, text: str) -> object:
-    return tyro.conf.arg(metavar=metavar, help=text)
+    return tyro.conf.arg(metavar=metavar, help=text, help_behavior_hint="")
 
 
 ScenarioName = Annotated[str, _arg("SCENARIO", "name (see `hsr8 list`) or TOML file")]

@@ -1,0 +1,68 @@
+"""``hsr8 render``: the video of a run."""
+
+import sys
+import time as clock
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from hsr8.cli.options import Render
+from hsr8.cli.size import parse_size
+from hsr8.errors import UsageError
+from hsr8.gl import is_software, require_gl
+from hsr8.recorder import atomic, run_folder
+from hsr8.recorder.run_reader import open_run
+from hsr8.render.movie import Shot, film
+
+
+def main(options: Render) -> int:
+    """Draw the video and say where it is.
+
+    Raises:
+        UsageError: there is no such run, or an option will not do.
+        RenderingUnavailable: no OpenGL draws here.
+    """
+    if not 1 <= options.fps <= 120:
+        raise UsageError(f"--fps {options.fps}: give 1 to 120 frames per second")
+    if options.speed is not None and not 0.01 <= options.speed <= 1000.0:
+        raise UsageError(f"--speed {options.speed:g}: give 0.01 to 1000")
+    run = open_run(options.run)
+    renderer = require_gl()
+    out = options.out or run.path / run_folder.VIDEO
+    if not out.parent.is_dir():
+        raise UsageError(f"--out {out}: there is no folder {out.parent}")
+    shot = Shot(
+        camera=options.camera,
+        size=parse_size(options.size),
+        fps=options.fps,
+        start=options.start,
+        stop=options.stop,
+        speed=options.speed,
+    )
+    console = Console(stderr=True, quiet=options.quiet)
+    if is_software(renderer):
+        console.print(f"drawing on the processor ({renderer})", style="dim", highlight=False)
+    started = clock.perf_counter()
+    columns = (TextColumn("drawing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("drawing", total=None)
+        made = film(run, shot, out, lambda n, total: bar.update(task, completed=n, total=total))
+    wall = clock.perf_counter() - started
+    if options.json:
+        result = {
+            "video": str(made.video),
+            "thumbnail": str(made.thumbnail),
+            "frames": made.frames,
+            "duration_s": made.duration,
+            "speed": made.speed,
+            "wall_time_s": wall,
+        }
+        print(atomic.dumps(result))
+    elif not options.quiet:
+        print(
+            f"video       {made.video}\nthumbnail   {made.thumbnail}\n"
+            f"{made.frames} frames, {made.duration:.1f} s at {made.speed:g}x, "
+            f"drawn in {wall:.0f} s",
+            file=sys.stdout,
+        )
+    return 0

@@ -1,0 +1,46 @@
+"""``hsr8 replay``: the log of a run in the Rerun viewer."""
+
+from hsr8.cli.options import Replay
+from hsr8.cli.size import parse_size
+from hsr8.errors import UsageError
+from hsr8.recorder import atomic
+from hsr8.recorder.manifest import versions
+from hsr8.recorder.run_reader import Run, open_run
+from hsr8.render import viewer
+
+
+def main(options: Replay) -> int:
+    """Open the viewer, or draw it into a file.
+
+    Raises:
+        UsageError: there is no such run or log, or no display.
+    """
+    run = open_run(options.run)
+    if not run.log_file.exists():
+        raise UsageError(f"{run.path} has no log: it was run with --no-log")
+    if options.screenshot is not None:
+        time = options.time if options.time is not None else _middle(run)
+        picture = viewer.screenshot(run.log_file, time, parse_size(options.size))
+        options.screenshot.write_bytes(picture)
+        if options.json:
+            print(atomic.dumps({"screenshot": str(options.screenshot), "time_s": time}))
+        else:
+            print(f"picture     {options.screenshot} (at {time:.1f} s)")
+        return 0
+    if not viewer.has_display():
+        version = versions()["rerun-sdk"]
+        raise UsageError(
+            "there is no display to open the viewer on"
+            f"\n  a picture of it:     hsr8 replay {run.path} --screenshot log.png"
+            f"\n  on another machine:  copy {run.log_file}, then"
+            f"\n                       pip install rerun-sdk=={version} && rerun log.rrd"
+        )
+    code = viewer.show(run.log_file)
+    if code != 0:
+        raise UsageError(f"the Rerun viewer ended with status {code}; try --screenshot PNG")
+    return 0
+
+
+def _middle(run: Run) -> float:
+    time = run.trajectory().time
+    return float(time[len(time) // 2]) if len(time) else 0.0

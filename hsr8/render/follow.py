@@ -1,0 +1,54 @@
+"""A camera operator who walks behind the robot with a steady hand."""
+
+from math import atan2, degrees
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.world.rotation import heading
+
+Array = NDArray[np.float64]
+
+DISTANCE = 1.75  # from the robot [m]
+ELEVATION = -22.0  # looking down [deg]
+BESIDE = 35.0  # the camera stands so far to the right of straight behind [deg]
+HEIGHT = 0.22  # of the point looked at [m]
+STEADY = 0.6  # time constant of the position, in video time [s]
+CALM = 2.5  # time constant of the direction, in video time [s]
+
+
+class FollowCamera:
+    """Camera poses for a whole video.
+
+    Args:
+        qpos: of the robot at each frame of the video (n, nq).
+        fps: frames per second of the video.
+    """
+
+    def __init__(self, qpos: Array, fps: float) -> None:
+        yaw = np.unwrap([heading(row[3:7]) for row in qpos])
+        self._place = _smooth(qpos[:, :2], STEADY * fps)
+        direction = _smooth(np.column_stack([np.cos(yaw), np.sin(yaw)]), CALM * fps)
+        self._yaw = np.unwrap([atan2(y, x) for x, y in direction.tolist()])
+
+    def at(self, index: int) -> mujoco.MjvCamera:
+        """Camera of one frame."""
+        camera = mujoco.MjvCamera()
+        camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+        camera.lookat[:] = (*self._place[index], HEIGHT)
+        camera.distance = DISTANCE
+        camera.elevation = ELEVATION
+        camera.azimuth = degrees(self._yaw[index]) + BESIDE
+        return camera
+
+
+def _smooth(values: Array, frames: float) -> Array:
+    """Exponential filter forth and back, so that nothing lags (n, m)."""
+    keep = np.exp(-1.0 / max(frames, 1e-6))
+    smooth = values.astype(np.float64, copy=True)
+    for rows in (range(1, len(smooth)), range(len(smooth) - 2, -1, -1)):
+        step = 1 if rows.step > 0 else -1
+        for i in rows:
+            smooth[i] = keep * smooth[i - step] + (1.0 - keep) * smooth[i]
+    return smooth

@@ -1,0 +1,98 @@
+"""A recorded world set up again, to be drawn from any camera."""
+
+from types import TracebackType
+from typing import Self
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import UsageError
+from hsr8.gl import require_gl
+from hsr8.world.assembly import Optics, Quality, assemble
+from hsr8.world.layout import Layout
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+
+class Stage:
+    """Draws a layout with the robot and the movers where a recording had them.
+
+    Use it as a context manager and in one thread only.
+
+    Args:
+        layout: of the run's world.
+        quality: ``show`` for people, ``vision`` for what the robot saw.
+        size: width and height of the pictures [pixel].
+        optics: of the head camera.
+        samples: per pixel against jagged edges; each costs as much as the picture.
+
+    Raises:
+        RenderingUnavailable: no OpenGL draws here.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        quality: Quality,
+        size: tuple[int, int],
+        *,
+        optics: Optics,
+        samples: int = 0,
+    ) -> None:
+        require_gl()
+        self.model = assemble(layout, quality, optics)
+        self.data = mujoco.MjData(self.model)
+        self._movers = np.array(
+            [self.model.body(f"mover_{i:02d}").mocapid[0] for i in range(len(layout.movers))],
+            dtype=np.intp,
+        )
+        visual = self.model.vis
+        visual.global_.offwidth, visual.global_.offheight = size
+        if quality == "show":
+            visual.quality.offsamples = samples
+            visual.quality.numslices, visual.quality.numstacks = 20, 12
+            visual.quality.shadowsize = 2048
+        self._renderer = mujoco.Renderer(self.model, height=size[1], width=size[0])
+
+    def place(self, qpos: Array, movers: Array) -> None:
+        """Put the robot and the movers (n, 2) [m] where they were."""
+        self.data.qpos[:] = qpos
+        self.data.mocap_pos[self._movers, :2] = movers
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def draw(self, view: str | mujoco.MjvCamera) -> Image:
+        """Picture (height, width, 3) from a camera of the model or a free one."""
+        self._renderer.update_scene(self.data, camera=view)
+        image: Image = self._renderer.render()
+        return image
+
+    def require_camera(self, name: str) -> None:
+        """Make sure that the model has a camera.
+
+        Raises:
+            UsageError: it has not; the message names those it has.
+        """
+        names = [self.model.camera(i).name for i in range(self.model.ncam)]
+        if name not in names:
+            raise UsageError(
+                f"there is no camera {name!r}; choose dashboard, follow, head, {', '.join(names)}"
+            )
+
+    def close(self) -> None:
+        """Free the OpenGL context."""
+        self._renderer.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

@@ -1,0 +1,80 @@
+"""H.264 files that every browser plays, with exact timing."""
+
+from concurrent.futures import Future, ThreadPoolExecutor
+from fractions import Fraction
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import av
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.uint8]
+
+OPTIONS = {"preset": "veryfast", "crf": "23", "threads": "1"}
+
+
+class VideoWriter:
+    """Writes frames; the file appears under its name when it is complete.
+
+    Args:
+        path: of the file.
+        size: width and height, both even [pixel].
+        fps: frames per second.
+    """
+
+    def __init__(self, path: Path, size: tuple[int, int], fps: int) -> None:
+        self._path = path
+        self._draft = path.with_name(path.name + ".part")
+        self._container = av.open(
+            str(self._draft), "w", format="mp4", options={"movflags": "+faststart"}
+        )
+        self._stream = self._container.add_stream("libx264", rate=fps, options=OPTIONS)
+        self._stream.width, self._stream.height = size
+        self._stream.pix_fmt = "yuv420p"
+        self._stream.time_base = Fraction(1, fps)
+        self._count = 0
+        # Encoding leaves the interpreter lock alone: it runs beside the drawing.
+        self._worker = ThreadPoolExecutor(max_workers=1)
+        self._pending: Future[None] | None = None
+
+    def add(self, image: Image) -> None:
+        """Append one frame (height, width, 3)."""
+        self._wait()
+        self._pending = self._worker.submit(self._encode, image, self._count)
+        self._count += 1
+
+    def _encode(self, image: Image, index: int) -> None:
+        frame = av.VideoFrame.from_ndarray(image, format="rgb24")
+        frame.pts = index
+        frame.time_base = Fraction(1, int(self._stream.rate))
+        self._container.mux(self._stream.encode(frame))
+
+    def _wait(self) -> None:
+        if self._pending is not None:
+            self._pending.result()
+            self._pending = None
+
+    def close(self, *, keep: bool = True) -> None:
+        """Finish the file, or remove it."""
+        self._wait()
+        self._worker.shutdown()
+        if keep:
+            self._container.mux(self._stream.encode(None))
+        self._container.close()
+        if keep:
+            self._draft.replace(self._path)
+        else:
+            self._draft.unlink()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close(keep=error is None)
