@@ -4,9 +4,10 @@ from collections.abc import Iterator
 from math import hypot
 
 from hsr8.scenario.mission import Course, Points, Tour, Walk
-from hsr8.scenario.problem import Path, Problem
+from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
+from hsr8.scenario.toml_lines import Path
 from hsr8.scenario.world import CircleMover, ShuttleMover
 
 ROBOT_RADIUS = 0.12

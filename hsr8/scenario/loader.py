@@ -12,9 +12,9 @@ from pydantic import ValidationError
 from hsr8.errors import ScenarioError
 from hsr8.scenario.checks import check
 from hsr8.scenario.presets import expand_presets
-from hsr8.scenario.problem import Path, Problem, problems_of, suggestion
+from hsr8.scenario.problem import Problem, problems_of, suggestion
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.toml_lines import locate, nearest
+from hsr8.scenario.toml_lines import Path, locate, nearest
 from hsr8.scenario.toml_writer import write_toml
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
@@ -203,10 +203,9 @@ def _parse_override(override: str, data: Table) -> Table:
     except (ValueError, RecursionError):
         parsed = {"value": text.strip()}
     value = parsed["value"] if len(parsed) == 1 else text
-    for k in range(len(parts) - 1, -1, -1):
+    for k in range(len(parts) - 1, 0, -1):
         value = _put(parts[k], value, _at(data, parts[:k]), override)
-    table: Table = value
-    return table
+    return {parts[0]: value}
 
 
 def _put(part: str, value: Any, there: Any, override: str) -> Any:

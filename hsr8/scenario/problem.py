@@ -9,8 +9,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from hsr8.scenario.reference import allowed, keys_at, node_at
-
-Path = tuple[str | int, ...]
+from hsr8.scenario.toml_lines import Path, holds
 
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 _KINDS = {dict: "a table", list: "a list", str: "text", bool: "a truth value"}
@@ -105,11 +104,9 @@ def _plain_path(location: Sequence[str | int], data: Any) -> Path:
     """`location` without the names of the alternatives pydantic puts between keys."""
     path: list[str | int] = []
     for k, part in enumerate(location):
-        if (isinstance(data, Mapping) and part in data) or (
-            isinstance(data, list) and isinstance(part, int) and part < len(data)
-        ):
-            path.append(part)
+        if holds(data, part):
             data = data[part]
-        elif k == len(location) - 1:
-            path.append(part)
+        elif k < len(location) - 1:
+            continue
+        path.append(part)
     return tuple(path)

@@ -5,8 +5,8 @@ from functools import cache
 from typing import Any
 
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.toml_lines import Path, holds
 
-Path = tuple[str | int, ...]
 Node = dict[str, Any]
 
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
@@ -27,7 +27,7 @@ def node_at(path: Path, data: Any) -> Node | None:
     """Schema of what stands at `path` in `data`; None where nothing may stand."""
     node: Node | None = _resolve(json_schema(), data)
     for part in path:
-        data = _step(data, part)
+        data = data[part] if holds(data, part) else None
         if node is None:
             return None
         if isinstance(part, int):
@@ -90,7 +90,7 @@ def _row(key: str, given: Node, required: bool) -> str:
         shown = "*required*"
     else:
         shown = "" if default is None else f"`{_toml(default)}`"
-    meaning = given.get("description", node.get("description", "")).replace("\n", " ")
+    meaning = str(given.get("description") or node.get("description", "")).replace("\n", " ")
     return f"| `{key}` | {shown} | {allowed(node)} | {meaning} |"
 
 
@@ -106,19 +106,20 @@ def _sections() -> Iterator[tuple[str, Node]]:
     """Every table with its title, outer tables first."""
     root = json_schema()
     yield "Top level", root
-    todo = [((name,), node, False) for name, node in root["properties"].items()]
+    todo: list[tuple[tuple[str, ...], Node]] = [
+        ((name,), node) for name, node in root["properties"].items()
+    ]
     while todo:
-        path, given, many = todo.pop(0)
-        for title, node in _variants(path, given, many):
+        path, given = todo.pop(0)
+        for title, node in _variants(path, given):
             if "properties" not in node:
                 continue
             yield title, node
-            todo = [
-                ((*path, name), inner, False) for name, inner in node["properties"].items()
-            ] + todo
+            inner = [((*path, name), value) for name, value in node["properties"].items()]
+            todo = inner + todo
 
 
-def _variants(path: tuple[str, ...], given: Node, many: bool) -> Iterator[tuple[str, Node]]:
+def _variants(path: tuple[str, ...], given: Node, many: bool = False) -> Iterator[tuple[str, Node]]:
     node = _resolve(given, None)
     if node.get("type") == "array" and "items" in node:
         yield from _variants(path, node["items"], many=True)
@@ -156,11 +157,3 @@ def json_schema_definition(reference: str) -> Node:
     for part in reference.removeprefix("#/").split("/"):
         node = node[part]
     return node
-
-
-def _step(data: Any, part: str | int) -> Any:
-    if isinstance(data, dict) and part in data:
-        return data[part]
-    if isinstance(data, list) and isinstance(part, int) and part < len(data):
-        return data[part]
-    return None

@@ -41,7 +41,7 @@ def locate(text: str, data: dict[str, Any]) -> dict[Path, int]:
         assignment = _ASSIGNMENT.match(line)
         if assignment:
             path = _resolve(table, _parts(assignment[1]), counts)
-            if _holds(data, path):
+            if _reaches(data, path):
                 lines.setdefault(path, number)
     return lines
 
@@ -68,11 +68,16 @@ def _resolve(table: Path, parts: list[str], counts: dict[Path, int]) -> Path:
     return path
 
 
-def _holds(data: Any, path: Path) -> bool:
+def holds(data: Any, part: str | int) -> bool:
+    """Whether `data` is a table with the key, or a list with the entry `part`."""
+    if isinstance(data, dict):
+        return part in data
+    return isinstance(data, list) and isinstance(part, int) and part < len(data)
+
+
+def _reaches(data: Any, path: Path) -> bool:
     for part in path:
-        inside = isinstance(data, dict) and part in data
-        entry = isinstance(data, list) and isinstance(part, int) and part < len(data)
-        if not (inside or entry):
+        if not holds(data, part):
             return False
         data = data[part]
     return True

@@ -11,7 +11,6 @@ The rules, with distances between surfaces unless a point is named:
 
 import zlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from math import cos, pi, radians, sin
 
 import numpy as np
@@ -21,11 +20,12 @@ from hsr8.errors import ScenarioError
 from hsr8.scenario.checks import ROBOT_RADIUS
 from hsr8.scenario.mission import Course, Points, Tour
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.world import LineMover, Mover, ShuttleMover
+from hsr8.world.lane import Lane, distance, motion_law
 from hsr8.world.layout import OBSTACLE_HEIGHT, Layout, Obstacle, standard_beacons
-from hsr8.world.motion import Circle, Line, MotionLaw, Shuttle
+from hsr8.world.motion import Circle, MotionLaw, Shuttle
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
 STATIC_GAP = 2.0 * ROBOT_RADIUS + 0.16  # between static obstacles [m]
@@ -43,7 +43,6 @@ BATCH = 64  # candidates drawn at a time
 TRIES = 30  # batches for one thing
 WORLDS = 20  # worlds begun before giving up
 LANE_TRIES = 300  # for one mover
-LANE_SAMPLES = 61  # points that stand for a lane
 
 
 class _CrowdedError(Exception):
@@ -73,21 +72,6 @@ def draw_layout(scenario: Scenario, seed: int) -> Layout:
     )
 
 
-@dataclass
-class _Disc:
-    centre: Point
-    radius: float
-
-
-@dataclass
-class _Lane:
-    """A mover and the points it passes."""
-
-    obstacle: Obstacle
-    path: Array = field(repr=False)
-    ends: Array = field(repr=False)
-
-
 class _Draw:
     """One attempt."""
 
@@ -96,27 +80,28 @@ class _Draw:
         self._world = scenario.world
         self._rng = rng
         self._half = 0.5 * np.asarray(scenario.world.size)
-        self._static: list[_Disc] = []
-        self._lanes: list[_Lane] = []
+        self._static: list[Obstacle] = []
+        self._lanes: list[Lane] = []
 
     def layout(self) -> Layout:
         """Lanes first, for they need most room; then what stands, the start and the points."""
         world = self._world
         start = self._scenario.robot.start.position
         points = self._given_points()
-        self._lanes = [_lane(_placed_mover(m), m.radius, m.colour) for m in world.mover]
-        static = [Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.colour) for o in world.obstacle]
-        self._static = [_Disc(o.position, o.radius) for o in static]
+        self._lanes = [Lane.of(motion_law(m), m.radius, m.colour) for m in world.mover]
+        self._static = [
+            Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.colour) for o in world.obstacle
+        ]
         for _ in range(world.n_moving):
             self._lanes.append(self._draw_mover(start, points))
-        static += self._draw_static(start, points)
+        self._draw_static(start, points)
         if start is None:
             start = self._draw_point("the start", self._start_clear)
         if points is None:
             points = self._draw_points(start)
         return Layout(
             field_size=world.size,
-            obstacles=(*static, *(lane.obstacle for lane in self._lanes)),
+            obstacles=(*self._static, *(lane.obstacle for lane in self._lanes)),
             beacons=standard_beacons(world.size) if world.beacons else (),
             start=(*start, self._start_heading(start, points)),
             waypoints=np.array(points, dtype=float).reshape(-1, 2),
@@ -153,27 +138,24 @@ class _Draw:
         ahead = float(np.arctan2(points[0][1] - start[1], points[0][0] - start[0]))
         return float(np.angle(np.exp(1j * (ahead + turn * START_TURN))))
 
-    def _draw_static(self, start: Point | None, points: Sequence[Point] | None) -> list[Obstacle]:
-        drawn = []
+    def _draw_static(self, start: Point | None, points: Sequence[Point] | None) -> None:
         for _ in range(self._world.n_static):
             radius = self._radius()
 
-            def clear(p: Array, radius: float = radius) -> Array:
-                free = self._static_gap(p) - radius >= STATIC_GAP
+            def clear(p: Array, radius: float = radius) -> Mask:
+                free: Mask = self._static_gap(p) - radius >= STATIC_GAP
                 if start is not None:
-                    free &= _distance(p, [start]) - radius >= START_TO_STATIC
+                    free &= distance(p, [start]) - radius >= START_TO_STATIC
                 if points:
-                    free &= _distance(p, points) - radius >= POINT_TO_STATIC
+                    free &= distance(p, points) - radius >= POINT_TO_STATIC
                 for lane in self._lanes:
-                    gap = _distance(p, lane.path) - radius - lane.obstacle.radius
+                    gap = distance(p, lane.path) - radius - lane.obstacle.radius
                     free &= gap >= LANE_TO_STATIC
                 return free
 
             room = radius + OBSTACLE_TO_RIM
             position = self._draw_point("static obstacles", clear, room)
-            self._static.append(_Disc(position, radius))
-            drawn.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._colour()))
-        return drawn
+            self._static.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._colour()))
 
     def _draw_points(self, start: Point) -> list[Point]:
         """Via points of a tour, or via points and goal of a course."""
@@ -191,23 +173,23 @@ class _Draw:
 
             def clear(
                 p: Array, last: Point = last, apart: list[Point] = apart, is_goal: bool = is_goal
-            ) -> Array:
-                free = self._static_gap(p) >= POINT_TO_STATIC
-                free &= _distance(p, apart) >= shortest
-                free &= _distance(p, [last]) <= longest
+            ) -> Mask:
+                free: Mask = self._static_gap(p) >= POINT_TO_STATIC
+                free &= distance(p, apart) >= shortest
+                free &= distance(p, [last]) <= longest
                 if is_goal:
                     for lane in self._lanes:
-                        gap = _distance(p, lane.ends) - lane.obstacle.radius
+                        gap = distance(p, lane.ends) - lane.obstacle.radius
                         free &= gap >= LANE_TO_GOAL
                 return free
 
             points.append(self._draw_point("via points", clear))
         return points
 
-    def _draw_mover(self, start: Point | None, points: Sequence[Point] | None) -> _Lane:
+    def _draw_mover(self, start: Point | None, points: Sequence[Point] | None) -> Lane:
         goal = points[-1] if points and self._has_goal() else None
         for _ in range(LANE_TRIES):
-            lane = _lane(self._draw_law(), self._radius(), self._colour())
+            lane = Lane.of(self._draw_law(), self._radius(), self._colour())
             if self._lane_clear(lane, start, goal):
                 return lane
         raise _CrowdedError("moving obstacles")
@@ -230,33 +212,31 @@ class _Draw:
             offset=float(rng.uniform(0.0, 2.0 * length)),
         )
 
-    def _lane_clear(self, lane: _Lane, start: Point | None, goal: Point | None) -> bool:
+    def _lane_clear(self, lane: Lane, start: Point | None, goal: Point | None) -> bool:
         radius = lane.obstacle.radius
         if (np.abs(lane.path) > self._half - radius - OBSTACLE_TO_RIM).any():
             return False
         if (self._static_gap(lane.path) - radius < LANE_TO_STATIC).any():
             return False
         at_first = np.array([lane.obstacle.position])
-        if start is not None and _distance(at_first, [start])[0] - radius < START_TO_MOVER:
+        if start is not None and distance(at_first, [start])[0] - radius < START_TO_MOVER:
             return False
-        if goal is not None and (_distance(lane.ends, [goal]) - radius < LANE_TO_GOAL).any():
+        if goal is not None and (distance(lane.ends, [goal]) - radius < LANE_TO_GOAL).any():
             return False
         return all(
-            (
-                _distance(lane.path, other.path) - radius - other.obstacle.radius >= LANE_TO_LANE
-            ).all()
+            (distance(lane.path, other.path) - radius - other.obstacle.radius >= LANE_TO_LANE).all()
             for other in self._lanes
         )
 
-    def _start_clear(self, p: Array) -> Array:
-        free = self._static_gap(p) >= START_TO_STATIC
+    def _start_clear(self, p: Array) -> Mask:
+        free: Mask = self._static_gap(p) >= START_TO_STATIC
         for lane in self._lanes:
-            gap = _distance(p, [lane.obstacle.position]) - lane.obstacle.radius
+            gap = distance(p, [lane.obstacle.position]) - lane.obstacle.radius
             free &= gap >= START_TO_MOVER
         return free
 
     def _draw_point(
-        self, what: str, clear: Callable[[Array], Array], room: float = POINT_TO_RIM
+        self, what: str, clear: Callable[[Array], Mask], room: float = POINT_TO_RIM
     ) -> Point:
         reach = self._half - room
         if (reach <= 0.0).any():
@@ -273,8 +253,8 @@ class _Draw:
         """Distance of points (n, 2) to the nearest surface of a static obstacle (n,)."""
         if not self._static:
             return np.full(len(p), np.inf)
-        centres = np.array([d.centre for d in self._static])
-        radii = np.array([d.radius for d in self._static])
+        centres = np.array([o.position for o in self._static])
+        radii = np.array([o.radius for o in self._static])
         gaps = np.hypot(*(p[:, None] - centres[None]).transpose(2, 0, 1)) - radii
         nearest: Array = gaps.min(axis=1)
         return nearest
@@ -284,36 +264,3 @@ class _Draw:
 
     def _colour(self) -> str:
         return COLOURS[int(self._rng.integers(len(COLOURS)))]
-
-
-def _placed_mover(mover: Mover) -> MotionLaw:
-    if isinstance(mover, ShuttleMover):
-        return Shuttle(mover.start, mover.end, mover.speed)
-    if isinstance(mover, LineMover):
-        angle = radians(mover.heading_deg)
-        # Headings are given in degrees: a right angle shall be one.
-        way = np.round([cos(angle), sin(angle)], 12).tolist()
-        return Line(mover.start, (mover.speed * way[0], mover.speed * way[1]))
-    speed = -mover.speed if mover.clockwise else mover.speed
-    return Circle(mover.centre, mover.path_radius, speed, radians(mover.angle_deg))
-
-
-def _lane(law: MotionLaw, radius: float, colour: str) -> _Lane:
-    """A mover and its lane as points, close enough together for the rules."""
-    obstacle = Obstacle(law.position(0.0), radius, OBSTACLE_HEIGHT, colour, law)
-    if isinstance(law, Shuttle):
-        path = np.linspace(law.start, law.end, LANE_SAMPLES)
-        return _Lane(obstacle, path, path[[0, -1]])
-    if isinstance(law, Circle):
-        angle = np.linspace(0.0, 2.0 * pi, 2 * LANE_SAMPLES, endpoint=False)
-        path = np.asarray(law.centre) + law.radius * np.stack([np.cos(angle), np.sin(angle)], 1)
-        return _Lane(obstacle, path, path)
-    path = np.array([law.position(t) for t in np.linspace(0.0, 60.0, LANE_SAMPLES).tolist()])
-    return _Lane(obstacle, path, path[:1])
-
-
-def _distance(p: Array, others: Sequence[Point] | Array) -> Array:
-    """Distance of points (n, 2) to the nearest of `others` (n,)."""
-    q = np.asarray(others, dtype=float)
-    nearest: Array = np.hypot(*(p[:, None] - q[None]).transpose(2, 0, 1)).min(axis=1)
-    return nearest

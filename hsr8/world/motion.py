@@ -163,7 +163,7 @@ class Movers:
         """Positions at `time` [s], layout order (n, 2) [m]."""
         gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
         along = np.minimum(gone, 2.0 * self._length - gone)
-        straight = self._origin + along[:, None] * self._way
+        straight: Array = self._origin + along[:, None] * self._way
         if len(self._round) == 0:
             return straight
         angle = self._angle + self._rim_speed / self._radius * time
@@ -174,7 +174,7 @@ class Movers:
         """Velocities at `time` [s], layout order (n, 2) [m/s]."""
         gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
         speed = np.where(gone < self._length, self._speed, -self._speed)
-        straight = speed[:, None] * self._way
+        straight: Array = speed[:, None] * self._way
         if len(self._round) == 0:
             return straight
         angle = self._angle + self._rim_speed / self._radius * time

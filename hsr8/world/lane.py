@@ -1,0 +1,68 @@
+"""A mover and all the places it passes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, pi, radians, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.scenario.world import LineMover, Mover, ShuttleMover
+from hsr8.world.layout import OBSTACLE_HEIGHT, Obstacle, Point
+from hsr8.world.motion import Circle, Line, MotionLaw, Shuttle
+
+Array = NDArray[np.float64]
+
+SAMPLES = 61  # points that stand for a lane
+OPEN_TIME = 60.0  # a lane without an end is followed for so long [s]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lane:
+    """A mover with its lane.
+
+    Attributes:
+        obstacle: the mover.
+        path: points along its lane (n, 2) [m].
+        ends: points where it may stay for a while or turn about (k, 2) [m].
+    """
+
+    obstacle: Obstacle
+    path: Array
+    ends: Array
+
+    @classmethod
+    def of(cls, law: MotionLaw, radius: float, colour: str) -> "Lane":
+        """Lane of a mover of some `radius` [m] that follows `law`."""
+        obstacle = Obstacle(law.position(0.0), radius, OBSTACLE_HEIGHT, colour, law)
+        if isinstance(law, Shuttle):
+            path = np.linspace(law.start, law.end, SAMPLES)
+            return cls(obstacle, path, path[[0, -1]])
+        if isinstance(law, Circle):
+            angle = np.linspace(0.0, 2.0 * pi, 2 * SAMPLES, endpoint=False)
+            rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            path = np.asarray(law.centre) + law.radius * rim
+            return cls(obstacle, path, path)
+        times = np.linspace(0.0, OPEN_TIME, SAMPLES).tolist()
+        path = np.array([law.position(time) for time in times])
+        return cls(obstacle, path, path[:1])
+
+
+def motion_law(mover: Mover) -> MotionLaw:
+    """Motion of a mover placed by hand."""
+    if isinstance(mover, ShuttleMover):
+        return Shuttle(mover.start, mover.end, mover.speed)
+    if isinstance(mover, LineMover):
+        angle = radians(mover.heading_deg)
+        # Headings are given in degrees: a right angle shall be one.
+        way = np.round([cos(angle), sin(angle)], 12).tolist()
+        return Line(mover.start, (mover.speed * way[0], mover.speed * way[1]))
+    speed = -mover.speed if mover.clockwise else mover.speed
+    return Circle(mover.centre, mover.path_radius, speed, radians(mover.angle_deg))
+
+
+def distance(points: Array, others: Sequence[Point] | Array) -> Array:
+    """Distance of each of `points` (n, 2) to the nearest of `others` (m, 2): (n,) [m]."""
+    offsets = points[:, None] - np.asarray(others, dtype=float)[None]
+    nearest: Array = np.hypot(offsets[..., 0], offsets[..., 1]).min(axis=1)
+    return nearest
