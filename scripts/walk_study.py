@@ -31,6 +31,8 @@ ROBOT = Path(__file__).resolve().parents[1] / "models" / "hsr8" / "hsr8.xml"
 FALLEN_HEIGHT = 0.13  # [m]
 FALLEN_COSINE = 0.5
 SUBSTEPS = 2
+SAMPLE = 4  # ticks between two rows of a trace
+SAMPLE_TIME = SAMPLE * CONTROL_PERIOD
 
 Script = Callable[[float], tuple[VelocityCommand, HeadTarget]]
 
@@ -70,6 +72,8 @@ class Body:
         self._pad_gain = 1.0 + 0.05 * noise * rng.standard_normal(8)
         self._yaw = 0.0
         self.torso = model.body("torso_link").id
+        self._floor = model.geom("floor").id
+        self._camera = model.camera("egocentric").id
 
     def sense(self) -> BodySensors:
         """Read all sensors."""
@@ -115,19 +119,54 @@ class Body:
         yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
         return np.array([*self.data.qpos[:2], yaw])
 
+    @property
+    def self_contact(self) -> bool:
+        """Whether the body touches itself."""
+        pairs = self.data.contact.geom
+        return bool((pairs != self._floor).all(axis=1).any()) if len(pairs) else False
+
+    def camera_error(self, R_RC: np.ndarray, p_RC: np.ndarray) -> np.ndarray:
+        """Believed minus true camera: pan direction, elevation [rad], height [m] (3,)."""
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+        axis = -self.data.cam_xmat[self._camera].reshape(3, 3)[:, 2]
+        yaw = self.pose[2]
+        believed = R_RC[:, 2]
+        across = np.arctan2(believed[1], believed[0]) - np.arctan2(axis[1], axis[0]) + yaw
+        return np.array(
+            [
+                np.arctan2(np.sin(across), np.cos(across)),
+                np.arcsin(believed[2]) - np.arcsin(axis[2]),
+                p_RC[2] - self.data.cam_xpos[self._camera, 2],
+            ]
+        )
+
 
 @dataclass
 class Trace:
-    """What a walk left behind, one row a tick."""
+    """What a walk left behind, one row every `SAMPLE` ticks."""
 
     tilt: list[float] = field(default_factory=list)
     truth: list[np.ndarray] = field(default_factory=list)
     odometry: list[tuple[float, float, float]] = field(default_factory=list)
     steps: list[int] = field(default_factory=list)
+    camera_error: list[np.ndarray] = field(default_factory=list)
     falls: list[float] = field(default_factory=list)
+    self_contacts: int = 0
+    ticks: int = 0
     wall_engine: float = 0.0
     wall_physics: float = 0.0
-    duration: float = 0.0
+
+    def sample(self, body: Body, engine: WalkingEngine) -> None:
+        """Note where the body is and where the engine believes it to be."""
+        state = engine.state()
+        odometry, camera = state.odometry, state.camera
+        self.tilt.append(float(np.degrees(np.arccos(min(1.0, body.up)))))
+        self.truth.append(body.pose)
+        self.odometry.append((odometry.x, odometry.y, odometry.yaw))
+        self.steps.append(state.step_count)
+        self.self_contacts += body.self_contact
+        self.camera_error.append(body.camera_error(camera.rotation, camera.position))
 
 
 def walk(
@@ -138,7 +177,7 @@ def walk(
     disturb: Callable[[Body, float], None] | None = None,
 ) -> Trace:
     """Walk a script; after a fall a fresh robot goes on."""
-    trace = Trace(duration=duration)
+    trace = Trace()
     body, engine = body_of(), engine_of()
     for tick in range(round(duration / CONTROL_PERIOD)):
         now = tick * CONTROL_PERIOD
@@ -146,17 +185,15 @@ def walk(
         sensors = body.sense()
         start = time.perf_counter()
         targets = engine.step(sensors, command, head)
-        middle = time.perf_counter()
+        trace.wall_engine += time.perf_counter() - start
+        if tick % SAMPLE == 0:
+            trace.sample(body, engine)
         if disturb is not None:
             disturb(body, now)
+        start = time.perf_counter()
         body.apply(targets.position + targets.offset)
-        trace.wall_engine += middle - start
-        trace.wall_physics += time.perf_counter() - middle
-        trace.tilt.append(float(np.degrees(np.arccos(min(1.0, body.up)))))
-        trace.truth.append(body.pose)
-        pose = engine._odometry.pose()
-        trace.odometry.append((pose.x, pose.y, pose.yaw))
-        trace.steps.append(engine._gait.completed)
+        trace.wall_physics += time.perf_counter() - start
+        trace.ticks += 1
         if body.fallen:
             trace.falls.append(now)
             body, engine = body_of(), engine_of()
@@ -196,64 +233,64 @@ def steady_script(command: VelocityCommand) -> Script:
     return lambda _now: (command, HeadTarget())
 
 
-def drift(trace: Trace) -> tuple[float, float, float]:
-    """Odometry error per metre walked [cm/m], yaw error [deg], scale of the distance."""
-    truth, odometry = np.array(trace.truth), np.array(trace.odometry)
-    if trace.falls:
-        cut = int(trace.falls[0] / CONTROL_PERIOD)
-        truth, odometry = truth[:cut], odometry[:cut]
-    # Errors over windows of five seconds, expressed in the heading at their start.
-    window = round(5.0 / CONTROL_PERIOD)
-    errors, lengths, true_lengths = [], [], []
-    for k in range(0, len(truth) - window, window):
-        moved = []
-        for rows in (truth, odometry):
-            d, yaw = rows[k + window, :2] - rows[k, :2], rows[k, 2]
-            c, s = np.cos(yaw), np.sin(yaw)
-            moved.append(np.array([c * d[0] + s * d[1], -s * d[0] + c * d[1]]))
-        errors.append(np.linalg.norm(moved[1] - moved[0]))
-        path = np.diff(truth[k : k + window : 68, :2], axis=0)
-        lengths.append(np.linalg.norm(path, axis=1).sum())
-        true_lengths.append((np.linalg.norm(moved[1]), np.linalg.norm(moved[0])))
-    total = max(1e-9, float(np.sum(lengths)))
-    odo, real = np.array(true_lengths).sum(axis=0) if true_lengths else (0.0, 1.0)
-    yaw = np.unwrap(truth[:, 2]) - odometry[:, 2]
-    return (
-        100.0 * float(np.sum(errors)) / total,
-        float(np.degrees(np.abs(yaw[-1] - yaw[0]))) if len(yaw) else 0.0,
-        float(odo / max(1e-9, real)),
-    )
+def in_heading(rows: np.ndarray) -> np.ndarray:
+    """Displacements between poses (n, 3), in the heading of the earlier one (n - 1, 3)."""
+    d, yaw = np.diff(rows, axis=0), rows[:-1, 2]
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.stack([c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0], d[:, 2]], axis=1)
+
+
+def upright(trace: Trace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Truth, odometry (n, 3) and step counts (n,) until the first fall."""
+    end = round(trace.falls[0] / SAMPLE_TIME) if trace.falls else len(trace.steps)
+    truth, odometry = np.array(trace.truth[:end]), np.array(trace.odometry[:end])
+    truth[:, 2] = np.unwrap(truth[:, 2])
+    return truth, odometry, np.array(trace.steps[:end])
 
 
 def report(name: str, trace: Trace) -> None:
-    """One line."""
-    cm, deg, scale = drift(trace)
+    """A few lines."""
     tilt = np.array(trace.tilt)
-    ticks = len(tilt)
+    truth, odometry, steps = upright(trace)
+    window = round(5.0 / SAMPLE_TIME)
+    moved, believed = in_heading(truth[::window]), in_heading(odometry[::window])
+    errors = np.linalg.norm((believed - moved)[:, :2], axis=1)
+    stride = np.flatnonzero(np.diff(steps)) + 1
+    path = np.linalg.norm(np.diff(truth[stride, :2], axis=0), axis=1).sum()
+    scale = np.linalg.norm(believed[:, :2], axis=1).sum() / max(
+        1e-9, np.linalg.norm(moved[:, :2], axis=1).sum()
+    )
+    yaw = truth[:, 2] - odometry[:, 2]
     print(
-        f"{name:30s} falls {len(trace.falls)} {[round(t, 1) for t in trace.falls][:4]} "
-        f"tilt p50 {np.percentile(tilt, 50):.2f} p99 {np.percentile(tilt, 99):.2f} "
-        f"p99.9 {np.percentile(tilt, 99.9):.2f} max {tilt.max():.1f} | odometry {cm:.1f} cm/m "
-        f"scale {scale:.3f} yaw {deg:.2f} deg | engine {1e6 * trace.wall_engine / ticks:.0f} us "
-        f"physics {1e6 * trace.wall_physics / ticks:.0f} us",
+        f"{name}: falls {len(trace.falls)} {[round(t, 1) for t in trace.falls][:4]}, "
+        f"{steps[-1]} steps, tilt p50/p99/p99.9/max "
+        f"{np.percentile(tilt, 50):.2f} {np.percentile(tilt, 99):.2f} "
+        f"{np.percentile(tilt, 99.9):.2f} {tilt.max():.1f} deg, "
+        f"self contact {trace.self_contacts} of {len(tilt)} samples"
+    )
+    if len(stride) > 2:
+        step_error = in_heading(odometry[stride]) - in_heading(truth[stride])
+        print(
+            f"    odometry {100.0 * errors.sum() / path:.1f} cm/m over 5 s windows, "
+            f"scale {scale:.3f}, yaw {np.degrees(yaw[-1] - yaw[0]):+.2f} deg; a footstep's error "
+            f"mean {(1e3 * step_error.mean(axis=0)).round(2).tolist()} "
+            f"std {(1e3 * step_error.std(axis=0)).round(2).tolist()} mm, mm, mrad"
+        )
+    across, elevation, height = (1e3 * np.array(trace.camera_error).std(axis=0)).tolist()
+    print(
+        f"    camera std: bearing {across:.1f} mrad, elevation {elevation:.1f} mrad, "
+        f"height {height:.2f} mm; engine {1e6 * trace.wall_engine / trace.ticks:.0f} us, "
+        f"physics {1e6 * trace.wall_physics / trace.ticks:.0f} us a tick",
         flush=True,
     )
 
 
 def mean_velocity(trace: Trace, settle: float = 3.0) -> np.ndarray:
     """Mean forward, left, turn velocity after `settle` [m/s, m/s, rad/s] (3,)."""
-    truth = np.array(trace.truth)[round(settle / CONTROL_PERIOD) :]
-    yaw = np.unwrap(truth[:, 2])
-    # Body-frame displacement from footstep to footstep, so that sway cancels.
-    stride = 136
-    rows, heading = truth[::stride], yaw[::stride]
-    d = np.diff(rows[:, :2], axis=0)
-    middle = 0.5 * (heading[1:] + heading[:-1])
-    forward = np.cos(middle) * d[:, 0] + np.sin(middle) * d[:, 1]
-    left = np.cos(middle) * d[:, 1] - np.sin(middle) * d[:, 0]
-    period = stride * CONTROL_PERIOD
-    turn = (yaw[-1] - yaw[0]) / ((len(yaw) - 1) * CONTROL_PERIOD)
-    return np.array([forward.mean() / period, left.mean() / period, turn])
+    truth, _, _ = upright(trace)
+    stride = 34  # two footsteps, so that the sway cancels
+    rows = truth[round(settle / SAMPLE_TIME) :: stride]
+    return in_heading(rows).mean(axis=0) / (stride * SAMPLE_TIME)
 
 
 def parameters_of(settings: list[str]) -> WalkingParameters:

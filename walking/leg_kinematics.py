@@ -7,7 +7,7 @@ a leg costs a few microseconds.
 """
 
 from dataclasses import dataclass
-from math import acos, asin, atan2, cos, hypot, sin, sqrt
+from math import acos, asin, atan2, cos, hypot, sin
 
 LegAngles = tuple[float, float, float, float, float, float]
 Vector = tuple[float, float, float]
@@ -148,8 +148,3 @@ def support_torques(leg: LegDimensions, angles: LegAngles, point: Vector, load: 
         -load * (ax * (hy - ankle_y) - ay * (hx - ankle_x)),
         -load * (fx * (hy - ankle_y) - fy * (hx - ankle_x)),
     )
-
-
-def reach(leg: LegDimensions, depth: float) -> float:
-    """Largest horizontal distance of the ankle from the hip `depth` [m] below it [m]."""
-    return sqrt(max(0.0, (leg.thigh + leg.shank) ** 2 - depth**2))

@@ -1,7 +1,8 @@
 """Where the robot went: support-foot kinematics with the IMU's heading."""
 
-from math import cos, pi, sin
+from math import cos, sin
 
+from walking.rotation import wrap
 from walking.state import Odometry
 
 
@@ -37,8 +38,7 @@ class LegOdometry:
         if self._yaw is None:
             self._yaw = 0.0
         else:
-            turned = (imu_yaw - self._raw_yaw + pi) % (2.0 * pi) - pi
-            self._yaw += turned
+            self._yaw += wrap(imu_yaw - self._raw_yaw)
         self._raw_yaw = imu_yaw
         c, s = cos(self._yaw), sin(self._yaw)
         (lx, ly), (rx, ry) = feet

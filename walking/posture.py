@@ -12,6 +12,7 @@ from walking.joints import HEAD
 from walking.leg_kinematics import FootPose, LegAngles, leg_angles
 from walking.parameters import WalkingParameters
 from walking.robot_model import RobotModel
+from walking.saturation import beyond
 
 Array = NDArray[np.float64]
 
@@ -119,17 +120,9 @@ class Posture:
         flying = gait.stepping and index == gait.swing and not gait.double and not gait.held
         if flying and 0.0 < gait.swing_phase < 1.0:
             for axis in (0, 1):
-                own[axis] += 0.3 * (p.tilt_gain * _beyond(tilt[axis], p.tilt_dead_zone) - own[axis])
+                own[axis] += 0.3 * (p.tilt_gain * beyond(tilt[axis], p.tilt_dead_zone) - own[axis])
         elif own[0] != 0.0 or own[1] != 0.0:
             for axis in (0, 1):
                 own[axis] *= p.tilt_decay
                 if abs(own[axis]) < 1e-6:
                     own[axis] = 0.0
-
-
-def _beyond(value: float, dead_zone: float) -> float:
-    if value > dead_zone:
-        return value - dead_zone
-    if value < -dead_zone:
-        return value + dead_zone
-    return 0.0

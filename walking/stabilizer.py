@@ -6,6 +6,7 @@ from math import cos, exp, sin
 from walking.footsteps import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
 from walking.robot_model import RobotModel
+from walking.saturation import beyond
 from walking.state import Footstep
 from walking.support import SupportRegion
 
@@ -85,8 +86,8 @@ class Stabilizer:
         """
         p = self._parameters
         x, y = self._in_foot(support, error)
-        x = _beyond(x, p.capture_dead_zone * self._room[0])
-        y = _beyond(y, p.capture_dead_zone * self._room[1])
+        x = beyond(x, p.capture_dead_zone * self._room[0])
+        y = beyond(y, p.capture_dead_zone * self._room[1])
         if x == 0.0 and y == 0.0:
             return landing
         growth = exp(self._omega * ticks_left * CONTROL_PERIOD)
@@ -99,12 +100,3 @@ class Stabilizer:
     def _in_foot(foot: Footstep, vector: tuple[float, float]) -> tuple[float, float]:
         c, s = cos(foot.yaw), sin(foot.yaw)
         return c * vector[0] + s * vector[1], c * vector[1] - s * vector[0]
-
-
-def _beyond(value: float, dead_zone: float) -> float:
-    """What exceeds a dead zone."""
-    if value > dead_zone:
-        return value - dead_zone
-    if value < -dead_zone:
-        return value + dead_zone
-    return 0.0

@@ -40,7 +40,7 @@ class SupportRegion:
         return min(1.0, max(0.0, ((x - self.ax) * dx + (y - self.ay) * dy) / square))
 
     def clip(self, x: float, y: float) -> tuple[float, float]:
-        """A point of the region near x, y; x, y itself when it is inside [m]."""
+        """A point of the region near x, y: in the rectangle at its load share [m]."""
         s = self.share(x, y)
         r = 1.0 - s
         cx, cy = r * self.ax + s * self.bx, r * self.ay + s * self.by

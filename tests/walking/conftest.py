@@ -1,0 +1,87 @@
+"""A robot model and a body without dynamics."""
+
+from math import atan2, cos, sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from walking.joints import LEFT_LEG, RIGHT_LEG
+from walking.leg_kinematics import foot_pose
+from walking.parameters import CONTROL_PERIOD
+from walking.robot_model import RobotModel
+from walking.sensing import BodySensors
+
+MODEL = Path(__file__).resolve().parents[2] / "models" / "hsr8" / "hsr8.xml"
+
+
+@pytest.fixture(scope="session")
+def robot() -> RobotModel:
+    return RobotModel.from_mjcf(MODEL)
+
+
+class IdealBody:
+    """Joints follow their targets exactly; the lower foot stays where it stands."""
+
+    def __init__(self, robot, stance=0):
+        self._robot = robot
+        self._joints = robot.ready.copy()
+        self._before = self._joints
+        self.x = self.y = self.yaw = 0.0
+        self._turn = 0.0
+        self._stance = stance
+        self._anchor = self._foot_in_world(stance)
+
+    def sense(self):
+        feet = self._feet()
+        gap = feet[1 - self._stance].z - feet[self._stance].z
+        force = np.zeros((2, 4))
+        share = 0.5 if gap < 1e-3 else 0.0
+        force[self._stance] = (1.0 - share) * self._robot.mass * 9.81 / 4.0
+        force[1 - self._stance] = share * self._robot.mass * 9.81 / 4.0
+        return BodySensors(
+            joint_position=self._joints,
+            joint_velocity=(self._joints - self._before) / CONTROL_PERIOD,
+            gyro=np.array([0.0, 0.0, self._turn]),
+            accelerometer=np.array([0.0, 0.0, 9.81]),
+            orientation=np.array([cos(0.5 * self.yaw), 0.0, 0.0, sin(0.5 * self.yaw)]),
+            foot_force=force,
+        )
+
+    def apply(self, targets):
+        self._before, self._joints = self._joints, targets.position
+        feet = self._feet()
+        self._stand()
+        other = 1 - self._stance
+        if feet[other].z < feet[self._stance].z - 1e-9:
+            self._anchor = self._foot_in_world(other)
+            self._stance = other
+
+    def _stand(self):
+        foot = self._feet()[self._stance]
+        ax, ay, a_yaw = self._anchor
+        before, yaw = self.yaw, a_yaw - foot.yaw
+        self._turn = atan2(sin(yaw - before), cos(yaw - before)) / CONTROL_PERIOD
+        self.yaw = yaw
+        self.x = ax - cos(yaw) * foot.x + sin(yaw) * foot.y
+        self.y = ay - sin(yaw) * foot.x - cos(yaw) * foot.y
+
+    def _feet(self):
+        return [
+            foot_pose(leg, tuple(self._joints[part].tolist()))
+            for leg, part in zip(self._robot.legs, (LEFT_LEG, RIGHT_LEG), strict=True)
+        ]
+
+    def _foot_in_world(self, side):
+        foot = self._feet()[side]
+        c, s = cos(self.yaw), sin(self.yaw)
+        return (
+            self.x + c * foot.x - s * foot.y,
+            self.y + s * foot.x + c * foot.y,
+            self.yaw + foot.yaw,
+        )
+
+
+@pytest.fixture
+def ideal_body(robot) -> IdealBody:
+    return IdealBody(robot)

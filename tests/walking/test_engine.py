@@ -1,0 +1,203 @@
+"""The engine on a body without dynamics."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.state import Phase
+
+AHEAD = HeadTarget()
+MIRROR_LEG = np.array([-1, -1, 1, 1, 1, -1])
+MIRROR_ARM = np.array([1, -1, -1, 1, -1, -1])
+
+
+def run(robot, body, script, seconds, parameters=None, watch=None):
+    engine = WalkingEngine(robot, parameters or WalkingParameters())
+    rows = []
+    for k in range(round(seconds / CONTROL_PERIOD)):
+        targets = engine.step(body.sense(), script(k * CONTROL_PERIOD), AHEAD)
+        body.apply(targets)
+        rows.append(np.concatenate([targets.position, targets.offset]))
+        if watch is not None:
+            watch(engine, k)
+    return engine, np.array(rows)
+
+
+def always(*velocity):
+    return lambda _now: VelocityCommand(*velocity)
+
+
+def twists(now):
+    """A different command every 0.15 s, stops among them."""
+    rng = np.random.default_rng([5, int(now / 0.15)])
+    if rng.uniform() < 0.2:
+        return VelocityCommand()
+    forward, left, turn = rng.uniform((-0.2, -0.1, -1.0), (0.3, 0.1, 1.0)).tolist()
+    return VelocityCommand(forward, left, turn)
+
+
+@pytest.mark.parametrize("generator", ["dcm", "preview"])
+@pytest.mark.parametrize(
+    "velocity", [(0.2, 0.0, 0.0), (-0.1, 0.0, 0.0), (0.0, 0.08, 0.0), (0.0, 0.0, -0.5)]
+)
+def test_it_walks_at_the_commanded_velocity(robot, ideal_body, velocity, generator):
+    parameters = WalkingParameters()
+    pattern = replace(parameters.pattern, generator=generator)
+    script, poses = always(*velocity), []
+
+    def watch(_engine, _k):
+        poses.append((ideal_body.x, ideal_body.y, ideal_body.yaw))
+
+    run(robot, ideal_body, script, 6.0, replace(parameters, pattern=pattern), watch)
+    period = round(2 * parameters.gait.footstep_time / CONTROL_PERIOD)
+    first, last = np.array(poses[-1 - 5 * period]), np.array(poses[-1])
+    mean = (last - first) / (5 * period * CONTROL_PERIOD)
+    assert mean == pytest.approx(velocity, abs=0.012)
+
+
+def test_odometry_follows_the_ideal_body(robot, ideal_body):
+    script = always(0.15, 0.03, 0.3)
+    engine, _ = run(robot, ideal_body, script, 6.0)
+    run_one = engine.step(ideal_body.sense(), script(6.0), AHEAD)
+    pose = engine.state().odometry
+    assert np.isfinite(run_one.position).all()
+    assert (pose.x, pose.y) == pytest.approx((ideal_body.x, ideal_body.y), abs=0.03)
+    assert np.sin(pose.yaw - ideal_body.yaw) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_it_stands_still_without_a_command(robot, ideal_body):
+    engine, rows = run(robot, ideal_body, always(), 2.0)
+    assert engine.state().phase is Phase.STANDING
+    assert engine.state().step_count == 0
+    np.testing.assert_allclose(rows[-1], rows[-100], atol=1e-6)
+
+
+def test_it_stops_with_parallel_feet(robot, ideal_body):
+    engine, _ = run(
+        robot,
+        ideal_body,
+        lambda now: VelocityCommand(0.2, 0.05, 0.4) if now < 2.5 else VelocityCommand(),
+        5.0,
+    )
+    state = engine.state()
+    assert state.phase is Phase.STANDING
+    support, other = state.footsteps
+    assert np.hypot(support.x - other.x, support.y - other.y) == pytest.approx(
+        2.0 * WalkingParameters().gait.half_stance, abs=1e-3
+    )
+    assert support.yaw == pytest.approx(other.yaw, abs=1e-3)
+
+
+def test_mirrored_commands_give_the_mirrored_motion(robot, ideal_body):
+    body = type(ideal_body)(robot, stance=1)
+    _, left = run(robot, ideal_body, always(0.12, 0.05, 0.4), 3.0)
+    _, right = run(robot, body, always(0.12, -0.05, -0.4), 3.0)
+    for start in (0, 26):
+        a, b = left[:, start : start + 26], right[:, start : start + 26]
+        np.testing.assert_allclose(b[:, RIGHT_LEG], a[:, LEFT_LEG] * MIRROR_LEG, atol=1e-7)
+        np.testing.assert_allclose(b[:, RIGHT_ARM], a[:, LEFT_ARM] * MIRROR_ARM, atol=1e-6)
+
+
+@pytest.mark.parametrize("generator", ["dcm", "preview"])
+def test_the_planned_zmp_never_leaves_the_support_polygon(robot, ideal_body, generator):
+    parameters = WalkingParameters()
+    pattern = replace(parameters.pattern, generator=generator)
+    sole, margin = robot.sole, pattern.sole_margin
+    corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1]], float)
+    corners = corners * [sole.half_length - margin, sole.half_width - margin]
+    corners[:, 0] += sole.centre
+    before = {}
+
+    def watch(engine, k):
+        # The ZMP of a tick belongs to the feet at its start.
+        if "feet" in before and k % 3 == 0:
+            points = []
+            for foot in before["feet"]:
+                c, s = np.cos(foot.yaw), np.sin(foot.yaw)
+                points.append(corners @ np.array([[c, s], [-s, c]]) + [foot.x, foot.y])
+            hull = ConvexHull(np.concatenate(points))
+            zmp = np.array([engine._pendulum.zmp_x, engine._pendulum.zmp_y])
+            assert (hull.equations[:, :2] @ zmp + hull.equations[:, 2]).max() < 1e-9
+        gait = engine._gait
+        if gait.stepping:
+            before["feet"] = gait.support_feet if gait.double else (gait.support_feet[1],)
+        else:
+            before.clear()
+
+    run(robot, ideal_body, twists, 12.0, replace(parameters, pattern=pattern), watch)
+
+
+def test_targets_stay_smooth_and_inside_the_limits_whatever_is_asked(robot, ideal_body):
+    _, rows = run(robot, ideal_body, twists, 12.0)
+    position = rows[:, :26]
+    assert (position >= robot.lower - 1e-9).all()
+    assert (position <= robot.upper + 1e-9).all()
+    assert np.abs(np.diff(position, axis=0)).max() / CONTROL_PERIOD < 15.0
+
+
+def test_two_engines_compute_the_same(robot, ideal_body):
+    body = type(ideal_body)(robot)
+    _, one = run(robot, ideal_body, twists, 3.0)
+    _, other = run(robot, body, twists, 3.0, watch=lambda engine, _k: engine.state())
+    assert (one == other).all()
+
+
+def test_no_command_is_obeyed_before_the_body_has_settled(robot, ideal_body):
+    parameters = WalkingParameters()
+    engine, _ = run(robot, ideal_body, always(0.2, 0.0, 0.0), parameters.gait.settle_time)
+    assert engine.state().phase is Phase.STANDING
+
+
+def test_head_camera_of_a_level_body(robot, ideal_body):
+    engine, _ = run(robot, ideal_body, always(), 0.1)
+    camera = engine.state().camera
+    _, p_BC = robot.camera_pose(robot.ready)
+    height = WalkingParameters().pattern.pelvis_height
+    assert camera.position == pytest.approx(p_BC + np.array([0.0, 0.0, height]), abs=2e-3)
+    np.testing.assert_allclose(camera.rotation[:, 2], [1.0, 0.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(camera.rotation[:, 0], [0.0, -1.0, 0.0], atol=1e-6)
+
+
+def test_head_camera_takes_the_measured_tilt(robot, ideal_body):
+    engine = WalkingEngine(robot, WalkingParameters())
+    half = 0.05
+    orientation = np.array([np.cos(half), 0.0, np.sin(half), 0.0])
+    engine.step(replace(ideal_body.sense(), orientation=orientation), VelocityCommand(), AHEAD)
+    camera = engine.state().camera
+    np.testing.assert_allclose(camera.rotation[:, 2], [np.cos(0.1), 0.0, -np.sin(0.1)], atol=1e-9)
+
+
+def test_planned_footsteps_are_given_in_the_odometry_frame(robot, ideal_body):
+    engine, _ = run(robot, ideal_body, always(0.2, 0.0, 0.0), 4.0)
+    state = engine.state()
+    assert abs(state.footsteps[0].x - state.odometry.x) < 0.1
+    assert state.footsteps[1].left is not state.footsteps[0].left
+    assert state.footsteps[1].x > state.footsteps[0].x
+    assert np.hypot(*(state.com - [state.odometry.x, state.odometry.y])) < 0.05
+    assert np.hypot(*(state.dcm - state.com)) < 0.1
+
+
+def test_a_lying_robot_knows_it(robot, ideal_body):
+    engine = WalkingEngine(robot, WalkingParameters())
+    lying = np.array([np.cos(0.7), np.sin(0.7), 0.0, 0.0])
+    engine.step(replace(ideal_body.sense(), orientation=lying), VelocityCommand(), AHEAD)
+    assert engine.state().fallen
+
+
+def test_head_turns_to_its_target(robot, ideal_body):
+    engine = WalkingEngine(robot, WalkingParameters())
+    for _ in range(150):
+        targets = engine.step(ideal_body.sense(), VelocityCommand(), HeadTarget(0.8, -0.5))
+        ideal_body.apply(targets)
+    assert targets.position[HEAD] == pytest.approx([0.8, -0.5])
+
+
+def test_there_is_no_state_before_the_first_tick(robot):
+    with pytest.raises(RuntimeError, match="first tick"):
+        WalkingEngine(robot, WalkingParameters()).state()

@@ -1,0 +1,123 @@
+"""The gait's clock, feet and ZMP reference."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from walking.footsteps import STILL, FootstepPlanner
+from walking.gait import Gait
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.state import Footstep, Phase
+
+PARAMETERS = WalkingParameters()
+GAIT = PARAMETERS.gait
+FORWARD = (0.2, 0.0, 0.0)
+START = round(GAIT.start_time / CONTROL_PERIOD)
+STEP = round(GAIT.footstep_time / CONTROL_PERIOD)
+
+
+@pytest.fixture
+def gait(robot):
+    planner = FootstepPlanner(GAIT, PARAMETERS.limits, robot.sole)
+    h = GAIT.half_stance
+    return Gait(PARAMETERS, planner, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
+
+
+def tick(gait, velocity, *, moving=True):
+    if gait.adjustable:
+        gait.aim(gait.nominal(velocity))
+    ramps = gait.plan(gait.landing, velocity, moving=moving)
+    gait.advance(moving=moving)
+    return ramps
+
+
+def test_it_stands_until_it_is_started(gait):
+    for _ in range(100):
+        tick(gait, STILL, moving=False)
+    assert gait.phase is Phase.STANDING
+    assert gait.completed == 0
+    assert gait.right_weight == 0.5
+
+
+def test_phases_follow_each_other(gait):
+    gait.start(0)
+    phases = []
+    for _ in range(START + 4 * STEP):
+        if not phases or phases[-1] is not gait.phase:
+            phases.append(gait.phase)
+        tick(gait, FORWARD)
+    assert phases[:5] == [
+        Phase.DOUBLE_SUPPORT,
+        Phase.LEFT_SUPPORT,
+        Phase.DOUBLE_SUPPORT,
+        Phase.RIGHT_SUPPORT,
+        Phase.DOUBLE_SUPPORT,
+    ]
+
+
+def test_a_footstep_takes_the_footstep_time_and_lands_as_planned(gait):
+    gait.start(0)
+    landings = []
+    for k in range(START + 6 * STEP):
+        before = gait.completed
+        tick(gait, FORWARD)
+        if gait.completed > before:
+            landings.append((k, gait.footholds[1 - gait.support].x, gait.footholds[gait.support].x))
+    assert all(b[0] - a[0] == STEP for a, b in pairwise(landings))
+    stride = FORWARD[0] * GAIT.footstep_time
+    assert all(b[2] - a[2] == pytest.approx(stride) for a, b in pairwise(landings[1:]))
+
+
+def test_feet_move_without_jumps_and_only_in_the_air(gait):
+    gait.start(1)
+    rows = []
+    for _ in range(START + 4 * STEP):
+        tick(gait, FORWARD)
+        rows.append([v for f in gait.feet for v in (f.x.position, f.height)])
+    path = np.array(rows)
+    assert np.abs(np.diff(path[:, [0, 2]], axis=0)).max() < 0.02
+    for x, height in ((0, 1), (2, 3)):
+        assert path[:, height].max() == pytest.approx(GAIT.lift, rel=0.01)
+        moved = np.abs(np.diff(path[:, x])) > 1e-3
+        assert (path[1:, height][moved] > 0.0).all()
+
+
+def test_the_zmp_reference_is_continuous_and_ends_between_the_feet(gait):
+    gait.start(0)
+    for k in range(START + 5 * STEP):
+        ramps = tick(gait, FORWARD, moving=k < 300)
+        for a, b in pairwise(ramps):
+            assert (a.bx, a.by) == pytest.approx((b.ax, b.ay))
+    for _ in range(3 * STEP):
+        ramps = tick(gait, STILL, moving=False)
+    assert gait.phase is Phase.STANDING
+    left, right = gait.footholds
+    assert ramps[-1].by == pytest.approx(0.5 * (left.y + right.y))
+    assert left.x == pytest.approx(right.x)
+
+
+def test_the_landing_may_change_in_the_air_until_it_is_frozen(gait):
+    gait.start(0)
+    while gait.swing_phase < 0.5:
+        tick(gait, FORWARD)
+    planned = gait.landing.x
+    while gait.adjustable:
+        tick(gait, (0.1, 0.0, 0.0))
+    assert gait.landing.x < planned - 0.02
+    frozen = gait.landing
+    while gait.completed == 0:
+        tick(gait, FORWARD)
+    assert gait.footholds[1] == frozen
+
+
+def test_early_contact_leaves_the_foot_where_it_is(gait):
+    gait.start(0)
+    while gait.swing_phase < 0.7:
+        tick(gait, FORWARD)
+    x, height = gait.feet[1].x.position, gait.feet[1].height
+    gait.touch_down()
+    while gait.completed == 0:
+        tick(gait, FORWARD)
+    assert gait.footholds[1].x == pytest.approx(x)
+    assert 0.0 < gait.feet[1].height < height

@@ -1,0 +1,83 @@
+"""The robot's numbers as read from MJCF."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from walking.joints import HEAD, JOINT_NAMES
+from walking.robot_model import RobotModel
+
+BROKEN = """<mujoco><worldbody><body name="base_link"><freejoint name="root"/>
+<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>"""
+
+
+def test_ready_posture_is_inside_the_limits(robot):
+    assert robot.ready.shape == (len(JOINT_NAMES),)
+    assert (robot.ready >= robot.lower).all()
+    assert (robot.ready <= robot.upper).all()
+
+
+def test_feet_stand_level_under_the_hips_in_the_ready_posture(robot):
+    for side, frame in ((0, "l_foot"), (1, "r_foot")):
+        R, p = robot.frame_pose(frame, robot.ready)
+        np.testing.assert_allclose(R[:, 2], [0.0, 0.0, 1.0], atol=1e-4)
+        assert p[0] == pytest.approx(robot.legs[side].hip_x, abs=1e-3)
+
+
+def test_left_and_right_leg_are_mirror_images(robot):
+    left, right = robot.legs
+    assert left.hip_y == -right.hip_y
+    assert (left.thigh, left.shank, left.ankle_height) == (
+        right.thigh,
+        right.shank,
+        right.ankle_height,
+    )
+
+
+def test_sole_is_tiled_by_its_pads(robot):
+    corners = [robot.frame_pose(f"l_sole_{pad}", robot.ready)[1] for pad in ("fl", "br")]
+    foot = robot.frame_pose("l_foot", robot.ready)[1]
+    centre = 0.5 * (corners[0] + corners[1]) - foot
+    assert robot.sole.centre == pytest.approx(centre[0], abs=1e-5)
+    assert robot.sole.half_length == pytest.approx(corners[0][0] - corners[1][0], abs=1e-5)
+
+
+def test_servo_gains_come_from_the_file(robot):
+    assert (robot.stiffness > 0.0).all()
+    assert robot.stiffness[0] > robot.stiffness[HEAD].max()
+    assert (robot.damping > 0.0).all()
+
+
+def test_gravity_torque_is_the_gradient_of_the_potential_energy(robot):
+    q = robot.ready
+    torque = robot.gravity_torque(q)
+    for joint in range(len(JOINT_NAMES)):
+        step = np.zeros_like(q)
+        step[joint] = 1e-6
+        rise = robot.com(q + step)[2] - robot.com(q - step)[2]
+        assert torque[joint] == pytest.approx(robot.mass * 9.81 * rise / 2e-6, abs=1e-5)
+
+
+def test_camera_looks_where_the_head_points(robot):
+    q = robot.ready.copy()
+    q[HEAD] = 0.5 * pi, 0.0
+    R, _ = robot.camera_pose(q)
+    np.testing.assert_allclose(R[:, 2], [0.0, 1.0, 0.0], atol=1e-9)
+    q[HEAD] = 0.0, 0.3
+    R, _ = robot.camera_pose(q)
+    np.testing.assert_allclose(R[:, 2], [np.cos(0.3), 0.0, np.sin(0.3)], atol=1e-9)
+    assert R[2, 1] < 0.0
+    assert np.linalg.det(R) == pytest.approx(1.0)
+
+
+def test_a_file_without_the_joints_is_refused(tmp_path):
+    path = tmp_path / "broken.xml"
+    path.write_text(BROKEN, encoding="utf-8")
+    with pytest.raises(ValueError, match="no position servo for l_hip_yaw"):
+        RobotModel.from_mjcf(path)
+
+
+def test_an_unknown_frame_is_refused(robot):
+    with pytest.raises(ValueError, match="'tail'"):
+        robot.frame_pose("tail", robot.ready)
