@@ -148,7 +148,8 @@ class Simulation:
             if end is not None and tick >= end[0]:
                 return end[1]
             self._body.apply(targets)
-        return "timeout" if self.layout.goal_heading is not None else "completed"
+        finite = len(self.layout.waypoints) > 0 and not self.layout.endless
+        return "timeout" if finite else "completed"
 
     def _sense(self, camera_due: bool) -> SensorFrame:
         body = self._body.sense()

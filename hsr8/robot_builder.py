@@ -3,6 +3,7 @@
 import numpy as np
 
 from hsr8.robot import Goes, Moves, Robot
+from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.script import ScriptedMission, ScriptedPlanner
 from hsr8.world.layout import Layout
@@ -28,7 +29,7 @@ def build_robot(
     navigation = scenario.navigation_parameters()
     mission: Goes
     planner: Moves
-    if scenario.mission.kind == "walk":
+    if isinstance(scenario.mission, Walk):
         mission = ScriptedMission()
         planner = ScriptedPlanner(scenario.mission)
     else:

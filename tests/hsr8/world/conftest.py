@@ -1,0 +1,33 @@
+"""Small worlds the tests of the bodies and cameras share."""
+
+import numpy as np
+import pytest
+
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.assembly import Optics, assemble
+from hsr8.world.layout import Layout, Obstacle, standard_beacons
+
+
+@pytest.fixture
+def silent():
+    """No sensor noise at all."""
+    return SensorNoise(**dict.fromkeys(SensorNoise.__dataclass_fields__, 0.0))
+
+
+@pytest.fixture
+def world():
+    """Builds a layout from obstacles, and its model in the cheap quality."""
+
+    def make(*obstacles: Obstacle, start=(0.0, 0.0, 0.0)):
+        layout = Layout(
+            field_size=(5.0, 5.0),
+            obstacles=obstacles,
+            beacons=standard_beacons((5.0, 5.0)),
+            start=start,
+            waypoints=np.zeros((0, 2)),
+            goal_heading=None,
+            endless=False,
+        )
+        return layout, assemble(layout, "vision", Optics())
+
+    return make

@@ -1,0 +1,93 @@
+import numpy as np
+import pytest
+
+from hsr8.world.analytic import AnalyticCamera
+from hsr8.world.kinematic import KinematicBody
+from hsr8.world.layout import Obstacle
+from vision.camera import PinholeCamera
+
+CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
+
+
+@pytest.fixture
+def see(world, silent):
+    """Detections over many frames of a robot that looks down a little."""
+
+    def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35):
+        layout, model = world(*obstacles, start=start)
+        body = KinematicBody(model, layout, silent, np.random.default_rng(0))
+        body.data.joint("head_tilt").qpos[0] = tilt
+        camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1))
+        return [camera.capture(body) for _ in range(frames)]
+
+    return make
+
+
+def obstacles_in(frames):
+    return [d for frame in frames for d in frame if d.kind == "obstacle"]
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (1.0, -0.5, 2.2)])
+@pytest.mark.parametrize("place", [(1.0, 0.0), (1.5, 0.6), (0.8, -0.3)])
+def test_detections_are_unbiased_in_the_robot_frame(see, start, place):
+    x, y, yaw = start
+    c, s = np.cos(yaw), np.sin(yaw)
+    there = (x + c * place[0] - s * place[1], y + s * place[0] + c * place[1])
+    found = obstacles_in(see(Obstacle(there, 0.08, 0.3, "red"), start=start, frames=200))
+    assert len(found) > 180
+    errors = np.array(
+        [
+            (
+                d.distance - np.hypot(*place),
+                d.bearing - np.arctan2(place[1], place[0]),
+                d.radius - 0.08,
+            )
+            for d in found
+        ]
+    )
+    sigma = errors.std(axis=0)
+    assert np.all(np.abs(errors.mean(axis=0)) < 4 * sigma / np.sqrt(len(found)) + 1e-6)
+
+
+def test_covariance_is_honest(see):
+    found = obstacles_in(see(Obstacle((1.2, 0.2), 0.08, 0.3, "red"), frames=400))
+    truth = np.array([np.hypot(1.2, 0.2), np.arctan2(0.2, 1.2)])
+    nees = [
+        (e := np.array([d.distance, d.bearing]) - truth) @ np.linalg.solve(d.covariance, e) / 2
+        for d in found
+    ]
+    assert 0.8 < np.mean(nees) < 1.2
+
+
+def test_what_is_behind_another_or_behind_the_robot_is_not_seen(see):
+    frames = see(
+        Obstacle((0.8, 0.0), 0.12, 0.3, "red"),
+        Obstacle((1.4, 0.0), 0.05, 0.3, "green"),
+        Obstacle((-1.0, 0.0), 0.1, 0.3, "blue"),
+    )
+    assert {d.label for d in obstacles_in(frames)} == {"red"}
+
+
+def test_a_thing_partly_hidden_is_flagged(see):
+    frames = see(
+        Obstacle((0.8, 0.0), 0.10, 0.3, "red"), Obstacle((1.4, 0.18), 0.10, 0.3, "green")
+    )
+    flags = {d.label: d.occluded for d in obstacles_in(frames)}
+    assert flags == {"red": False, "green": True}
+
+
+def test_a_thing_at_the_border_is_flagged(see):
+    frames = see(Obstacle((0.6, 0.55), 0.12, 0.3, "red"))
+    found = obstacles_in(frames)
+    assert found
+    assert all(d.cut for d in found)
+
+
+def test_beacons_carry_their_names(see):
+    names = {d.label for frame in see(tilt=0.1) for d in frame if d.kind == "beacon"}
+    assert names
+    assert all(name.count("/") == 1 for name in names)
+
+
+def test_far_things_are_not_reported(see):
+    assert not obstacles_in(see(Obstacle((3.6, 0.0), 0.1, 0.3, "red")))

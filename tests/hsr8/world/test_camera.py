@@ -1,0 +1,47 @@
+import numpy as np
+import pytest
+
+from hsr8.world.camera import RenderedCamera
+from hsr8.world.kinematic import KinematicBody
+from hsr8.world.layout import Obstacle
+from vision.camera import CameraPose, PinholeCamera
+from vision.detector import Detector
+from vision.parameters import VisionParameters
+
+pytestmark = pytest.mark.gl
+
+
+@pytest.fixture
+def body(world, silent):
+    layout, model = world(Obstacle((1.0, 0.2), 0.08, 0.3, "red"))
+    body = KinematicBody(model, layout, silent, np.random.default_rng(0))
+    body.data.joint("head_tilt").qpos[0] = -0.3
+    return body
+
+
+def test_an_image_shows_the_world_as_it_is_now(body):
+    with RenderedCamera(body.model, 320, 240) as camera:
+        before = camera.capture(body)
+        again = camera.capture(body)
+        body.data.joint("head_pan").qpos[0] = 0.5
+        turned = camera.capture(body)
+    assert before.shape == (240, 320, 3)
+    assert before.dtype == np.uint8
+    assert np.array_equal(before, again)
+    assert not np.array_equal(before, turned)
+
+
+def test_vision_finds_the_obstacle_where_it_stands(body):
+    with RenderedCamera(body.model, 320, 240) as camera:
+        image = camera.capture(body)
+    fixed = body.data.camera("egocentric")
+    rotation = fixed.xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
+    pinhole = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
+    found = Detector(pinhole, VisionParameters()).detect(
+        image, CameraPose(rotation=rotation, position=fixed.xpos.copy(), tilt_sigma=0.005)
+    )
+    red = [d for d in found if d.label == "red"]
+    assert len(red) == 1
+    assert np.isclose(red[0].distance, np.hypot(1.0, 0.2), atol=0.02)
+    assert np.isclose(red[0].bearing, np.arctan2(0.2, 1.0), atol=0.01)
+    assert np.isclose(red[0].radius, 0.08, atol=0.005)
