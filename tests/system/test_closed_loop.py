@@ -1,0 +1,91 @@
+"""The whole loop: pixels to footsteps in full physics once, and its fast stand-ins often."""
+
+import numpy as np
+import pytest
+
+
+def wrap(angle):
+    return np.angle(np.exp(1j * angle))
+
+
+@pytest.mark.gl
+def test_quick_in_full_physics_through_the_camera(simulate):
+    outcome, recorded, simulation = simulate("quick", body="full", camera="egl")
+    assert outcome.exit_reason == recorded.reason == "goal"
+    assert not any(r.truth.fallen for r in recorded.records)
+    end = recorded.records[-1].truth
+    assert np.hypot(*(end.robot[:2] - simulation.layout.waypoints[-1])) < 0.15
+    assert abs(wrap(end.robot[2] - simulation.layout.goal_heading)) < np.radians(15)
+    errors = [
+        f.belief.pose[:2] - r.truth.robot[:2]
+        for r in recorded.records
+        if (f := r.frame) is not None
+    ]
+    assert np.sqrt(np.mean(np.sum(np.square(errors), axis=1))) < 0.05
+    assert all(f.image is not None and f.image.shape == (240, 320, 3) for f in recorded.frames)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_quick_with_the_stand_ins(simulate, seed):
+    outcome, recorded, simulation = simulate("quick", seed=seed, duration=90)
+    assert outcome.exit_reason == "goal"
+    end = recorded.records[-1].truth.robot
+    assert np.hypot(*(end[:2] - simulation.layout.waypoints[-1])) < 0.15
+    assert abs(wrap(end[2] - simulation.layout.goal_heading)) < np.radians(15)
+
+
+def test_the_paper_profile_runs_too(simulate):
+    outcome, recorded, _ = simulate("quick", 'navigation.profile="paper"', duration=10.0)
+    assert outcome.exit_reason in {"timeout", "goal"}
+    first, last = recorded.records[0].truth.robot, recorded.records[-1].truth.robot
+    assert np.hypot(*(last - first)[:2]) > 0.3
+
+
+def test_records_come_at_their_period_and_frames_at_theirs(simulate):
+    _, recorded, _ = simulate("quick", duration=2.0)
+    times = np.array([r.time for r in recorded.records])
+    assert np.allclose(np.diff(times), 0.02)
+    captures = np.array([f.time for f in recorded.frames])
+    assert np.allclose(np.diff(captures), 0.06)
+
+
+def test_a_time_out_is_told(simulate):
+    outcome, recorded, _ = simulate("course", duration=1.0)
+    assert outcome.exit_reason == recorded.reason == "timeout"
+    assert np.isclose(outcome.time, 1.0, atol=0.01)
+
+
+def test_a_tour_completes(simulate):
+    outcome, _, _ = simulate("paper", duration=1.0)
+    assert outcome.exit_reason == "completed"
+
+
+def test_an_interrupted_run_ends_at_once_and_closes_its_listeners(simulate):
+    from hsr8.loop import Simulation
+    from hsr8.scenario.loader import load
+
+    class Stops:
+        reason = None
+
+        def on_record(self, record):
+            if record.time >= 0.5:
+                simulation.interrupt()
+
+        def on_event(self, time, kind, text):
+            pass
+
+        def close(self, exit_reason):
+            self.reason = exit_reason
+
+    listener = Stops()
+    scenario = load("quick", ['robot.body="kinematic"', 'camera.source="analytic"'])
+    simulation = Simulation(scenario, 0, [listener])
+    outcome = simulation.run()
+    assert outcome.exit_reason == listener.reason == "interrupted"
+    assert np.isclose(outcome.time, 0.5, atol=0.03)
+
+
+def test_a_scripted_walk_goes_where_it_is_told(simulate):
+    _, recorded, _ = simulate("walk", duration=6.0)
+    way = recorded.records[-1].truth.robot - recorded.records[0].truth.robot
+    assert np.hypot(*way[:2]) > 0.3

@@ -1,0 +1,46 @@
+"""The robot never sees the truth: it walks the same when every look at it is refused."""
+
+import dataclasses
+
+import numpy as np
+
+from hsr8.loop import Simulation
+from hsr8.scenario.loader import load
+from hsr8.world.truth import Truth
+
+REFEREE = {"fallen", "contacts", "time"}  # what ends a run and what is told as an event
+
+
+class Forbidden:
+    """Stands in for the truth and raises on access to all but what the referee needs."""
+
+    def __init__(self, truth):
+        self._truth = truth
+
+    def __getattr__(self, name):
+        if name in REFEREE:
+            return getattr(self._truth, name)
+        raise AssertionError(f"the loop looked at truth.{name}")
+
+
+def test_the_loop_runs_the_same_without_the_truth(monkeypatch):
+    scenario = load(
+        "quick", ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"]
+    )
+    expected = Simulation(scenario, 0).run()
+    blind = Simulation(scenario, 0)
+    body = blind._body
+    look = body.truth
+    monkeypatch.setattr(body, "truth", lambda: Forbidden(look()))
+    assert blind.run() == expected
+
+
+def test_the_stand_in_really_forbids():
+    blank = {f.name: np.zeros(1) for f in dataclasses.fields(Truth)}
+    forbidden = Forbidden(Truth(**blank))
+    for name in blank.keys() - REFEREE:
+        try:
+            getattr(forbidden, name)
+        except AssertionError:
+            continue
+        raise RuntimeError(f"{name} can be read")
