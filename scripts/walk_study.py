@@ -183,16 +183,16 @@ def walk(
         now = tick * CONTROL_PERIOD
         command, head = script(now)
         sensors = body.sense()
-        start = time.perf_counter()
+        start = time.process_time()
         targets = engine.step(sensors, command, head)
-        trace.wall_engine += time.perf_counter() - start
+        trace.wall_engine += time.process_time() - start
         if tick % SAMPLE == 0:
             trace.sample(body, engine)
         if disturb is not None:
             disturb(body, now)
-        start = time.perf_counter()
+        start = time.process_time()
         body.apply(targets.position + targets.offset)
-        trace.wall_physics += time.perf_counter() - start
+        trace.wall_physics += time.process_time() - start
         trace.ticks += 1
         if body.fallen:
             trace.falls.append(now)

@@ -95,7 +95,7 @@ class WalkingEngine:
         body = self._sense(sensors)
         error = self._estimate(body)
         self._command(command, error)
-        velocity = self._velocity(body)
+        velocity = self._velocity()
         moving = self._slew.moving
         gait = self._gait
         if not gait.stepping:
@@ -107,8 +107,8 @@ class WalkingEngine:
         self._generator.advance(pendulum, ramps, dcm, region)
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
-        wide = self._region(self._parameters.stabilizer.sole_margin)
-        self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, wide)
+        reachable = self._region(self._parameters.stabilizer.sole_margin)
+        self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
         gait.advance(moving=moving)
         return self._realize(body, zmp, load, self._head.advance(head))
 
@@ -138,8 +138,13 @@ class WalkingEngine:
             roll=body.roll,
             pitch=body.pitch,
             step_count=gait.completed,
-            fallen=hypot(body.roll, body.pitch) > self._parameters.estimator.fall_tilt,
+            fallen=self._fallen,
         )
+
+    @property
+    def _fallen(self) -> bool:
+        limit = self._parameters.estimator.fall_tilt
+        return hypot(self._tilt.roll, self._tilt.pitch) > limit
 
     def _sense(self, sensors: BodySensors) -> BodyMeasurement:
         w, x, y, z = sensors.orientation.tolist()
@@ -196,7 +201,7 @@ class WalkingEngine:
         if hypot(*error) < self._parameters.stabilizer.slew_error:
             self._slew.follow(command if settled else STILL)
 
-    def _velocity(self, body: BodyMeasurement) -> Velocity:
+    def _velocity(self) -> Velocity:
         """Velocity of the footsteps: the given one with the heading hold."""
         p = self._parameters.stabilizer
         slew = self._slew
@@ -210,17 +215,19 @@ class WalkingEngine:
         return slew.forward, slew.left, slew.turn + rate
 
     def _maybe_start(self, velocity: Velocity, error: tuple[float, float], *, moving: bool) -> None:
-        gait = self._gait
-        pushed = self._stabilizer.exceeds(
-            gait.footholds[0], error, self._parameters.stabilizer.step_error
-        )
-        if not moving and not pushed:
+        gait, foot = self._gait, self._gait.footholds[0]
+        share = self._parameters.stabilizer.step_error
+        pushed = self._stabilizer.exceeds(foot, error, share)
+        if self._fallen or not (moving or pushed):
             return
         opening_left = self._planner.opening_left(velocity)
-        if opening_left is None:
+        if pushed:
+            # The foot on the side of the fall is the one that can catch it.
+            opening_left = cos(foot.yaw) * error[1] - sin(foot.yaw) * error[0] > 0.0
+        elif opening_left is None:
             opening_left = not self._last_opening_left
         self._last_opening_left = opening_left
-        gait.start(1 if opening_left else 0)
+        gait.start(1 if opening_left else 0, at_once=pushed)
 
     def _plan(
         self,

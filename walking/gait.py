@@ -147,9 +147,16 @@ class Gait:
         loading = self.footholds[self.support]
         return (self.footholds[self.swing] if self.double else loading), loading
 
-    def start(self, support: int) -> None:
-        """Begin to walk with a first long double support onto foot `support`."""
-        self._begin(support, self._start, self._zmp_reference(), self.right_weight)
+    def start(self, support: int, *, at_once: bool = False) -> None:
+        """Begin to walk onto foot `support`.
+
+        Args:
+            support: index of the first support foot.
+            at_once: whether to lift the other foot as soon as in a walk, without the long
+                first double support.
+        """
+        ticks = self._double if at_once else self._start
+        self._begin(support, ticks, self._zmp_reference(), self.right_weight)
 
     def nominal(self, velocity: Velocity) -> Footstep:
         """Landing that the velocity asks for."""

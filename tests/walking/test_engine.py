@@ -183,11 +183,31 @@ def test_planned_footsteps_are_given_in_the_odometry_frame(robot, ideal_body):
     assert np.hypot(*(state.dcm - state.com)) < 0.1
 
 
-def test_a_lying_robot_knows_it(robot, ideal_body):
+def test_a_lying_robot_knows_it_and_does_not_step(robot, ideal_body):
     engine = WalkingEngine(robot, WalkingParameters())
     lying = np.array([np.cos(0.7), np.sin(0.7), 0.0, 0.0])
-    engine.step(replace(ideal_body.sense(), orientation=lying), VelocityCommand(), AHEAD)
+    sensors = replace(ideal_body.sense(), orientation=lying)
+    for _ in range(400):
+        engine.step(sensors, VelocityCommand(0.2, 0.0, 0.0), AHEAD)
     assert engine.state().fallen
+    assert engine.state().phase is Phase.STANDING
+
+
+def test_a_push_while_standing_is_answered_by_a_step(robot, ideal_body):
+    engine = WalkingEngine(robot, WalkingParameters())
+    for k in range(300):
+        sensors = ideal_body.sense()
+        if k >= 200:
+            lean = 0.003 * (k - 200)
+            tilt = np.array([np.cos(0.5 * lean), 0.0, np.sin(0.5 * lean), 0.0])
+            gyro = np.array([0.0, 0.003 / CONTROL_PERIOD, 0.0])
+            sensors = replace(sensors, orientation=tilt, gyro=gyro)
+        ideal_body.apply(engine.step(sensors, VelocityCommand(), AHEAD))
+        if k == 200:
+            assert engine.state().phase is Phase.STANDING
+    state = engine.state()
+    assert state.phase is not Phase.STANDING
+    assert state.footsteps[1].x > state.footsteps[0].x + 0.02
 
 
 def test_head_turns_to_its_target(robot, ideal_body):
