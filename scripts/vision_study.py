@@ -1,6 +1,6 @@
 """How well the detector sees: random scenes rendered by MuJoCo against segmentation truth.
 
-    python scripts/vision_study.py --frames 400 --seed 1 --pictures /tmp
+    python scripts/vision_study.py --frames 1000 --seed 1 --pictures runs
 
 Every frame draws 16 obstacles and 6 beacons around a camera at walking height with a
 random gaze and a swaying body; the detector is told a pose with random errors of the
@@ -39,6 +39,8 @@ NAMES = tuple(f"{a}/{b}" for a in BEACONS for b in BEACONS if a != b)
 FIELD = 2.5  # half side of the field [m]
 RIM = 2.9  # half side of the square the beacons stand on [m]
 MAX_MATCH = 0.25  # a detection farther than this from every visible thing is false [m]
+MIN_PIXELS = 12  # a thing of which less can be seen does not count [pixel]
+SURPRISE = 20.0  # NEES of two degrees of freedom that one in 20 000 should exceed
 
 
 @dataclass(frozen=True)
@@ -54,16 +56,64 @@ class Thing:
     geoms: tuple[int, ...]
 
 
+@dataclass(frozen=True)
+class Sight:
+    """A thing in one frame.
+
+    Attributes:
+        thing: what it is.
+        distance: from the robot [m].
+        bearing: [rad].
+        hidden: share of its outline that other things hide.
+        cut: the border of the image cuts it.
+    """
+
+    thing: Thing
+    distance: float
+    bearing: float
+    hidden: float
+    cut: bool
+
+    @property
+    def clear(self) -> bool:
+        """Whether nothing hides or cuts it."""
+        return self.hidden < 0.04 and not self.cut
+
+    @property
+    def group(self) -> str:
+        """Name of the table it is counted in."""
+        if self.thing.kind == "beacon":
+            return "beacons"
+        return "clear obstacles" if self.clear else "partly hidden or cut obstacles"
+
+    @property
+    def counted(self) -> bool:
+        """Whether the detector is asked to find it."""
+        if self.thing.kind == "beacon":
+            return self.clear and self.distance < 5.0
+        return 0.3 <= self.distance <= 2.5
+
+
 @dataclass
 class Tally:
-    """Counts and errors of the whole study."""
+    """Counts and errors of one group of things."""
 
     seen: int = 0
     hit: int = 0
-    reported: int = 0
-    true: int = 0
-    wrong_name: int = 0
     errors: list[tuple[float, ...]] = field(default_factory=list)
+
+
+@dataclass
+class Study:
+    """Everything counted."""
+
+    groups: dict[str, Tally] = field(default_factory=lambda: defaultdict(Tally))
+    reported: int = 0
+    false: int = 0
+    reported_clear: int = 0
+    false_clear: int = 0
+    false_beacons: int = 0
+    times: list[float] = field(default_factory=list)
 
 
 def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[Thing]]:
@@ -94,11 +144,11 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
     things: list[Thing] = []
     robot = rng.uniform(-1.8, 1.8, 2)
 
-    def post(x: float, y: float, radius: float, low: float, high: float, colour: str) -> int:
+    def post(at: tuple[float, float], radius: float, span: tuple[float, float], colour: str) -> int:
         geom = root.add_geom(
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            pos=(x, y, 0.5 * (low + high)),
-            size=(radius, 0.5 * (high - low), 0),
+            pos=(*at, 0.5 * (span[0] + span[1])),
+            size=(radius, 0.5 * (span[1] - span[0]), 0),
             rgba=(*COLOUR_CLASSES[colour].rgb, 1.0),
         )
         geom.name = f"g{len(root.geoms)}"
@@ -111,13 +161,16 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
         if hypot(x, y) < radius + 0.2 or not clear:
             continue
         colour = OBSTACLES[rng.integers(len(OBSTACLES))]
-        geom = post(x, y, radius, 0.0, 0.30, colour)
+        geom = post((x, y), radius, (0.0, 0.30), colour)
         things.append(Thing("obstacle", colour, x, y, radius, 0.30, (geom,)))
     corners = [(a, b) for a in (-RIM, RIM) for b in (-RIM, 0.0, RIM)]
     for (x0, y0), i in zip(corners, rng.permutation(len(NAMES)).tolist(), strict=True):
         x, y = x0 - robot[0], y0 - robot[1]
         top, bottom = NAMES[i].split("/")
-        geoms = (post(x, y, 0.05, 0.0, 0.30, bottom), post(x, y, 0.05, 0.30, 0.60, top))
+        geoms = (
+            post((x, y), 0.05, (0.0, 0.30), bottom),
+            post((x, y), 0.05, (0.30, 0.60), top),
+        )
         things.append(Thing("beacon", NAMES[i], x, y, 0.05, 0.60, geoms))
     return spec.compile(), things
 
@@ -216,159 +269,145 @@ def annotate(image: NDArray[np.uint8], found: tuple[Detection, ...], path: Path)
         x0, y0, x1, y1 = (3 * b for b in d.box)
         cv2.rectangle(big, (x0, y0), (x1, y1), (255, 255, 255), 1)
         flags = ("c" if d.cut else "") + ("o" if d.occluded else "")
-        text = f"{d.label[:3]} {d.distance:.2f}({d.covariance[0, 0] ** 0.5:.2f}) r{d.radius:.2f}{flags}"
+        sigma = float(d.covariance[0, 0]) ** 0.5
+        text = f"{d.label[:3]} {d.distance:.2f}({sigma:.2f}) r{d.radius:.2f}{flags}"
         cv2.putText(
             big, text, (x0, max(12, y0 - 3)), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (255, 255, 255)
         )
     cv2.imwrite(str(path), big)
 
 
+def sights(
+    geoms: NDArray[np.int32], R: Array, p: Array, things: list[Thing], camera: PinholeCamera
+) -> list[Sight]:
+    """Things of which at least a few pixels can be seen, nearest first."""
+    found = []
+    for thing in things:
+        pixels = int(np.isin(geoms, thing.geoms).sum())
+        if pixels < MIN_PIXELS:
+            continue
+        full, cut = silhouette(thing, camera, R, p)
+        hidden = 1.0 - pixels / max(int(full.sum()), 1)
+        distance, bearing = hypot(thing.x, thing.y), atan2(thing.y, thing.x)
+        found.append(Sight(thing, distance, bearing, hidden, cut))
+    return sorted(found, key=lambda s: s.distance)
+
+
+def judge(study: Study, found: tuple[Detection, ...], truth: list[Sight]) -> list[str]:
+    """Count one frame; returns what went wrong, in words."""
+    mistakes = []
+    used: set[int] = set()
+    for sight in truth:
+        tally = study.groups[sight.group]
+        best = match(sight, found, used)
+        tally.seen += sight.counted
+        if best is None:
+            if sight.counted and sight.clear:
+                mistakes.append(f"missed {sight.thing.label} at {sight.distance:.2f} m")
+            continue
+        used.add(best)
+        tally.hit += sight.counted
+        d = found[best]
+        turn = d.bearing - sight.bearing
+        error = np.array([d.distance - sight.distance, atan2(sin(turn), cos(turn))])
+        nees = float(error @ np.linalg.solve(d.covariance, error))
+        radius_error = d.radius - sight.thing.radius
+        tally.errors.append(
+            (sight.distance, *error.tolist(), nees, radius_error, radius_error / d.radius_sigma)
+        )
+        if nees > SURPRISE:
+            mistakes.append(f"{d.label} at {sight.distance:.2f} m: NEES {nees:.0f}, off by {error}")
+    for i, d in enumerate(found):
+        clear, false = not (d.cut or d.occluded), i not in used
+        study.reported += 1
+        study.false += false
+        study.reported_clear += clear
+        study.false_clear += clear and false
+        study.false_beacons += false and d.kind == "beacon"
+        if false:
+            mistakes.append(f"false {d.label} at {d.distance:.2f} m, {d.box}")
+    return mistakes
+
+
+def match(sight: Sight, found: tuple[Detection, ...], used: set[int]) -> int | None:
+    """The detection nearest to a thing, if near enough to be of it."""
+    options = []
+    for i, d in enumerate(found):
+        turn = d.bearing - sight.bearing
+        gap = abs(d.distance - sight.distance)
+        limit = max(MAX_MATCH, 0.2 * sight.distance, 3.0 * float(d.covariance[0, 0]) ** 0.5)
+        aside = abs(atan2(sin(turn), cos(turn))) * sight.distance
+        same = d.label == sight.thing.label and i not in used
+        if same and gap < limit and aside < 0.08 * sight.distance + 0.08:
+            options.append((gap + aside, i))
+    return min(options)[1] if options else None
+
+
+def report(study: Study) -> None:
+    """Print the tables."""
+    for name, tally in sorted(study.groups.items()):
+        share = 100.0 * tally.hit / max(tally.seen, 1)
+        print(f"{name}: found {tally.hit} of {tally.seen} = {share:.2f} %")
+        print(
+            "    range    n  |range error| %     bearing error deg   NEES / 2       radius"
+            "\n    [m]           p50   p95   mean   rms    p95         mean   p99     rms mm  z"
+        )
+        rows = np.array(tally.errors)
+        for metre in range(5):
+            a = rows[(rows[:, 0] >= metre) & (rows[:, 0] < metre + 1)] if len(rows) else rows
+            if not len(a):
+                continue
+            relative, turn = 100.0 * a[:, 1] / a[:, 0], np.degrees(a[:, 2])
+            print(
+                f"    {metre}-{metre + 1}   {len(a):5d}"
+                f" {np.median(abs(relative)):6.2f}{np.percentile(abs(relative), 95):6.2f}"
+                f"{relative.mean():+7.2f}"
+                f"{np.sqrt(np.mean(turn**2)):7.2f}{np.percentile(abs(turn), 95):7.2f}"
+                f"      {a[:, 3].mean() / 2:7.2f}{np.percentile(a[:, 3], 99) / 2:6.1f}"
+                f"   {1e3 * np.sqrt(np.mean(a[:, 4] ** 2)):6.1f}"
+                f"{np.sqrt(np.mean(a[:, 5] ** 2)):6.2f}"
+            )
+    print(
+        f"reported {study.reported}, false {study.false}: precision "
+        f"{100.0 * (1.0 - study.false / max(study.reported, 1)):.2f} %\n"
+        f"neither cut nor occluded: {study.reported_clear}, false {study.false_clear}: precision "
+        f"{100.0 * (1.0 - study.false_clear / max(study.reported_clear, 1)):.2f} %\n"
+        f"false beacons: {study.false_beacons}"
+    )
+    print(
+        f"processor time of a frame [ms]: median {np.median(study.times):.2f}, "
+        f"p95 {np.percentile(study.times, 95):.2f}"
+    )
+
+
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--frames", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--tilt-sigma", type=float, default=0.5, help="pose error [deg]")
-    parser.add_argument("--light", type=float, nargs=2, default=(1.0, 1.0))
+    parser.add_argument("--light", type=float, nargs=2, default=(1.0, 1.0), help="brightness")
     parser.add_argument("--noise", type=float, default=0.0, help="pixel noise [grey levels]")
-    parser.add_argument("--pictures", type=Path, default=None)
-    parser.add_argument("--bad", action="store_true", help="pictures of frames with mistakes only")
+    parser.add_argument("--pictures", type=Path, help="folder for annotated frames with mistakes")
     args = parser.parse_args()
     cv2.setNumThreads(1)
     rng = np.random.default_rng(args.seed)
     camera = PinholeCamera.from_vertical_fov(WIDTH, HEIGHT, FOV)
     detector = Detector(camera, VisionParameters())
-    clear, partial, beacons = Tally(), Tally(), Tally()
-    precision = Tally()
-    times, pictures = [], 0
+    study = Study()
     scenes = frames(args.frames, rng, tuple(args.light), args.noise)
     for index, (image, geoms, R, p, things) in enumerate(scenes):
         pose = told(R, p, rng, radians(args.tilt_sigma))
-        detector.detect(image, pose)
-        start = time.process_time()
-        found = detector.detect(image, pose)
-        times.append(1e3 * (time.process_time() - start))
-        mistakes = judge(found, geoms, R, p, things, camera, (clear, partial, beacons, precision))
-        if args.pictures and pictures < 30 and (mistakes or not args.bad):
+        laps = []
+        for _ in range(5):
+            start = time.process_time()
+            found = detector.detect(image, pose)
+            laps.append(1e3 * (time.process_time() - start))
+        study.times.append(min(laps))
+        mistakes = judge(study, found, sights(geoms, R, p, things, camera))
+        if args.pictures and mistakes:
             annotate(image, found, args.pictures / f"vision_{index:03d}.png")
             print(index, *mistakes, sep="\n    ")
-            pictures += 1
-    report(clear, partial, beacons, precision, times)
-
-
-def judge(found, geoms, R, p, things, camera, tallies) -> list[str]:
-    """Compare one frame's detections with the truth; returns what went wrong, in words."""
-    clear, partial, beacons, precision = tallies
-    mistakes = []
-    places = [(d, d.distance * cos(d.bearing), d.distance * sin(d.bearing)) for d in found]
-    used: set[int] = set()
-    visible = []
-    for thing in things:
-        pixels = int(np.isin(geoms, thing.geoms).sum())
-        if pixels < 12:
-            continue
-        full, cut = silhouette(thing, camera, R, p)
-        hidden = 1.0 - pixels / max(int(full.sum()), 1)
-        distance = hypot(thing.x, thing.y)
-        visible.append((distance, thing, hidden, cut, pixels))
-    for distance, thing, hidden, cut, pixels in sorted(visible, key=lambda v: v[0]):
-        options = [
-            (hypot(x - thing.x, y - thing.y), i)
-            for i, (d, x, y) in enumerate(places)
-            if i not in used
-            and d.label == thing.label
-            and abs(d.bearing - atan2(thing.y, thing.x)) < 0.08 + 0.08 / distance
-        ]
-        gap, best = min(options, default=(9.0, -1))
-        limit = max(MAX_MATCH, 0.2 * distance)
-        if best >= 0:
-            limit = max(limit, 3.0 * places[best][0].covariance[0, 0] ** 0.5)
-        matched = gap < limit
-        if matched:
-            used.add(best)
-        unhidden = hidden < 0.04 and not cut
-        inside = 0.3 <= distance <= 2.5
-        tally = beacons if thing.kind == "beacon" else clear if unhidden else partial
-        counted = unhidden and distance <= 5.0 if thing.kind == "beacon" else inside
-        if counted:
-            tally.seen += 1
-            tally.hit += matched
-            if not matched and unhidden:
-                mistakes.append(
-                    f"missed {thing.label} at {distance:.2f} ({pixels} px, hidden {hidden:.2f})"
-                )
-        if matched:
-            d = places[best][0]
-            bearing = d.bearing - atan2(thing.y, thing.x)
-            e = np.array([d.distance - distance, atan2(sin(bearing), cos(bearing))])
-            nees = float(e @ np.linalg.solve(d.covariance, e))
-            row = (
-                distance,
-                e[0],
-                e[1],
-                nees,
-                d.radius - thing.radius,
-                d.radius_sigma,
-                float(d.occluded),
-                float(d.cut),
-                hidden,
-            )
-            tally.errors.append(row)
-            if nees > 20:
-                mistakes.append(
-                    f"{thing.label} at {distance:.2f} nees {nees:.0f} e {e} sd "
-                    f"{np.sqrt(np.diag(d.covariance))} hidden {hidden:.2f} {cut}"
-                )
-    for i, (d, x, y) in enumerate(places):
-        precision.reported += 1
-        if i in used:
-            precision.true += 1
-        else:
-            mistakes.append(
-                f"false {d.label} at {d.distance:.2f} {d.bearing:.2f} sd {d.covariance[0, 0] ** 0.5:.2f} {d.cut} {d.occluded} {d.box}"
-            )
-            precision.wrong_name += d.kind == "beacon"
-            if not (d.cut or d.occluded):
-                precision.seen += 1
-        if not (d.cut or d.occluded):
-            precision.hit += 1
-    return mistakes
-
-
-def report(clear, partial, beacons, precision, times) -> None:
-    def line(name: str, t: Tally) -> None:
-        share = 100.0 * t.hit / max(t.seen, 1)
-        print(f"{name}: found {t.hit}/{t.seen} = {share:.2f} %")
-        bins = defaultdict(list)
-        for row in t.errors:
-            bins[min(int(row[0]), 4)].append(row)
-        for b, rows in sorted(bins.items()):
-            a = np.array(rows)
-            r = 100.0 * np.abs(a[:, 1]) / a[:, 0]
-            n = a[:, 3]
-            print(
-                f"  {b}-{b + 1} m: n {len(a):4d}  range [%] p50 {np.median(r):.2f} p95 "
-                f"{np.percentile(r, 95):.2f} mean {100 * np.mean(a[:, 1] / a[:, 0]):+.2f}  bearing [deg] rms "
-                f"{np.degrees(np.sqrt(np.mean(a[:, 2] ** 2))):.2f} p95 "
-                f"{np.degrees(np.percentile(np.abs(a[:, 2]), 95)):.2f}  NEES/2 mean "
-                f"{n.mean() / 2:.2f} median {np.median(n) / 2:.2f} p99 {np.percentile(n, 99) / 2:.1f}  "
-                f"radius err [mm] {1e3 * a[:, 4].mean():+.1f} rms {1e3 * np.sqrt(np.mean(a[:, 4] ** 2)):.1f} "
-                f"z {np.sqrt(np.mean((a[:, 4] / a[:, 5]) ** 2)):.2f}"
-            )
-
-    line("clear obstacles 0.3-2.5 m", clear)
-    line("partly hidden or cut obstacles", partial)
-    line("beacons", beacons)
-    print(
-        f"reported {precision.reported}, true {precision.true} = "
-        f"{100.0 * precision.true / max(precision.reported, 1):.2f} %; clear reported "
-        f"{precision.hit}, false {precision.seen} "
-        f"(precision {100.0 * (1 - precision.seen / max(precision.hit, 1)):.2f} %); "
-        f"false beacons {precision.wrong_name}"
-    )
-    print(
-        f"time per frame [ms]: median {np.median(times):.2f} p95 {np.percentile(times, 95):.2f} "
-        f"mean {np.mean(times):.2f}"
-    )
+    report(study)
 
 
 if __name__ == "__main__":

@@ -54,9 +54,13 @@ def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:
         min_area: smallest blob of label 1, 2, ... [pixel].
     """
     height, width = labels.shape
-    blobs = []
+    blobs: list[Blob] = []
+    x_all, y_all, w_all, h_all = cv2.boundingRect(labels)
+    if w_all == 0:
+        return blobs
+    coloured = labels[y_all : y_all + h_all, x_all : x_all + w_all]
     for label, smallest in enumerate(min_area, start=1):
-        mask = (labels == label).view(np.uint8)
+        mask = (coloured == label).view(np.uint8)
         x0, y0, w0, h0 = cv2.boundingRect(mask)
         if w0 * h0 < smallest:
             continue
@@ -67,7 +71,7 @@ def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:
             x, y, w, h, area = stats[i].tolist()
             if area < smallest:
                 continue
-            left, top = x0 + x, y0 + y
+            left, top = x_all + x0 + x, y_all + y0 + y
             box = (left, top, left + w, top + h)
             blobs.append(
                 Blob(

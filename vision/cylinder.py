@@ -80,8 +80,6 @@ class Cylinder:
         covariance: of (azimuth, distance, radius) (3, 3).
         misfit: sum of squared normalised residuals of the edges [1].
         astray: share of rim points that do not follow the rim of one cylinder [1].
-        sides: number of sides that were trusted in the end.
-        ranged: number of rims used.
     """
 
     azimuth: float
@@ -90,8 +88,6 @@ class Cylinder:
     covariance: Array
     misfit: float
     astray: float
-    sides: int
-    ranged: int
 
 
 def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array]:
@@ -103,16 +99,24 @@ def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array]
     bearing = atan2(y, x)
     c, s = cos(azimuth - bearing), sin(azimuth - bearing)
     d = cylinder.distance
-    J = np.array([[-d * s, c], [d * c / distance, s / distance]])
-    covariance: Array = J @ cylinder.covariance[:2, :2] @ J.T
-    return distance, bearing, 0.5 * (covariance + covariance.T)
+    (p_aa, p_ad, _), (_, p_dd, _), _ = cylinder.covariance.tolist()
+    # Rows of the Jacobian of (distance, bearing) with respect to (azimuth, distance).
+    (a, b), (e, f) = (-d * s, c), (d * c / distance, s / distance)
+    cross = a * e * p_aa + (a * f + b * e) * p_ad + b * f * p_dd
+    covariance = np.array(
+        [
+            [a * a * p_aa + 2.0 * a * b * p_ad + b * b * p_dd, cross],
+            [cross, e * e * p_aa + 2.0 * e * f * p_ad + f * f * p_dd],
+        ]
+    )
+    return distance, bearing, covariance
 
 
 def locate(
     candidates: Sequence[Candidate],
     view: View,
     roundness_sigma: float = 0.01,
-    step: float = 2.5,
+    stray: float = 3.5,
 ) -> list[Cylinder]:
     """Cylinders that explain the edges of each candidate best.
 
@@ -120,12 +124,11 @@ def locate(
         candidates: edges of one cylinder each; at least one rim, or both sides trusted.
         view: camera and pose.
         roundness_sigma: standard deviation of the outline relative to the radius [1].
-        step: deviation from a rim that makes a point stray [standard deviations of 3/8
-            pixel ... see `VisionParameters.step`].
+        stray: deviation from a rim that makes a point stray [standard deviations].
     """
     if not candidates:
         return []
-    return _Problem(candidates, view, roundness_sigma).solve(step)
+    return _Problem(candidates, view, roundness_sigma).solve(stray)
 
 
 class _Problem:
@@ -230,59 +233,75 @@ class _Problem:
         total = np.bincount(self.rim, weights=values, minlength=len(self.share))
         return (total * self.share).reshape(self.n, MAX_RIMS)
 
-    def solve(self, step: float) -> list[Cylinder]:
-        n = self.n
-        H = np.zeros((n, ROWS, 3))
+    def solve(self, stray: float) -> list[Cylinder]:
+        """Cylinders of all candidates; `stray` as for `locate`."""
+        H = np.zeros((self.n, ROWS, 3))
         H[:, 0, 0] = H[:, 1, 0] = H[:, 5, 2] = 1.0
-        residual = np.empty((n, ROWS))
-        for iteration in range(ITERATIONS):
-            theta, d, r = self.x.T
-            reach = np.sqrt(d * d - r * r)
-            half = np.arcsin(r / d)
-            residual[:, 0] = self.side[:, 0] - theta - half
-            residual[:, 1] = self.side[:, 1] - theta + half
-            H[:, 0, 1] = -r / (d * reach)
-            H[:, 0, 2] = 1.0 / reach
-            H[:, 1, 1:] = -H[:, 0, 1:]
-            point_residual = self._rims(H, residual)
-            residual[:, 5] = self.prior - r
-            if iteration < 2:  # what can be seen of the sides is clear by then
-                weight = np.linalg.inv(self._measurement_covariance(theta, d, reach))
-            HtW = np.swapaxes(H, 1, 2) @ weight
+        residual = np.empty((self.n, ROWS))
+        before = None
+        for _ in range(ITERATIONS):
+            point_residual = self._linearise(H, residual)
+            if self._check_sides() or before is None or self._moved(before):
+                weight = np.linalg.inv(self._measurement_covariance())
+                before = self.x
+            HtW = H.swapaxes(1, 2) @ weight
             covariance = np.linalg.inv(HtW @ H)
-            if iteration == ITERATIONS - 1:
-                break
-            change = (covariance @ (HtW @ residual[:, :, None]))[:, :, 0]
-            self.x = self._bounded(self.x + change)
-        misfit = np.einsum("ni,nij,nj->n", residual, weight, residual)
-        x = self.x + (covariance @ (HtW @ residual[:, :, None]))[:, :, 0]
-        x = self._bounded(x)
-        misfit_list = misfit.tolist()
-        sides = self.trusted.sum(axis=1).tolist()
-        ranged = self.seen.sum(axis=1).tolist()
-        astray = self._astray(point_residual, residual[:, SIDES:5], step).tolist()
+            self.x = self._bounded(self.x + (covariance @ (HtW @ residual[:, :, None]))[:, :, 0])
+        misfit = ((residual[:, None, :] @ weight)[:, 0] * residual).sum(axis=1).tolist()
+        astray = self._astray(point_residual, residual[:, SIDES:5], stray).tolist()
         return [
-            Cylinder(azimuth, d, r, covariance[k], misfit_list[k], astray[k], sides[k], ranged[k])
-            for k, (azimuth, d, r) in enumerate(x.tolist())
+            Cylinder(azimuth, distance, radius, covariance[k], misfit[k], astray[k])
+            for k, (azimuth, distance, radius) in enumerate(self.x.tolist())
         ]
 
     @staticmethod
     def _bounded(x: Array) -> Array:
-        radius = np.clip(x[:, 2], MIN_RADIUS, MAX_RADIUS)
-        distance = np.clip(x[:, 1], np.maximum(MIN_DISTANCE, 1.1 * radius), MAX_DISTANCE)
-        return np.stack([x[:, 0], distance, radius], axis=1)
+        radius = np.minimum(np.maximum(x[:, 2], MIN_RADIUS), MAX_RADIUS)
+        nearest = np.maximum(1.1 * radius, MIN_DISTANCE)
+        x[:, 1] = np.minimum(np.maximum(x[:, 1], nearest), MAX_DISTANCE)
+        x[:, 2] = radius
+        return x
+
+    def _moved(self, before: Array) -> bool:
+        """Whether distances changed so much that the covariance must follow."""
+        change: Array = np.abs(self.x[:, 1] - before[:, 1])
+        return bool((change > 0.1 * self.x[:, 1]).any())
+
+    def _check_sides(self) -> bool:
+        """Distrust sides not seen between foot and head; tell whether there are any new."""
+        d, r = self.x[:, 1], self.x[:, 2]
+        reach = np.sqrt(d * d - r * r)
+        foot, head = (-self.h / reach)[:, None], ((self.top - self.h) / reach)[:, None]
+        slack = 0.5 * self.side_sigma
+        seen = (self.side_high >= foot - slack) & (self.side_low <= head + slack)
+        lost = bool((self.trusted & ~seen).any())
+        self.trusted &= seen
+        return lost
+
+    def _linearise(self, H: Array, residual: Array) -> Array:
+        """Fill the Jacobian and the residuals; return the residual of every rim point."""
+        theta, d, r = self.x.T
+        reach = np.sqrt(d * d - r * r)
+        half = np.arcsin(r / d)
+        residual[:, 0] = self.side[:, 0] - theta - half
+        residual[:, 1] = self.side[:, 1] - theta + half
+        H[:, 0, 1] = -r / (d * reach)
+        H[:, 0, 2] = 1.0 / reach
+        H[:, 1, 1:] = -H[:, 0, 1:]
+        residual[:, 5] = self.prior - r
+        return self._rims(H, residual)
 
     def _rims(self, H: Array, residual: Array) -> Array:
         """Fill the rows of the rims; return the residual of every point."""
         theta, d, r = self.x[self.owner].T
         phi = self.azimuth - theta
         sine, cosine = np.sin(phi), np.cos(phi)
-        t = np.clip(d * sine / r, -OUTER, OUTER)
+        t = np.minimum(np.maximum(d * sine / r, -OUTER), OUTER)
         c = np.sqrt(1.0 - t * t)
         lean = self.sign * t / c
         run = np.maximum(d * cosine - self.sign * r * c, 0.02)
         slope = self.drop / run
-        point_residual = self.slope - slope
+        point_residual: Array = self.slope - slope
         gain = -slope / run  # d slope / d run
         residual[:, SIDES:5] = self._mean(point_residual)
         H[:, SIDES:5, 0] = self._mean(gain * d * (sine - lean * cosine))
@@ -290,16 +309,13 @@ class _Problem:
         H[:, SIDES:5, 2] = self._mean(-gain * self.sign / c)
         return point_residual
 
-    def _measurement_covariance(self, theta: Array, d: Array, reach: Array) -> Array:
+    def _measurement_covariance(self) -> Array:
         """Covariance of the rows (n, 6, 6): pixels, roundness and pose of the camera."""
         n = self.n
-        # A side is the edge of the cylinder only if seen between foot and head.
-        foot, head = (-self.h / reach)[:, None], ((self.top - self.h) / reach)[:, None]
-        slack = 0.5 * self.side_sigma
-        self.trusted &= (self.side_high >= foot - slack) & (self.side_low <= head + slack)
+        theta, d, r = self.x.T
         hidden = (HIDDEN_WIDTH / d)[:, None]
         sigma = np.full((n, ROWS), NO_INFORMATION)
-        round_sigma = (self.roundness * self.x[:, 2] / d)[:, None]
+        round_sigma = (self.roundness * r / d)[:, None]
         sigma[:, :SIDES] = np.where(self.trusted, np.hypot(self.side_sigma, round_sigma), hidden)
         slope = (self.rim_height - self.h) / d[:, None]
         sigma[:, SIDES:5] = np.where(
@@ -310,7 +326,7 @@ class _Problem:
         # yaw; and an error of its height.
         G = np.zeros((n, ROWS, 4))
         s, c = np.sin(theta)[:, None], np.cos(theta)[:, None]
-        level = np.clip(0.5 * (self.side_low + self.side_high), -3.0, 3.0)
+        level = np.maximum(0.5 * (self.side_low + self.side_high), -3.0)
         G[:, :SIDES, 0] = -level * s
         G[:, :SIDES, 1] = -level * c
         G[:, :SIDES, 2] = 1.0
@@ -318,14 +334,14 @@ class _Problem:
         G[:, SIDES:5, 0] = -lift * c
         G[:, SIDES:5, 1] = lift * s
         G[:, SIDES:5, 3] = -1.0 / d[:, None]
-        R: Array = (G * self.pose_variance) @ np.swapaxes(G, 1, 2)
+        R: Array = (G * self.pose_variance) @ G.swapaxes(1, 2)
         index = np.arange(ROWS)
         R[:, index, index] += sigma * sigma
         return R
 
-    def _astray(self, residual: Array, mean: Array, step: float) -> Array:
-        """Share of rim points of each candidate off their rim by more than `step`."""
-        limit = step * self.rim_sigma.ravel()[self.rim]
+    def _astray(self, residual: Array, mean: Array, stray: float) -> Array:
+        """Share of rim points of each candidate off their rim."""
+        limit = stray * self.rim_sigma.ravel()[self.rim]
         far = np.abs(residual - mean.ravel()[self.rim]) > limit
         strays = np.bincount(self.owner, weights=far, minlength=self.n)
         total = np.bincount(self.owner, minlength=self.n)

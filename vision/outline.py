@@ -9,7 +9,6 @@ because the camera stands higher than the obstacles.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ Array = NDArray[np.float64]
 LOW_SHARE = 0.25  # share of a side, from below, that tells whether a nearer thing hides it
 END_SHARE = 0.1  # share of the width near each side that is left out of rims
 END_PIXELS = 0.8  # and at least so much of it [pixel]
+NOWHERE = -9.0  # an azimuth that no point has [rad]
 ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [pixel]
 MAX_OVERHANG = 2.5  # a side does not lie farther inside what is seen than this [pixel]
 OUTLIERS = 8  # one pixel in so many may stick out of a side
@@ -99,17 +99,6 @@ class Outline:
     top: Rim
 
 
-@dataclass(frozen=True, slots=True)
-class _Edge:
-    """One of the four edges of a blob: its points and the labels beyond them."""
-
-    azimuth: Array
-    slope: Array
-    outer: NDArray[np.uint8]
-    azimuth_sigma: float
-    slope_sigma: float
-
-
 def trace(
     blobs: Sequence[Blob], padded: NDArray[np.uint8], view: View, edge_sigma: float
 ) -> list[Outline]:
@@ -123,94 +112,126 @@ def trace(
     """
     if not blobs:
         return []
-    u_parts: list[NDArray[Any]] = []
-    v_parts: list[NDArray[Any]] = []
-    row_parts: list[Index] = []
-    column_parts: list[Index] = []
-    uprights: list[bool] = []
-    sizes = []
-    for blob in blobs:
-        left, top, right, bottom = blob.box
-        columns = np.arange(left, right)
-        rows = np.arange(top, bottom)
-        first, last = blob.row_extents()
-        high, low = blob.column_extents()
-        u_parts += [first, last, columns + 0.5, columns + 0.5]
-        v_parts += [rows + 0.5, rows + 0.5, high, low]
-        row_parts += [rows, rows, high - 1, low]
-        column_parts += [first - 1, last, columns, columns]
-        sizes += [len(rows), len(rows), len(columns), len(columns)]
-        uprights.append(view.upright(0.5 * (left + right), 0.5 * (top + bottom)))
-    u, v = np.concatenate(u_parts), np.concatenate(v_parts)
-    # The frame shifts pixel (row, column) to (row + 1, column + 1).
-    outer = padded[np.concatenate(row_parts) + 1, np.concatenate(column_parts) + 1]
-    azimuth, slope = view.angles(u, v)
-    stops = np.cumsum(sizes)
-    middle = stops - (np.asarray(sizes) + 1) // 2
-    per_pixel = [(edge_sigma * a).tolist() for a in view.resolution(u[middle], v[middle])]
-    stop = stops.tolist()
+    edges = _Edges(blobs, padded, view)
+    sides = edges.sides(edge_sigma)
+    rims = edges.rims(sides, edge_sigma)
+    return [
+        Outline(sides[edges.left[k]], sides[edges.right[k]], rims[edges.bottom[k]], rims[top])
+        for k, top in enumerate(edges.top)
+    ]
 
-    outlines = []
-    for k, upright in enumerate(uprights):
-        edges = []
-        for j in range(4 * k, 4 * k + 4):
-            part = slice(stop[j] - sizes[j], stop[j])
-            # An edge of rows is known along u, an edge of columns along v.
-            vertical = j - 4 * k < 2
-            edges.append(
-                _Edge(
-                    azimuth[part],
-                    slope[part],
-                    outer[part],
-                    per_pixel[0 if vertical else 1][j],
-                    per_pixel[2 if vertical else 3][j],
-                )
-            )
-        sides, rims = (edges[:2], edges[2:]) if upright else (edges[2:], edges[:2])
-        sides.sort(key=lambda e: float(e.azimuth[len(e.azimuth) // 2]))
-        rims.sort(key=lambda e: float(e.slope[len(e.slope) // 2]))
-        ends = (_side(sides[1], +1.0, edge_sigma), _side(sides[0], -1.0, edge_sigma))
-        outlines.append(
-            Outline(
-                *ends,
-                bottom=_rim(rims[0], *ends, edge_sigma),
-                top=_rim(rims[1], *ends, edge_sigma),
-            )
+
+class _Edges:
+    """The edges of all blobs of an image, four a blob, one after the other.
+
+    Two are the ends of the rows and two the ends of the columns of the blob; which of
+    them are sides and which are rims depends on how vertical lines run there.
+
+    Attributes:
+        left: the edge of each blob that is its left side (n,).
+        right: its right side.
+        bottom: its lower rim.
+        top: its upper rim.
+    """
+
+    def __init__(self, blobs: Sequence[Blob], padded: NDArray[np.uint8], view: View) -> None:
+        u_parts: list[NDArray[Any]] = []
+        v_parts: list[NDArray[Any]] = []
+        row_parts: list[Index] = []
+        column_parts: list[Index] = []
+        sizes: list[int] = []
+        uprights: list[bool] = []
+        for blob in blobs:
+            left, top, right, bottom = blob.box
+            columns, rows = np.arange(left, right), np.arange(top, bottom)
+            u_middle, v_middle = columns + 0.5, rows + 0.5
+            first, last = blob.row_extents()
+            high, low = blob.column_extents()
+            u_parts += (first, last, u_middle, u_middle)
+            v_parts += (v_middle, v_middle, high, low)
+            row_parts += (rows, rows, high - 1, low)
+            column_parts += (first - 1, last, columns, columns)
+            sizes += (len(rows), len(rows), len(columns), len(columns))
+            uprights.append(view.upright(0.5 * (left + right), 0.5 * (top + bottom)))
+        u, v = np.concatenate(u_parts), np.concatenate(v_parts)
+        # The frame shifts pixel (row, column) to (row + 1, column + 1).
+        self.outer = padded[np.concatenate(row_parts) + 1, np.concatenate(column_parts) + 1]
+        self.azimuth, self.slope = view.angles(u, v)
+        size = np.array(sizes)
+        self.stops = np.cumsum(size)
+        self.starts = self.stops - size
+        self.edge = np.repeat(np.arange(len(sizes)), size)
+        middle = self.starts + size // 2
+        au, av, su, sv = view.resolution(u[middle], v[middle])
+        # Ends of rows are known along u, ends of columns along v.
+        along_u = np.arange(len(sizes)) % 4 < 2
+        self.azimuth_pixel = np.where(along_u, au, av)
+        self.slope_pixel = np.where(along_u, su, sv)
+        self._assign(uprights, self.azimuth[middle].tolist(), self.slope[middle].tolist())
+
+    def _assign(self, uprights: list[bool], azimuth: list[float], slope: list[float]) -> None:
+        """Tell sides and rims apart by the azimuth and the slope of their middles."""
+        self.left: list[int] = []
+        self.right: list[int] = []
+        self.bottom: list[int] = []
+        self.top: list[int] = []
+        for k, upright in enumerate(uprights):
+            side, rim = (4 * k, 4 * k + 2) if upright else (4 * k + 2, 4 * k)
+            leftwards = azimuth[side] >= azimuth[side + 1]
+            self.left.append(side if leftwards else side + 1)
+            self.right.append(side + 1 if leftwards else side)
+            upwards = slope[rim + 1] >= slope[rim]
+            self.bottom.append(rim if upwards else rim + 1)
+            self.top.append(rim + 1 if upwards else rim)
+
+    def sides(self, edge_sigma: float) -> list[Side]:
+        """Every edge taken for a side; only those of `left` and `right` mean anything."""
+        edge, starts, last = self.edge, self.starts, self.stops - 1
+        sign = np.ones(len(starts))
+        sign[self.right] = -1.0
+        outwards = self.azimuth * sign[edge]
+        free = self.outer == 0
+        bottom = np.minimum.reduceat(self.slope, starts)
+        top = np.maximum.reduceat(self.slope, starts)
+        low = self.slope <= (bottom + LOW_SHARE * (top - bottom))[edge]
+        covered = low & ~free & (self.outer != OUTSIDE)
+        hidden = 2 * self._count(covered) > self._count(low)
+        # The side is the median of the free points near the outermost of them.
+        candidate = np.where(free, outwards, NOWHERE)
+        ranked = candidate[np.lexsort((candidate, edge))]
+        outermost = ranked[last - self._count(free) // OUTLIERS]
+        # Where a thing reaches furthest next to something else, it goes on behind it.
+        furthest = np.maximum.reduceat(outwards, starts)
+        trusted = furthest <= outermost + MAX_OVERHANG * self.azimuth_pixel
+        chosen = candidate >= (outermost - ENVELOPE * self.azimuth_pixel)[edge]
+        n = self._count(chosen)
+        median = 0.5 * (ranked[last - (n - 1) // 2] + ranked[last - n // 2])
+        azimuth = sign * np.where(trusted, median, furthest)
+        bottom = np.minimum.reduceat(np.where(chosen, self.slope, np.inf), starts)
+        top = np.maximum.reduceat(np.where(chosen, self.slope, -np.inf), starts)
+        columns = (azimuth, edge_sigma * self.azimuth_pixel, bottom, top, trusted, hidden)
+        return [Side(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]
+
+    def rims(self, sides: Sequence[Side], edge_sigma: float) -> list[Rim]:
+        """Every edge taken for a rim, without the ends, where it may run along a side."""
+        left = np.array([sides[i].azimuth for i in self.left])
+        right = np.array([sides[i].azimuth for i in self.right])
+        pixel = self.azimuth_pixel[self.left]
+        margin = np.maximum(END_SHARE * (left - right), END_PIXELS * pixel)
+        blob = self.edge // 4
+        inner = (
+            (self.azimuth > (right + margin)[blob])
+            & (self.azimuth < (left - margin)[blob])
+            & (self.outer != OUTSIDE)
         )
-    return outlines
+        stops = np.cumsum(self._count(inner)).tolist()
+        azimuth, slope, outer = self.azimuth[inner], self.slope[inner], self.outer[inner]
+        sigma = (edge_sigma * self.slope_pixel).tolist()
+        return [
+            Rim(azimuth[a:b], slope[a:b], outer[a:b], sigma[i])
+            for i, (a, b) in enumerate(zip([0, *stops[:-1]], stops, strict=True))
+        ]
 
-
-def _side(edge: _Edge, sign: float, edge_sigma: float) -> Side:
-    """Side towards greater (sign +1) or smaller (-1) azimuth."""
-    azimuths = (sign * edge.azimuth).tolist()
-    slopes = edge.slope.tolist()
-    outer = edge.outer.tolist()
-    free = sorted((a, s) for a, s, o in zip(azimuths, slopes, outer, strict=True) if o == 0)
-    bottom, top = min(slopes), max(slopes)
-    lowest = bottom + LOW_SHARE * (top - bottom)
-    low = [o for s, o in zip(slopes, outer, strict=True) if s <= lowest]
-    hidden = 2 * sum(o not in (0, OUTSIDE) for o in low) > len(low)
-    pixel = edge.azimuth_sigma / edge_sigma
-    furthest = max(azimuths)
-    outermost = free[-1 - len(free) // OUTLIERS][0] if free else -inf
-    if furthest > outermost + MAX_OVERHANG * pixel:
-        # Where it reaches furthest, the thing goes on behind something or off the image.
-        return Side(sign * furthest, edge.azimuth_sigma, bottom, top, False, hidden)
-    limit = outermost - ENVELOPE * pixel
-    chosen = [pair for pair in free if pair[0] >= limit]
-    n = len(chosen)
-    azimuth = 0.5 * (chosen[(n - 1) // 2][0] + chosen[n // 2][0])
-    span = [s for _, s in chosen]
-    return Side(sign * azimuth, edge.azimuth_sigma, min(span), max(span), True, hidden)
-
-
-def _rim(edge: _Edge, left: Side, right: Side, edge_sigma: float) -> Rim:
-    """Points of an edge; close to the ends it may run along a side: they are left out."""
-    pixel = left.sigma / edge_sigma
-    margin = max(END_SHARE * (left.azimuth - right.azimuth), END_PIXELS * pixel)
-    inner = (
-        (edge.azimuth > right.azimuth + margin)
-        & (edge.azimuth < left.azimuth - margin)
-        & (edge.outer != OUTSIDE)
-    )
-    return Rim(edge.azimuth[inner], edge.slope[inner], edge.outer[inner], edge.slope_sigma)
+    def _count(self, points: NDArray[np.bool_]) -> NDArray[np.intp]:
+        """Number of `points` of each edge."""
+        return np.bincount(self.edge[points], minlength=len(self.starts))
