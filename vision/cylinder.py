@@ -33,6 +33,7 @@ MIN_DISTANCE, MAX_DISTANCE = 0.10, 12.0  # [m]
 MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
 FAR_SLOPE = -0.5  # a thing whose foot is seen less steeply is far
 MIN_SLOPE = 1e-6
+SHARED = 0.85  # axes nearer than this share of the radii's sum: the same place
 MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
 
 
@@ -88,6 +89,14 @@ class Cylinder:
     covariance: Array
     misfit: float
     astray: float
+
+
+def interpenetrate(a: Cylinder, b: Cylinder) -> bool:
+    """Whether two cylinders take up the same place, so that one of them is not real."""
+    gap2 = (
+        a.distance**2 + b.distance**2 - 2.0 * a.distance * b.distance * cos(a.azimuth - b.azimuth)
+    )
+    return gap2 < (SHARED * (a.radius + b.radius)) ** 2
 
 
 def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array]:

@@ -12,7 +12,14 @@ from vision.beacon import find_posts
 from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
 from vision.colour import OUTSIDE, ColourTable
-from vision.cylinder import Candidate, Cylinder, RimCue, locate, polar_in_robot
+from vision.cylinder import (
+    Candidate,
+    Cylinder,
+    RimCue,
+    interpenetrate,
+    locate,
+    polar_in_robot,
+)
 from vision.detection import Detection
 from vision.errors import VisionError
 from vision.outline import Outline, trace
@@ -99,19 +106,18 @@ class Detector:
         outlines = trace(blobs, self._padded, view, self._parameters.edge_sigma)
         sightings = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
         found: list[Detection | None] = []
-        again: list[_Sighting] = []
+        parts: list[_Sighting] = []
         # One call for all: its cost hardly depends on their number.
         for sighting, cylinder in zip(sightings, self._locate(sightings, view), strict=True):
             if self._explains(sighting, cylinder):
                 found.append(self._detection(sighting, cylinder, view))
             elif sighting.kind == "obstacle":
-                parts = self._split(sighting, view)
-                again += parts
-                if not parts:
+                pieces = self._split(sighting, view)
+                parts += pieces
+                if not pieces:
                     found.append(self._detection(*_doubted(sighting, cylinder), view))
-        for sighting, cylinder in zip(again, self._locate(again, view), strict=True):
-            if self._plausible(cylinder):
-                found.append(self._detection(sighting, cylinder, view))
+        for sighting, cylinder in self._real(parts, self._locate(parts, view)):
+            found.append(self._detection(sighting, cylinder, view))
         return tuple(
             sorted(
                 (d for d in found if d is not None),
@@ -188,6 +194,20 @@ class Detector:
             return cylinder.misfit < BEACON_MISFIT * limit
         return cylinder.astray <= ASTRAY and cylinder.misfit <= limit
 
+    def _real(
+        self, parts: Sequence[_Sighting], cylinders: Sequence[Cylinder]
+    ) -> list[tuple[_Sighting, Cylinder]]:
+        """The plausible parts of split blobs; of two in one place the better seen."""
+        ranked = sorted(
+            (pair for pair in zip(parts, cylinders, strict=True) if self._plausible(pair[1])),
+            key=lambda pair: (-_edges_seen(pair[0].candidate), pair[1].misfit),
+        )
+        real: list[tuple[_Sighting, Cylinder]] = []
+        for sighting, cylinder in ranked:
+            if not any(interpenetrate(cylinder, other) for _, other in real):
+                real.append((sighting, cylinder))
+        return real
+
     def _plausible(self, cylinder: Cylinder) -> bool:
         """Whether a part of a blob is like one obstacle."""
         parameters = self._parameters
@@ -242,3 +262,8 @@ def _doubted(sighting: _Sighting, cylinder: Cylinder) -> tuple[_Sighting, Cylind
         replace(sighting, occluded=True),
         replace(cylinder, covariance=factor * cylinder.covariance),
     )
+
+
+def _edges_seen(candidate: Candidate) -> int:
+    """How many edges locate a candidate."""
+    return len(candidate.rims) + candidate.left.trusted + candidate.right.trusted
