@@ -59,7 +59,9 @@ def require_gl() -> str:
     except (ImportError, AttributeError, OSError, RuntimeError, TypeError, mujoco.FatalError) as e:
         raise RenderingUnavailable(_advice(str(e))) from e
     if name is None:
-        raise RenderingUnavailable(_advice("the OpenGL context does not answer"))
+        raise RenderingUnavailable(
+            _advice("the context does not answer; was mujoco imported before hsr8?")
+        )
     return str(name.decode())
 
 

@@ -144,7 +144,8 @@ class BeliefLayer:
             format=[image_format],
             cell_size=[grid.cell],
             translation=[[*grid.origin, MAP_HEIGHT]],
-            opacity=[0.45],
+            opacity=[0.35],
+            colormap=[rr.components.Colormap.Grayscale],
         )
 
     @staticmethod

@@ -4,7 +4,7 @@ import rerun.blueprint as rrb
 
 from hsr8.recorder.channel import TIMELINE
 
-ABOVE = 8.5  # height of the eye over a field of 5 m [m]
+ABOVE = 7.0  # height of the eye over a field of 5 m [m]
 
 
 def blueprint(field_size: float) -> rrb.Blueprint:
@@ -33,6 +33,7 @@ def blueprint(field_size: float) -> rrb.Blueprint:
         contents=[
             "+ /belief/**",
             "+ /world/floor",
+            "+ /world/rim/**",
             "+ /world/obstacles/**",
             "+ /world/movers/**",
             "+ /world/beacons/**",
@@ -65,7 +66,7 @@ def blueprint(field_size: float) -> rrb.Blueprint:
     )
     events = rrb.TextLogView(name="Events", origin="/events")
     left = rrb.Vertical(robot, rrb.Horizontal(camera, gaze), row_shares=[3, 2])
-    right = rrb.Vertical(belief, states, curves, events, row_shares=[5, 1.8, 2.7, 1.5])
+    right = rrb.Vertical(belief, states, curves, events, row_shares=[5, 2.3, 2.5, 1.5])
     return rrb.Blueprint(
         rrb.Horizontal(left, right, column_shares=[1, 1]),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),

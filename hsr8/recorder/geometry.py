@@ -18,7 +18,8 @@ Array = NDArray[np.float64]
 
 VISUAL_GROUPS = (0, 1, 2)  # groups 3 and up are collision shapes
 BASE = "base_link"
-BEACON_PREFIX = "beacon"
+# What stands, by the beginning of its names; the walls only the robot sees are left out.
+STANDING = {"/world/beacons": "beacon", "/world/obstacles": "obstacle", "/world/rim": "rim"}
 _BOX, _CAPSULE, _CYLINDER, _ELLIPSOID = (
     int(mujoco.mjtGeom.mjGEOM_BOX),
     int(mujoco.mjtGeom.mjGEOM_CAPSULE),
@@ -103,6 +104,11 @@ def colours(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]
     return result
 
 
+def _belongs(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
+    """Geoms whose name begins so (ngeom,)."""
+    return np.array([model.geom(i).name.startswith(prefix) for i in range(model.ngeom)])
+
+
 def rotate(q: Array, v: Array) -> Array:
     """Rotate vectors (..., 3) by quaternions w-x-y-z (..., 4)."""
     axis = q[..., 1:]
@@ -152,11 +158,8 @@ class Scene:
         self._mover_channel = Channel(stream, "/world/movers", rr.Cylinders3D.columns)
         for batch in self._movers:
             stream.log("/world/movers", shapes(model, batch), static=True)
-        beacons = np.array(
-            [model.body(body).name.startswith(BEACON_PREFIX) for body in model.geom_bodyid]
-        )
-        self._stand(stream, "/world/beacons", visible & ~on_robot & ~mobile & beacons)
-        self._stand(stream, "/world/obstacles", visible & ~on_robot & ~mobile & ~beacons)
+        for path, prefix in STANDING.items():
+            self._stand(stream, path, visible & ~mobile & _belongs(model, prefix))
         stream.log(
             "/world/floor",
             rr.Boxes3D(
@@ -186,6 +189,8 @@ class Scene:
         """Take the robot's configuration and the positions of the movers in W (n, 2)."""
         self._data.qpos[:] = qpos
         mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_camlight(self._model, self._data)
         self._times.append(time)
         self._positions.append(self._data.xpos.copy())
         self._quaternions.append(self._data.xquat.copy())

@@ -23,6 +23,7 @@ from hsr8.world.layout import Layout
 
 Array = NDArray[np.float64]
 
+CYCLE = 34  # records per gait cycle
 BAR = 30  # height of the line of numbers [pixel]
 INK, PANEL = (235, 236, 238), (34, 36, 40)
 LABEL = 0.42  # size of the letters
@@ -141,7 +142,10 @@ class Pictures:
 
     def _trail(self, row: int) -> Array:
         first = int(np.searchsorted(self._trajectory.time, self._trajectory.time[row] - TRAIL))
-        trail: Array = self._trajectory.qpos[first : row + 1 : 10, :2]
+        path = self._trajectory.qpos[first : row + 1, :2]
+        # The mean over a gait cycle shows the way without the sway.
+        whole = len(path) // CYCLE * CYCLE
+        trail: Array = path[:whole].reshape(-1, CYCLE, 2).mean(axis=1)
         return trail
 
     def _write_numbers(self, picture: Image, index: int, frame: FrameSummary, width: int) -> None:

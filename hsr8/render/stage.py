@@ -16,6 +16,13 @@ Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 
+SUN = "sun"
+SUN_DIRECTION = np.array([0.0, 0.37, -0.93])  # along an axis: askew, MuJoCo's shadows are speckled
+SUN_DISTANCE = 4.0  # of the shadow's camera from the robot [m]
+SHADOW_REACH = 3.0  # shadows are drawn up to so far from the robot [m]
+SHADOW_SIZE = 2048  # [pixel]
+
+
 class Stage:
     """Draws a layout with the robot and the movers where a recording had them.
 
@@ -26,7 +33,7 @@ class Stage:
         quality: ``show`` for people, ``vision`` for what the robot saw.
         size: width and height of the pictures [pixel].
         optics: of the head camera.
-        samples: per pixel against jagged edges; each costs as much as the picture.
+        samples: per pixel against jagged edges, which cost as much as all else.
 
     Raises:
         RenderingUnavailable: no OpenGL draws here.
@@ -52,14 +59,20 @@ class Stage:
         visual.global_.offwidth, visual.global_.offheight = size
         if quality == "show":
             visual.quality.offsamples = samples
-            visual.quality.numslices, visual.quality.numstacks = 20, 12
-            visual.quality.shadowsize = 2048
+            visual.quality.numslices, visual.quality.numstacks = 16, 10
+            visual.quality.shadowsize = SHADOW_SIZE
+            visual.map.shadowclip = SHADOW_REACH
+            # A reflection would draw everything twice.
+            self.model.mat_reflectance[:] = 0.0
+            self.model.light(SUN).dir[:] = SUN_DIRECTION
         self._renderer = mujoco.Renderer(self.model, height=size[1], width=size[0])
 
     def place(self, qpos: Array, movers: Array) -> None:
         """Put the robot and the movers (n, 2) [m] where they were."""
         self.data.qpos[:] = qpos
         self.data.mocap_pos[self._movers, :2] = movers
+        ground = np.array([qpos[0], qpos[1], 0.0])
+        self.model.light(SUN).pos[:] = ground - SUN_DISTANCE * SUN_DIRECTION
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)

@@ -18,6 +18,7 @@ PAPER, FIELD, RIM = (228, 231, 235), (246, 245, 242), (190, 190, 188)
 INK, SHADE = (60, 60, 64), (206, 205, 202)
 MARGIN = 0.55  # shown around the field, where the beacons stand [m]
 SUBPIXEL = 4  # bits of a pixel that OpenCV draws with
+UNIT = 1 << SUBPIXEL
 VIEW_RANGE = 1.6  # drawn length of the field of view [m]
 TRAIL = 40.0  # path drawn behind the robot [s]
 ROBOT = ((0.16, 0.0), (-0.09, 0.10), (-0.05, 0.0), (-0.09, -0.10))  # an arrow head [m]
@@ -101,11 +102,11 @@ class TopDown:
         """Pixels with fraction bits of points in W (n, 2) [m]."""
         flat = np.asarray(points, float).reshape(-1, 2) * (self._scale, -self._scale)
         flat += (0.5 * self._size[0], 0.5 * self._size[1])
-        pixels: NDArray[np.int32] = np.round(flat * 2**SUBPIXEL).astype(np.int32)
+        pixels: NDArray[np.int32] = np.round(flat * UNIT).astype(np.int32)
         return pixels
 
     def _length(self, metres: float) -> int:
-        return round(metres * self._scale * 2**SUBPIXEL)
+        return round(metres * self._scale * UNIT)
 
     def _centre(self, point: Sequence[float]) -> tuple[int, int]:
         u, v = self._pixels([point])[0].tolist()

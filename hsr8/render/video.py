@@ -33,7 +33,7 @@ class VideoWriter:
         self._stream = self._container.add_stream("libx264", rate=fps, options=OPTIONS)
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
-        self._stream.time_base = Fraction(1, fps)
+        self._tick = Fraction(1, fps)
         self._count = 0
         # Encoding leaves the interpreter lock alone: it runs beside the drawing.
         self._worker = ThreadPoolExecutor(max_workers=1)
@@ -48,7 +48,7 @@ class VideoWriter:
     def _encode(self, image: Image, index: int) -> None:
         frame = av.VideoFrame.from_ndarray(image, format="rgb24")
         frame.pts = index
-        frame.time_base = Fraction(1, int(self._stream.rate))
+        frame.time_base = self._tick
         self._container.mux(self._stream.encode(frame))
 
     def _wait(self) -> None:
