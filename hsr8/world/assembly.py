@@ -1,11 +1,13 @@
 """Builds the MuJoCo model of a world: robot, floor, lights, obstacles, beacons.
 
 The same world is compiled in two qualities that share joints, sensors and state:
-``vision`` is cheap and matt, for the robot's own camera; ``show`` is for people.
+``vision`` is cheap and matt, for the robot's own camera; ``show`` is for people. What
+does not depend on the layout lies in ``models/field/``.
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from math import hypot
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -16,10 +18,22 @@ from vision.colour import COLOUR_CLASSES
 
 Quality = Literal["vision", "show"]
 
-FLOOR_RGB = (0.58, 0.57, 0.55)
 RIM = 0.02  # half width of the line round the field [m]
-MAT = 0.0005  # what is painted on the floor lies so high above it [m]
-APRON = 1.2  # the floor goes on for so far beyond the field [m]
+PAINT = 0.0005  # height of what is painted on the floor [m]
+STRIPE = 0.010  # half height of the stripe that marks a mover, for people only [m]
+APRON = 1.5  # distance of the walls the robot sees from the rim of the field [m]
+WALL_HEIGHT = 2.0  # [m]
+USUAL_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
+HEAD_CAMERA = "egocentric"
+
+_SOLID: dict[str, Any] = {
+    "contype": 3,
+    "conaffinity": 1,
+    "friction": [0.8, 0.01, 0.001],
+    "solref": [0.01, 1.0],
+    "solimp": [0.9, 0.95, 0.001, 0.5, 2.0],
+}
+_SEEN_ONLY: dict[str, Any] = {"contype": 0, "conaffinity": 0, "mass": 0.0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,16 +53,24 @@ class Optics:
 
 
 def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel:
-    """Compile the world of `layout`."""
-    spec = mujoco.MjSpec.from_file(str(models_dir() / "hsr8" / "hsr8.xml"))
-    spec.modelname = "hsr8_world"
-    _set_quality(spec, quality, optics)
-    _add_light(spec, quality, optics.brightness)
-    _add_floor(spec, layout.field_size, quality)
-    _add_cameras(spec, max(layout.field_size))
-    camera = spec.camera("egocentric")
+    """Compile the world of `layout`.
+
+    Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00``
+    ..., beacons are ``beacon_<top>_<bottom>``. For people there are the cameras ``top``
+    and ``corner`` beside those of the robot.
+    """
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "field" / f"{quality}.xml"))
+    spec.modelname = f"hsr8_{quality}"
+    spec.visual.global_.offwidth = optics.width
+    spec.visual.global_.offheight = optics.height
+    _set_lights(spec, optics.brightness, max(layout.field_size))
+    camera = spec.camera(HEAD_CAMERA)
     camera.fovy = float(np.degrees(optics.vertical_fov))
     camera.resolution = [optics.width, optics.height]
+    _add_rim(spec, layout.field_size)
+    if quality == "vision":
+        _add_walls(spec, layout.field_size)
+    _add_cameras(spec, layout.field_size)
     for i, obstacle in enumerate(layout.static):
         _add_obstacle(spec, f"obstacle_{i:02d}", obstacle, quality)
     for i, mover in enumerate(layout.movers):
@@ -58,119 +80,66 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     return spec.compile()
 
 
-def _set_quality(spec: mujoco.MjSpec, quality: Quality, optics: Optics) -> None:
-    visual = spec.visual
-    visual.global_.offwidth = optics.width
-    visual.global_.offheight = optics.height
-    visual.map.znear = 0.01
-    visual.map.zfar = 30.0
-    if quality == "vision":
-        visual.quality.offsamples = 0
-        visual.quality.shadowsize = 0
-        visual.quality.numslices = 16
-        visual.quality.numstacks = 8
-    else:
-        visual.quality.offsamples = 4
-        visual.quality.shadowsize = 4096
-        visual.quality.numslices = 40
-        visual.quality.numstacks = 24
-    spec.stat.extent = 1.0
-
-
-def _add_light(spec: mujoco.MjSpec, quality: Quality, brightness: float) -> None:
+def _set_lights(spec: mujoco.MjSpec, brightness: float, side: float) -> None:
+    """Dim the lights, and raise them over a field larger than the usual one."""
     head = spec.visual.headlight
-    head.active = 1
-    head.specular = [0.0, 0.0, 0.0]
-    sun = spec.worldbody.add_light(
-        name="sun",
-        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
-        pos=[0.0, 0.0, 6.0],
-        dir=[0.35, 0.25, -1.0],
-        specular=[0.0, 0.0, 0.0],
-    )
-    if quality == "vision":
-        head.ambient = [0.42 * brightness] * 3
-        head.diffuse = [0.30 * brightness] * 3
-        sun.castshadow = False
-        sun.diffuse = [0.42 * brightness] * 3
-        return
-    head.ambient = [0.36] * 3
-    head.diffuse = [0.16] * 3
-    sun.castshadow = True
-    sun.diffuse = [0.62, 0.60, 0.56]
-    sun.specular = [0.15, 0.15, 0.15]
-    spec.add_texture(
-        name="sky",
-        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
-        rgb1=[0.80, 0.86, 0.92],
-        rgb2=[0.93, 0.94, 0.95],
-        width=256,
-        height=1536,
-    )
+    head.ambient = brightness * np.asarray(head.ambient)
+    head.diffuse = brightness * np.asarray(head.diffuse)
+    for light in spec.lights:
+        light.diffuse = brightness * np.asarray(light.diffuse)
+        light.pos = max(1.0, side / USUAL_SIDE) * np.asarray(light.pos)
 
 
-def _add_floor(spec: mujoco.MjSpec, field_size: tuple[float, float], quality: Quality) -> None:
-    half = 0.5 * max(field_size)
-    floor = spec.worldbody.add_geom(
-        name="floor",
-        type=mujoco.mjtGeom.mjGEOM_PLANE,
-        size=[half + APRON, half + APRON, 0.05] if quality == "vision" else [0.0, 0.0, 0.05],
-        rgba=[*FLOOR_RGB, 1.0],
-        condim=4,
-        **_CONTACT,
-    )
-    if quality == "vision":
-        return
-    texture = spec.add_texture(
-        name="floor",
-        type=mujoco.mjtTexture.mjTEXTURE_2D,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.62, 0.61, 0.585],
-        rgb2=[0.585, 0.575, 0.55],
-        width=512,
-        height=512,
-    )
-    material = spec.add_material(name="floor", texrepeat=[2.0, 2.0], texuniform=True)
-    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
-    material.specular = 0.05
-    material.reflectance = 0.04
-    floor.material = "floor"
-    for i, (x, y, along_x) in enumerate(
-        ((0, half, True), (0, -half, True), (half, 0, False), (-half, 0, False))
+def _add_rim(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+    """The line round the field."""
+    x, y = (0.5 * side for side in field_size)
+    for name, place, half in (
+        ("front", (x, 0.0), (RIM, y + RIM)),
+        ("back", (-x, 0.0), (RIM, y + RIM)),
+        ("left", (0.0, y), (x - RIM, RIM)),
+        ("right", (0.0, -y), (x - RIM, RIM)),
     ):
-        size = [half + RIM, RIM, MAT] if along_x else [RIM, half + RIM, MAT]
         spec.worldbody.add_geom(
-            name=f"rim_{i}",
+            name=f"rim_{name}",
             type=mujoco.mjtGeom.mjGEOM_BOX,
-            pos=[x, y, 0.0],
-            size=size,
-            rgba=[0.93, 0.93, 0.92, 1.0],
-            contype=0,
-            conaffinity=0,
+            pos=[*place, 0.0],
+            size=[*half, PAINT],
+            material="line",
+            **_SEEN_ONLY,
         )
 
 
-def _add_cameras(spec: mujoco.MjSpec, field_size: float) -> None:
-    spec.worldbody.add_camera(
-        name="top", pos=[0.0, 0.0, 1.45 * field_size], xyaxes=[0, -1, 0, 1, 0, 0], fovy=45.0
-    )
-    corner = 0.78 * field_size
-    spec.worldbody.add_camera(
-        name="corner",
-        pos=[-corner, -corner, 0.62 * field_size],
-        xyaxes=[0.7071, -0.7071, 0.0, 0.345, 0.345, 0.873],
-        fovy=45.0,
-    )
+def _add_walls(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+    """A plain room around the field, so that the robot does not look into the void."""
+    x, y = (0.5 * side + APRON for side in field_size)
+    for name, place, half in (
+        ("front", (x, 0.0), (0.01, y)),
+        ("back", (-x, 0.0), (0.01, y)),
+        ("left", (0.0, y), (x, 0.01)),
+        ("right", (0.0, -y), (x, 0.01)),
+    ):
+        spec.worldbody.add_geom(
+            name=f"wall_{name}",
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            pos=[*place, 0.5 * WALL_HEIGHT],
+            size=[*half, 0.5 * WALL_HEIGHT],
+            material="wall",
+            **_SEEN_ONLY,
+        )
 
 
-_CONTACT = {
-    "contype": 3,
-    "conaffinity": 1,
-    "friction": [0.8, 0.01, 0.001],
-    "solref": [0.01, 1.0],
-    "solimp": [0.9, 0.95, 0.001, 0.5, 2.0],
-}
+def _add_cameras(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+    size = max(field_size)
+    spec.worldbody.add_camera(
+        name="top", pos=[0.0, 0.0, 1.55 * size], xyaxes=[0, -1, 0, 1, 0, 0], fovy=45.0
+    )
+    # From a corner, looking at the middle of the field.
+    place = np.array([-0.80, -0.80, 0.62]) * size
+    away = place / np.linalg.norm(place)
+    right = np.array([-away[1], away[0], 0.0]) / hypot(away[0], away[1])
+    spec.worldbody.add_camera(
+        name="corner", pos=place, xyaxes=[*right, *np.cross(away, right)], fovy=40.0
+    )
 
 
 def _paint(spec: mujoco.MjSpec, colour: str, quality: Quality) -> str:
@@ -178,37 +147,45 @@ def _paint(spec: mujoco.MjSpec, colour: str, quality: Quality) -> str:
     name = f"paint_{colour}"
     if spec.material(name) is None:
         material = spec.add_material(name=name, rgba=[*COLOUR_CLASSES[colour].rgb, 1.0])
-        material.specular = 0.0 if quality == "vision" else 0.12
-        material.shininess = 0.2
+        material.specular = 0.0 if quality == "vision" else 0.25
+        material.shininess = 0.0 if quality == "vision" else 0.4
         material.reflectance = 0.0
     return name
 
 
 def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Quality) -> None:
+    moves = obstacle.motion is not None
     body = spec.worldbody.add_body(
-        name=name,
-        pos=[*obstacle.position, 0.5 * obstacle.height],
-        mocap=obstacle.motion is not None,
+        name=name, pos=[*obstacle.position, 0.5 * obstacle.height], mocap=moves
     )
     body.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
         size=[obstacle.radius, 0.5 * obstacle.height, 0.0],
         material=_paint(spec, obstacle.colour, quality),
-        **_CONTACT,
+        **_SOLID,
     )
+    if moves and quality == "show":
+        body.add_geom(
+            name=f"{name}_stripe",
+            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+            pos=[0.0, 0.0, 0.5 * obstacle.height - 4.0 * STRIPE],
+            size=[obstacle.radius + 0.001, STRIPE, 0.0],
+            material="stripe",
+            **_SEEN_ONLY,
+        )
 
 
 def _add_beacon(spec: mujoco.MjSpec, beacon: Beacon, quality: Quality) -> None:
     quarter = 0.25 * beacon.height
-    body = spec.worldbody.add_body(name=f"beacon_{beacon.top}_{beacon.bottom}")
-    body.pos = [*beacon.position, 0.0]
+    name = f"beacon_{beacon.top}_{beacon.bottom}"
+    body = spec.worldbody.add_body(name=name, pos=[*beacon.position, 0.0])
     for half, colour, z in (("bottom", beacon.bottom, quarter), ("top", beacon.top, 3 * quarter)):
         body.add_geom(
-            name=f"beacon_{beacon.top}_{beacon.bottom}_{half}",
+            name=f"{name}_{half}",
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
             pos=[0.0, 0.0, z],
             size=[beacon.radius, quarter, 0.0],
             material=_paint(spec, colour, quality),
-            **_CONTACT,
+            **_SOLID,
         )
