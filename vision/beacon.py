@@ -56,7 +56,9 @@ def find_posts(
             if sides is None:
                 continue
             rims = _rims(seam, outlines[i].top, outlines[j].bottom, camera_height, parameters)
-            candidate = Candidate(*sides, rims, parameters.beacon_radius, RADIUS_SIGMA)
+            candidate = Candidate(
+                *sides, rims, parameters.beacon_height, parameters.beacon_radius, RADIUS_SIGMA
+            )
             posts.append(Post(i, j, candidate))
     return posts
 

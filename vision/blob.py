@@ -64,13 +64,13 @@ def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:
         x0, y0, w0, h0 = cv2.boundingRect(mask)
         if w0 * h0 < smallest:
             continue
-        count, components, stats, _ = cv2.connectedComponentsWithStats(
+        _, components, stats, _ = cv2.connectedComponentsWithStats(
             mask[y0 : y0 + h0, x0 : x0 + w0], connectivity=8
         )
-        for i in range(1, count):
-            x, y, w, h, area = stats[i].tolist()
-            if area < smallest:
+        for i in np.flatnonzero(stats[:, cv2.CC_STAT_AREA] >= smallest).tolist():
+            if i == 0:  # what is not of this colour
                 continue
+            x, y, w, h, area = stats[i].tolist()
             left, top = x_all + x0 + x, y_all + y0 + y
             box = (left, top, left + w, top + h)
             blobs.append(

@@ -59,6 +59,7 @@ class Candidate:
     Attributes:
         left, right: sides of greater and smaller azimuth.
         rims: at most three.
+        height: of the cylinder [m].
         radius: known or typical radius [m].
         radius_sigma: its standard deviation [m].
     """
@@ -66,6 +67,7 @@ class Candidate:
     left: Side
     right: Side
     rims: tuple[RimCue, ...]
+    height: float
     radius: float
     radius_sigma: float
 
@@ -163,7 +165,7 @@ class _Problem:
         self.rim_height = np.zeros((n, MAX_RIMS))
         self.rim_sign = np.ones((n, MAX_RIMS))
         self.rim_sigma = np.full((n, MAX_RIMS), NO_INFORMATION)
-        self.top = np.zeros(n)
+        self.top = np.array([c.height for c in candidates])
         azimuths, slopes, owners = [], [], []
         x = np.empty((n, 3))
         for k, candidate in enumerate(candidates):
@@ -171,7 +173,6 @@ class _Problem:
                 self.rim_height[k, j] = cue.height
                 self.rim_sign[k, j] = 1.0 if cue.near else -1.0
                 self.rim_sigma[k, j] = cue.rim.sigma
-                self.top[k] = max(self.top[k], cue.height)
                 azimuths.append(cue.rim.azimuth)
                 slopes.append(cue.rim.slope)
                 owners.append((k * MAX_RIMS + j, len(cue.rim.azimuth)))

@@ -148,7 +148,7 @@ class Detector:
                     "obstacle",
                     (blob,),
                     outline,
-                    Candidate(left, right, tuple(rims), *self._radius),
+                    Candidate(left, right, tuple(rims), head, *self._radius),
                     outline.bottom.covered > COVERED or left.hidden or right.hidden,
                 )
             )

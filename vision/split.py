@@ -296,9 +296,9 @@ def _part(
 ) -> Part | None:
     """One cylinder from its foot, its head or both; None if neither side is seen."""
     pieces = [p for p in (low, high) if p is not None]
-    right = [p.right for p in pieces if p.right_true]
-    left = [p.left for p in pieces if p.left_true]
-    if not right and not left:
+    rights = [p.right for p in pieces if p.right_true]
+    lefts = [p.left for p in pieces if p.left_true]
+    if not rights and not lefts:
         return None
     head = parameters.obstacle_height - view.height
     near = low.run if low is not None else max(pieces[0].run - 2.0 * radius[0], 0.1)
@@ -314,8 +314,8 @@ def _part(
             hidden=not true,
         )
         for true, outermost in (
-            (left, max(p.left for p in pieces)),
-            (right, min(p.right for p in pieces)),
+            (lefts, max(p.left for p in pieces)),
+            (rights, min(p.right for p in pieces)),
         )
     ]
     rims = []
@@ -326,4 +326,6 @@ def _part(
         rim = _rim(high, sigma)
         rims.append(RimCue(rim, parameters.obstacle_height, near=False))
     whole = low is not None and low.left_true and low.right_true
-    return Part(Candidate(sides[0], sides[1], tuple(rims), *radius), occluded=not whole)
+    left, right = sides
+    height = parameters.obstacle_height
+    return Part(Candidate(left, right, tuple(rims), height, *radius), occluded=not whole)

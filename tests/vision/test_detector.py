@@ -157,6 +157,14 @@ def test_overlapping_obstacles_of_one_colour_are_told_apart(near: Cylinder, far:
     assert first.box == second.box
 
 
+def test_three_obstacles_of_one_colour_in_a_row_are_three() -> None:
+    scene = [at(0.8, 0.0, "red", 0.07), at(1.2, 5.0, "red", 0.07), at(1.9, 8.5, "red", 0.07)]
+    found = see(scene, pose(tilt=-0.3))
+    assert len(found) == 3
+    for detection, thing in zip(found, scene, strict=True):
+        assert_located(detection, thing)
+
+
 def test_beacons_are_named_top_over_bottom_and_located() -> None:
     for top, bottom in (("yellow", "cyan"), ("cyan", "yellow"), ("magenta", "cyan")):
         for x, y in ((1.5, 0.3), (3.0, -0.8), (4.5, 0.6)):

@@ -1,0 +1,132 @@
+from dataclasses import replace
+from math import asin, radians
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, true_polar
+from vision.blob import find_blobs
+from vision.camera import CameraPose
+from vision.colour import OUTSIDE, ColourTable
+from vision.cylinder import Candidate, RimCue, interpenetrate, locate, polar_in_robot
+from vision.outline import Outline, trace
+from vision.view import View
+
+TYPICAL_RADIUS = (0.085, 0.02)
+
+
+def outline_of(thing: Cylinder, gaze: CameraPose) -> Outline:
+    labels = ColourTable().classify(paint([thing], gaze))
+    padded = np.pad(labels, 1, constant_values=OUTSIDE)
+    (outline,) = trace(find_blobs(labels, (20,) * 7), padded, View(CAMERA, gaze), 0.35)
+    return outline
+
+
+def foot_of(outline: Outline) -> RimCue:
+    return RimCue(outline.bottom, 0.0, near=True)
+
+
+def head_of(outline: Outline) -> RimCue:
+    return RimCue(outline.top, 0.30, near=False)
+
+
+@settings(max_examples=30)
+@given(
+    distance=st.floats(0.6, 2.2),
+    bearing=st.floats(-25.0, 25.0),
+    radius=st.floats(0.05, 0.12),
+    tilt=st.floats(-0.45, -0.25),
+)
+def test_foot_head_and_both_agree_within_their_uncertainty(distance, bearing, radius, tilt) -> None:
+    thing, gaze = at(distance, bearing, "red", radius), pose(tilt=tilt)
+    outline, view = outline_of(thing, gaze), View(CAMERA, gaze)
+    foot, head = foot_of(outline), head_of(outline)
+    sides = (outline.left, outline.right)
+    found = locate(
+        [
+            Candidate(*sides, rims, 0.30, *TYPICAL_RADIUS)
+            for rims in ((foot,), (head,), (foot, head))
+        ],
+        view,
+    )
+    for cylinder in found:
+        sigma = np.sqrt(np.diag(cylinder.covariance))
+        assert abs(cylinder.azimuth - radians(bearing)) < 4.0 * sigma[0]
+        assert abs(cylinder.distance - distance) < 4.0 * sigma[1]
+        assert abs(cylinder.radius - radius) < 4.0 * sigma[2]
+        assert np.linalg.eigvalsh(cylinder.covariance).min() > 0.0
+    assert found[2].covariance[1, 1] <= min(c.covariance[1, 1] for c in found[:2])
+
+
+def test_both_sides_alone_give_the_distance_of_the_typical_radius() -> None:
+    outline = outline_of(at(1.5, 0.0, "red", 0.085), pose(tilt=-0.3))
+    view = View(CAMERA, pose(tilt=-0.3))
+    (cylinder,) = locate([Candidate(outline.left, outline.right, (), 0.30, *TYPICAL_RADIUS)], view)
+    assert cylinder.distance == pytest.approx(1.5, rel=0.04)
+    assert cylinder.covariance[1, 1] ** 0.5 == pytest.approx(1.5 * 0.02 / 0.085, rel=0.1)
+
+
+def test_one_side_is_enough_to_find_the_axis() -> None:
+    thing, gaze = at(1.2, 5.0, "green", 0.09), pose(tilt=-0.3)
+    outline, view = outline_of(thing, gaze), View(CAMERA, gaze)
+    middle = 0.5 * (outline.left.azimuth + outline.right.azimuth)
+    hidden = replace(outline.left, azimuth=middle, trusted=False)
+    rims = (foot_of(outline), head_of(outline))
+    (cylinder,) = locate([Candidate(hidden, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view)
+    assert cylinder.azimuth == pytest.approx(radians(5.0), abs=4 * cylinder.covariance[0, 0] ** 0.5)
+    assert outline.right.azimuth == pytest.approx(radians(5.0) - asin(0.09 / 1.2), abs=0.004)
+
+
+@pytest.mark.parametrize("error", ["tilt_sigma", "roll_sigma", "yaw_sigma", "height_sigma"])
+def test_every_error_of_the_pose_makes_the_place_less_certain(error: str) -> None:
+    gaze = pose(pan=radians(30.0), tilt=-0.3)
+    outline = outline_of(at(1.5, 15.0, "red"), gaze)
+    candidate = Candidate(
+        outline.left, outline.right, (foot_of(outline), head_of(outline)), 0.30, *TYPICAL_RADIUS
+    )
+    (exact,) = locate([candidate], View(CAMERA, gaze))
+    (vague,) = locate([candidate], View(CAMERA, replace(gaze, **{error: 0.02})))
+    slack = 0.05 * np.linalg.eigvalsh(exact.covariance).min()  # they are linearised apart
+    assert np.linalg.eigvalsh(vague.covariance - exact.covariance).min() > -slack
+    assert np.linalg.det(vague.covariance) > 1.05 * np.linalg.det(exact.covariance)
+
+
+def test_place_in_the_robot_frame_follows_the_camera() -> None:
+    thing = at(1.4, 35.0, "blue")
+    gaze = pose(pan=radians(20.0), tilt=-0.3, position=(0.2, -0.3, 0.45))
+    outline, view = outline_of(thing, gaze), View(CAMERA, gaze)
+    rims = (foot_of(outline), head_of(outline))
+    (cylinder,) = locate(
+        [Candidate(outline.left, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view
+    )
+    distance, bearing, covariance = polar_in_robot(cylinder, view)
+    expected = true_polar(thing)
+    assert abs(distance - expected[0]) < 4.0 * covariance[0, 0] ** 0.5
+    assert abs(bearing - expected[1]) < 4.0 * covariance[1, 1] ** 0.5
+    # The Jacobian to polar coordinates about R, by finite differences.
+    J = np.zeros((2, 2))
+    for j, name in enumerate(("azimuth", "distance")):
+        plus, minus = (
+            polar_in_robot(replace(cylinder, **{name: getattr(cylinder, name) + e}), view)
+            for e in (1e-6, -1e-6)
+        )
+        J[:, j] = (plus[0] - minus[0]) / 2e-6, (plus[1] - minus[1]) / 2e-6
+    assert covariance == pytest.approx(J @ cylinder.covariance[:2, :2] @ J.T, rel=1e-5)
+
+
+def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
+    view = View(CAMERA, pose(tilt=-0.3))
+    outline = outline_of(at(1.0, 0.0, "red", 0.1), pose(tilt=-0.3))
+    (here,) = locate(
+        [Candidate(outline.left, outline.right, (foot_of(outline),), 0.30, 0.1, 0.01)], view
+    )
+    assert interpenetrate(here, here)
+    for step in (0.1, 0.4):
+        there = replace(here, distance=here.distance + step)
+        assert interpenetrate(here, there) is interpenetrate(there, here) is (step < 0.15)
+
+
+def test_nothing_is_located_from_nothing() -> None:
+    assert locate([], View(CAMERA, pose())) == []

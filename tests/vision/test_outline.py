@@ -1,0 +1,74 @@
+from math import asin, degrees, hypot
+
+import numpy as np
+import pytest
+
+from tests.vision.scene import CAMERA, Cylinder, at, paint, pose
+from vision.blob import find_blobs
+from vision.camera import CameraPose
+from vision.colour import COLOUR_CLASSES, OUTSIDE, ColourTable
+from vision.outline import Outline, trace
+from vision.view import View
+
+NAMES = ("", *COLOUR_CLASSES)
+PIXEL = 1.0 / CAMERA.focal
+
+
+def outlines(things: list[Cylinder], gaze: CameraPose) -> dict[str, Outline]:
+    labels = ColourTable().classify(paint(things, gaze))
+    blobs = find_blobs(labels, (20,) * 7)
+    padded = np.pad(labels, 1, constant_values=OUTSIDE)
+    traced = trace(blobs, padded, View(CAMERA, gaze), 0.35)
+    return {NAMES[blob.label]: outline for blob, outline in zip(blobs, traced, strict=True)}
+
+
+@pytest.mark.parametrize("roll", [-0.1, 0.0, 0.1])
+@pytest.mark.parametrize("tilt", [-0.9, -0.5, -0.2])
+@pytest.mark.parametrize("bearing", [-28.0, 0.0, 28.0])
+def test_sides_are_the_tangents_of_the_cylinder(roll: float, tilt: float, bearing: float) -> None:
+    distance = 0.7 if tilt < -0.6 else 1.3
+    thing = at(distance, bearing, "green", 0.08)
+    outline = outlines([thing], pose(tilt=tilt, roll=roll)).get("green")
+    assert outline is not None
+    azimuth = np.arctan2(thing.y, thing.x) - View(CAMERA, pose(tilt=tilt, roll=roll)).heading
+    half = asin(0.08 / distance)
+    for side, expected in ((outline.left, azimuth + half), (outline.right, azimuth - half)):
+        if side.trusted:
+            assert side.azimuth == pytest.approx(expected, abs=1.2 * PIXEL)
+    assert outline.left.azimuth > outline.right.azimuth
+
+
+def test_rims_lie_on_the_floor_and_at_the_height_of_the_head() -> None:
+    outline = outlines([at(1.2, 0.0, "blue", 0.09)], pose(tilt=-0.3))["blue"]
+    middle = len(outline.bottom.slope) // 2
+    assert -0.47 / outline.bottom.slope[middle] == pytest.approx(1.2 - 0.09, rel=0.02)
+    assert -0.17 / np.median(outline.top.slope) == pytest.approx(1.2 + 0.09, rel=0.06)
+    assert outline.bottom.covered == 0.0
+
+
+def test_edges_next_to_another_colour_are_not_taken_for_the_own() -> None:
+    front, back = at(0.9, 4.0, "red", 0.09), at(1.6, 0.0, "green", 0.10)
+    seen = outlines([front, back], pose(tilt=-0.3))
+    assert seen["green"].left.hidden
+    assert not seen["red"].right.hidden
+    assert seen["green"].bottom.covered == 0.0 or seen["green"].bottom.covered < 1.0
+    half = asin(0.10 / hypot(back.x, back.y))
+    for side, expected in ((seen["green"].left, half), (seen["green"].right, -half)):
+        if side.trusted:
+            assert side.azimuth == pytest.approx(expected, abs=1.5 * PIXEL)
+
+
+def test_a_foot_behind_another_thing_is_not_seen() -> None:
+    front, back = at(0.8, 0.0, "red", 0.12), at(1.6, 0.0, "violet", 0.05)
+    seen = outlines([front, back], pose(tilt=-0.3))
+    assert seen["violet"].bottom.covered == 1.0
+    assert seen["violet"].bottom.free().slope.size == 0
+    label = NAMES.index("red")
+    assert seen["violet"].bottom.against(label).slope.size == seen["violet"].bottom.slope.size
+
+
+def test_a_side_beyond_the_border_is_not_trusted() -> None:
+    edge = degrees(0.5 * CAMERA.horizontal_fov)
+    seen = outlines([at(1.0, edge + 2.0, "green", 0.1)], pose(tilt=-0.3))["green"]
+    assert not seen.left.trusted
+    assert seen.right.trusted
