@@ -1,0 +1,161 @@
+from dataclasses import replace
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+from hsr8.evaluation.metrics import Metrics
+
+ISSUE_KEYS = (
+    "success collisions falls via_points_total via_points_passed goal_reached arrival_error_deg "
+    "time_to_goal_s path_length_m min_clearance_m localization_rmse_m heading_rmse_deg nees_mean "
+    "obstacle_speed_rmse_mps sim_time_s wall_time_s real_time_factor state_hash exit_reason"
+).split()
+
+
+@pytest.fixture
+def metrics(layout):
+    return Metrics(layout, r_via=0.15, r_goal=0.05)
+
+
+def _feed(metrics, records, reason="timeout"):
+    for record in records:
+        metrics.on_record(record)
+    metrics.close(reason)
+    return metrics.result(reason, "hash")
+
+
+def test_all_keys_are_there_even_of_a_run_that_never_began(metrics):
+    results = metrics.result("interrupted", "")
+    assert set(ISSUE_KEYS) <= set(results)
+    assert results["success"] is False
+    assert results["localization_rmse_m"] is None
+
+
+def test_a_straight_walk(metrics, walk):
+    results = _feed(metrics, walk(10.0))
+    assert results["path_length_m"] == pytest.approx(2.0)
+    assert results["sim_time_s"] == pytest.approx(10.0)
+    assert results["localization_rmse_m"] == pytest.approx(0.0)
+    assert results["obstacle_speed_rmse_mps"] == pytest.approx(0.0)
+    assert results["min_clearance_m"] == 0.5
+    assert results["time_standing_s"] == 0.0
+    assert results["state_hash"] == "hash"
+    assert results["max_tilt_deg"] == pytest.approx(np.degrees(np.hypot(0.01, 0.02)))
+
+
+def test_sway_is_no_way(metrics, fake):
+    """Swaying by 2 cm at the pace of the gait, on the spot, the path stays short."""
+    records = (fake.record(0.02 * k, (0.0, 0.02 * np.sin(2 * pi * k / 50), 0.0)) for k in range(501))
+    results = _feed(metrics, records)
+    assert results["path_length_m"] < 0.01
+    assert results["time_standing_s"] == pytest.approx(10.0)
+
+
+def test_localization_errors_are_root_mean_squares(metrics, fake):
+    """Two frames: 3 cm off along x and 10 deg, then 4 cm along y across the wrap at 180 deg."""
+    poses = ((0.0, 0.0, 0.0), (0.0, 0.0, pi - 0.01))
+    believed = ((0.03, 0.0, radians(10.0)), (0.0, 0.04, -pi + 0.01))
+    covariance = np.diag([0.01**2, 0.02**2, 0.05**2])
+    records = [
+        fake.record(0.06 * i, pose, frame=fake.frame(0.06 * i, belief, pose_covariance=covariance))
+        for i, (pose, belief) in enumerate(zip(poses, believed))
+    ]
+    results = _feed(metrics, records)
+    assert results["localization_rmse_m"] == pytest.approx(np.sqrt((0.03**2 + 0.04**2) / 2))
+    heading = np.sqrt((radians(10.0) ** 2 + 0.02**2) / 2)
+    assert results["heading_rmse_deg"] == pytest.approx(np.degrees(heading))
+    nees = (9 + (radians(10.0) / 0.05) ** 2 + 4 + (0.02 / 0.05) ** 2) / 2 / 3
+    assert results["nees_mean"] == pytest.approx(nees)
+
+
+def test_tracks_are_compared_with_the_nearest_obstacle_and_ghosts_with_none(metrics, fake):
+    wrong = fake.track(2, 0.0, velocity=(0.03, 0.1))
+    ghost = fake.track(0, 0.0, error=(-0.7, 1.0), velocity=(9.0, 9.0))
+    frame = fake.frame(0.0, tracks=(wrong, ghost))
+    results = _feed(metrics, [fake.record(0.0, frame=frame)])
+    assert results["obstacle_speed_rmse_mps"] == pytest.approx(0.03)
+
+
+def test_collisions_by_kind(metrics, fake):
+    touched = {10: (0,), 11: (0, 2), 12: (0,), 60: (2,)}
+    records = (fake.record(0.02 * k, contacts=touched.get(k, ())) for k in range(100))
+    results = _feed(metrics, records)
+    assert results["collisions"] == 3
+    assert results["collisions_moving"] == 2
+    assert results["collisions_static"] == 1
+    assert results["collisions_closing"] == 1
+
+
+def test_lying_for_long_is_one_fall_and_its_tilt_does_not_count(metrics, fake):
+    lying = fake.record(0.02, fallen=True)
+    lying = replace(lying, walking=replace(lying.walking, roll=1.5))
+    results = _feed(metrics, [fake.record(0.0), lying, replace(lying, time=0.04)], "fall")
+    assert results["falls"] == 1
+    assert results["success"] is False
+    assert results["max_tilt_deg"] < 2.0
+
+
+def _arrival(fake, via_at, goal_at, **more):
+    """A via point passed at `via_at` and the mission done at `goal_at`."""
+    return [
+        fake.record(0.0, frame=fake.frame(0.0)),
+        fake.record(5.0, via_at, frame=fake.frame(5.0, via_at, index=1)),
+        fake.record(
+            9.0, goal_at, frame=fake.frame(9.0, goal_at, index=1, is_goal=True, done=True), **more
+        ),
+    ]
+
+
+def test_a_perfect_course_is_a_success(metrics, fake):
+    results = _feed(metrics, _arrival(fake, (0.9, 0.0, 0.0), (1.5, 1.02, 1.1)), "goal")
+    assert results["via_points_total"] == 1
+    assert results["via_points_passed"] == 1
+    assert results["goal_reached"] is True
+    assert results["time_to_goal_s"] == 9.0
+    assert results["arrival_error_deg"] == pytest.approx(np.degrees(0.1))
+    assert results["success"] is True
+
+
+def test_what_is_only_believed_does_not_count(metrics, fake):
+    """The robot believes that it passed and arrived, but truly it is 40 cm beside."""
+    results = _feed(metrics, _arrival(fake, (1.0, 0.4, 0.0), (1.5, 1.4, 1.0)), "goal")
+    assert results["via_points_passed"] == 0
+    assert results["via_points_missed"] == 1
+    assert results["goal_reached"] is False
+    assert results["success"] is False
+
+
+def test_a_wrong_heading_is_no_arrival(metrics, fake):
+    results = _feed(metrics, _arrival(fake, (1.0, 0.0, 0.0), (1.5, 1.0, 1.4)), "goal")
+    assert results["goal_reached"] is False
+
+
+def test_a_touch_spoils_success(metrics, fake):
+    records = _arrival(fake, (1.0, 0.0, 0.0), (1.5, 1.0, 1.0), contacts=(0,))
+    results = _feed(metrics, records, "goal")
+    assert results["goal_reached"] is True
+    assert results["success"] is False
+
+
+def test_an_endless_tour_counts_rounds_and_succeeds_when_its_time_is_over(layout, fake):
+    metrics = Metrics(replace(layout, endless=True), 0.15, 0.05)
+    places = ((1.0, 0.0, 0.0), (1.5, 1.0, 0.0), (1.0, 0.0, 0.0))
+    records = [
+        fake.record(1.0 * i, p, frame=fake.frame(1.0 * i, p, index=i + 1))
+        for i, p in enumerate(places)
+    ]
+    results = _feed(metrics, records, "completed")
+    assert results["via_points_total"] == 2
+    assert results["via_points_passed"] == 3
+    assert results["goal_reached"] is False
+    assert results["success"] is True
+
+
+def test_saccades_are_large_changes_of_the_wanted_gaze(metrics, fake):
+    records = []
+    for k, pan in enumerate((0.0, 0.05, 0.6, 0.6, -0.3)):
+        frame = fake.frame(0.06 * k)
+        frame = replace(frame, gaze=replace(frame.gaze, pan=pan))
+        records.append(fake.record(0.06 * k, frame=frame))
+    assert _feed(metrics, records)["saccades_per_s"] == pytest.approx(2 / 0.24)

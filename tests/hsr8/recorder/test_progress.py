@@ -1,0 +1,46 @@
+import io
+
+from hsr8.recorder.progress import Progress
+
+
+def test_without_a_terminal_there_is_a_plain_line_every_ten_seconds(walk):
+    stream = io.StringIO()
+    progress = Progress(30.0, stream)
+    for record in walk(25.0):
+        progress.on_record(record)
+    progress.on_event(3.0, "collision", "l_sole touches obstacle 1")
+    progress.close("timeout")
+    lines = stream.getvalue().splitlines()
+    assert [line.split()[0] for line in lines] == ["10.0", "20.0"]
+    assert "\x1b" not in stream.getvalue()
+
+
+def test_the_line_says_what_goes_on(fake):
+    progress = Progress(30.0, io.StringIO())
+    progress.on_event(1.0, "collision", "l_sole touches obstacle 1")
+    record = fake.record(2.0, frame=fake.frame(2.0, index=3))
+    progress.on_record(record)
+    line = progress.line(record)
+    assert "2.0 / 30.0 s" in line
+    assert "via points   3" in line
+    assert "collisions 1" in line
+    assert "free" in line
+
+
+def test_a_lost_robot_is_called_lost(fake):
+    progress = Progress(30.0, io.StringIO())
+    record = fake.record(2.0, frame=fake.frame(2.0, lost=True))
+    progress.on_record(record)
+    assert progress.line(record).endswith("lost")
+
+
+def test_a_terminal_gets_a_live_line_that_goes_away(fake, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    stream = io.StringIO()
+    progress = Progress(30.0, stream)
+    progress.on_record(fake.record(0.0))
+    progress.on_event(1.0, "fall", "the robot has fallen")
+    progress.close("fall")
+    progress.close("fall")
+    assert "the robot has fallen" in stream.getvalue()

@@ -1,0 +1,98 @@
+import json
+import os
+
+import numpy as np
+import pytest
+
+from hsr8.errors import UsageError
+from hsr8.recorder import run_folder
+from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run_reader import open_run
+
+
+@pytest.fixture
+def folder(tmp_path):
+    path = RunFolder.create(tmp_path, "quick", 7)
+    manifest = Manifest.now("quick", 7, ("hsr8", "run", "quick", "--seed", "7"), "analytic")
+    return RunFolder(path, manifest, 'name = "quick"\n', movers=1)
+
+
+def test_folders_of_equal_runs_are_different(tmp_path):
+    paths = {RunFolder.create(tmp_path, "quick", 7) for _ in range(20)}
+    assert len(paths) == 20
+    assert all(p.parent == tmp_path / "quick" and p.name.startswith("7-") for p in paths)
+
+
+def test_a_finished_run_can_be_read_back(folder, walk, fake):
+    for record in walk(1.0):
+        folder.on_record(record)
+    folder.on_event(0.5, "collision", "l_sole touches obstacle 0")
+    folder.close("goal")
+    folder.write_metrics({"success": True, "time_to_goal_s": float("nan")})
+    run = open_run(folder.path)
+    assert run.seed == 7
+    assert run.manifest["exit_reason"] == "goal"
+    assert run.manifest["libraries"]["mujoco"].startswith("4.0")
+    assert run.metrics() == {"success": True, "time_to_goal_s": None}
+    assert [e["kind"] for e in run.events()] == ["collision"]
+    trajectory = run.trajectory()
+    assert len(trajectory) == 51
+    assert trajectory.qpos[50, 0] == pytest.approx(0.2)
+    assert np.array_equal(
+        trajectory.movers[:, 0], [r.truth.obstacle_positions[2] for r in walk(1.0)]
+    )
+    assert [f.time for f in run.frames()] == pytest.approx([0.06 * k for k in range(17)])
+    assert run.scenario_file.read_text() == 'name = "quick"\n'
+
+
+def test_a_killed_run_can_be_read_up_to_its_last_second(folder, walk):
+    for record in walk(2.5):
+        folder.on_record(record)
+    folder.on_event(0.5, "via_point", "via point 1 passed")
+    # Nothing is closed: what is on the disk now is what a kill leaves.
+    with (folder.path / run_folder.EVENTS).open("a") as events:
+        events.write('{"time": 2.4, "ki')
+    run = open_run(folder.path)
+    assert run.manifest["exit_reason"] == "running"
+    assert run.metrics() == {}
+    assert [e["kind"] for e in run.events()] == ["via_point"]
+    assert run.trajectory().time[-1] >= 1.5
+    assert run.frames()[-1].time >= 1.5
+
+
+def test_a_run_without_a_camera_frame_has_none(folder, fake):
+    folder.on_record(fake.record(0.0))
+    folder.close("completed")
+    assert open_run(folder.path).frames() == ()
+
+
+def test_the_newest_run_below_a_folder_is_meant(tmp_path):
+    for age, seed in ((300, 1), (100, 2), (200, 3)):
+        path = RunFolder.create(tmp_path, "quick", seed)
+        file = path / run_folder.MANIFEST
+        Manifest.now("quick", seed, (), "analytic").write(file)
+        os.utime(file, (1e9 - age, 1e9 - age))
+    assert open_run(tmp_path).seed == 2
+    assert open_run(tmp_path / "quick").seed == 2
+
+
+def test_no_run_is_a_usage_error_that_names_the_runs_there_are(tmp_path):
+    path = RunFolder.create(tmp_path, "quick", 1)
+    with pytest.raises(UsageError, match="holds no run"):
+        open_run(path)
+    with pytest.raises(UsageError, match=path.name):
+        open_run(tmp_path / "quick" / "1-abc")
+
+
+def test_a_broken_manifest_is_a_usage_error(tmp_path):
+    for text in ("{", json.dumps([1])):
+        (tmp_path / run_folder.MANIFEST).write_text(text)
+        with pytest.raises(UsageError, match="cannot read"):
+            open_run(tmp_path)
+
+
+def test_a_folder_that_cannot_be_made_is_a_usage_error(tmp_path):
+    (tmp_path / "runs").write_text("a file, not a folder")
+    with pytest.raises(UsageError, match="--out"):
+        RunFolder.create(tmp_path / "runs", "quick", 1)
