@@ -67,6 +67,7 @@ class Check:
     scenario: Positional[ScenarioName]
     seed: Annotated[int | None, _arg("N", "seed of the world; else the scenario's")] = None
     set: Settings = ()
+    png: Annotated[Path | None, _arg("FILE", "draw the world from above")] = None
     json: bool = False
     """Print one JSON object."""
 

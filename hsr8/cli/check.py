@@ -1,0 +1,169 @@
+"""``hsr8 check``: what a scenario comes to, without running it."""
+
+import json
+from math import degrees, hypot
+from pathlib import Path
+
+import cv2
+from rich.console import Console
+from rich.table import Table
+
+from hsr8.cli.options import Check
+from hsr8.errors import UsageError
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from hsr8.world.certificate import Certificate, certify, straight_length
+from hsr8.world.generator import draw_layout
+from hsr8.world.layout import Layout
+from hsr8.world.plan_view import PlanView
+
+# Measured on two cores without a graphics card, `paper` at its defaults.
+REAL_TIME_FACTOR = {"egl": 4.0, "analytic": 6.0}
+LOG_RATE = 0.25  # megabytes of log per simulated second
+
+Summary = dict[str, object]
+
+
+def main(options: Check) -> int:
+    """Read a scenario, draw its world, and tell what it will be like.
+
+    Raises:
+        ScenarioError: the scenario is wrong or its world cannot be drawn.
+        UsageError: the picture cannot be written.
+    """
+    settings = [setting for group in options.set for setting in group]
+    scenario = load(options.scenario, settings, options.seed)
+    layout = draw_layout(scenario, scenario.seed)
+    certificate = certify(layout)
+    if options.png is not None:
+        _write(layout, options.png)
+    summary = summarize(scenario, layout, certificate)
+    if options.json:
+        print(json.dumps(summary))
+    else:
+        _show(scenario, layout, summary)
+    return 0
+
+
+def summarize(scenario: Scenario, layout: Layout, certificate: Certificate) -> Summary:
+    """World, mission and cost of a scenario as plain values."""
+    return {
+        "name": scenario.name,
+        "seed": scenario.seed,
+        "duration": scenario.duration,
+        "field": list(layout.field_size),
+        "start": [round(v, 3) for v in layout.start],
+        "obstacles": [
+            {
+                "index": i,
+                "moves": o.motion is not None,
+                "position": [round(v, 3) for v in o.position],
+                "radius": round(o.radius, 3),
+                "colour": o.colour,
+                "speed": round(hypot(*o.motion.velocity(0.0)), 3) if o.motion else 0.0,
+            }
+            for i, o in enumerate(layout.obstacles)
+        ],
+        "beacons": [b.name for b in layout.beacons],
+        "waypoints": layout.waypoints.round(3).tolist(),
+        "goal_heading_deg": None
+        if layout.goal_heading is None
+        else round(degrees(layout.goal_heading), 1),
+        "straight_length_m": round(straight_length(layout), 2),
+        "certified": certificate.solvable,
+        "certified_points": certificate.points_reached,
+        "certified_time_s": round(certificate.time, 1),
+        "estimated_wall_time_s": round(
+            scenario.duration / REAL_TIME_FACTOR[scenario.camera.source], 1
+        ),
+        "estimated_log_mb": round(scenario.duration * LOG_RATE, 1),
+    }
+
+
+def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
+    console = Console(highlight=False)
+    width, depth = layout.field_size
+    x, y, heading = layout.start
+    camera, mission = scenario.camera, scenario.mission
+    speeds = [hypot(*o.motion.velocity(0.0)) for o in layout.movers if o.motion]
+    facts = Table(
+        title=f"{scenario.name}, seed {scenario.seed}", title_justify="left", show_header=False
+    )
+    facts.add_row("field", f"{width:g} m x {depth:g} m")
+    facts.add_row("static obstacles", str(len(layout.static)))
+    moving = str(len(speeds))
+    if speeds:
+        moving += f", {min(speeds):.3f} to {max(speeds):.3f} m/s"
+    facts.add_row("moving obstacles", moving)
+    facts.add_row("beacons", ", ".join(b.name for b in layout.beacons) or "none")
+    facts.add_row("robot", f"{scenario.robot.body} body")
+    facts.add_row("start", f"({x:.2f}, {y:.2f}) m, {degrees(heading):.0f} deg")
+    facts.add_row("mission", f"{mission.kind}, {_points(layout)}")
+    facts.add_row("certificate", _certificate(summary, layout))
+    facts.add_row(
+        "camera",
+        f"{camera.source}, {camera.width} x {camera.height}, {camera.horizontal_fov_deg:.0f} x "
+        f"{camera.vertical_fov_deg:.0f} deg, every {camera.period_ms} ms",
+    )
+    facts.add_row("profile", scenario.navigation.profile)
+    facts.add_row(
+        "time",
+        f"at most {scenario.duration:g} s simulated, about "
+        f"{summary['estimated_wall_time_s']} s on two cores",
+    )
+    facts.add_row("log", f"about {summary['estimated_log_mb']} MB")
+    console.print(facts)
+    if layout.obstacles:
+        console.print(_obstacles(layout))
+    console.print(f"run it: hsr8 run {scenario.name} --seed {scenario.seed}")
+
+
+def _points(layout: Layout) -> str:
+    n = len(layout.waypoints)
+    if n == 0:
+        return "no way points"
+    if layout.endless:
+        return f"{n} via points again and again"
+    goal = (
+        "a goal"
+        if layout.goal_heading is None
+        else (f"a goal at {degrees(layout.goal_heading):.0f} deg")
+    )
+    return f"{n - 1} via points and {goal}, {straight_length(layout):.1f} m straight"
+
+
+def _certificate(summary: Summary, layout: Layout) -> str:
+    points = summary["certified_points"]
+    if len(layout.waypoints) == 0:
+        return "nothing to reach"
+    if summary["certified"]:
+        return (
+            f"a robot that knows all reaches {points} points in {summary['certified_time_s']} s "
+            "at 0.05 m/s"
+        )
+    return f"no way found for a robot at 0.05 m/s after {points} points"
+
+
+def _obstacles(layout: Layout) -> Table:
+    table = Table(title="obstacles", title_justify="left")
+    for name in ("", "x [m]", "y [m]", "radius [m]", "speed [m/s]"):
+        table.add_column(name, justify="right")
+    table.add_column("colour")
+    table.add_column("motion")
+    for i, o in enumerate(layout.obstacles):
+        speed = f"{hypot(*o.motion.velocity(0.0)):.3f}" if o.motion else ""
+        motion = type(o.motion).__name__.lower() if o.motion else ""
+        x, y = o.position
+        table.add_row(str(i), f"{x:.2f}", f"{y:.2f}", f"{o.radius:.3f}", speed, o.colour, motion)
+    return table
+
+
+def _write(layout: Layout, path: Path) -> None:
+    image = cv2.cvtColor(PlanView(layout).draw(), cv2.COLOR_RGB2BGR)
+    coded, data = cv2.imencode(".png", image)
+    if not coded:
+        raise UsageError(f"the picture {str(path)!r} cannot be coded")
+    try:
+        path.write_bytes(data.tobytes())
+    except OSError as error:
+        raise UsageError(f"the picture {str(path)!r} cannot be written: {error}") from None
