@@ -59,7 +59,7 @@ class WalkingEngine:
         self._touch = TouchDown(parameters.estimator)
         self._stabilizer = Stabilizer(robot, parameters.stabilizer, self._lipm.omega)
         self._posture = Posture(robot, parameters)
-        self._feedforward = FeedForward(robot, parameters.stabilizer)
+        self._feedforward = FeedForward(robot, parameters.stabilizer, pattern.pelvis_height)
         self._odometry = LegOdometry()
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
@@ -287,7 +287,11 @@ class WalkingEngine:
         c, s = cos(pelvis.yaw), sin(pelvis.yaw)
         dx, dy = zmp[0] - pelvis.x, zmp[1] - pelvis.y
         point = (c * dx + s * dy, c * dy - s * dx)
-        offset = self._feedforward.offsets(position, legs, point, right_load)
+        w2 = self._lipm.omega**2
+        ax, ay = w2 * (pendulum.x - zmp[0]), w2 * (pendulum.y - zmp[1])
+        offset = self._feedforward.offsets(
+            position, legs, point, right_load, (c * ax + s * ay, c * ay - s * ax)
+        )
         for index, load in ((0, 1.0 - right_load), (1, right_load)):
             ankle = self._stabilizer.ankles(gait.footholds[index], load, self._zmp_shift, body.gyro)
             offset[6 * index + 4] += ankle.pitch

@@ -116,35 +116,40 @@ def foot_pose(leg: LegDimensions, angles: LegAngles) -> FootPose:
     )
 
 
-def support_torques(leg: LegDimensions, angles: LegAngles, point: Vector, load: float) -> LegAngles:
-    """Joint torques by which a leg carries a vertical load, links taken as massless.
+def support_torques(
+    leg: LegDimensions, angles: LegAngles, point: Vector, force: Vector
+) -> LegAngles:
+    """Joint torques by which a massless leg hands a force of the floor on to the base.
 
     Args:
         leg: dimensions.
         angles: joint angles [rad].
-        point: where the floor pushes, in the base frame held level [m].
-        load: force of the floor, upward [N].
+        point: where the floor pushes, in the base frame [m].
+        force: of the floor on the foot, in the base frame [N].
 
     Returns:
         torque of each joint [N m].
     """
     a, b, c, d, e, _ = angles
     ca, sa, cb, sb = cos(a), sin(a), cos(b), sin(b)
-    g = c + d + e
-    px, py, _ = point
-    # Pitch axis shared by hip, knee and ankle; knee and ankle below the hip.
-    ax, ay = -sa * cb, ca * cb
-    kx, kz = -leg.thigh * sin(c), -leg.thigh * cos(c)
-    nx, nz = kx - leg.shank * sin(c + d), kz - leg.shank * cos(c + d)
-    hx, hy = px - leg.hip_x, py - leg.hip_y
-    knee_x, knee_y = ca * kx + sa * sb * kz, sa * kx - ca * sb * kz
-    ankle_x, ankle_y = ca * nx + sa * sb * nz, sa * nx - ca * sb * nz
-    fx, fy = ca * cos(g) - sa * sin(g) * sb, sa * cos(g) + ca * sin(g) * sb
+    sg, cg = sin(c + d + e), cos(c + d + e)
+    fx, fy, fz = force
+    # Arms of the force about hip, knee and ankle.
+    hx, hy, hz = point[0] - leg.hip_x, point[1] - leg.hip_y, point[2] - leg.hip_z
+    along, down = -leg.thigh * sin(c), -leg.thigh * cos(c)
+    kx, ky, kz = hx - ca * along - sa * sb * down, hy - sa * along + ca * sb * down, hz - cb * down
+    along, down = along - leg.shank * sin(c + d), down - leg.shank * cos(c + d)
+    ax, ay, az = hx - ca * along - sa * sb * down, hy - sa * along + ca * sb * down, hz - cb * down
+    # Common pitch axis, and the axis of the ankle roll.
+    px, py, pz = -sa * cb, ca * cb, sb
+    rx, ry, rz = ca * cg - sa * sg * sb, sa * cg + ca * sg * sb, -sg * cb
+    mx, my, mz = hy * fz - hz * fy, hz * fx - hx * fz, hx * fy - hy * fx
+    nx, ny, nz = ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx
     return (
-        0.0,
-        -load * (ca * hy - sa * hx),
-        -load * (ax * hy - ay * hx),
-        -load * (ax * (hy - knee_y) - ay * (hx - knee_x)),
-        -load * (ax * (hy - ankle_y) - ay * (hx - ankle_x)),
-        -load * (fx * (hy - ankle_y) - fy * (hx - ankle_x)),
+        -mz,
+        -ca * mx - sa * my,
+        -px * mx - py * my - pz * mz,
+        -px * (ky * fz - kz * fy) - py * (kz * fx - kx * fz) - pz * (kx * fy - ky * fx),
+        -px * nx - py * ny - pz * nz,
+        -rx * nx - ry * ny - rz * nz,
     )

@@ -99,8 +99,15 @@ class StabilizerParameters:
     """Distance that the ZMP moved by the ankles keeps from the edge of the sole [m]."""
     gyro_gain: Annotated[float, Ge(0.0)] = 0.02
     """Ankle set-point per angular velocity of the trunk [s]."""
-    gravity_gain: Annotated[float, Ge(0.0)] = 1.0
-    """Share of the static joint torques fed forward [1]."""
+    load_gain: Annotated[float, Ge(0.0)] = 1.0
+    """Share of the planned joint torques fed forward [1]."""
+    horizontal_gain: Annotated[float, Ge(0.0)] = 0.5
+    """Share of the floor's planned horizontal force in those torques; the pendulum has it
+    act on the whole mass, the legs in truth take part in less of it [1]."""
+    inertia_gain: Annotated[float, Ge(0.0)] = 1.0
+    """Share of the joints' planned acceleration in those torques [1]."""
+    inertia_limit: Annotated[float, Ge(0.0)] = 300.0
+    """Largest acceleration of a joint in those torques [rad/s²]."""
     velocity_gain: Annotated[float, Ge(0.0)] = 0.3
     """Share of the servos' velocity lag fed forward, legs [1]."""
     upper_velocity_gain: Annotated[float, Ge(0.0)] = 1.0

@@ -67,6 +67,7 @@ class RobotModel:
         self._q_index = np.array([model.joints[i].idx_q for i in ids])
         self._v_index = np.array([model.joints[i].idx_v for i in ids])
         self._q = pin.neutral(model)
+        self._v, self._a = np.zeros(model.nv), np.zeros(model.nv)
         self._camera = self._frame("camera")
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
@@ -102,13 +103,31 @@ class RobotModel:
         x, y, z = pin.centerOfMass(self._model, self._data, q, False).tolist()
         return x, y, z
 
-    def gravity_torque(self, joint_position: Array) -> list[float]:
-        """Torque that holds each joint up, base level, nothing touching the feet [N m]."""
-        q = self._q
-        q[self._q_index] = joint_position
-        torque = pin.computeGeneralizedGravity(self._model, self._data, q)
-        held: list[float] = torque[self._v_index].tolist()
-        return held
+    def joint_torque(
+        self,
+        position: Array,
+        velocity: Array,
+        acceleration: Array,
+        base_acceleration: tuple[float, float],
+    ) -> Array:
+        """Torque that a motion of the joints asks of them, nothing touching the feet.
+
+        Args:
+            position: joint angles (26,) [rad].
+            velocity: their rates (26,) [rad/s].
+            acceleration: their accelerations (26,) [rad/s²].
+            base_acceleration: of the level base, forward and left [m/s²].
+
+        Returns:
+            torque of each joint, gravity included (26,) [N m].
+        """
+        self._q[self._q_index] = position
+        self._v[self._v_index] = velocity
+        self._a[self._v_index] = acceleration
+        self._a[0], self._a[1] = base_acceleration
+        torque = pin.rnea(self._model, self._data, self._q, self._v, self._a)
+        asked: Array = torque[self._v_index]
+        return asked
 
     def camera_pose(self, joint_position: Array) -> tuple[Array, Array]:
         """Rotation R_BC (3, 3) and position p_BC (3,) [m] of the head camera."""

@@ -49,14 +49,24 @@ def test_servo_gains_come_from_the_file(robot):
     assert (robot.damping > 0.0).all()
 
 
-def test_gravity_torque_is_the_gradient_of_the_potential_energy(robot):
-    q = robot.ready
-    torque = robot.gravity_torque(q)
+def test_torque_at_rest_is_the_gradient_of_the_potential_energy(robot):
+    q, rest = robot.ready, np.zeros(len(JOINT_NAMES))
+    torque = robot.joint_torque(q, rest, rest, (0.0, 0.0))
     for joint in range(len(JOINT_NAMES)):
         step = np.zeros_like(q)
         step[joint] = 1e-6
         rise = robot.com(q + step)[2] - robot.com(q - step)[2]
         assert torque[joint] == pytest.approx(robot.mass * 9.81 * rise / 2e-6, abs=1e-5)
+
+
+def test_an_accelerating_joint_asks_for_more_than_its_armature(robot):
+    rest = np.zeros(len(JOINT_NAMES))
+    push = rest.copy()
+    push[2] = 10.0
+    still = robot.joint_torque(robot.ready, rest, rest, (0.0, 0.0))
+    moved = robot.joint_torque(robot.ready, rest, push, (0.0, 0.0))
+    assert moved[2] - still[2] > 10.0 * 0.005
+    assert moved[8] == pytest.approx(still[8])
 
 
 def test_camera_looks_where_the_head_points(robot):
