@@ -13,11 +13,11 @@ NonNegative = Annotated[float, Ge(0.0)]
 class LocalizationParameters:
     """Unscented Kalman filter of the robot's pose from odometry and beacons."""
 
-    slip: NonNegative = 0.06
+    slip: NonNegative = 0.03
     """Standard deviation of a footstep's displacement and turn, as a share of it [1]."""
-    drift: NonNegative = 0.006
+    drift: NonNegative = 0.003
     """Standard deviation of the odometry's speed error over a footstep while stepping [m/s]."""
-    turn_drift: NonNegative = 0.02
+    turn_drift: NonNegative = 0.006
     """Standard deviation of the odometry's turn rate error over a footstep [rad/s]."""
     footstep: Positive = 0.34
     """Time over which an odometry error stays the same, one footstep [s]."""
