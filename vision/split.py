@@ -21,7 +21,7 @@ from vision.view import View
 Array = NDArray[np.float64]
 Labels = NDArray[np.uint8]
 
-MAX_CELLS = 256  # of the grid in each direction
+MAX_CELLS = 128  # of the grid in each direction
 MIN_COLUMNS = 3  # a piece of an outline needs so many columns
 EXTRA_RADIUS = 0.04  # a cylinder may seem thicker or thinner by so much when matched [m]
 SIDE_SIGMA = 0.5  # standard deviation of an end of a piece [column]
