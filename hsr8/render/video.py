@@ -58,15 +58,19 @@ class VideoWriter:
 
     def close(self, *, keep: bool = True) -> None:
         """Finish the file, or remove it."""
-        self._wait()
-        self._worker.shutdown()
-        if keep:
-            self._container.mux(self._stream.encode(None))
-        self._container.close()
-        if keep:
-            self._draft.replace(self._path)
-        else:
-            self._draft.unlink()
+        complete = False
+        try:
+            if keep:
+                self._wait()
+                self._container.mux(self._stream.encode(None))
+                complete = True
+        finally:
+            self._worker.shutdown()
+            self._container.close()
+            if complete:
+                self._draft.replace(self._path)
+            else:
+                self._draft.unlink(missing_ok=True)
 
     def __enter__(self) -> Self:
         return self

@@ -138,7 +138,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
     qpos[:2] = x, y
     qpos[3], qpos[6] = cos(yaw / 2), sin(yaw / 2)
     moving = [o.motion for o in layout.obstacles]
-    positions = [m.position(time) if m else o.position for o, m in zip(layout.obstacles, moving)]
+    positions = [o.motion.position(time) if o.motion else o.position for o in layout.obstacles]
     fields = {
         "time": time,
         "qpos": qpos,
@@ -170,7 +170,10 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
             odometry=Odometry(x, y, yaw),
             camera=HeadCameraPose(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3),
             given=np.array([0.2, 0.0, 0.0]),
-            footsteps=(Footstep(True, x, y + 0.035, yaw), Footstep(False, x + 0.05, y - 0.035, yaw)),
+            footsteps=(
+                Footstep(True, x, y + 0.035, yaw),
+                Footstep(False, x + 0.05, y - 0.035, yaw),
+            ),
             zmp=np.array([x, y]),
             dcm=np.array([x, y]),
             com=np.array([x, y]),

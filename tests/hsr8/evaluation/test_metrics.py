@@ -6,11 +6,27 @@ import pytest
 
 from hsr8.evaluation.metrics import Metrics
 
-ISSUE_KEYS = (
-    "success collisions falls via_points_total via_points_passed goal_reached arrival_error_deg "
-    "time_to_goal_s path_length_m min_clearance_m localization_rmse_m heading_rmse_deg nees_mean "
-    "obstacle_speed_rmse_mps sim_time_s wall_time_s real_time_factor state_hash exit_reason"
-).split()
+PROMISED = {
+    "success",
+    "collisions",
+    "falls",
+    "via_points_total",
+    "via_points_passed",
+    "goal_reached",
+    "arrival_error_deg",
+    "time_to_goal_s",
+    "path_length_m",
+    "min_clearance_m",
+    "localization_rmse_m",
+    "heading_rmse_deg",
+    "nees_mean",
+    "obstacle_speed_rmse_mps",
+    "sim_time_s",
+    "wall_time_s",
+    "real_time_factor",
+    "state_hash",
+    "exit_reason",
+}
 
 
 @pytest.fixture
@@ -27,7 +43,7 @@ def _feed(metrics, records, reason="timeout"):
 
 def test_all_keys_are_there_even_of_a_run_that_never_began(metrics):
     results = metrics.result("interrupted", "")
-    assert set(ISSUE_KEYS) <= set(results)
+    assert set(results) >= PROMISED
     assert results["success"] is False
     assert results["localization_rmse_m"] is None
 
@@ -46,7 +62,9 @@ def test_a_straight_walk(metrics, walk):
 
 def test_sway_is_no_way(metrics, fake):
     """Swaying by 2 cm at the pace of the gait, on the spot, the path stays short."""
-    records = (fake.record(0.02 * k, (0.0, 0.02 * np.sin(2 * pi * k / 50), 0.0)) for k in range(501))
+    records = (
+        fake.record(0.02 * k, (0.0, 0.02 * np.sin(2 * pi * k / 50), 0.0)) for k in range(501)
+    )
     results = _feed(metrics, records)
     assert results["path_length_m"] < 0.01
     assert results["time_standing_s"] == pytest.approx(10.0)
@@ -59,7 +77,7 @@ def test_localization_errors_are_root_mean_squares(metrics, fake):
     covariance = np.diag([0.01**2, 0.02**2, 0.05**2])
     records = [
         fake.record(0.06 * i, pose, frame=fake.frame(0.06 * i, belief, pose_covariance=covariance))
-        for i, (pose, belief) in enumerate(zip(poses, believed))
+        for i, (pose, belief) in enumerate(zip(poses, believed, strict=True))
     ]
     results = _feed(metrics, records)
     assert results["localization_rmse_m"] == pytest.approx(np.sqrt((0.03**2 + 0.04**2) / 2))

@@ -1,0 +1,41 @@
+import json
+
+import pytest
+
+from hsr8.cli import doctor
+from hsr8.cli.main import entry
+from hsr8.gl import APT_LINE
+
+
+@pytest.mark.parametrize(
+    ("renderers", "states"),
+    [
+        ({"egl": "llvmpipe (LLVM 15)", "osmesa": None}, ["ok", "note"]),
+        ({"egl": "NVIDIA H200", "osmesa": None}, ["ok", "note"]),
+        ({"egl": None, "osmesa": None}, ["note", "note", "missing"]),
+    ],
+)
+def test_one_backend_is_enough(renderers, states):
+    assert [f.state for f in doctor.opengl(renderers)] == states
+
+
+def test_without_any_backend_the_cure_is_printed_and_the_code_is_2(monkeypatch, capsys):
+    monkeypatch.setattr(doctor, "probe", lambda backend: None)
+    assert entry(["doctor"]) == 2
+    assert APT_LINE in " ".join(capsys.readouterr().out.split())
+
+
+def test_json_names_everything(monkeypatch, capsys):
+    monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
+    assert entry(["doctor", "--json"]) == 0
+    findings = {f["name"]: f for f in json.loads(capsys.readouterr().out)["findings"]}
+    assert findings["mujoco"]["text"].startswith("4.0")
+    assert findings["models"]["state"] == "ok"
+    assert "processor" in findings["OpenGL egl"]["text"]
+
+
+def test_a_backend_that_fails_is_a_note_not_an_error(monkeypatch):
+    monkeypatch.setattr(doctor, "PROBE", "raise SystemExit(1)")
+    assert doctor.probe("egl") is None
+    monkeypatch.setattr(doctor, "PROBE", "print('a renderer')")
+    assert doctor.probe("egl") == "a renderer"

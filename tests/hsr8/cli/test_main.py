@@ -1,0 +1,100 @@
+import importlib
+import json
+import subprocess
+import sys
+
+import pytest
+
+from hsr8.cli.main import MODULES, entry
+from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
+
+HEAVY = ("mujoco", "rerun", "numpy", "scipy", "cv2", "pinocchio", "filterpy", "av", "pydantic")
+
+
+def test_help_imports_nothing_heavy():
+    script = (
+        "import sys; from hsr8.cli.main import entry; code = entry(['--help']); "
+        f"print([m for m in {HEAVY} if m in sys.modules], code, file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stderr.strip() == "[] 0"
+    for command in ("run", "list", "check", "doctor", "render", "replay"):
+        assert command in done.stdout
+
+
+def test_no_arguments_show_the_help(capsys):
+    assert entry([]) == 0
+    assert "First steps" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments", [["rum", "quick"], ["run"], ["run", "quick", "--sed", "3"]])
+def test_a_wrong_command_line_is_a_usage_error(arguments, capsys):
+    assert entry(arguments) == 2
+    assert capsys.readouterr().out == ""
+
+
+def test_a_wrong_option_is_answered_with_the_right_one(capsys):
+    entry(["run", "quick", "--sed", "3"])
+    assert "--seed" in capsys.readouterr().err
+
+
+def test_every_command_has_a_main():
+    for module in MODULES.values():
+        assert callable(importlib.import_module(module).main)
+
+
+@pytest.fixture
+def failing(monkeypatch):
+    """Make ``hsr8 list`` raise something."""
+
+    def fail(error):
+        def main(options):
+            raise error
+
+        monkeypatch.setattr("hsr8.cli.list.main", main)
+
+    return fail
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (UsageError("no such thing; choose this"), 2),
+        (SimulationDiverged("tick 7"), 3),
+        (Hsr8Error("broken"), 3),
+        (KeyboardInterrupt(), 130),
+    ],
+)
+def test_errors_have_their_code_one_message_and_no_traceback(failing, capsys, error, code):
+    failing(error)
+    assert entry(["list"]) == code
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert str(error) in printed.err
+    assert "Traceback" not in printed.err
+
+
+def test_our_own_mistakes_leave_their_traceback_in_a_file(failing, capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    failing(ZeroDivisionError("oh no"))
+    assert entry(["list"]) == 3
+    printed = capsys.readouterr().err
+    assert "ZeroDivisionError: oh no" in printed
+    assert "Traceback" not in printed
+    (report,) = tmp_path.glob("hsr8-*/crash.txt")
+    assert str(report) in printed
+    assert "Traceback" in report.read_text()
+
+
+def test_the_module_can_be_run():
+    done = subprocess.run(
+        [sys.executable, "-m", "hsr8", "list", "--json"],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    names = [s["name"] for s in json.loads(done.stdout)["scenarios"]]
+    assert {"paper", "course", "quick"} <= set(names)

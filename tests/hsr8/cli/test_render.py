@@ -1,0 +1,50 @@
+import json
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.errors import RenderingUnavailable
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    out = tmp_path_factory.mktemp("runs")
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "0.5", "--no-log"]
+    entry(["run", "quick", *options, "--quiet", "--out", str(out)])
+    return out
+
+
+@pytest.mark.gl
+def test_json_is_all_there_is_on_standard_output(run, tmp_path, capsys):
+    video = tmp_path / "v.mp4"
+    options = ["--size", "192x108", "--fps", "4", "--out", str(video), "--json"]
+    assert entry(["render", str(run), *options]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert made["video"] == str(video)
+    assert made["frames"] == 2
+    assert video.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        (["--size", "big"], "1280x720"),
+        (["--fps", "0"], "--fps"),
+        (["--speed", "-1"], "--speed"),
+        (["--out", "nowhere/v.mp4"], "nowhere"),
+        (["--start", "7"], "ended at 0.5 s"),
+    ],
+)
+def test_wrong_options_are_usage_errors(run, capsys, monkeypatch, options, word):
+    monkeypatch.setattr("hsr8.cli.render.require_gl", lambda: "llvmpipe")
+    assert entry(["render", str(run), *options, "--quiet"]) == 2
+    assert word in capsys.readouterr().err
+
+
+def test_without_opengl_it_says_so(run, capsys, monkeypatch):
+    def unavailable():
+        raise RenderingUnavailable("no OpenGL")
+
+    monkeypatch.setattr("hsr8.cli.render.require_gl", unavailable)
+    assert entry(["render", str(run)]) == 2
+    assert "no OpenGL" in capsys.readouterr().err

@@ -1,0 +1,52 @@
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder import run_folder
+from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.run_folder import RunFolder
+
+
+@pytest.fixture
+def run(tmp_path, walk):
+    path = RunFolder.create(tmp_path, "quick", 7)
+    folder = RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "", movers=1)
+    for record in walk(1.0):
+        folder.on_record(record)
+    folder.close("goal")
+    return path
+
+
+def test_a_run_without_a_log_is_told_so(run, capsys):
+    assert entry(["replay", str(run)]) == 2
+    assert "--no-log" in capsys.readouterr().err
+
+
+def test_without_a_display_it_says_how_to_look_elsewhere(run, capsys, monkeypatch):
+    (run / run_folder.LOG).touch()
+    monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: False)
+    assert entry(["replay", str(run)]) == 2
+    printed = capsys.readouterr().err
+    assert "--screenshot" in printed
+    assert "rerun-sdk==" in printed
+
+
+def test_the_screenshot_is_of_the_middle_unless_asked_for(run, monkeypatch, capsys):
+    asked = []
+
+    def screenshot(log, time, size):
+        asked.append((log, time, size))
+        return b"PNG"
+
+    (run / run_folder.LOG).touch()
+    monkeypatch.setattr("hsr8.render.viewer.screenshot", screenshot)
+    picture = run / "log.png"
+    assert entry(["replay", str(run), "--screenshot", str(picture)]) == 0
+    assert entry(["replay", str(run), "--screenshot", str(picture), "--time", "0.1"]) == 0
+    assert picture.read_bytes() == b"PNG"
+    assert asked[0] == (run / run_folder.LOG, 0.5, (1600, 900))
+    assert asked[1][1] == 0.1
+
+
+def test_no_such_run(tmp_path, capsys):
+    assert entry(["replay", str(tmp_path / "nothing")]) == 2
+    assert "no run folder" in capsys.readouterr().err

@@ -1,0 +1,43 @@
+import io
+from pathlib import Path
+
+from rich.console import Console
+
+from hsr8.cli import report
+from hsr8.evaluation.metrics import Metrics
+from hsr8.evaluation.verdict import Check
+
+
+def test_the_report_shows_results_criteria_and_what_to_do_next(layout, walk, tmp_path):
+    metrics = Metrics(layout, 0.15, 0.05)
+    for record in walk(2.0):
+        metrics.on_record(record)
+    stream = io.StringIO()
+    report.show(
+        "quick, seed 3",
+        results=metrics.result("timeout", "hash"),
+        checks=(Check("falls", "<= 0", "0", True), Check("goal reached", "yes", "no", False)),
+        path=tmp_path,
+        command=("hsr8", "run", "quick"),
+        console=Console(file=stream, width=100),
+    )
+    text = stream.getvalue()
+    for words in ("quick, seed 3", "0.4 m", "passed", "failed", str(tmp_path), "hsr8 run quick"):
+        assert words in text
+    # Without a log there is nothing to replay.
+    assert "hsr8 replay" not in text
+    assert "time to goal" not in text
+
+
+def test_a_log_can_be_replayed(tmp_path):
+    (tmp_path / "log.rrd").touch()
+    stream = io.StringIO()
+    report.show(
+        "quick",
+        results={"exit_reason": "goal"},
+        checks=(),
+        path=Path(tmp_path),
+        command=(),
+        console=Console(file=stream, width=200),
+    )
+    assert f"hsr8 replay {tmp_path}" in stream.getvalue()

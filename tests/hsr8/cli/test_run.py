@@ -1,0 +1,154 @@
+import json
+import os
+import signal
+import tomllib
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.cli.options import Run
+from hsr8.cli.run import overrides, rerun_command
+from hsr8.errors import SimulationDiverged
+from hsr8.loop import Simulation
+from hsr8.recorder.run_reader import open_run
+
+FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
+
+
+def _run(tmp_path, *more):
+    return entry([*FAST, "--out", str(tmp_path), *more])
+
+
+def test_json_is_all_there_is_on_standard_output(tmp_path, capsys):
+    code = _run(tmp_path, "--json", "--no-log")
+    printed = capsys.readouterr().out
+    results = json.loads(printed)
+    assert printed.count("\n") == 1
+    assert code == 1  # one second is not enough for the goal
+    run = open_run(tmp_path)
+    assert run.metrics() == results
+    assert run.manifest["exit_reason"] == results["exit_reason"] == "timeout"
+    assert run.manifest["renderer"] == "analytic"
+    assert not run.log_file.exists()
+
+
+def test_the_log_changes_nothing(tmp_path, capsys):
+    hashes = set()
+    for more in (["--no-log", "--quiet"], ["--quiet"], []):
+        _run(tmp_path, "--seed", "5", *more)
+        hashes.add(open_run(tmp_path).metrics()["state_hash"])
+    assert len(hashes) == 1
+    assert open_run(tmp_path).log_file.stat().st_size > 10_000
+
+
+def test_the_folder_says_how_to_repeat_the_run(tmp_path, capsys):
+    _run(tmp_path, "--no-log", "--seed", "9", "--set", "world.n_moving=0", "world.n_static=3")
+    run = open_run(tmp_path)
+    printed = capsys.readouterr().out
+    assert str(run.path) in printed
+    assert run.manifest["command"] in printed
+    settings = tomllib.loads(run.scenario_file.read_text())
+    assert settings["seed"] == 9
+    assert settings["world"]["n_static"] == 3
+    first = run.metrics()
+    entry([*run.manifest["command"].split()[1:], "--out", str(tmp_path / "again"), "--quiet"])
+    assert open_run(tmp_path / "again").metrics()["state_hash"] == first["state_hash"]
+
+
+def test_the_resolved_scenario_is_the_same_run(tmp_path, capsys):
+    _run(tmp_path, "--no-log", "--quiet", "--seed", "4")
+    run = open_run(tmp_path)
+    entry(["run", str(run.scenario_file), "--out", str(tmp_path / "b"), "--no-log", "--quiet"])
+    assert open_run(tmp_path / "b").metrics()["state_hash"] == run.metrics()["state_hash"]
+
+
+def test_quiet_is_quiet(tmp_path, capsys):
+    _run(tmp_path, "--no-log", "--quiet")
+    printed = capsys.readouterr()
+    assert printed.out == printed.err == ""
+
+
+def test_a_run_that_meets_its_criteria_passes(tmp_path, capsys):
+    assert _run(tmp_path, "--no-log", "--set", "criteria.goal_reached=false") == 0
+    assert "passed" in capsys.readouterr().out
+
+
+def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys):
+    """The signal comes while the run goes on; it ends after the present tick."""
+    publish = Simulation._publish
+
+    def interrupting(self, tick, *rest):
+        publish(self, tick, *rest)
+        if tick == 100:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(Simulation, "_publish", interrupting)
+    handler = signal.getsignal(signal.SIGINT)
+    assert _run(tmp_path, "--json") == 130
+    assert signal.getsignal(signal.SIGINT) is handler
+    results = json.loads(capsys.readouterr().out)
+    assert results["exit_reason"] == "interrupted"
+    assert 0.4 < results["sim_time_s"] < 0.6
+    run = open_run(tmp_path)
+    assert run.manifest["exit_reason"] == "interrupted"
+    assert len(run.trajectory()) > 20
+
+
+def test_a_diverged_run_is_told_and_recorded(tmp_path, monkeypatch, capsys):
+    def diverging(self):
+        raise SimulationDiverged("the physics diverged at tick 12")
+
+    monkeypatch.setattr("hsr8.world.kinematic.KinematicBody.truth", diverging)
+    assert _run(tmp_path, "--json") == 3
+    printed = capsys.readouterr()
+    assert "tick 12" in printed.err
+    assert json.loads(printed.out)["exit_reason"] == "diverged"
+    assert open_run(tmp_path).manifest["exit_reason"] == "diverged"
+
+
+def test_a_mistake_of_ours_leaves_its_traceback_in_the_run_folder(tmp_path, monkeypatch, capsys):
+    def broken(self):
+        raise ZeroDivisionError("oh no")
+
+    monkeypatch.setattr("hsr8.world.kinematic.KinematicBody.truth", broken)
+    assert _run(tmp_path, "--json") == 3
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "Traceback" not in printed.err
+    run = open_run(tmp_path)
+    assert run.manifest["exit_reason"] == "error"
+    assert "ZeroDivisionError: oh no" in (run.path / "crash.txt").read_text()
+
+
+@pytest.mark.parametrize(
+    ("more", "word"),
+    [
+        (["--seed", "-1"], "seed"),
+        (["--duration", "0"], "duration"),
+        (["--set", "wrld.n_moving=3"], "world"),
+        (["--set", "world.n_moving=many"], "n_moving"),
+        (["--set", "nonsense"], "nonsense"),
+    ],
+)
+def test_wrong_settings_leave_no_folder(tmp_path, capsys, more, word):
+    assert _run(tmp_path, *more) == 2
+    printed = capsys.readouterr()
+    assert word in printed.err
+    assert "Traceback" not in printed.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unwritable_folder_is_a_usage_error(tmp_path, capsys):
+    (tmp_path / "runs").write_text("a file")
+    assert _run(tmp_path / "runs") == 2
+    assert "--out" in capsys.readouterr().err
+
+
+def test_options_become_settings_and_come_back():
+    options = Run(
+        "course", seed=3, duration=2.5, set=(("a=1", "b=2"), ("c=x y",)), body="kinematic"
+    )
+    assert overrides(options) == ("duration=2.5", "robot.body=kinematic", "a=1", "b=2", "c=x y")
+    assert " ".join(rerun_command(options, 3)) == (
+        "hsr8 run course --seed 3 --duration 2.5 --body kinematic --set a=1 b=2 --set 'c=x y'"
+    )

@@ -1,0 +1,70 @@
+import numpy as np
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.errors import UsageError
+from hsr8.recorder.run_reader import open_run
+from hsr8.render.movie import Shot, film, instants
+
+TIME = 0.02 * np.arange(50 * 100 + 1)  # 100 s
+
+
+def test_a_short_video_runs_in_real_time():
+    times, speed = instants(TIME, Shot(stop=60.0))
+    assert speed == 1.0
+    assert len(times) == 60 * 25
+    np.testing.assert_allclose(np.diff(times), 0.04)
+
+
+def test_a_long_run_is_sped_up_until_it_is_short_enough():
+    times, speed = instants(0.02 * np.arange(28011), Shot())
+    assert speed == 8.0
+    assert len(times) == round(560.2 / 8 * 25)
+
+
+def test_speed_and_cut_are_obeyed():
+    times, speed = instants(TIME, Shot(start=10.0, stop=20.0, speed=0.5, fps=30))
+    assert speed == 0.5
+    assert len(times) == 600
+    assert times[0] == 10.0
+    assert times[-1] < 20.0
+
+
+@pytest.mark.parametrize(
+    "shot", [Shot(start=100.0), Shot(start=5.0, stop=4.0), Shot(start=-1.0), Shot(start=200.0)]
+)
+def test_nothing_to_draw_is_a_usage_error(shot):
+    with pytest.raises(UsageError, match="ended at 100 s"):
+        instants(TIME, shot)
+
+
+def test_a_run_without_records_is_a_usage_error():
+    with pytest.raises(UsageError, match="nothing to draw"):
+        instants(np.zeros(0), Shot())
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    out = tmp_path_factory.mktemp("runs")
+    options = ["--body", "kinematic", "--camera", "analytic", "--duration", "1", "--no-log"]
+    entry(["run", "quick", *options, "--quiet", "--out", str(out)])
+    return open_run(out)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("camera", ["dashboard", "follow", "head", "top"])
+def test_every_camera_draws(run, camera, tmp_path):
+    done = []
+    shot = Shot(camera=camera, size=(192, 108), fps=5)
+    made = film(run, shot, tmp_path / "v.mp4", lambda n, total: done.append((n, total)))
+    assert made.frames == 5
+    assert done == [(k, 5) for k in range(1, 6)]
+    assert made.video.stat().st_size > 1000
+    assert made.thumbnail.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.gl
+def test_an_unknown_camera_is_a_usage_error_that_names_the_others(run, tmp_path):
+    with pytest.raises(UsageError, match="egocentric"):
+        film(run, Shot(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
+    assert list(tmp_path.iterdir()) == []

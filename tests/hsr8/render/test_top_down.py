@@ -1,0 +1,45 @@
+import numpy as np
+import pytest
+
+from hsr8.recorder import palette
+from hsr8.recorder.frame_summary import from_line, to_line
+from hsr8.render.top_down import TopDown
+
+
+@pytest.fixture
+def summary(fake):
+    def make(pose=(0.0, 0.0, 0.0), **change):
+        frame = fake.frame(0.6, pose, **change)
+        return from_line(to_line(frame, fake.record(0.6, pose).truth))
+
+    return make
+
+
+def _centre_of(image, colour):
+    rows, columns = np.nonzero((image == colour).all(axis=-1))
+    return columns.mean(), rows.mean()
+
+
+@pytest.mark.parametrize(("x", "y"), [(0.0, 0.0), (1.0, -0.5), (-1.2, 0.8)])
+def test_x_is_to_the_right_and_y_is_up(layout, summary, x, y):
+    above = TopDown(layout, (510, 510))
+    image = above.draw(summary((x, y, 0.0), tracks=()), np.array([[1.0, 1.0]]), np.zeros((0, 2)))
+    u, v = _centre_of(image, palette.BELIEF)
+    scale = 510 / (4.0 + 2 * 0.55)
+    # The arrow head's middle is a little behind its reference point.
+    assert abs(u - (255 + scale * x)) < 5
+    assert abs(v - (255 - scale * y)) < 5
+
+
+def test_frames_do_not_leave_traces_in_later_ones(layout, summary):
+    above = TopDown(layout, (320, 300))
+    movers = np.array([[1.0, 1.0]])
+    first = above.draw(summary(), movers, np.zeros((0, 2)))
+    above.draw(summary((1.0, 1.0, 1.0)), movers, np.array([[0.0, 0.0], [1.0, 1.0]]))
+    assert np.array_equal(first, above.draw(summary(), movers, np.zeros((0, 2))))
+
+
+def test_a_world_of_any_shape_fits(layout, summary):
+    for size in ((64, 400), (400, 64)):
+        image = TopDown(layout, size).draw(summary(), np.array([[9.0, 9.0]]), np.zeros((0, 2)))
+        assert image.shape == (size[1], size[0], 3)

@@ -1,0 +1,48 @@
+import av
+import numpy as np
+import pytest
+
+from hsr8.render.video import VideoWriter
+
+
+def _decode(path):
+    with av.open(str(path)) as container:
+        stream = container.streams.video[0]
+        times = [float(f.pts * f.time_base) for f in container.decode(video=0)]
+        return stream.codec_context.name, stream.codec_context.pix_fmt, times
+
+
+def test_frames_have_exact_times_and_a_format_browsers_play(tmp_path):
+    with VideoWriter(tmp_path / "v.mp4", (64, 48), 25) as video:
+        for k in range(30):
+            video.add(np.full((48, 64, 3), 8 * k, np.uint8))
+    codec, pixels, times = _decode(tmp_path / "v.mp4")
+    assert codec == "h264"
+    assert pixels == "yuv420p"
+    assert times == pytest.approx([k / 25 for k in range(30)])
+    content = (tmp_path / "v.mp4").read_bytes()
+    assert content.index(b"moov") < content.index(b"mdat")
+
+
+def _fail_within(path):
+    with VideoWriter(path, (64, 48), 25) as video:
+        for _ in range(3):
+            video.add(np.zeros((48, 64, 3), np.uint8))
+        raise KeyboardInterrupt
+
+
+def test_a_failure_leaves_no_file(tmp_path):
+    with pytest.raises(KeyboardInterrupt):
+        _fail_within(tmp_path / "v.mp4")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_old_video_survives_a_frame_that_cannot_be_encoded(tmp_path):
+    file = tmp_path / "v.mp4"
+    file.write_text("old")
+    video = VideoWriter(file, (64, 48), 25)
+    video.add(np.zeros((48, 64), np.uint8))
+    with pytest.raises(ValueError, match="ndim"):
+        video.close()
+    assert file.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [file]

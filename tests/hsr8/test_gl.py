@@ -1,0 +1,71 @@
+import os
+import subprocess
+import sys
+
+import pytest
+
+from hsr8 import gl
+from hsr8.errors import RenderingUnavailable
+
+
+@pytest.fixture
+def libraries(monkeypatch):
+    """Pretend that only these libraries can be loaded."""
+
+    def pretend(*names):
+        monkeypatch.setattr(gl, "_loads", lambda library: any(n in library for n in names))
+        monkeypatch.delenv("MUJOCO_GL", raising=False)
+        monkeypatch.setattr(sys, "platform", "linux")
+
+    return pretend
+
+
+@pytest.mark.parametrize(
+    ("present", "chosen"),
+    [(("EGL", "OSMesa"), "egl"), (("OSMesa",), "osmesa"), ((), "disable")],
+)
+def test_egl_comes_before_osmesa_before_nothing(libraries, present, chosen):
+    libraries(*present)
+    assert gl.choose_backend() == chosen
+    assert os.environ["MUJOCO_GL"] == chosen
+
+
+@pytest.mark.parametrize("asked", ["osmesa", "glfw", "disable"])
+def test_what_the_user_asks_for_is_respected(libraries, monkeypatch, asked):
+    libraries("EGL", "OSMesa")
+    monkeypatch.setenv("MUJOCO_GL", asked)
+    assert gl.choose_backend() == asked
+
+
+def test_a_missing_library_is_not_left_to_break_the_import(libraries, monkeypatch):
+    libraries("EGL")
+    monkeypatch.setenv("MUJOCO_GL", "osmesa")
+    assert gl.choose_backend() == "disable"
+
+
+def test_other_systems_choose_by_themselves(libraries, monkeypatch):
+    libraries("EGL")
+    monkeypatch.setattr(sys, "platform", "darwin")
+    assert gl.choose_backend() == ""
+    assert "MUJOCO_GL" not in os.environ
+
+
+def test_without_opengl_the_message_says_what_to_do(libraries):
+    libraries()
+    with pytest.raises(RenderingUnavailable) as caught:
+        gl.require_gl.__wrapped__()
+    assert gl.APT_LINE in str(caught.value)
+    assert "--camera analytic" in str(caught.value)
+    assert caught.value.exit_code == 2
+
+
+def test_physics_works_without_any_opengl():
+    """The import of MuJoCo survives a backend whose library is missing."""
+    script = "import hsr8, mujoco; mujoco.MjModel.from_xml_string('<mujoco/>')"
+    environment = os.environ | {"MUJOCO_GL": "disable"}
+    subprocess.run([sys.executable, "-c", script], env=environment, check=True, timeout=60)
+
+
+def test_software_renderers_are_recognised():
+    assert gl.is_software("llvmpipe (LLVM 15.0.6, 256 bits)")
+    assert not gl.is_software("NVIDIA H200/PCIe/SSE2")
