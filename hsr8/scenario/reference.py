@@ -5,17 +5,30 @@ from functools import cache
 from typing import Any
 
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.section import Section
 from hsr8.scenario.toml_lines import Path, holds
+from navigation.decision_parameters import NavigationParameters
 
 Node = dict[str, Any]
 
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
 
 
+class _Plain(Section):
+    """The decisions' parameters without the profile."""
+
+    navigation: NavigationParameters
+
+
 @cache
 def json_schema() -> Node:
     """JSON Schema of a scenario file, for editors and for this module."""
     schema = Scenario.model_json_schema()
+    schema["required"].remove("name")
+    # Pydantic reads the docstrings of a dataclass, not those of the one it extends.
+    plain = _Plain.model_json_schema()["$defs"]["NavigationParameters"]["properties"]
+    for key, node in plain.items():
+        schema["$defs"]["Navigation"]["properties"][key]["description"] = node["description"]
     schema["properties"]["extends"] = {
         "type": "string",
         "description": "Scenario to start from: a built-in name or a file beside this one.",

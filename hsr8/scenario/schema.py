@@ -50,9 +50,9 @@ class Scenario(Section):
     """A world, a robot in it, what it shall do, and what counts as success."""
 
     name: Annotated[str, Len(1, 64), Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
-    """Name; run folders carry it."""
+    """Name that run folders carry; the file's own if left out."""
     description: Annotated[str, Len(0, 2000)] = ""
-    """One or two sentences for `hsr8 list`."""
+    """One or two sentences about it."""
     seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 0
     """Draws the world and every noise [1]."""
     duration: Annotated[float, Interval(gt=0.0, le=7200.0)] = 240.0

@@ -50,22 +50,24 @@ def certify(layout: Layout, most_points: int = 12) -> Certificate:
     The answer "solvable" is a proof for a disc with perfect knowledge; the other answer
     is none, for the real robot is faster.
     """
-    points = layout.waypoints[:most_points]
+    points = layout.waypoints[:most_points].tolist()
     grid = _Grid(layout)
-    reached = grid.near(layout.start[:2], CELL)
-    passed, layer = 0, 0
-    while passed < len(points) and layer * LAYER < LONGEST:
+    targets = [grid.near(point, REACHED) for point in points]
+    # One sheet of cells for each number of points reached; all are searched together, for
+    # the first to arrive may be the one that a mover traps.
+    begin = grid.near(layout.start[:2], CELL)
+    sheets = np.zeros((len(points) + 1, *begin.shape), dtype=bool)
+    sheets[0] = begin
+    layer, best = 0, 0
+    while not sheets[-1].any() and sheets.any() and layer * LAYER < LONGEST:
         free = grid.free(layer * LAYER)
         # The cell that is left must be free as well while the robot leaves it.
-        reached = _grown(reached & free) & free
+        sheets = _grown(sheets & free) & free
+        for k, target in enumerate(targets):
+            sheets[k + 1] |= sheets[k] & target
         layer += 1
-        arrived = reached & grid.near(points[passed].tolist(), REACHED)
-        if arrived.any():
-            # Going on from the first arrivals alone is one of the ways to go on.
-            reached, passed = arrived, passed + 1
-        elif not reached.any():
-            break
-    return Certificate(passed == len(points), passed, len(points), layer * LAYER)
+        best = max(best, int(np.flatnonzero(sheets.any(axis=(1, 2))).max(initial=0)))
+    return Certificate(bool(sheets[-1].any()), best, len(points), layer * LAYER)
 
 
 class _Grid:
@@ -112,12 +114,12 @@ class _Grid:
 
 
 def _grown(cells: Mask) -> Mask:
-    """Cells and their four neighbours."""
+    """Cells (..., n, m) and their four neighbours."""
     grown = cells.copy()
-    grown[1:] |= cells[:-1]
-    grown[:-1] |= cells[1:]
-    grown[:, 1:] |= cells[:, :-1]
-    grown[:, :-1] |= cells[:, 1:]
+    grown[..., 1:, :] |= cells[..., :-1, :]
+    grown[..., :-1, :] |= cells[..., 1:, :]
+    grown[..., 1:] |= cells[..., :-1]
+    grown[..., :-1] |= cells[..., 1:]
     return grown
 
 

@@ -1,0 +1,46 @@
+import json
+
+import cv2
+import pytest
+
+from hsr8.cli.check import main
+from hsr8.cli.options import Check
+from hsr8.errors import ScenarioError, UsageError
+
+
+def test_json_tells_world_certificate_and_cost(capsys):
+    assert main(Check("course", seed=4, json=True)) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["seed"] == 4
+    assert [o["moves"] for o in summary["obstacles"]] == [False] * 12 + [True] * 4
+    assert len(summary["waypoints"]) == 5
+    assert len(summary["beacons"]) == 6
+    assert summary["certified"]
+    assert summary["straight_length_m"] > 5 * 1.2 - 0.1
+
+
+@pytest.mark.parametrize("name", ["course", "paper", "walk", "fig4c"])
+def test_people_get_a_table(capsys, name):
+    assert main(Check(name)) == 0
+    assert "certificate" in capsys.readouterr().out
+
+
+def test_settings_are_obeyed(capsys):
+    assert main(Check("course", set=(("world.n_static=3", "world.n_moving=0"),), json=True)) == 0
+    assert len(json.loads(capsys.readouterr().out)["obstacles"]) == 3
+
+
+def test_a_picture_is_drawn(tmp_path, capsys):
+    path = tmp_path / "world.png"
+    assert main(Check("quick", png=path)) == 0
+    assert cv2.imread(str(path)).shape == (900, 900, 3)
+
+
+def test_a_picture_that_cannot_be_written_is_one_clear_error(tmp_path):
+    with pytest.raises(UsageError, match="cannot be written"):
+        main(Check("quick", png=tmp_path / "no" / "world.png"))
+
+
+def test_a_wrong_scenario_is_one_clear_error():
+    with pytest.raises(ScenarioError, match="did you mean 'quick'"):
+        main(Check("quik"))

@@ -1,0 +1,19 @@
+import json
+
+from hsr8.cli.list import main
+from hsr8.cli.options import List
+from hsr8.scenario.loader import built_in_names
+
+
+def test_every_built_in_scenario_is_listed(capsys):
+    assert main(List(json=True)) == 0
+    entries = json.loads(capsys.readouterr().out)["scenarios"]
+    assert [e["name"] for e in entries] == built_in_names()
+    paper = next(e for e in entries if e["name"] == "paper")
+    assert (paper["static"], paper["moving"], paper["duration"]) == (12, 4, 560.2)
+
+
+def test_people_get_a_table(capsys):
+    assert main(List()) == 0
+    out = capsys.readouterr().out
+    assert all(name in out for name in built_in_names())

@@ -1,0 +1,308 @@
+import re
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hsr8.errors import ScenarioError
+from hsr8.scenario.loader import LARGEST, built_in_names, dump, load, loads
+from hsr8.scenario.reference import json_schema
+from hsr8.scenario.toml_writer import write_toml
+
+COURSE = 'mission = {kind = "course"}\n'
+
+
+def mistakes(text):
+    """Lines of the report on `text`, one per mistake."""
+    with pytest.raises(ScenarioError) as caught:
+        loads(text, "file.toml")
+    return str(caught.value).splitlines()[1:]
+
+
+@pytest.mark.parametrize("name", built_in_names())
+def test_built_in_scenarios_are_right_and_come_back_from_their_text(name):
+    scenario = load(name)
+    assert scenario.name == name
+    assert scenario.description
+    assert loads(dump(scenario)) == scenario
+
+
+def test_the_scenarios_of_the_issue_exist():
+    expected = {"paper", "course", "fig4a", "fig4b", "fig4c", "walk", "quick"}
+    assert expected <= set(built_in_names())
+    paper, quick = load("paper"), load("quick")
+    assert (paper.duration, paper.world.n_static, paper.world.n_moving) == (560.2, 12, 4)
+    assert quick.duration <= 30.0
+
+
+def test_every_mistake_is_told_with_line_key_value_and_what_is_allowed():
+    text = """\
+duration = -1
+mission = {kind = "course"}
+[world]
+n_statics = 3
+radius = [0.1, -0.2]
+[camera]
+period_ms = 33
+source = "egll"
+[navigation.gaze]
+mode = "deadlin"
+"""
+    lines = mistakes(text)
+    assert len(lines) == 6
+    report = "\n".join(lines)
+    for wanted in (
+        r"file\.toml:1: duration: must be greater than 0, got -1 \(allowed: > 0 and ≤ 7200\)",
+        r"file\.toml:4: world\.n_statics: unknown key; did you mean 'n_static'\? \(known here: ",
+        r"file\.toml:5: world\.radius\[1\]: must be greater than 0, got -0\.2",
+        r"file\.toml:7: camera\.period_ms: must be a multiple of 5, got 33",
+        r'file\.toml:8: camera\.source: must be one of "egl", "analytic", got "egll"; did you mean',
+        r"file\.toml:10: navigation\.gaze\.mode: must be one of .*did you mean 'deadline'\?",
+    ):
+        assert re.search(wanted, report), wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        (COURSE + "[world]\nn_static = 1.5", "world.n_static: must be a valid integer, got 1.5"),
+        (COURSE + 'duration = "long"', 'duration: must be a valid number, got text "long"'),
+        (COURSE + "duration = nan", "duration: must be a finite number"),
+        (COURSE + "world = 3", "world: must be an object, got 3"),
+        (COURSE + "[world]\nradius = [0.1, 0.05]", "the smaller bound comes first"),
+        (COURSE + "[world]\nn_static = true", "world.n_static: must be a valid integer, got a"),
+        ("", "mission: is missing"),
+        ("mission = {}", 'mission.kind: is missing; choose one of "course"'),
+        ('mission = {kind = "tours"}', "did you mean 'tour'?"),
+        ('mission = {kind = "points"}', "mission.points: is missing"),
+        ('mission = {kind = "course", point = 1}', "mission.point: unknown key"),
+        (COURSE + "[robot.speed]\nforward = 0.9", "walking.limits.forward"),
+        (COURSE + '[camera]\nlens = "wide"\nvertical_fov_deg = 60', "lens = 'custom'"),
+        (
+            'mission = {kind = "tour"}\n[criteria]\ngoal_reached = true',
+            'criteria.goal_reached: a mission of kind "tour" has no goal',
+        ),
+        (
+            COURSE
+            + "[robot.start]\nposition = [0.0, 0.0]\n"
+            + "[[world.obstacle]]\nposition = [0.1, 0.0]",
+            "is on the start of the robot",
+        ),
+        (COURSE + "[[world.obstacle]]\nposition = [9.0, 0.0]", "is outside the field"),
+        (
+            COURSE + "[[world.obstacle]]\nposition = [0.0, 0.0]\nradius = -0.1",
+            "world.obstacle[0].radius: must be greater than 0, got -0.1",
+        ),
+        (
+            COURSE + '[[world.mover]]\nmotion = "shuttle"\nstart = [0, 0]\nend = [0, 0]',
+            "is the same point as start",
+        ),
+        (
+            'mission = {kind = "points", points = [[1.0, 1.0]]}\n'
+            "[[world.obstacle]]\nposition = [1.0, 1.1]",
+            "stands on mission.points[0]",
+        ),
+    ],
+)
+def test_one_mistake(text, wanted):
+    (line,) = mistakes(text)
+    assert wanted in line
+    assert line.startswith("  file.toml:") or text == ""
+
+
+def test_lines_of_array_tables():
+    text = COURSE + (
+        "[[world.obstacle]]\nposition = [0.0, 0.0]\n\n"
+        "[[world.obstacle]]\nposition = [1.0, 0.0]\nradius = 7.0\n"
+    )
+    (line,) = mistakes(text)
+    assert line.startswith("  file.toml:7: world.obstacle[1].radius: ")
+
+
+def test_names_are_suggested():
+    with pytest.raises(ScenarioError, match="did you mean 'course'"):
+        load("cours")
+
+
+def test_a_missing_file_and_a_folder(tmp_path):
+    with pytest.raises(ScenarioError, match="does not exist"):
+        load(str(tmp_path / "no.toml"))
+    with pytest.raises(ScenarioError, match="is no file"):
+        load(str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("raw", "wanted"),
+    [
+        (b"a = 1\nb = = 2\n", "no valid TOML.*line 2"),
+        (b"\xff\xfe", "no UTF-8"),
+        (b"#" * (LARGEST + 1), "longer than"),
+        (b"a = " + b"[" * 100_000, "nested too deeply"),
+        (b"a = " + b"9" * 10_000, "no valid TOML"),
+    ],
+)
+def test_files_that_are_no_scenario(tmp_path, raw, wanted):
+    file = tmp_path / "bad.toml"
+    file.write_bytes(raw)
+    with pytest.raises(ScenarioError, match=wanted):
+        load(str(file))
+
+
+def test_a_file_extends_a_built_in_scenario(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text('extends = "course"\n[world]\nn_static = 5\n')
+    mine, course = load(str(file)), load("course")
+    assert mine.name == "mine"
+    assert mine.world.n_static == 5
+    assert mine.world.n_moving == course.world.n_moving
+    assert mine.mission == course.mission
+
+
+def test_a_file_extends_a_neighbour_but_nothing_elsewhere(tmp_path):
+    (tmp_path / "base.toml").write_text('extends = "course"\nduration = 99.0\n')
+    (tmp_path / "mine.toml").write_text('extends = "base.toml"\n')
+    assert load(str(tmp_path / "mine.toml")).duration == 99.0
+    (tmp_path / "mine.toml").write_text('extends = "../base.toml"\n')
+    with pytest.raises(ScenarioError, match=r"mine\.toml:1: extends: no scenario is called"):
+        load(str(tmp_path / "mine.toml"))
+
+
+def test_scenarios_that_extend_each_other_are_an_error(tmp_path):
+    (tmp_path / "a.toml").write_text('extends = "b.toml"\n')
+    (tmp_path / "b.toml").write_text('extends = "a.toml"\n')
+    with pytest.raises(ScenarioError, match="circle"):
+        load(str(tmp_path / "a.toml"))
+
+
+def test_mistakes_in_the_parent_are_told_there(tmp_path):
+    (tmp_path / "base.toml").write_text('extends = "course"\nduration = -1.0\n')
+    (tmp_path / "mine.toml").write_text('extends = "base.toml"\n[camera]\nperiod_ms = 7\n')
+    with pytest.raises(ScenarioError) as caught:
+        load(str(tmp_path / "mine.toml"))
+    assert "base.toml:2: duration" in str(caught.value)
+    assert "mine.toml:3: camera.period_ms" in str(caught.value)
+
+
+def test_another_kind_of_mission_keeps_nothing_of_the_old_one(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text('extends = "paper"\n[mission]\nkind = "points"\npoints = [[1.0, 1.0]]\n')
+    assert load(str(file)).mission.points == ((1.0, 1.0),)
+
+
+def test_overrides_change_single_keys():
+    scenario = load(
+        "walk",
+        [
+            "camera.source=analytic",
+            "world.brightness=0.5",
+            "mission.command.1.forward=0.05",
+            'robot.body="kinematic"',
+        ],
+        seed=77,
+    )
+    before = load("walk")
+    assert scenario.camera.source == "analytic"
+    assert scenario.robot.body == "kinematic"
+    assert scenario.world.brightness == 0.5
+    assert scenario.seed == 77
+    assert scenario.mission.command[1].forward == 0.05
+    assert scenario.mission.command[1].duration == before.mission.command[1].duration
+    assert scenario.mission.command[0] == before.mission.command[0]
+
+
+def test_later_overrides_win():
+    assert load("course", ["duration=10.0", "duration=20.0"]).duration == 20.0
+
+
+@pytest.mark.parametrize(
+    ("override", "wanted"),
+    [
+        ("camera.perod_ms=80", "did you mean 'period_ms'"),
+        ("camera.period_ms", "must be key=value"),
+        ("=3", "must be key=value"),
+        ("mission.command.9.forward=1.0", "no entry of a list of 5"),
+        ("duration=1\nseed=3", "duration: must be a valid number"),
+    ],
+)
+def test_wrong_overrides_name_themselves(override, wanted):
+    with pytest.raises(ScenarioError) as caught:
+        load("walk", [override])
+    assert wanted in str(caught.value)
+    assert f"--set {override}" in str(caught.value)
+
+
+def test_profile_and_lens_give_defaults_that_single_keys_change():
+    scenario = load(
+        "course", ["navigation.profile=paper", "navigation.gaze.w_lm=0.5", "camera.lens=narrow"]
+    )
+    assert scenario.navigation.gaze.mode == "integrated"
+    assert scenario.navigation.gaze.w_lm == 0.5
+    assert not scenario.navigation.filter.enabled
+    assert scenario.camera.vertical_fov_deg == 45.0
+    assert scenario.camera.horizontal_fov_deg == pytest.approx(57.8, abs=0.1)
+    assert loads(dump(scenario)) == scenario
+    assert load("course", ["camera.vertical_fov_deg=60.0"]).camera.lens == "custom"
+
+
+TABLES = list(json_schema()["properties"])
+keys = st.one_of(st.sampled_from(TABLES), st.text(min_size=1, max_size=8))
+leaves = st.one_of(
+    st.integers(),
+    st.floats(),
+    st.booleans(),
+    st.text(max_size=12),
+    st.sampled_from(["tour", "course", "points", "walk", "egl", "paper", "shuttle"]),
+)
+inner = st.sampled_from(
+    ["kind", "n_static", "size", "radius", "mover", "motion", "points", "profile", "lens", "gaze"]
+)
+values = st.recursive(
+    leaves, lambda v: st.lists(v, max_size=3) | st.dictionaries(keys | inner, v, max_size=4)
+)
+
+
+@settings(max_examples=150)
+@given(st.dictionaries(keys, values, max_size=5))
+def test_any_table_is_a_scenario_or_a_scenario_error(table):
+    try:
+        scenario = loads(
+            'name = "x"\n' + write_toml({k: v for k, v in table.items() if k != "name"})
+        )
+    except ScenarioError:
+        return
+    assert loads(dump(scenario)) == scenario
+
+
+@settings(max_examples=150)
+@given(st.text(max_size=60))
+def test_any_text_is_a_scenario_or_a_scenario_error(text):
+    for attempt in (lambda: loads(text), lambda: load("course", [text]), lambda: load(text)):
+        try:
+            attempt()
+        except ScenarioError:
+            continue
+
+
+@settings(max_examples=60)
+@given(
+    st.floats(0.001, 7200.0),
+    st.floats(0.0, 0.01),
+    st.integers(0, 2**63 - 1),
+    st.text(max_size=40),
+)
+def test_numbers_and_text_come_back_exactly(duration, encoder, seed, description):
+    scenario = load("course").model_copy(
+        update={"duration": duration, "seed": seed, "description": description}
+    )
+    scenario = scenario.model_copy(update={"sensors": type(scenario.sensors)(encoder=encoder)})
+    assert loads(dump(scenario)) == scenario
+
+
+def test_reading_a_scenario_needs_no_mujoco():
+    code = (
+        "import sys; from hsr8.scenario.loader import load; load('paper');"
+        "sys.exit(any(m in sys.modules for m in ('mujoco', 'rerun', 'cv2', 'pinocchio')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,93 @@
+from dataclasses import FrozenInstanceError, dataclass, field
+from typing import Annotated, Literal
+
+import pytest
+from annotated_types import Gt
+from pydantic import ValidationError
+
+from hsr8.scenario.loader import load
+from hsr8.scenario.section import Section
+from navigation.belief_parameters import BeliefParameters
+from navigation.decision_parameters import NavigationParameters
+from vision.parameters import VisionParameters
+from walking.parameters import WalkingParameters
+
+
+@dataclass(frozen=True)
+class Inner:
+    """Inner table."""
+
+    length: Annotated[float, Gt(0.0)] = 1.0
+    """A length [m]."""
+
+
+@dataclass(frozen=True)
+class Outer:
+    """Outer table."""
+
+    inner: Inner = field(default_factory=Inner)
+    """A table in a table."""
+    mode: Literal["a", "b"] = "a"
+    """A choice."""
+
+
+class Holder(Section):
+    """A section with a library's parameters."""
+
+    outer: Outer = Outer()
+    """Parameters."""
+
+
+def test_parameter_dataclasses_are_sections():
+    holder = Holder.model_validate_json('{"outer": {"inner": {"length": 2}, "mode": "b"}}')
+    assert holder.outer == Outer(Inner(2.0), "b")
+    schema = Holder.model_json_schema()["$defs"]["Inner"]
+    assert schema["properties"]["length"]["description"] == "A length [m]."
+    assert schema["additionalProperties"] is False
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"outer": {"inner": {"length": 0}}}',
+        '{"outer": {"inner": {"length": "1"}}}',
+        '{"outer": {"inner": {"width": 1}}}',
+        '{"outer": {"mode": "c"}}',
+        '{"outer": {"inner": {"length": NaN}}}',
+    ],
+)
+def test_their_constraints_hold(text):
+    with pytest.raises(ValidationError):
+        Holder.model_validate_json(text)
+
+
+def test_a_scenario_holds_the_libraries_own_parameters():
+    scenario = load("course")
+    assert scenario.walking_parameters() == WalkingParameters()
+    assert scenario.vision_parameters() == VisionParameters()
+    assert scenario.belief_parameters() == BeliefParameters()
+    parameters = scenario.navigation_parameters()
+    assert isinstance(parameters, NavigationParameters)
+    assert parameters.gaze == NavigationParameters.extended().gaze
+
+
+def test_the_profile_paper_is_the_librarys():
+    given = load("course", ["navigation.profile=paper"]).navigation_parameters()
+    paper = NavigationParameters.paper()
+    for name in ("mission", "evaluation", "gaze", "univector", "mover", "gate", "filter", "body"):
+        assert getattr(given, name) == getattr(paper, name)
+
+
+def test_a_command_lasts_for_one_footstep():
+    scenario = load("course", ["walking.gait.footstep_time=0.4", "robot.speed.forward=0.15"])
+    limits = scenario.speed_limits()
+    assert limits.footstep == 0.4
+    assert limits.forward == 0.15
+
+
+def test_a_scenario_does_not_change():
+    scenario = load("course")
+    with pytest.raises(ValidationError):
+        scenario.duration = 1.0
+    with pytest.raises(FrozenInstanceError):
+        scenario.walking.gait.lift = 1.0
