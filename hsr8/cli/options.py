@@ -97,7 +97,10 @@ class Render:
     stop: Annotated[float | None, _arg("S", "simulated time at which it ends [s]")] = None
     speed: Annotated[
         float | None,
-        _arg("X", "simulated seconds per second of video; else 1, and 2 to 8 for long runs"),
+        _arg(
+            "X",
+            "simulated seconds per second of video; else such that the video lasts a minute at most",
+        ),
     ] = None
     json: bool = False
     """Print one JSON object."""

@@ -52,6 +52,9 @@ class CameraLayer:
             static=True,
         )
         stream.log("/gaze/choice", rr.Points2D.from_fields(radii=[0.8]), static=True)
+        # OpenCV builds its table anew at every call.
+        ramp = np.arange(256, dtype=np.uint8)[:, None]
+        self._heat = cv2.applyColorMap(ramp, cv2.COLORMAP_MAGMA)[:, 0]
         self._pose = Channel(stream, "/world/camera", rr.Transform3D.columns)
         self._image = Channel(stream, "/world/camera/image", rr.EncodedImage.columns)
         self._boxes = Channel(stream, "/world/camera/detections", rr.Boxes2D.columns)
@@ -102,7 +105,7 @@ class CameraLayer:
         if top > 0.0:
             shades = np.round(255.0 * gaze_map / top).astype(np.uint8)
         # Left and up in the head are left and up in the picture.
-        coloured = cv2.applyColorMap(np.ascontiguousarray(shades[::-1, ::-1]), cv2.COLORMAP_MAGMA)
+        coloured = self._heat[shades[::-1, ::-1]]
         self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", coloured)[1].ravel()])
         rows, columns = gaze_map.shape
         u = (PAN_LIMIT - frame.gaze.pan) / (2.0 * PAN_LIMIT) * (columns - 1) + 0.5

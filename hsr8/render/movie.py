@@ -17,10 +17,9 @@ from hsr8.world.generator import draw_layout
 
 Array = NDArray[np.float64]
 
-SPEEDS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
-LENGTH = 75.0  # a video is not longer than this unless its speed is asked for [s]
-FINE, COARSE = 4, 0  # samples per pixel of short and of long videos
-SHORT = 300  # frames of a short video
+SPEEDS = (1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 60.0)
+LENGTH = 60.0  # a video is not longer than this unless its speed is asked for [s]
+SHORT = 300  # a video of so many frames is drawn finely
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +76,6 @@ def film(run: Run, shot: Shot, out: Path, tell: Callable[[int, int], None]) -> F
     times, speed = instants(run.trajectory().time, shot)
     scenario = load(str(run.scenario_file))
     layout = draw_layout(scenario, run.seed)
-    samples = FINE if len(times) <= SHORT else COARSE
     thumbnail = out.with_suffix(".png")
     middle = len(times) // 2
     with Pictures(
@@ -88,7 +86,7 @@ def film(run: Run, shot: Shot, out: Path, tell: Callable[[int, int], None]) -> F
         size=shot.size,
         fps=shot.fps,
         speed=speed,
-        samples=samples,
+        fine=len(times) <= SHORT,
     ) as pictures:
         draw = pictures.camera(shot.camera)
         with VideoWriter(out, shot.size, shot.fps) as video:

@@ -40,7 +40,7 @@ class Pictures:
         size: width and height [pixel].
         fps: pictures per second when shown.
         speed: simulated seconds per second of video, shown in the dashboard.
-        samples: per pixel against jagged edges.
+        fine: smooth edges and sharp shadows, at four times the cost.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class Pictures:
         size: tuple[int, int],
         fps: int,
         speed: float,
-        samples: int,
+        fine: bool,
     ) -> None:
         self._layout, self._size, self._speed = layout, size, speed
         self._times = times
@@ -70,7 +70,7 @@ class Pictures:
             float(np.radians(camera.vertical_fov_deg)),
             scenario.world.brightness,
         )
-        self._samples = samples
+        self._fine = fine
         self._stack = ExitStack()
 
     def __enter__(self) -> Self:
@@ -104,7 +104,7 @@ class Pictures:
                 "show" if quality == "show" else "vision",
                 size,
                 optics=self._optics,
-                samples=self._samples,
+                fine=self._fine,
             )
         )
 

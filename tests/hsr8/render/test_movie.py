@@ -18,8 +18,8 @@ def test_a_short_video_runs_in_real_time():
 
 def test_a_long_run_is_sped_up_until_it_is_short_enough():
     times, speed = instants(0.02 * np.arange(28011), Shot())
-    assert speed == 8.0
-    assert len(times) == round(560.2 / 8 * 25)
+    assert speed == 10.0
+    assert len(times) == round(560.2 / 10 * 25)
 
 
 def test_speed_and_cut_are_obeyed():
