@@ -99,7 +99,9 @@ class AnalyticCamera:
             box = self._box(places[i], thing, position, rotation)
             if box is None:
                 continue
-            found.append(self._locate(places[i] - robot[:2], robot[2], thing, box, hidden, noise))
+            x, y = (places[i] - robot[:2]).tolist()
+            polar = (hypot(x, y), atan2(y, x) - float(robot[2]))
+            found.append(_detection(polar, thing, box, hidden=hidden, noise=noise))
         return tuple(sorted(found, key=lambda d: (d.distance, d.label)))
 
     def _box(
@@ -136,35 +138,35 @@ class AnalyticCamera:
             cut,
         )
 
-    @staticmethod
-    def _locate(
-        offset: Array,
-        yaw: float,
-        thing: _Thing,
-        box: tuple[int, int, int, int, bool],
-        hidden: float,
-        noise: Array,
-    ) -> Detection:
-        x, y = offset.tolist()
-        distance = hypot(x, y)
-        factor = CUT_FACTOR if box[4] else 1.0 + 2.0 * hidden
-        range_sigma = factor * (RANGE_SIGMA + RANGE_SIGMA_RATE * distance)
-        bearing_sigma = factor * BEARING_SIGMA
-        bearing = atan2(y, x) - yaw + bearing_sigma * float(noise[1])
-        beacon = thing.kind == "beacon"
-        radius = thing.radius + (0.0 if beacon else factor * RADIUS_SIGMA * float(noise[2]))
-        return Detection(
-            kind="beacon" if beacon else "obstacle",
-            label=thing.label,
-            bearing=atan2(sin(bearing), cos(bearing)),
-            distance=max(0.05, distance + range_sigma * float(noise[0])),
-            covariance=np.diag([range_sigma**2, bearing_sigma**2]),
-            radius=max(0.01, radius),
-            radius_sigma=0.0 if beacon else factor * RADIUS_SIGMA,
-            cut=box[4],
-            occluded=hidden > 0.1,
-            box=box[:4],
-        )
+
+def _detection(
+    polar: tuple[float, float],
+    thing: _Thing,
+    box: tuple[int, int, int, int, bool],
+    *,
+    hidden: float,
+    noise: Array,
+) -> Detection:
+    """A noisy look at a thing at true (distance, bearing) in R."""
+    distance, true_bearing = polar
+    factor = CUT_FACTOR if box[4] else 1.0 + 2.0 * hidden
+    range_sigma = factor * (RANGE_SIGMA + RANGE_SIGMA_RATE * distance)
+    bearing_sigma = factor * BEARING_SIGMA
+    bearing = true_bearing + bearing_sigma * float(noise[1])
+    beacon = thing.kind == "beacon"
+    radius = thing.radius + (0.0 if beacon else factor * RADIUS_SIGMA * float(noise[2]))
+    return Detection(
+        kind="beacon" if beacon else "obstacle",
+        label=thing.label,
+        bearing=atan2(sin(bearing), cos(bearing)),
+        distance=max(0.05, distance + range_sigma * float(noise[0])),
+        covariance=np.diag([range_sigma**2, bearing_sigma**2]),
+        radius=max(0.01, radius),
+        radius_sigma=0.0 if beacon else factor * RADIUS_SIGMA,
+        cut=box[4],
+        occluded=hidden > 0.1,
+        box=box[:4],
+    )
 
 
 def _hidden_share(azimuth: float, half: float, nearer: list[tuple[float, float]]) -> float:

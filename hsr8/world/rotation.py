@@ -1,6 +1,6 @@
 """The few rotations the world needs; quaternions are w-x-y-z as in MuJoCo."""
 
-from math import atan2, cos, sin
+from math import atan2, cos, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +29,8 @@ def quaternion_product(a: Array, b: Array) -> Array:
 
 def small_rotation(roll: float, pitch: float) -> Array:
     """Quaternion of a small rotation about x and y [rad]."""
-    q = np.array([1.0, 0.5 * roll, 0.5 * pitch, 0.0])
-    return q / np.linalg.norm(q)
+    norm = sqrt(1.0 + 0.25 * (roll * roll + pitch * pitch))
+    return np.array([1.0, 0.5 * roll, 0.5 * pitch, 0.0]) / norm
 
 
 def heading(quaternion: Array) -> float:

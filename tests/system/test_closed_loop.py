@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+from hsr8.loop import Simulation
+from hsr8.scenario.loader import load
+
 
 def wrap(angle):
     return np.angle(np.exp(1j * angle))
@@ -61,9 +64,6 @@ def test_a_tour_completes(simulate):
 
 
 def test_an_interrupted_run_ends_at_once_and_closes_its_listeners(simulate):
-    from hsr8.loop import Simulation
-    from hsr8.scenario.loader import load
-
     class Stops:
         reason = None
 

@@ -24,9 +24,7 @@ class Forbidden:
 
 
 def test_the_loop_runs_the_same_without_the_truth(monkeypatch):
-    scenario = load(
-        "quick", ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"]
-    )
+    scenario = load("quick", ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"])
     expected = Simulation(scenario, 0).run()
     blind = Simulation(scenario, 0)
     body = blind._body
