@@ -99,7 +99,7 @@ class Render:
         float | None,
         _arg(
             "X",
-            "simulated seconds per second of video; else such that the video lasts a minute at most",
+            "simulated seconds per second of video; else so that it lasts a minute at most",
         ),
     ] = None
     json: bool = False

@@ -27,6 +27,7 @@ BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one
 POSE_PERIOD = 0.04  # [s]
 FRAME_PERIOD = 0.12  # of camera frames [s]
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
+LABELLED = 12  # more way points than this are shown without their numbers
 TRAIL = 60.0  # the path shown behind the robot [s]
 LEVELS = {"fall": "ERROR", "diverged": "ERROR", "collision": "WARN", "lost": "WARN"}
 
@@ -150,10 +151,10 @@ class RerunLog:
             "/world/way_points",
             rr.Points3D(
                 np.column_stack([points, np.full(len(points), 0.01)]),
-                radii=0.03,
+                radii=0.03 if len(points) <= LABELLED else 0.012,
                 colors=[palette.TARGET],
                 labels=labels,
-                show_labels=True,
+                show_labels=len(points) <= LABELLED,
             ),
             static=True,
         )

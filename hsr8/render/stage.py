@@ -16,11 +16,7 @@ Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 
-SUN = "sun"
-SUN_DIRECTION = np.array([0.0, 0.37, -0.93])  # along an axis: askew, MuJoCo's shadows are speckled
-SUN_DISTANCE = 4.0  # of the shadow's camera from the robot [m]
-SHADOW_REACH = 3.0  # shadows are drawn up to so far from the robot [m]
-SHADOW_SIZE = {True: 4096, False: 1024}  # of fine and of quick pictures [pixel]
+SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick pictures [pixel]
 SAMPLES = {True: 4, False: 0}  # per pixel against jagged edges; four take thrice the time
 
 
@@ -62,18 +58,14 @@ class Stage:
             visual.quality.offsamples = SAMPLES[fine]
             visual.quality.numslices, visual.quality.numstacks = 16, 10
             visual.quality.shadowsize = SHADOW_SIZE[fine]
-            visual.map.shadowclip = SHADOW_REACH
             # A reflection would draw everything twice.
             self.model.mat_reflectance[:] = 0.0
-            self.model.light(SUN).dir[:] = SUN_DIRECTION
         self._renderer = mujoco.Renderer(self.model, height=size[1], width=size[0])
 
     def place(self, qpos: Array, movers: Array) -> None:
         """Put the robot and the movers (n, 2) [m] where they were."""
         self.data.qpos[:] = qpos
         self.data.mocap_pos[self._movers, :2] = movers
-        ground = np.array([qpos[0], qpos[1], 0.0])
-        self.model.light(SUN).pos[:] = ground - SUN_DISTANCE * SUN_DIRECTION
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)

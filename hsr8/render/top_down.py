@@ -22,6 +22,7 @@ UNIT = 1 << SUBPIXEL
 VIEW_RANGE = 1.6  # drawn length of the field of view [m]
 TRAIL = 40.0  # path drawn behind the robot [s]
 ROBOT = ((0.16, 0.0), (-0.09, 0.10), (-0.05, 0.0), (-0.09, -0.10))  # an arrow head [m]
+AHEAD = 3  # way points shown
 SIGMAS = 2.0
 
 
@@ -47,6 +48,9 @@ class TopDown:
             frame: belief and decisions.
             movers: true positions (n, 2) [m].
             trail: true path of the robot so far (m, 2) [m].
+
+        Returns:
+            Picture (height, width, 3), RGB.
         """
         image = self._ground.copy()
         self._wedge(image, frame)
@@ -61,6 +65,7 @@ class TopDown:
             self._ring(image, position, obstacle.radius, INK)
         for x, y, radius in frame.virtual_obstacles:
             self._ring(image, (x, y), radius, palette.VIRTUAL)
+        self._way_points(image, frame.passed)
         self._line(image, np.array([frame.pose[:2], frame.target]), palette.TARGET, 1)
         self._disc(image, frame.target, 0.05, palette.TARGET)
         self._robot(image, frame.truth, INK, filled=False)
@@ -80,21 +85,18 @@ class TopDown:
         for obstacle in self._layout.static:
             self._disc(image, obstacle.position, obstacle.radius, SHADE)
             self._ring(image, obstacle.position, obstacle.radius, INK)
-        for number, point in enumerate(np.reshape(self._layout.waypoints, (-1, 2)).tolist()):
-            self._ring(image, point, 0.05, palette.TARGET)
-            if len(self._layout.waypoints) <= 12:
-                u, v = (self._pixels([point])[0] >> SUBPIXEL).tolist()
-                cv2.putText(
-                    image,
-                    str(number + 1),
-                    (u + 6, v - 4),
-                    cv2.FONT_HERSHEY_SIMPLEX,
-                    0.35,
-                    palette.TARGET,
-                    1,
-                    cv2.LINE_AA,
-                )
         return image
+
+    def _way_points(self, image: Image, passed: int) -> None:
+        """The next few, numbered; the paper's tour has ninety."""
+        points = np.reshape(self._layout.waypoints, (-1, 2)).tolist()
+        last = passed + AHEAD if self._layout.endless else min(passed + AHEAD, len(points))
+        for number in range(passed, last):
+            point = points[number % len(points)]
+            self._ring(image, point, 0.05, palette.TARGET)
+            u, v = (self._pixels([point])[0] >> SUBPIXEL).tolist()
+            place, font = (u + 6, v - 5), cv2.FONT_HERSHEY_SIMPLEX
+            cv2.putText(image, str(number + 1), place, font, 0.38, palette.TARGET, 1, cv2.LINE_AA)
 
     def _pixels(
         self, points: Sequence[Sequence[float]] | Sequence[Array] | Array

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,3 +45,20 @@ def test_a_world_of_any_shape_fits(layout, summary):
     for size in ((64, 400), (400, 64)):
         image = TopDown(layout, size).draw(summary(), np.array([[9.0, 9.0]]), np.zeros((0, 2)))
         assert image.shape == (size[1], size[0], 3)
+
+
+def test_a_walk_without_way_points_can_be_drawn(layout, summary):
+    nowhere = replace(layout, waypoints=np.zeros((0, 2)))
+    image = TopDown(nowhere, (64, 64)).draw(summary(), np.array([[1.0, 1.0]]), np.zeros((0, 2)))
+    assert image.shape == (64, 64, 3)
+
+
+def test_only_the_next_way_points_are_shown(layout, summary):
+    """The more of a course is passed, the less of it is drawn."""
+    above = TopDown(layout, (300, 300))
+    drawn = []
+    for passed in (0, 1, 2):
+        frame = summary(index=passed, target=np.array([0.0, 0.0]), tracks=())
+        image = above.draw(frame, np.array([[1.0, 1.0]]), np.zeros((0, 2)))
+        drawn.append(int((image == palette.TARGET).all(axis=-1).sum()))
+    assert drawn[0] > drawn[1] > drawn[2]
