@@ -48,8 +48,8 @@ class GaitParameters:
 class PatternParameters:
     """The ZMP pattern and the point that follows it."""
 
-    generator: Literal["preview", "dcm"] = "preview"
-    """Kajita's preview regulator, or tracking of the DCM that the footholds ask for."""
+    generator: Literal["dcm", "preview"] = "dcm"
+    """Preview of the footholds by the DCM recursion or by Kajita's regulator."""
     pelvis_height: Annotated[float, Gt(0.0)] = 0.204
     """Height of the hips while walking [m]."""
     lipm_height: Annotated[float, Gt(0.0)] = 0.19
