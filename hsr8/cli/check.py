@@ -127,7 +127,7 @@ def _points(layout: Layout) -> str:
         if layout.goal_heading is None
         else (f"a goal at {degrees(layout.goal_heading):.0f} deg")
     )
-    return f"{n - 1} via points and {goal}, {straight_length(layout):.1f} m straight"
+    return f"{n - 1} via point{'' if n == 2 else 's'} and {goal}, {straight_length(layout):.1f} m straight"
 
 
 def _certificate(summary: Summary, layout: Layout) -> str:

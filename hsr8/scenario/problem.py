@@ -81,7 +81,12 @@ def _problem(details: ErrorDetails, data: Mapping[str, Any]) -> Problem:
     if kind == "literal_error" and node is not None:
         hint = suggestion(str(given), [str(c) for c in node.get("enum", [])])
         return Problem(path, f"must be one of {allowed(node)}, got {shown(given)}{hint}{meaning}")
-    text = details["msg"].replace("Input should be", "must be").replace("valid array", "list")
+    text = (
+        details["msg"]
+        .replace("Input should be", "must be")
+        .replace("valid array", "list")
+        .replace("an object", "a table")
+    )
     text = text.replace("should", "must")
     limits = "" if node is None else allowed(node)
     wanted = f" (allowed: {limits})" if limits else ""

@@ -10,7 +10,6 @@ from hsr8.scenario.section import (
     Count,
     Degrees,
     LengthRange,
-    Metres,
     Point,
     Radius,
     RadiusRange,
@@ -116,15 +115,3 @@ class Start(Section):
     """In W, x and y [m]; drawn if left out."""
     heading_deg: Degrees | None = None
     """Counter-clockwise from x of W [deg]; drawn if left out."""
-
-
-__all__ = [
-    "CircleMover",
-    "LineMover",
-    "Metres",
-    "Mover",
-    "ShuttleMover",
-    "Start",
-    "StaticObstacle",
-    "World",
-]

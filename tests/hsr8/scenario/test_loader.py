@@ -70,7 +70,7 @@ mode = "deadlin"
         (COURSE + "[world]\nn_static = 1.5", "world.n_static: must be a valid integer, got 1.5"),
         (COURSE + 'duration = "long"', 'duration: must be a valid number, got text "long"'),
         (COURSE + "duration = nan", "duration: must be a finite number"),
-        (COURSE + "world = 3", "world: must be an object, got 3"),
+        (COURSE + "world = 3", "world: must be a table, got 3"),
         (COURSE + "[world]\nradius = [0.1, 0.05]", "the smaller bound comes first"),
         (COURSE + "[world]\nn_static = true", "world.n_static: must be a valid integer, got a"),
         ("", "mission: is missing"),
