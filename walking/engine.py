@@ -250,7 +250,8 @@ class WalkingEngine:
         if gait.adjustable and not gait.double:
             # What the nominal footholds do not catch of the measured DCM.
             p, w = self._pendulum, lipm.omega
-            off = (p.x + p.vx / w + error[0] - dcm[0], p.y + p.vy / w + error[1] - dcm[1])
+            x, y = self._generator.planned_dcm(p, dcm)
+            off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
             support = gait.footholds[gait.support]
             caught = self._stabilizer.capture(self._planner, support, nominal, off, gait.ticks_left)
         gait.aim(caught)

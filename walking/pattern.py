@@ -81,6 +81,9 @@ class PatternGenerator(Protocol):
             region: where the ZMP may be.
         """
 
+    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
+        """DCM [m] that the generator holds for right, `dcm` being that of the footholds."""
+
 
 class DcmGenerator:
     """Tracks the DCM of the reference by the ZMP.
@@ -120,6 +123,10 @@ class DcmGenerator:
         state.x, state.vx = lipm.step(state.x, state.vx, px)
         state.y, state.vy = lipm.step(state.y, state.vy, py)
         state.zmp_x, state.zmp_y = px, py
+
+    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
+        """The DCM of the footholds: the pendulum is late only after a disturbance."""
+        return dcm
 
 
 class PreviewGenerator:
@@ -162,6 +169,11 @@ class PreviewGenerator:
         state.x, state.vx = lipm.step(state.x, state.vx, px)
         state.y, state.vy = lipm.step(state.y, state.vy, py)
         state.zmp_x, state.zmp_y = px, py
+
+    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
+        """The pendulum's own DCM: weighing the ZMP's change, it keeps off that of the footholds."""
+        w = self._lipm.omega
+        return state.x + state.vx / w, state.y + state.vy / w
 
     def _preview(self, ramps: list[ZmpRamp]) -> tuple[float, float]:
         """Σ_j f_j p_ref(j) over the horizon; the rest weighs on its last point."""

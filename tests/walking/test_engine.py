@@ -78,12 +78,16 @@ def test_it_stands_still_without_a_command(robot, ideal_body):
     np.testing.assert_allclose(rows[-1], rows[-100], atol=1e-6)
 
 
-def test_it_stops_with_parallel_feet(robot, ideal_body):
+@pytest.mark.parametrize("generator", ["dcm", "preview"])
+def test_it_stops_with_parallel_feet(robot, ideal_body, generator):
+    parameters = WalkingParameters()
+    pattern = replace(parameters.pattern, generator=generator)
     engine, _ = run(
         robot,
         ideal_body,
         lambda now: VelocityCommand(0.2, 0.05, 0.4) if now < 2.5 else VelocityCommand(),
         5.0,
+        replace(parameters, pattern=pattern),
     )
     state = engine.state()
     assert state.phase is Phase.STANDING
