@@ -127,7 +127,8 @@ def _points(layout: Layout) -> str:
         if layout.goal_heading is None
         else (f"a goal at {degrees(layout.goal_heading):.0f} deg")
     )
-    return f"{n - 1} via point{'' if n == 2 else 's'} and {goal}, {straight_length(layout):.1f} m straight"
+    via = "1 via point" if n == 2 else f"{n - 1} via points"
+    return f"{via} and {goal}, {straight_length(layout):.1f} m straight"
 
 
 def _certificate(summary: Summary, layout: Layout) -> str:
