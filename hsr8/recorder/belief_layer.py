@@ -20,6 +20,7 @@ VIEW_RANGE = 1.5  # drawn length of the field of view [m]
 MAP_PERIOD = 0.5  # [s]
 MAP_HEIGHT, MARK_HEIGHT = 0.002, 0.012  # heights at which flat things are drawn [m]
 FLAT = 0.004  # and their thickness [m]
+LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
 SEEN, UNSEEN = 255, 110  # opacity of tracks in view and out of it
 
 
@@ -111,7 +112,8 @@ class BeliefLayer:
             ),
         )
         covariances = np.array([t.covariance[:2, :2] for t in tracks]).reshape(n, 2, 2)
-        self._ellipses(self._spread, time, centres, covariances)
+        known = np.trace(covariances, axis1=1, axis2=2) < LOST_SIGMA**2
+        self._ellipses(self._spread, time, centres[known], covariances[known])
         moving = [i for i, t in enumerate(tracks) if t.motion is not Motion.STATIC]
         vectors = np.zeros((len(moving), 3))
         vectors[:, :2] = np.array([tracks[i].velocity for i in moving]).reshape(-1, 2)
