@@ -90,12 +90,15 @@ class KinematicBody:
         self._tick += 1
         self._rates = (targets.position - self._joints) / CONTROL_PERIOD
         self._joints = targets.position.copy()
-        root = self._index.root_qpos
-        before = self.data.qpos[root + 3 : root + 7].copy()
+        root, dof = self._index.root_qpos, self._index.root_dof
+        before = self.data.qpos[root : root + 7].copy()
         self.data.qpos[self._index.joint_qpos] = self._joints
         self._plant()
+        self.data.qvel[dof : dof + 3] = (
+            self.data.qpos[root : root + 3] - before[:3]
+        ) / CONTROL_PERIOD
         difference = np.empty(3)
-        mujoco.mju_subQuat(difference, self.data.qpos[root + 3 : root + 7], before)
+        mujoco.mju_subQuat(difference, self.data.qpos[root + 3 : root + 7], before[3:])
         self._gyro = difference / CONTROL_PERIOD
         if self._tick % WATCH_TICKS == 0:
             if len(self._movers):

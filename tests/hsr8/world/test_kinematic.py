@@ -87,4 +87,5 @@ def test_touching_an_obstacle_is_noticed_though_nothing_stops_it(world, silent, 
         contacts += body.truth().contacts
     assert {c.obstacle for c in contacts} == {0}
     assert not any(c.moving for c in contacts)
+    assert any(c.closing for c in contacts)  # it walked into it
     assert body.truth().robot[0] > 0.2
