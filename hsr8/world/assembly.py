@@ -22,7 +22,7 @@ RIM = 0.02  # half width of the line round the field [m]
 PAINT = 0.0005  # height of what is painted on the floor [m]
 STRIPE = 0.010  # half height of the stripe that marks a mover, for people only [m]
 APRON = 1.5  # distance of the walls the robot sees from the rim of the field [m]
-WALL_HEIGHT = 2.0  # [m]
+WALL_HEIGHT = 4.0  # [m]
 USUAL_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
 HEAD_CAMERA = "egocentric"
 
