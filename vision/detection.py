@@ -21,7 +21,7 @@ class Detection:
         covariance: of (distance, bearing) (2, 2) [m², m rad, rad²].
         radius: radius of the cylinder [m].
         radius_sigma: its standard deviation [m].
-        cut: the blob touches the border of the image.
+        cut: the blob touches the border of the image or the robot's own body.
         occluded: another thing hides part of it.
         box: left, top, right, bottom pixel of the blob, right and bottom exclusive.
     """

@@ -23,6 +23,7 @@ from vision.cylinder import (
 from vision.detection import Detection
 from vision.errors import VisionError
 from vision.outline import Outline, trace
+from vision.own_body import BodyPart, hide
 from vision.parameters import VisionParameters
 from vision.split import split
 from vision.view import View
@@ -58,12 +59,18 @@ class Detector:
     Args:
         camera: intrinsics.
         parameters: sizes of things and thresholds.
+        own_body: parts of the robot that the camera may see.
 
     Raises:
         VisionError: the smallest radius is not below the largest.
     """
 
-    def __init__(self, camera: PinholeCamera, parameters: VisionParameters) -> None:
+    def __init__(
+        self,
+        camera: PinholeCamera,
+        parameters: VisionParameters,
+        own_body: Sequence[BodyPart] = (),
+    ) -> None:
         if parameters.min_radius >= parameters.max_radius:
             raise VisionError(
                 f"min_radius ({parameters.min_radius}) must be below "
@@ -71,6 +78,7 @@ class Detector:
             )
         self._camera = camera
         self._parameters = parameters
+        self._own_body = tuple(own_body)
         self._table = ColourTable()
         self._min_area = tuple(
             parameters.min_area if c.kind == "obstacle" else parameters.min_beacon_area
@@ -101,7 +109,11 @@ class Detector:
         blobs = find_blobs(labels, self._min_area)
         if not blobs:
             return ()
-        self._padded[1:-1, 1:-1] = labels
+        inner = self._padded[1:-1, 1:-1]
+        inner[:] = labels
+        body = hide(self._own_body, inner, camera=self._camera, pose=pose, label=OUTSIDE)
+        if body is not None:
+            blobs = [_cut_by(blob, body) for blob in blobs]
         view = View(self._camera, pose)
         outlines = trace(blobs, self._padded, view, self._parameters.edge_sigma)
         sightings = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
@@ -262,6 +274,15 @@ def _doubted(sighting: _Sighting, cylinder: Cylinder) -> tuple[_Sighting, Cylind
         replace(sighting, occluded=True),
         replace(cylinder, covariance=factor * cylinder.covariance),
     )
+
+
+def _cut_by(blob: Blob, body: NDArray[np.bool_]) -> Blob:
+    """`blob`, which counts as cut at the bottom where it meets the robot's own body."""
+    left, top, right, bottom = blob.box
+    around = body[max(top - 1, 0) : bottom + 1, max(left - 1, 0) : right + 1]
+    if not around.any():
+        return blob
+    return replace(blob, touches=(*blob.touches[:3], True))
 
 
 def _edges_seen(candidate: Candidate) -> int:

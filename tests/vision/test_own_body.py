@@ -1,0 +1,82 @@
+from dataclasses import replace
+from math import pi, radians
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.vision.scene import CAMERA, at, paint, pose, true_polar
+from vision.detector import Detector
+from vision.own_body import BodyPart, hide
+from vision.parameters import VisionParameters
+
+SHOULDER = BodyPart(np.array([[0.0, 0.09, 0.38]]), np.array([0.03]))
+
+
+def inside(polygon: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Whether points lie within half a pixel of a convex polygon given in order."""
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    offset = points[:, None] - polygon
+    cross = edge[:, 0] * offset[..., 1] - edge[:, 1] * offset[..., 0]
+    length = np.hypot(edge[:, 0], edge[:, 1])
+    return (cross >= -0.5 * length).all(axis=1) | (cross <= 0.5 * length).all(axis=1)
+
+
+@given(
+    pan=st.floats(1.1, pi / 2),
+    tilt=st.floats(-0.9, -0.3),
+    roll=st.floats(-0.05, 0.05),
+    seed=st.integers(0, 1000),
+)
+def test_the_outline_contains_all_of_a_sphere(pan, tilt, roll, seed) -> None:
+    view = pose(pan, tilt, roll, position=(0.0, 0.03, 0.47))
+    way = np.random.default_rng(seed).standard_normal((50, 3))
+    surface = SHOULDER.centres + SHOULDER.radii[0] * way / np.linalg.norm(way, axis=1)[:, None]
+    outline = SHOULDER.outline(CAMERA, view)
+    assert outline is not None
+    local = (surface - view.position) @ view.rotation
+    assert inside(outline, CAMERA.project(local[local[:, 2] > 0.01])).all()
+
+
+def test_a_part_behind_the_camera_is_not_seen() -> None:
+    assert SHOULDER.outline(CAMERA, pose(-pi / 2, -0.3)) is None
+    assert SHOULDER.outline(CAMERA, pose(0.0, 0.0, position=(0.0, 0.09, 0.39))) is None
+
+
+def test_only_background_is_hidden() -> None:
+    view = pose(pi / 2, -0.5)
+    labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
+    labels[:, ::2] = 3
+    body = hide((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
+    assert body is not None
+    assert body.any()
+    assert (labels[:, ::2] == 3).all()
+    assert ((labels == 255) == body).all()
+
+
+def test_nothing_is_hidden_when_the_body_is_out_of_the_image() -> None:
+    labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
+    view = pose(0.0, 0.0)
+    assert hide((SHOULDER,), labels, camera=CAMERA, pose=view, label=255) is None
+    assert not labels.any()
+
+
+@given(distance=st.floats(0.32, 0.42), bearing=st.floats(88.0, 92.0))
+def test_an_obstacle_behind_the_shoulder_is_located_by_its_upper_edge(distance, bearing) -> None:
+    view = pose(radians(80.0), -0.35, position=(0.0, 0.03, 0.47))
+    thing = at(distance, bearing, "blue", 0.06)
+    image = paint([thing], view)
+    ground = paint([], view)
+    # The shoulder as it looks: as grey as the ground, and smaller than what is masked.
+    shoulder = replace(SHOULDER, radii=np.array([0.025]))
+    shown = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
+    body = hide((shoulder,), shown, camera=CAMERA, pose=view, label=1)
+    assert body is not None
+    image[body] = ground[body]
+    (naive,) = Detector(CAMERA, VisionParameters()).detect(image, view)
+    (aware,) = Detector(CAMERA, VisionParameters(), (SHOULDER,)).detect(image, view)
+    true_distance, true_bearing = true_polar(thing)
+    assert naive.distance > true_distance + 0.03
+    assert abs(aware.distance - true_distance) < 0.015
+    assert abs(aware.bearing - true_bearing) < 0.03
+    assert aware.cut
