@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from hsr8.world.body import Body
 from hsr8.world.camera import HEAD_CAMERA
 from hsr8.world.layout import Layout
-from hsr8.world.motion import Movers
 from hsr8.world.rotation import heading
 from vision.camera import PinholeCamera
 from vision.detection import Detection
@@ -51,7 +50,7 @@ class AnalyticCamera:
     def __init__(self, layout: Layout, camera: PinholeCamera, rng: np.random.Generator) -> None:
         self._camera = camera
         self._rng = rng
-        self._movers = Movers.of(layout)
+        self._movers = layout.motion()
         static = layout.obstacles[: len(layout.obstacles) - len(self._movers)]
         self._static = np.array([o.position for o in static], dtype=float).reshape(-1, 2)
         self._posts = np.array([b.position for b in layout.beacons], dtype=float).reshape(-1, 2)

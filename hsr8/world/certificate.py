@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.checks import ROBOT_RADIUS
 from hsr8.world.layout import Layout
-from hsr8.world.motion import Movers
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -77,7 +76,7 @@ class _Grid:
         half = 0.5 * np.asarray(layout.field_size)
         self._x = np.arange(-half[0] + 0.5 * CELL, half[0], CELL)
         self._y = np.arange(-half[1] + 0.5 * CELL, half[1], CELL)
-        self._movers = Movers.of(layout)
+        self._movers = layout.motion()
         self._mover_reach = np.array([self._reach(o.radius) for o in layout.movers])
         speeds = np.hypot(*self._movers.velocities(0.0).T)
         self._mover_reach += 0.5 * GLANCE * speeds

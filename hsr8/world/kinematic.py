@@ -9,13 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.contacts import ContactWatch
-from hsr8.world.index import ModelIndex
 from hsr8.world.layout import Layout
-from hsr8.world.motion import Movers
 from hsr8.world.physics import CONTROL_PERIOD, place_robot
 from hsr8.world.rotation import heading
 from hsr8.world.sensors import SensorSuite
+from hsr8.world.surroundings import Surroundings
 from hsr8.world.truth import Truth
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
@@ -45,15 +43,10 @@ class KinematicBody:
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
-        self._movers = Movers.of(layout)
-        self._n_static = len(layout.obstacles) - len(self._movers)
-        self._index = ModelIndex.of(model, self._n_static, len(self._movers))
+        self._around = Surroundings(model, layout)
+        self._index = self._around.index
         sensor_rng, self._slip_rng = rng.spawn(2)
         self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD)
-        self._watch = ContactWatch(model, self._index, self._n_static)
-        self._static_positions = np.array(
-            [o.position for o in layout.obstacles[: self._n_static]], dtype=float
-        ).reshape(-1, 2)
         self._weight = float(model.body_subtreemass[self._index.base_body]) * GRAVITY
         self._tick = 0
         place_robot(model, self.data, np.array(layout.start))
@@ -101,11 +94,10 @@ class KinematicBody:
         mujoco.mju_subQuat(difference, self.data.qpos[root + 3 : root + 7], before[3:])
         self._gyro = difference / CONTROL_PERIOD
         if self._tick % WATCH_TICKS == 0:
-            if len(self._movers):
-                self.data.mocap_pos[self._index.mover_mocap, :2] = self._movers.positions(self.time)
+            self._around.move(self.data, self.time)
             self.update_kinematics()
             mujoco.mj_collision(self.model, self.data)
-            self._watch.watch(self.data)
+            self._around.watch.watch(self.data)
 
     def update_kinematics(self) -> None:
         """Bring all poses up to date."""
@@ -124,14 +116,10 @@ class KinematicBody:
             time=self.time,
             qpos=data.qpos.copy(),
             robot=robot,
-            obstacle_positions=np.concatenate(
-                [self._static_positions, self._movers.positions(self.time)]
-            ),
-            obstacle_velocities=np.concatenate(
-                [np.zeros_like(self._static_positions), self._movers.velocities(self.time)]
-            ),
-            contacts=self._watch.take(),
-            clearance=self._watch.clearance(data, robot),
+            obstacle_positions=self._around.positions(self.time),
+            obstacle_velocities=self._around.velocities(self.time),
+            contacts=self._around.watch.take(),
+            clearance=self._around.watch.clearance(data, robot),
             joint_torque=np.zeros(len(self._joints)),
             foot_force=self._load * self._weight,
             zmp=self._load @ feet,

@@ -1,16 +1,13 @@
 """What stands and moves in the world of one run."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from hsr8.world.motion import MotionLaw
+from hsr8.world.motion import MotionLaw, Movers, Point
 
 Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 OBSTACLE_HEIGHT = 0.30  # [m]
 BEACON_RADIUS = 0.05  # [m]
@@ -35,7 +32,7 @@ class Obstacle:
     radius: float
     height: float
     colour: str
-    motion: "MotionLaw | None" = None
+    motion: MotionLaw | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +87,10 @@ class Layout:
     def movers(self) -> tuple[Obstacle, ...]:
         """Obstacles that move."""
         return tuple(o for o in self.obstacles if o.motion is not None)
+
+    def motion(self) -> Movers:
+        """The laws of all movers."""
+        return Movers(tuple(o.motion for o in self.obstacles if o.motion is not None))
 
 
 def standard_beacons(field_size: Point) -> tuple[Beacon, ...]:

@@ -2,15 +2,12 @@
 
 from dataclasses import dataclass
 from math import cos, fmod, hypot, inf, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from hsr8.world.layout import Layout, Point
-
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,13 +18,13 @@ class Still:
         at: where it stands [m].
     """
 
-    at: "Point"
+    at: Point
 
-    def position(self, time: float) -> "Point":
+    def position(self, time: float) -> Point:
         """Position at `time` [s]."""
         return self.at
 
-    def velocity(self, time: float) -> "Point":
+    def velocity(self, time: float) -> Point:
         """Velocity at `time` [m/s]."""
         return 0.0, 0.0
 
@@ -41,14 +38,14 @@ class Line:
         rate: velocity [m/s].
     """
 
-    start: "Point"
-    rate: "Point"
+    start: Point
+    rate: Point
 
-    def position(self, time: float) -> "Point":
+    def position(self, time: float) -> Point:
         """Position at `time` [s]."""
         return self.start[0] + self.rate[0] * time, self.start[1] + self.rate[1] * time
 
-    def velocity(self, time: float) -> "Point":
+    def velocity(self, time: float) -> Point:
         """Velocity at `time` [m/s]."""
         return self.rate
 
@@ -64,8 +61,8 @@ class Shuttle:
         offset: way it has gone at time zero, from `start` to `end` and back [m].
     """
 
-    start: "Point"
-    end: "Point"
+    start: Point
+    end: Point
     speed: float
     offset: float = 0.0
 
@@ -74,7 +71,7 @@ class Shuttle:
         """Distance between the ends [m]."""
         return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
-    def position(self, time: float) -> "Point":
+    def position(self, time: float) -> Point:
         """Position at `time` [s]."""
         length = self.length
         gone = fmod(self.offset + self.speed * time, 2.0 * length)
@@ -84,7 +81,7 @@ class Shuttle:
             self.start[1] + share * (self.end[1] - self.start[1]),
         )
 
-    def velocity(self, time: float) -> "Point":
+    def velocity(self, time: float) -> Point:
         """Velocity at `time` [m/s]; at an end, the one it leaves with."""
         length = self.length
         gone = fmod(self.offset + self.speed * time, 2.0 * length)
@@ -103,12 +100,12 @@ class Circle:
         angle: where on the circle it is at time zero [rad].
     """
 
-    centre: "Point"
+    centre: Point
     radius: float
     speed: float
     angle: float = 0.0
 
-    def position(self, time: float) -> "Point":
+    def position(self, time: float) -> Point:
         """Position at `time` [s]."""
         angle = self.angle + self.speed / self.radius * time
         return (
@@ -116,7 +113,7 @@ class Circle:
             self.centre[1] + self.radius * sin(angle),
         )
 
-    def velocity(self, time: float) -> "Point":
+    def velocity(self, time: float) -> Point:
         """Velocity at `time` [m/s]."""
         angle = self.angle + self.speed / self.radius * time
         return -self.speed * sin(angle), self.speed * cos(angle)
@@ -151,11 +148,6 @@ class Movers:
         self._rim_speed = np.array([c.speed for c in circles], dtype=float)
         self._angle = np.array([c.angle for c in circles], dtype=float)
 
-    @classmethod
-    def of(cls, layout: "Layout") -> "Movers":
-        """The movers of `layout`."""
-        return cls(tuple(o.motion for o in layout.obstacles if o.motion is not None))
-
     def __len__(self) -> int:
         return len(self.laws)
 
@@ -188,7 +180,7 @@ class Movers:
         return both
 
 
-def _lane(law: MotionLaw) -> tuple["Point", "Point", float, float, float]:
+def _lane(law: MotionLaw) -> tuple[Point, Point, float, float, float]:
     """Origin, unit direction, speed, length and offset of a straight law."""
     if isinstance(law, Shuttle):
         way = (

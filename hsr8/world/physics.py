@@ -6,12 +6,10 @@ from numpy.typing import NDArray
 
 from hsr8.errors import SimulationDiverged
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.contacts import ContactWatch
-from hsr8.world.index import ModelIndex
 from hsr8.world.layout import Layout
-from hsr8.world.motion import Movers
 from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product, up_component
 from hsr8.world.sensors import SensorSuite
+from hsr8.world.surroundings import Surroundings
 from hsr8.world.truth import Truth
 from walking.joints import JOINT_NAMES
 from walking.sensing import BodySensors
@@ -53,11 +51,9 @@ class PhysicsBody:
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
-        self._movers = Movers.of(layout)
-        self._n_static = len(layout.obstacles) - len(self._movers)
-        self._index = ModelIndex.of(model, self._n_static, len(self._movers))
+        self._around = Surroundings(model, layout)
+        self._index = self._around.index
         self._suite = SensorSuite(noise, rng, CONTROL_PERIOD)
-        self._watch = ContactWatch(model, self._index, self._n_static)
         self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
         if abs(self._substeps * model.opt.timestep - CONTROL_PERIOD) > 1e-9:
             raise ValueError(
@@ -65,12 +61,9 @@ class PhysicsBody:
                 f"{model.opt.timestep} s"
             )
         self._substep = 0
-        self._static_positions = np.array(
-            [o.position for o in layout.obstacles[: self._n_static]], dtype=float
-        ).reshape(-1, 2)
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
         place_robot(model, self.data, np.array(layout.start))
-        self._move_obstacles()
+        self._around.move(self.data, 0.0)
         # Warnings are counted and raised by `apply`; MuJoCo shall not write a file of its own.
         mujoco.set_mju_user_warning(lambda _message: None)
         mujoco.mj_forward(model, self.data)
@@ -101,10 +94,11 @@ class PhysicsBody:
         """
         self.data.ctrl[self._index.actuators] = targets.position + targets.offset
         for _ in range(self._substeps):
-            self._move_obstacles()
+            # where the movers are at the end of this physics step
+            self._around.move(self.data, (self._substep + 1) * self.model.opt.timestep)
             mujoco.mj_step(self.model, self.data)
             self._substep += 1
-        self._watch.watch(self.data)
+        self._around.watch.watch(self.data)
         self._guard()
 
     def update_kinematics(self) -> None:
@@ -119,19 +113,15 @@ class PhysicsBody:
         root = index.root_qpos
         quaternion = data.qpos[root + 3 : root + 7]
         robot = np.array([*data.qpos[root : root + 2].tolist(), heading(quaternion)])
-        load, pressure = self._watch.feet(data)
+        load, pressure = self._around.watch.feet(data)
         return Truth(
             time=self.time,
             qpos=data.qpos.copy(),
             robot=robot,
-            obstacle_positions=np.concatenate(
-                [self._static_positions, self._movers.positions(self.time)]
-            ),
-            obstacle_velocities=np.concatenate(
-                [np.zeros_like(self._static_positions), self._movers.velocities(self.time)]
-            ),
-            contacts=self._watch.take(),
-            clearance=self._watch.clearance(data, robot),
+            obstacle_positions=self._around.positions(self.time),
+            obstacle_velocities=self._around.velocities(self.time),
+            contacts=self._around.watch.take(),
+            clearance=self._around.watch.clearance(data, robot),
             joint_torque=data.actuator_force[index.actuators].copy(),
             foot_force=load,
             zmp=pressure,
@@ -144,12 +134,6 @@ class PhysicsBody:
         """MuJoCo's integration state."""
         mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
         return self._state.tobytes()
-
-    def _move_obstacles(self) -> None:
-        """Put every mover where its law wants it at the end of this physics step."""
-        if len(self._movers):
-            time = (self._substep + 1) * self.model.opt.timestep
-            self.data.mocap_pos[self._index.mover_mocap, :2] = self._movers.positions(time)
 
     def _guard(self) -> None:
         warned = self.data.warning.number.any()

@@ -69,9 +69,7 @@ def test_what_is_behind_another_or_behind_the_robot_is_not_seen(see):
 
 
 def test_a_thing_partly_hidden_is_flagged(see):
-    frames = see(
-        Obstacle((0.8, 0.0), 0.10, 0.3, "red"), Obstacle((1.4, 0.18), 0.10, 0.3, "green")
-    )
+    frames = see(Obstacle((0.8, 0.0), 0.10, 0.3, "red"), Obstacle((1.4, 0.18), 0.10, 0.3, "green"))
     flags = {d.label: d.occluded for d in obstacles_in(frames)}
     assert flags == {"red": False, "green": True}
 

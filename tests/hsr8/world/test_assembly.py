@@ -7,7 +7,6 @@ from hsr8.world.assembly import Optics, assemble
 from hsr8.world.generator import draw_layout
 from hsr8.world.index import ModelIndex
 from hsr8.world.models import models_dir
-from hsr8.world.motion import Movers
 from hsr8.world.physics import place_robot
 from walking.joints import JOINT_NAMES
 
@@ -78,7 +77,7 @@ def test_movers_go_where_their_law_says_and_statics_stay(models, layout):
     model = models["vision"]
     index = ModelIndex.of(model, len(layout.static), len(layout.movers))
     data = mujoco.MjData(model)
-    data.mocap_pos[index.mover_mocap, :2] = Movers.of(layout).positions(12.3)
+    data.mocap_pos[index.mover_mocap, :2] = layout.motion().positions(12.3)
     mujoco.mj_kinematics(model, data)
     places = data.geom_xpos[index.obstacle_geoms, :2]
     wanted = [(o.motion.position(12.3) if o.motion else o.position) for o in layout.obstacles]
@@ -114,7 +113,7 @@ def test_a_mover_pushes_a_standing_robot():
     layout = draw_layout(load("walk", [hand, "robot.speed.forward=0.3"]), 0)
     model = assemble(layout, "vision", Optics())
     index = ModelIndex.of(model, 0, 1)
-    data, movers = mujoco.MjData(model), Movers.of(layout)
+    data, movers = mujoco.MjData(model), layout.motion()
     place_robot(model, data, np.array(layout.start))
     data.ctrl[:] = model.key_ctrl[model.key("walk_ready").id]
     for k in range(400):

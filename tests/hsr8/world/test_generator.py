@@ -9,7 +9,6 @@ from hsr8.scenario.loader import load
 from hsr8.world import generator
 from hsr8.world.certificate import certify
 from hsr8.world.generator import draw_layout
-from hsr8.world.motion import Movers
 
 SEEDS = range(1000, 1025)
 SAMPLED = 0.002  # the drawing takes lanes as points: its distances are this exact [m]
@@ -35,7 +34,7 @@ def test_counts_and_ranges_are_those_asked_for(worlds):
         assert len(layout.movers) == scenario.world.n_moving
         assert layout.obstacles == layout.static + layout.movers
         assert all(low <= o.radius <= high for o in layout.obstacles)
-        speeds = np.hypot(*Movers.of(layout).velocities(0.0).T)
+        speeds = np.hypot(*layout.motion().velocities(0.0).T)
         assert ((slow <= speeds + 1e-9) & (speeds <= fast + 1e-9)).all()
 
 
@@ -72,7 +71,7 @@ def test_points_are_clear_of_static_obstacles_and_apart(worlds):
 
 def test_movers_never_pin_the_robot_nor_run_into_anything(worlds):
     for layout in worlds[1]:
-        movers, half = Movers.of(layout), 0.5 * np.asarray(layout.field_size)
+        movers, half = layout.motion(), 0.5 * np.asarray(layout.field_size)
         radii = np.array([o.radius for o in layout.movers])
         for time in TIMES.tolist():
             places = movers.positions(time)
@@ -144,7 +143,7 @@ def test_drawn_obstacles_keep_clear_of_those_placed_by_hand():
 
 def test_circles_can_be_drawn():
     layout = draw_layout(load("course", ['world.motions=["circle"]', "world.n_moving=2"]), 1)
-    places = np.array([Movers.of(layout).positions(t) for t in (0.0, 3.0)])
+    places = np.array([layout.motion().positions(t) for t in (0.0, 3.0)])
     assert (np.abs(places) < 2.5).all()
     assert (np.abs(places[1] - places[0]).max(axis=1) > 0.05).all()
 
