@@ -3,7 +3,7 @@
 import hashlib
 import zlib
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 
 import numpy as np
@@ -102,7 +102,7 @@ class Simulation:
             if self._analytic is None:
                 camera = self.scenario.camera
                 self._rendered = stack.enter_context(
-                    RenderedCamera(self.model, camera.width, camera.height)
+                    closing(RenderedCamera(self.model, camera.width, camera.height))
                 )
             try:
                 reason = self._ticks()

@@ -1,7 +1,6 @@
 """The head camera: images rendered from the model's own camera, without a display."""
 
-from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -18,7 +17,7 @@ HEAD_CAMERA = "egocentric"
 
 
 class RenderedCamera:
-    """Renders one camera of a model; use it as a context manager and in one thread only.
+    """Renders one camera of a model; close it after use, and use it in one thread only.
 
     Args:
         model: compiled world; its offscreen buffer must hold the image.
@@ -50,14 +49,3 @@ class RenderedCamera:
     def close(self) -> None:
         """Free the OpenGL context."""
         self._renderer.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.world import LineMover, Mover, ShuttleMover
-from hsr8.world.layout import OBSTACLE_HEIGHT, Obstacle, Point
-from hsr8.world.motion import Circle, Line, MotionLaw, Shuttle
+from hsr8.world.layout import OBSTACLE_HEIGHT, Obstacle
+from hsr8.world.motion import Circle, Line, MotionLaw, Point, Shuttle
 
 Array = NDArray[np.float64]
 

@@ -1,3 +1,5 @@
+from contextlib import closing
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,7 @@ def body(world, silent):
 
 
 def test_an_image_shows_the_world_as_it_is_now(body):
-    with RenderedCamera(body.model, 320, 240) as camera:
+    with closing(RenderedCamera(body.model, 320, 240)) as camera:
         before = camera.capture(body)
         again = camera.capture(body)
         body.data.joint("head_pan").qpos[0] = 0.5
@@ -32,7 +34,7 @@ def test_an_image_shows_the_world_as_it_is_now(body):
 
 
 def test_vision_finds_the_obstacle_where_it_stands(body):
-    with RenderedCamera(body.model, 320, 240) as camera:
+    with closing(RenderedCamera(body.model, 320, 240)) as camera:
         image = camera.capture(body)
     fixed = body.data.camera("egocentric")
     rotation = fixed.xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
