@@ -46,12 +46,28 @@ def wilson(successes: int, n: int) -> tuple[float, float]:
 
 def run(scenario: str, seed: int, extra: list[str]) -> dict:
     """One run; a crash becomes a row that says so."""
-    command = [sys.executable, "-m", "hsr8", "run", scenario, "--seed", str(seed), "--json"]
+    command = [
+        sys.executable,
+        "-m",
+        "hsr8",
+        "run",
+        scenario,
+        "--seed",
+        str(seed),
+        "--json",
+        "--quiet",
+    ]
     done = subprocess.run([*command, *extra], capture_output=True, text=True, check=False)
     lines = done.stdout.strip().splitlines()
     if not lines:
         return {"exit_reason": f"crashed ({done.returncode})", "error": done.stderr[-2000:]}
     return json.loads(lines[-1])
+
+
+def environment() -> str:
+    """What the results were computed with."""
+    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy", "rerun-sdk"))
+    return f"{versions}; Python {platform.python_version()}, {platform.machine()}, software OpenGL."
 
 
 def show(value: object) -> str:
@@ -68,14 +84,13 @@ def table(scenario: str, rows: dict[int, dict], command: str) -> str:
     upright = sum(r.get("falls") == 0 for r in rows.values())
     low, high = wilson(succeeded, n)
     falls_low, falls_high = wilson(upright, n)
-    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy", "rerun-sdk"))
     factors = [r["real_time_factor"] for r in rows.values() if "real_time_factor" in r]
     lines = [
         f"# `{scenario}`: {n} seeds, {min(rows)} to {max(rows)}",
         "",
         f"    {command}",
         "",
-        f"{versions}; Python {platform.python_version()}, {platform.machine()}, software OpenGL.",
+        environment(),
         "",
         f"- success: {succeeded} of {n} (95 % interval {low:.0%} to {high:.0%})",
         f"- without a fall: {upright} of {n} ({falls_low:.0%} to {falls_high:.0%})",
