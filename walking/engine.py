@@ -4,10 +4,11 @@ from math import cos, hypot, sin
 
 import numpy as np
 
-from walking.command import HeadTarget, VelocityCommand
+from walking.admission import AdmissionReport, Limit
+from walking.command import Command, HeadTarget
 from walking.estimator import ErrorFilter, TiltFilter, TouchDown
 from walking.feedforward import FeedForward
-from walking.footsteps import FootstepPlanner, Velocity
+from walking.footsteps import PLACE_TOLERANCE, FootstepPlanner
 from walking.gait import Gait
 from walking.head import Head
 from walking.joints import HEAD
@@ -24,11 +25,10 @@ from walking.sensing import BodySensors
 from walking.snapshot import PlanToOdometry, camera_pose
 from walking.stabilizer import Stabilizer
 from walking.state import Footstep, WalkingState
+from walking.steering import Steering
+from walking.stride import Wish
 from walking.support import SupportRegion, support_region
 from walking.targets import JointTargets
-from walking.velocity import VelocitySlew
-
-STILL = VelocityCommand()
 
 
 class WalkingEngine:
@@ -53,7 +53,8 @@ class WalkingEngine:
         self._gait = Gait(parameters, self._planner, stance)
         zmp = self._gait.plan(stance[1], (0.0, 0.0, 0.0), moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
-        self._slew = VelocitySlew(parameters.limits)
+        self._steering = Steering(self._planner, parameters.limits, self._gait.usual)
+        self._binding: list[Limit] = []
         self._tilt = TiltFilter(parameters.estimator)
         self._error = ErrorFilter(self._lipm.omega, parameters.estimator)
         self._touch = TouchDown(parameters.estimator)
@@ -79,14 +80,18 @@ class WalkingEngine:
         """Parameters of the engine, its speed limits among them."""
         return self._parameters
 
-    def step(
-        self, sensors: BodySensors, command: VelocityCommand, head: HeadTarget
-    ) -> JointTargets:
+    @property
+    def admission(self) -> AdmissionReport:
+        """What became of the last tick's command."""
+        return self._steering.report(self._binding)
+
+    def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """One control tick.
 
         Args:
             sensors: read at the start of the tick.
-            command: velocity wanted; limited to what the legs can do.
+            command: velocity or footsteps wanted, new in any tick; limited to what the legs
+                can do, see `admission`.
             head: direction to look; limited to what the neck can do.
 
         Returns:
@@ -95,12 +100,12 @@ class WalkingEngine:
         body = self._sense(sensors)
         error = self._estimate(body)
         self._command(command, error)
-        velocity = self._velocity()
-        moving = self._slew.moving
+        wish = self._wish()
+        moving = self._steering.moving
         gait = self._gait
         if not gait.stepping:
-            self._maybe_start(velocity, error, moving=moving)
-        ramps, dcm = self._plan(body, velocity, error, moving=moving)
+            self._maybe_start(error, moving=moving)
+        ramps, dcm = self._plan(body, wish, error, moving=moving)
         pattern = self._parameters.pattern
         pendulum = self._pendulum
         region = self._region(pattern.sole_margin)
@@ -130,7 +135,7 @@ class WalkingEngine:
             phase=gait.phase,
             odometry=odometry,
             camera=camera_pose(self._robot, self._sensors, body),
-            given=np.array([self._slew.forward, self._slew.left, self._slew.turn]),
+            given=np.array(self._steering.velocity),
             footsteps=tuple(plan.footstep(step) for step in gait.footsteps()),
             zmp=plan.point(pendulum.zmp_x, pendulum.zmp_y),
             dcm=plan.point(pendulum.x + pendulum.vx / w, pendulum.y + pendulum.vy / w),
@@ -139,6 +144,7 @@ class WalkingEngine:
             pitch=body.pitch,
             step_count=gait.completed,
             fallen=self._fallen,
+            admission=self.admission,
         )
 
     @property
@@ -196,31 +202,31 @@ class WalkingEngine:
         e = self._error
         return e.x + e.vx / w, e.y + e.vy / w
 
-    def _command(self, command: VelocityCommand, error: tuple[float, float]) -> None:
+    def _command(self, command: Command, error: tuple[float, float]) -> None:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
-        if hypot(*error) < self._parameters.stabilizer.slew_error:
-            self._slew.follow(command if settled else STILL)
+        balanced = hypot(*error) < self._parameters.stabilizer.slew_error
+        self._steering.follow(command, settled=settled, balanced=balanced)
+        self._binding = [] if self._gait.retime(self._steering.timing) else [Limit.TIMING]
 
-    def _velocity(self) -> Velocity:
-        """Velocity of the footsteps: the given one with the heading hold."""
+    def _wish(self) -> Wish:
+        """What the footsteps obey, with the heading hold."""
         p = self._parameters.stabilizer
-        slew = self._slew
         if not self._gait.stepping:
             # Standing, the plan takes the heading as it is.
             self._held_turn = self._pelvis.yaw - self._odometry.yaw
-            return slew.forward, slew.left, slew.turn
+            return self._steering.wish(0.0)
         missing = self._pelvis.yaw - self._odometry.yaw - self._held_turn
         rate = min(p.heading_rate, max(-p.heading_rate, p.heading_gain * missing))
         self._held_turn += rate * CONTROL_PERIOD
-        return slew.forward, slew.left, slew.turn + rate
+        return self._steering.wish(rate)
 
-    def _maybe_start(self, velocity: Velocity, error: tuple[float, float], *, moving: bool) -> None:
+    def _maybe_start(self, error: tuple[float, float], *, moving: bool) -> None:
         gait, foot = self._gait, self._gait.footholds[0]
         share = self._parameters.stabilizer.step_error
         pushed = self._stabilizer.exceeds(foot, error, share)
         if self._fallen or not (moving or pushed):
             return
-        opening_left = self._planner.opening_left(velocity)
+        opening_left = self._planner.opening_left(self._steering.velocity)
         if pushed:
             # The foot on the side of the fall is the one that can catch it.
             opening_left = cos(foot.yaw) * error[1] - sin(foot.yaw) * error[0] > 0.0
@@ -232,7 +238,7 @@ class WalkingEngine:
     def _plan(
         self,
         body: BodyMeasurement,
-        velocity: Velocity,
+        wish: Wish,
         error: tuple[float, float],
         *,
         moving: bool,
@@ -243,8 +249,10 @@ class WalkingEngine:
             force = body.feet[gait.swing].force
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touch_down()
-        nominal = gait.nominal(velocity) if gait.adjustable else gait.landing
-        ramps = gait.plan(nominal, velocity, moving=moving)
+        nominal = gait.nominal(wish) if gait.adjustable else gait.landing
+        if not gait.adjustable and gait.stepping and _apart(gait.nominal(wish), nominal):
+            self._binding.append(Limit.LANDING_FROZEN)
+        ramps = gait.plan(nominal, wish, moving=moving)
         dcm = dcm_reference(lipm, ramps)
         caught = nominal
         if gait.adjustable and not gait.double:
@@ -254,9 +262,11 @@ class WalkingEngine:
             off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
             support = gait.footholds[gait.support]
             caught = self._stabilizer.capture(self._planner, support, nominal, off, gait.ticks_left)
+        if caught != nominal:
+            self._binding.append(Limit.BALANCE)
         gait.aim(caught)
         if gait.landing != nominal:
-            ramps = gait.plan(gait.landing, velocity, moving=moving)
+            ramps = gait.plan(gait.landing, wish, moving=moving)
             dcm = dcm_reference(lipm, ramps)
         return ramps, dcm
 
@@ -298,6 +308,15 @@ class WalkingEngine:
             offset[6 * index + 4] += ankle.pitch
             offset[6 * index + 5] += ankle.roll
         return JointTargets(position=position, offset=offset)
+
+
+def _apart(one: Footstep, other: Footstep) -> bool:
+    """Whether two footholds differ by more than counts."""
+    return (
+        abs(one.x - other.x) > PLACE_TOLERANCE
+        or abs(one.y - other.y) > PLACE_TOLERANCE
+        or abs(one.yaw - other.yaw) > PLACE_TOLERANCE
+    )
 
 
 def _stance(robot: RobotModel) -> tuple[Footstep, Footstep]:

@@ -1,12 +1,13 @@
-"""Velocity to footholds."""
+"""Velocities and command states to footholds."""
 
 from math import cos, sin
 
-from walking.parameters import GaitParameters, LimitParameters
+from walking.admission import Limit
+from walking.command import CommandState
+from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters
 from walking.robot_model import Sole
 from walking.state import Footstep
-
-Velocity = tuple[float, float, float]
+from walking.stride import Placement, Strides, Timing, Velocity, Wish
 
 STILL: Velocity = (0.0, 0.0, 0.0)
 PLACE_TOLERANCE = 1e-3  # of a foothold that counts as parallel [m, rad]
@@ -39,20 +40,91 @@ class FootstepPlanner:
         tendency = left / self._limits.lateral + turn / self._limits.turn
         return None if tendency == 0.0 else tendency > 0.0
 
-    def landing(self, support: Footstep, velocity: Velocity) -> Footstep:
+    def landing(self, support: Footstep, wish: Wish) -> Footstep:
         """Next foothold of the other foot.
 
         Args:
             support: the foot on the floor.
-            velocity: forward, left, turn [m/s, m/s, rad/s].
+            wish: velocity (forward, left, turn) [m/s, m/s, rad/s] or strides.
         """
-        if velocity != self._velocity:
-            self._velocity = velocity
-            self._strides = (self._stride(velocity, -1.0), self._stride(velocity, 1.0))
+        if isinstance(wish, Strides):
+            return self._at(support, *(wish.right if support.left else wish.left))
+        if wish != self._velocity:
+            self._velocity = wish
+            self._strides = (self._stride(wish, -1.0), self._stride(wish, 1.0))
         x, y, turned = self._strides[0 if support.left else 1]
         return self._at(support, x, y, turned)
 
-    def _stride(self, velocity: Velocity, side: float) -> tuple[float, float, float]:
+    def strides(self, wish: Wish) -> Strides:
+        """Strides that `landing` makes of a wish."""
+        if isinstance(wish, Strides):
+            return wish
+        return Strides(right=self._stride(wish, -1.0), left=self._stride(wish, 1.0))
+
+    def explicit(self, command: CommandState, turn: float) -> tuple[Strides, list[Limit]]:
+        """Strides of a command state, and the limits that altered it.
+
+        Args:
+            command: the command state.
+            turn: added to its direction [rad].
+        """
+        limits, bound = self._limits, []
+        dx = min(limits.step_forward, max(-limits.step_forward, command.forward))
+        widest = 2.0 * self._gait.half_stance + limits.step_side
+        apart = min(widest, command.side)
+        wanted = command.direction + turn
+        turned = min(limits.step_turn, max(-limits.step_turn, wanted))
+        if dx != command.forward:
+            bound.append(Limit.STEP_LENGTH)
+        if apart != command.side:
+            bound.append(Limit.STEP_SIDE)
+        if abs(command.direction) > limits.step_turn:
+            bound.append(Limit.STEP_TURN)
+        placements = []
+        for side in (-1.0, 1.0):
+            x, y = self._stance_after(dx, 0.0, turned, 0.5 * side * apart)
+            clear = self._clear(y, turned, side)
+            if clear != y and Limit.CLEARANCE not in bound:
+                bound.append(Limit.CLEARANCE)
+            rx, ry = self._within_reach(x, clear, side)
+            if (rx, ry) != (x, clear) and Limit.REACH not in bound:
+                bound.append(Limit.REACH)
+            placements.append((rx, self._clear(ry, turned, side), turned))
+        return Strides(right=placements[0], left=placements[1]), bound
+
+    def timing(self, command: CommandState) -> tuple[Timing, list[Limit]]:
+        """Clock and lift of a command state in whole ticks, and the limits that altered it."""
+        limits, bound = self._limits, []
+        double = min(limits.longest_double, max(CONTROL_PERIOD, command.double_support))
+        single = min(limits.longest_single, max(limits.shortest_single, command.single_support))
+        lift = min(limits.swing_height, max(0.0, command.swing_height))
+        if double != command.double_support or single != command.single_support:
+            bound.append(Limit.TIMING)
+        if lift != command.swing_height:
+            bound.append(Limit.SWING_HEIGHT)
+        ticks = round(double / CONTROL_PERIOD), round(single / CONTROL_PERIOD)
+        return Timing(*ticks, lift), bound
+
+    @staticmethod
+    def distance(placement: Placement) -> float:
+        """Distance between feet that `explicit` would place so, across their mean direction [m]."""
+        x, y, turned = placement
+        return abs(y * cos(0.5 * turned) - x * sin(0.5 * turned)) / cos(0.5 * turned)
+
+    def stride_limits(self, velocity: Velocity) -> list[Limit]:
+        """Limits of a footstep that bind on a velocity."""
+        forward, left, turn = velocity
+        limits, time = self._limits, self._gait.footstep_time
+        bound = []
+        if abs(forward) * time > limits.step_forward:
+            bound.append(Limit.STEP_LENGTH)
+        if 2.0 * abs(left) * time > limits.step_side:
+            bound.append(Limit.STEP_SIDE)
+        if 2.0 * abs(turn) * time > limits.step_turn:
+            bound.append(Limit.STEP_TURN)
+        return bound
+
+    def _stride(self, velocity: Velocity, side: float) -> Placement:
         """Landing in the frame of the support foot; `side` is that of the swing foot."""
         forward, left, turn = velocity
         gait, limits = self._gait, self._limits
@@ -62,38 +134,50 @@ class FootstepPlanner:
         dy = min(limits.step_side, max(-limits.step_side, dy))
         turned = 2.0 * turn * time if turn * side > 0.0 else 0.0
         turned = min(limits.step_turn, max(-limits.step_turn, turned))
-        # The middle of the stance moves along the chord of the arc, then the foot stands
-        # beside it in the new direction.
-        ch, sh = cos(0.5 * turned), sin(0.5 * turned)
-        stance = side * gait.half_stance
-        x = ch * dx - sh * dy - stance * sin(turned)
-        y = stance + sh * dx + ch * dy + stance * cos(turned)
+        x, y = self._stance_after(dx, dy, turned, side * gait.half_stance)
         return x, self._clear(y, turned, side), turned
+
+    @staticmethod
+    def _stance_after(dx: float, dy: float, turned: float, stance: float) -> tuple[float, float]:
+        """Landing when the middle of the stance moves along the chord of the arc.
+
+        The foot then stands `stance` beside it in the new direction, in the frame of the
+        support foot [m].
+        """
+        ch, sh = cos(0.5 * turned), sin(0.5 * turned)
+        return (
+            ch * dx - sh * dy - stance * sin(turned),
+            stance + sh * dx + ch * dy + stance * cos(turned),
+        )
 
     def reachable(self, support: Footstep, landing: Footstep, dx: float, dy: float) -> Footstep:
         """`landing` moved by dx, dy [m], kept within reach and clear of the support foot."""
-        limits = self._limits
         side = 1.0 if landing.left else -1.0
         c, s = cos(support.yaw), sin(support.yaw)
         wx, wy = landing.x + dx - support.x, landing.y + dy - support.y
-        x, y = c * wx + s * wy, c * wy - s * wx
+        x, y = self._within_reach(c * wx + s * wy, c * wy - s * wx, side)
+        turned = landing.yaw - support.yaw
+        return self._at(support, x, self._clear(y, turned, side), turned)
+
+    def _within_reach(self, x: float, y: float, side: float) -> tuple[float, float]:
+        """A landing in the frame of the support foot, scaled into the ellipse of reach [m]."""
+        limits = self._limits
         centre = side * 2.0 * self._gait.half_stance
         norm = (x / limits.reach_forward) ** 2 + ((y - centre) / limits.reach_side) ** 2
         if norm > 1.0:
             scale = norm**-0.5
             x, y = x * scale, centre + (y - centre) * scale
-        turned = landing.yaw - support.yaw
-        return self._at(support, x, self._clear(y, turned, side), turned)
+        return x, y
 
     def sequence(
-        self, support: Footstep, landing: Footstep, velocity: Velocity, *, moving: bool
+        self, support: Footstep, landing: Footstep, wish: Wish, *, moving: bool
     ) -> tuple[list[Footstep], bool]:
         """Footholds from `landing` on, and whether the walk ends after the last.
 
         Args:
             support: the foot on the floor.
             landing: where the other foot is about to land.
-            velocity: forward, left, turn [m/s, m/s, rad/s].
+            wish: velocity (forward, left, turn) [m/s, m/s, rad/s] or strides.
             moving: whether more than closing the stance is wanted.
         """
         steps = [landing]
@@ -101,7 +185,7 @@ class FootstepPlanner:
         while len(steps) < self._gait.preview_steps:
             if not moving and self.parallel(before, last):
                 return steps, True
-            before, last = last, self.landing(last, velocity)
+            before, last = last, self.landing(last, wish)
             steps.append(last)
         return steps, False
 

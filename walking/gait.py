@@ -2,13 +2,17 @@
 
 from math import cos, sin
 
-from walking.footsteps import STILL, FootstepPlanner, Velocity
+from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import ZmpRamp
 from walking.state import Footstep, Phase
+from walking.stride import Timing, Wish
 from walking.swing import MinimumJerk, lift_profile
 
 Point = tuple[float, float]
+
+SHORTEST_SWING = 10  # ticks that a foot in the air keeps until it is down
+LIFT_CHANGE = 0.001  # of the swing height per tick while the foot is in the air [m]
 
 
 class FootReference:
@@ -60,6 +64,8 @@ class Gait:
         landing: where the swing foot is about to land.
         completed: number of completed footsteps.
         held: whether the swing foot has met the floor before its time.
+        usual: timing of the parameters.
+        timing: of the footsteps to come.
     """
 
     def __init__(
@@ -73,14 +79,15 @@ class Gait:
         self._planner = planner
         self._zmp_forward = parameters.pattern.zmp_forward
         self._zmp_inward = parameters.pattern.zmp_inward
-        self._lift = gait.lift
         self._contact_decay = parameters.stabilizer.contact_decay
-        self._double = max(1, round(gait.double_support * ticks))
-        self._single = ticks - self._double
+        double = max(1, round(gait.double_support * ticks))
+        self.usual = Timing(double, ticks - double, gait.lift)
+        self.timing = self.usual
         self._start = round(gait.start_time / CONTROL_PERIOD)
         self._stop = round(gait.stop_time / CONTROL_PERIOD)
-        self._swing_first = round(gait.swing_start * self._single)
-        self._swing_last = round(gait.swing_end * self._single)
+        self._swing_share = (gait.swing_start, gait.swing_end)
+        self._single = self._swing_first = self._swing_last = 0
+        self._swing_origin = 0.0
         self._freeze = gait.landing_freeze
         self._move = gait.landing_speed * CONTROL_PERIOD
         self.stepping = False
@@ -91,7 +98,10 @@ class Gait:
         self.completed = 0
         self.held = False
         self._tick = self._stop
-        self._ramp_ticks = self._stop
+        self._ramp_start, self._ramp_ticks = 0, self._stop
+        self._ramp_fixed = True
+        self._set_single(self.usual.single)
+        self._lift = self.usual.lift
         self._origin = self._centre(*stance)
         self._weight_origin = 0.5
         self._ends = True
@@ -120,8 +130,7 @@ class Gait:
     def right_weight(self) -> float:
         """Scheduled share of the weight on the right foot [1]."""
         goal = float(self.support) if self.stepping else 0.5
-        share = min(1.0, self._tick / self._ramp_ticks)
-        return self._weight_origin + share * (goal - self._weight_origin)
+        return self._weight_origin + self._ramp_share * (goal - self._weight_origin)
 
     @property
     def swing_phase(self) -> float:
@@ -129,7 +138,8 @@ class Gait:
         if not self.stepping:
             return 1.0
         elapsed = self._tick - self._ramp_ticks - self._swing_first
-        return min(1.0, max(0.0, elapsed / (self._swing_last - self._swing_first)))
+        share = elapsed / (self._swing_last - self._swing_first)
+        return min(1.0, max(0.0, self._swing_origin + (1.0 - self._swing_origin) * share))
 
     @property
     def ticks_left(self) -> int:
@@ -155,12 +165,55 @@ class Gait:
             at_once: whether to lift the other foot as soon as in a walk, without the long
                 first double support.
         """
-        ticks = self._double if at_once else self._start
+        ticks = self.timing.double if at_once else self._start
         self._begin(support, ticks, self._zmp_reference(), self.right_weight)
+        self._ramp_fixed = not at_once
 
-    def nominal(self, velocity: Velocity) -> Footstep:
-        """Landing that the velocity asks for."""
-        return self._planner.landing(self.footholds[self.support], velocity)
+    def nominal(self, wish: Wish) -> Footstep:
+        """Landing that the wish asks for."""
+        return self._planner.landing(self.footholds[self.support], wish)
+
+    def retime(self, timing: Timing) -> bool:
+        """Take over a timing as far as it may still change.
+
+        A double support under way ends no earlier than in the next tick, a foot in the air
+        has `SHORTEST_SWING` ticks to come down, and once the landing is frozen the times are.
+
+        Returns:
+            whether this footstep has the timing, too.
+        """
+        self.timing = timing
+        if not self.stepping:
+            return True
+        if self.double:
+            if not self._ramp_fixed and timing.double != self._ramp_ticks:
+                self._retime_ramp(max(timing.double, self._tick + 1))
+            self._set_single(timing.single)
+            return self._ramp_fixed or self._ramp_ticks == timing.double
+        if timing.single != self._single and self.adjustable:
+            self._retime_swing(timing.single)
+        return self._single == timing.single
+
+    def _retime_ramp(self, ticks: int) -> None:
+        origin, weight = self._zmp_reference(), self.right_weight
+        self._origin, self._weight_origin = origin, weight
+        self._ramp_start, self._ramp_ticks = self._tick, ticks
+
+    def _retime_swing(self, single: int) -> None:
+        phase, elapsed = self.swing_phase, self._tick - self._ramp_ticks
+        soonest = elapsed + SHORTEST_SWING
+        while round(self._swing_share[1] * single) < soonest:
+            single += 1
+        self._set_single(single)
+        if phase > 0.0 or elapsed > self._swing_first:
+            self._swing_origin, self._swing_first = phase, elapsed
+
+    def _set_single(self, single: int) -> None:
+        first, last = self._swing_share
+        self._single = single
+        self._swing_first = round(first * single)
+        self._swing_last = round(last * single)
+        self._swing_origin = 0.0
 
     def aim(self, wanted: Footstep) -> None:
         """Move the landing towards `wanted`, in the air no faster than allowed."""
@@ -177,14 +230,14 @@ class Gait:
             yaw=wanted.yaw,
         )
 
-    def plan(self, landing: Footstep, velocity: Velocity, *, moving: bool) -> list[ZmpRamp]:
+    def plan(self, landing: Footstep, wish: Wish, *, moving: bool) -> list[ZmpRamp]:
         """ZMP reference from now on if the swing foot lands at `landing`."""
         if not self.stepping:
             here, centre = self._zmp_reference(), self._centre(*self.footholds)
             self._future, self._ends = [], True
             return [ZmpRamp(max(1, self._ramp_ticks - self._tick), *here, *centre)]
         support = self.footholds[self.support]
-        steps, ends = self._planner.sequence(support, landing, velocity, moving=moving)
+        steps, ends = self._planner.sequence(support, landing, wish, moving=moving)
         self._future, self._ends = steps, ends
         last = self._zmp_point(support)
         ramps = []
@@ -197,8 +250,8 @@ class Gait:
         before = support
         for step in steps[:-1] if ends else steps:
             point = self._zmp_point(step)
-            ramps.append(ZmpRamp(self._double, *last, *point))
-            ramps.append(ZmpRamp(self._single, *point, *point))
+            ramps.append(ZmpRamp(self.timing.double, *last, *point))
+            ramps.append(ZmpRamp(self.timing.single, *point, *point))
             before, last = step, point
         if ends:
             ramps.append(ZmpRamp(self._stop, *last, *self._centre(before, steps[-1])))
@@ -238,6 +291,8 @@ class Gait:
         left = self._swing_last - elapsed
         if left >= 0:
             foot.advance(self.landing, left + 1)
+            change = self.timing.lift - self._lift
+            self._lift += min(LIFT_CHANGE, max(-LIFT_CHANGE, change))
             foot.height = self._lift * lift_profile(self.swing_phase)
 
     def _land(self, *, moving: bool) -> None:
@@ -248,18 +303,26 @@ class Gait:
         here = self._zmp_point(self.footholds[support])
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
-            self._tick, self._ramp_ticks = 0, self._stop
+            self._tick, self._ramp_start, self._ramp_ticks = 0, 0, self._stop
             self._origin, self._weight_origin = here, float(support)
             return
-        self._begin(swing, self._double, here, float(support))
+        self._begin(swing, self.timing.double, here, float(support))
 
     def _begin(self, support: int, ticks: int, origin: Point, weight: float) -> None:
         self.stepping = True
         self.support = support
         self.held = False
-        self._tick, self._ramp_ticks = 0, ticks
+        self._tick, self._ramp_start, self._ramp_ticks = 0, 0, ticks
+        self._ramp_fixed = False
+        self._set_single(self.timing.single)
+        self._lift = self.timing.lift
         self._origin, self._weight_origin = origin, weight
         self.landing = self.nominal(STILL)
+
+    @property
+    def _ramp_share(self) -> float:
+        elapsed = self._tick - self._ramp_start
+        return min(1.0, elapsed / (self._ramp_ticks - self._ramp_start))
 
     def _zmp_reference(self) -> Point:
         """ZMP reference at this tick."""
@@ -268,7 +331,7 @@ class Gait:
             if self.stepping
             else self._centre(*self.footholds)
         )
-        share = min(1.0, self._tick / self._ramp_ticks)
+        share = self._ramp_share
         (ox, oy), (gx, gy) = self._origin, goal
         return ox + share * (gx - ox), oy + share * (gy - oy)
 

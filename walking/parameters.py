@@ -166,6 +166,14 @@ class LimitParameters:
     """Semi-axis of the ellipse of reachable landings, forward [m]."""
     reach_side: Annotated[float, Gt(0.0)] = 0.12
     """Semi-axis of the ellipse of reachable landings, sideways [m]."""
+    shortest_single: Annotated[float, Gt(0.0)] = 0.18
+    """Shortest single support of a command state [s]."""
+    longest_single: Annotated[float, Gt(0.0)] = 0.6
+    """Longest single support of a command state [s]."""
+    longest_double: Annotated[float, Gt(0.0)] = 0.3
+    """Longest double support of a command state [s]."""
+    swing_height: Annotated[float, Gt(0.0)] = 0.04
+    """Highest swing of a command state [m]."""
 
 
 @dataclass(frozen=True)

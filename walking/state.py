@@ -6,6 +6,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from walking.admission import AdmissionReport
+
 Array = NDArray[np.float64]
 
 
@@ -81,6 +83,7 @@ class WalkingState:
         roll, pitch: measured attitude of the trunk [rad].
         step_count: number of completed steps.
         fallen: whether the robot believes that it has fallen.
+        admission: what became of the last command.
     """
 
     phase: Phase
@@ -95,3 +98,4 @@ class WalkingState:
     pitch: float
     step_count: int
     fallen: bool
+    admission: AdmissionReport | None = None

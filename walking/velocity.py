@@ -2,6 +2,7 @@
 
 from math import sqrt
 
+from walking.admission import Limit
 from walking.command import VelocityCommand
 from walking.parameters import CONTROL_PERIOD, LimitParameters
 
@@ -22,6 +23,19 @@ def limited(command: VelocityCommand, limits: LimitParameters) -> tuple[float, f
         scale = limits.combined / norm
         return forward * scale, left * scale, turn * scale
     return forward, left, turn
+
+
+def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limit]:
+    """Which of the limits alter a command."""
+    forward = min(limits.forward, max(-limits.backward, command.forward))
+    left = min(limits.lateral, max(-limits.lateral, command.left))
+    turn = min(limits.turn, max(-limits.turn, command.turn))
+    bound = []
+    if (forward, left, turn) != (command.forward, command.left, command.turn):
+        bound.append(Limit.SPEED)
+    if limited(command, limits) != (forward, left, turn):
+        bound.append(Limit.COMBINED_SPEED)
+    return bound
 
 
 class VelocitySlew:
@@ -48,10 +62,19 @@ class VelocitySlew:
         """Whether any component differs from zero."""
         return self.forward != 0.0 or self.left != 0.0 or self.turn != 0.0
 
-    def follow(self, command: VelocityCommand) -> None:
-        """Approach the limited command by one tick's acceleration."""
+    def start(self, forward: float, left: float, turn: float) -> None:
+        """Have a velocity at once [m/s, m/s, rad/s]."""
+        self.forward, self.left, self.turn = forward, left, turn
+
+    def follow(self, command: VelocityCommand) -> tuple[float, float, float]:
+        """Approach the limited command by one tick's acceleration.
+
+        Returns:
+            the limited command [m/s, m/s, rad/s].
+        """
         forward, left, turn = limited(command, self._limits)
         a, b, c = self._steps
         self.forward += min(a, max(-a, forward - self.forward))
         self.left += min(b, max(-b, left - self.left))
         self.turn += min(c, max(-c, turn - self.turn))
+        return forward, left, turn

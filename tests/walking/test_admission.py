@@ -1,0 +1,85 @@
+"""Every altered command is accounted for."""
+
+import pytest
+
+from walking.admission import Limit
+from walking.command import CommandState, HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+
+AHEAD = HeadTarget()
+LIMITS = WalkingParameters().limits
+
+
+@pytest.fixture
+def engine(robot):
+    return WalkingEngine(robot, WalkingParameters())
+
+
+def walk(engine, body, command, seconds):
+    reports = []
+    for _ in range(round(seconds / CONTROL_PERIOD)):
+        body.apply(engine.step(body.sense(), command, AHEAD))
+        reports.append(engine.admission)
+    return reports
+
+
+def test_before_the_body_has_settled_nothing_is_given(engine, ideal_body):
+    report = walk(engine, ideal_body, VelocityCommand(0.2), 0.1)[-1]
+    assert report.limits == (Limit.SETTLING,)
+    assert report.given == VelocityCommand()
+
+
+def test_acceleration_binds_until_the_speed_is_reached(engine, ideal_body):
+    command = VelocityCommand(0.2)
+    reports = walk(engine, ideal_body, command, 2.0)
+    assert any(Limit.ACCELERATION in r.limits and r.given.forward < 0.2 for r in reports)
+    assert not any(Limit.ACCELERATION in r.limits for r in reports[-50:])
+    assert any(not r.altered and r.given == command for r in reports[-50:])
+
+
+@pytest.mark.parametrize(
+    ("command", "limit"),
+    [
+        (VelocityCommand(1.0), Limit.SPEED),
+        (VelocityCommand(0.3, 0.1, 1.0), Limit.COMBINED_SPEED),
+        (CommandState(forward=0.3), Limit.STEP_LENGTH),
+        (CommandState(side=0.4), Limit.STEP_SIDE),
+        (CommandState(side=0.02), Limit.CLEARANCE),
+        (CommandState(direction=1.5), Limit.STEP_TURN),
+        (CommandState(single_support=0.05), Limit.TIMING),
+        (CommandState(double_support=2.0), Limit.TIMING),
+        (CommandState(swing_height=0.2), Limit.SWING_HEIGHT),
+    ],
+)
+def test_the_limit_that_binds_is_named(engine, ideal_body, command, limit):
+    report = walk(engine, ideal_body, command, 3.0)[-1]
+    assert report.asked == command
+    assert limit in report.limits
+    assert report.given != command
+
+
+def test_what_is_given_for_a_command_state_is_within_the_limits(engine, ideal_body):
+    given = walk(engine, ideal_body, CommandState(0.05, 2.0, 0.3, 0.4, 0.0, 0.2), 1.0)[-1].given
+    assert given.forward == LIMITS.step_forward
+    assert given.single_support == pytest.approx(LIMITS.shortest_single)
+    assert given.double_support == pytest.approx(LIMITS.longest_double)
+    assert given.swing_height == LIMITS.swing_height
+    assert given.side < 0.4
+
+
+def test_a_footstep_within_all_limits_is_given_as_asked(engine, ideal_body):
+    command = CommandState(0.3, 0.08, 0.06, 0.09, 0.05, 0.02)
+    reports = walk(engine, ideal_body, command, 3.0)
+    assert sum(not r.altered for r in reports) > 100
+    assert all(r.given == command for r in reports if not r.altered)
+
+
+def test_a_landing_asked_for_too_late_is_reported(engine, ideal_body):
+    walk(engine, ideal_body, VelocityCommand(0.1), 2.0)
+    frozen = 0
+    for k in range(200):
+        step = CommandState(forward=0.06 * (k % 2))
+        frozen += Limit.LANDING_FROZEN in walk(engine, ideal_body, step, CONTROL_PERIOD)[0].limits
+    assert 10 < frozen < 150
+    assert engine.state().admission == engine.admission

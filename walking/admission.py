@@ -1,0 +1,46 @@
+"""What became of a command: what was asked, what is given, and what stood in the way."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from walking.command import Command
+
+
+class Limit(StrEnum):
+    """A reason to give less than was asked."""
+
+    SPEED = "speed"
+    COMBINED_SPEED = "combined speed"
+    ACCELERATION = "acceleration"
+    STEP_LENGTH = "step length"
+    STEP_SIDE = "step side"
+    STEP_TURN = "step turn"
+    CLEARANCE = "clearance"
+    REACH = "reach"
+    TIMING = "timing"
+    SWING_HEIGHT = "swing height"
+    SETTLING = "settling"
+    BALANCE = "balance"
+    LANDING_FROZEN = "landing frozen"
+    ZMP_REGION = "zmp region"
+
+
+@dataclass(frozen=True, slots=True)
+class AdmissionReport:
+    """One tick's answer to the command.
+
+    Attributes:
+        asked: the command.
+        given: what the footsteps obey; of the other kind only while it may not change over.
+        limits: constraints that bound in this tick, in the order in which they are applied;
+            none when the command is obeyed to the letter.
+    """
+
+    asked: Command
+    given: Command
+    limits: tuple[Limit, ...]
+
+    @property
+    def altered(self) -> bool:
+        """Whether anything but the command itself is given."""
+        return bool(self.limits)

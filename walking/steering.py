@@ -1,0 +1,119 @@
+"""From commands to what the footsteps obey: limits, slew, and the account of both."""
+
+from walking.admission import AdmissionReport, Limit
+from walking.command import Command, CommandState, VelocityCommand
+from walking.footsteps import FootstepPlanner
+from walking.parameters import CONTROL_PERIOD, LimitParameters
+from walking.stride import Timing, Velocity, Wish
+from walking.velocity import VelocitySlew, speed_limits
+
+SAME_SPEED = 1e-9  # difference of velocities that is rounding
+
+
+class Steering:
+    """Follows velocity commands and command states, one after the other in any order.
+
+    Args:
+        planner: makes strides of commands.
+        limits: speed and acceleration limits.
+        usual: timing of the footsteps under a velocity command.
+
+    Attributes:
+        timing: wanted of the footsteps.
+    """
+
+    def __init__(self, planner: FootstepPlanner, limits: LimitParameters, usual: Timing) -> None:
+        self._planner = planner
+        self._limits = limits
+        self._usual = usual
+        self._slew = VelocitySlew(limits)
+        self._asked: Command = VelocityCommand()
+        self._state: CommandState | None = None
+        self._bound: list[Limit] = []
+        self.timing = usual
+
+    @property
+    def moving(self) -> bool:
+        """Whether more than standing is wanted."""
+        return self._state is not None or self._slew.moving
+
+    @property
+    def velocity(self) -> Velocity:
+        """Velocity that the robot is meant to have."""
+        slew = self._slew
+        return slew.forward, slew.left, slew.turn
+
+    def follow(self, command: Command, *, settled: bool, balanced: bool) -> None:
+        """Take in a command.
+
+        Args:
+            command: of this tick.
+            settled: whether the robot may move at all yet.
+            balanced: whether the motion may change.
+        """
+        self._asked, self._bound = command, []
+        if not balanced:
+            self._bound.append(Limit.BALANCE)
+        elif not settled:
+            self._bound.append(Limit.SETTLING)
+            self._slew.follow(VelocityCommand())
+        elif isinstance(command, CommandState):
+            self._follow_state(command)
+        else:
+            self._follow_velocity(command)
+
+    def wish(self, turn_rate: float) -> Wish:
+        """What the footsteps obey, turning by `turn_rate` [rad/s] more to hold the heading."""
+        slew, state = self._slew, self._state
+        if state is None:
+            return slew.forward, slew.left, slew.turn + turn_rate
+        time = (self.timing.double + self.timing.single) * CONTROL_PERIOD
+        return self._planner.explicit(state, turn_rate * time)[0]
+
+    def report(self, binding: list[Limit], given: Velocity | None = None) -> AdmissionReport:
+        """Account of this tick.
+
+        Args:
+            binding: limits met after the command had become a wish.
+            given: velocity in place of the wished one.
+        """
+        bound = (*self._bound, *binding)
+        asked = self._asked
+        if not bound:
+            return AdmissionReport(asked, asked, ())
+        if self._state is not None:
+            return AdmissionReport(asked, self._given_state(self._state), bound)
+        return AdmissionReport(asked, VelocityCommand(*(given or self.velocity)), bound)
+
+    def _follow_velocity(self, command: VelocityCommand) -> None:
+        self._state = None
+        self.timing = self._usual
+        wanted = self._slew.follow(command)
+        bound = self._bound
+        bound.extend(speed_limits(command, self._limits))
+        given = self.velocity
+        if max(abs(a - b) for a, b in zip(given, wanted, strict=True)) > SAME_SPEED:
+            bound.append(Limit.ACCELERATION)
+        bound.extend(self._planner.stride_limits(given))
+
+    def _follow_state(self, command: CommandState) -> None:
+        self._state = command
+        self.timing, late = self._planner.timing(command)
+        strides, altered = self._planner.explicit(command, 0.0)
+        self._bound.extend(altered)
+        self._bound.extend(late)
+        time = (self.timing.double + self.timing.single) * CONTROL_PERIOD
+        # A velocity command that comes next sets out from here.
+        self._slew.start(self._given_state(command).forward / time, 0.0, strides.left[2] / time)
+
+    def _given_state(self, command: CommandState) -> CommandState:
+        limits, timing = self._limits, self.timing
+        strides = self._planner.explicit(command, 0.0)[0]
+        return CommandState(
+            single_support=timing.single * CONTROL_PERIOD,
+            double_support=timing.double * CONTROL_PERIOD,
+            forward=min(limits.step_forward, max(-limits.step_forward, command.forward)),
+            side=self._planner.distance(strides.left),
+            direction=strides.left[2],
+            swing_height=timing.lift,
+        )

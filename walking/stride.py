@@ -1,0 +1,62 @@
+"""What a command makes of a footstep: where each foot goes, how long it takes, how high."""
+
+from dataclasses import dataclass
+
+Velocity = tuple[float, float, float]
+"""Forward [m/s], left [m/s], turn [rad/s]."""
+
+Placement = tuple[float, float, float]
+"""Landing in the frame of the support foot: x [m], y [m], direction [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Strides:
+    """Landing of either foot in the frame of the other.
+
+    Attributes:
+        right, left: of that foot.
+    """
+
+    right: Placement
+    left: Placement
+
+    def towards(self, other: "Strides", share: float) -> "Strides":
+        """Strides `share` of the way to others."""
+        return Strides(
+            right=_between(self.right, other.right, share),
+            left=_between(self.left, other.left, share),
+        )
+
+
+Wish = Velocity | Strides
+"""What the footsteps obey: a velocity, or strides given explicitly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Clock and lift of a footstep.
+
+    Attributes:
+        double, single: control ticks in double and single support [1].
+        lift: height of the swing foot at mid-swing [m].
+    """
+
+    double: int
+    single: int
+    lift: float
+
+    def towards(self, other: "Timing", share: float) -> "Timing":
+        """Timing `share` of the way to another, in whole ticks."""
+        return Timing(
+            double=self.double + round(share * (other.double - self.double)),
+            single=self.single + round(share * (other.single - self.single)),
+            lift=self.lift + share * (other.lift - self.lift),
+        )
+
+
+def _between(a: Placement, b: Placement, share: float) -> Placement:
+    return (
+        a[0] + share * (b[0] - a[0]),
+        a[1] + share * (b[1] - a[1]),
+        a[2] + share * (b[2] - a[2]),
+    )
