@@ -10,6 +10,7 @@ from walking.estimator import ErrorFilter, TiltFilter, TouchDown
 from walking.feedforward import FeedForward
 from walking.footsteps import PLACE_TOLERANCE, FootstepPlanner
 from walking.gait import Gait
+from walking.generator import make_generator
 from walking.head import Head
 from walking.joints import HEAD
 from walking.leg_kinematics import foot_pose
@@ -17,7 +18,7 @@ from walking.lipm import Lipm
 from walking.measurement import BodyMeasurement, measure
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference, make_generator
+from walking.pattern import PendulumState, ZmpRamp, dcm_reference
 from walking.posture import Posture
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
@@ -29,6 +30,7 @@ from walking.steering import Steering
 from walking.stride import Wish
 from walking.support import SupportRegion, support_region
 from walking.targets import JointTargets
+from walking.transition import Transition
 
 
 class WalkingEngine:
@@ -54,7 +56,9 @@ class WalkingEngine:
         zmp = self._gait.plan(stance[1], (0.0, 0.0, 0.0), moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
         self._steering = Steering(self._planner, parameters.limits, self._gait.usual)
+        self._transition = Transition(self._gait, self._planner, self._generator)
         self._binding: list[Limit] = []
+        self._given = self._steering.velocity
         self._tilt = TiltFilter(parameters.estimator)
         self._error = ErrorFilter(self._lipm.omega, parameters.estimator)
         self._touch = TouchDown(parameters.estimator)
@@ -83,7 +87,8 @@ class WalkingEngine:
     @property
     def admission(self) -> AdmissionReport:
         """What became of the last tick's command."""
-        return self._steering.report(self._binding)
+        strides = self._transition.strides if self._transition.share < 1.0 else None
+        return self._steering.report(self._binding, self._given, strides, self._gait.timing)
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """One control tick.
@@ -99,16 +104,24 @@ class WalkingEngine:
         """
         body = self._sense(sensors)
         error = self._estimate(body)
+        self._transition.remember()
         self._command(command, error)
         wish = self._wish()
         moving = self._steering.moving
         gait = self._gait
         if not gait.stepping:
             self._maybe_start(error, moving=moving)
-        ramps, dcm = self._plan(body, wish, error, moving=moving)
+        ramps, dcm, nominal = self._plan(body, wish, error, moving=moving)
         pattern = self._parameters.pattern
         pendulum = self._pendulum
         region = self._region(pattern.sole_margin)
+        if self._generator.selective:
+            forced = gait.held or not nominal
+            ramps = self._admit(ramps, region, wish, moving=moving, forced=forced)
+            dcm = dcm_reference(self._lipm, ramps)
+            moving = self._transition.moving
+        else:
+            self._given = self._steering.velocity
         self._generator.advance(pendulum, ramps, dcm, region)
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
@@ -135,7 +148,7 @@ class WalkingEngine:
             phase=gait.phase,
             odometry=odometry,
             camera=camera_pose(self._robot, self._sensors, body),
-            given=np.array(self._steering.velocity),
+            given=np.array(self._given),
             footsteps=tuple(plan.footstep(step) for step in gait.footsteps()),
             zmp=plan.point(pendulum.zmp_x, pendulum.zmp_y),
             dcm=plan.point(pendulum.x + pendulum.vx / w, pendulum.y + pendulum.vy / w),
@@ -242,8 +255,12 @@ class WalkingEngine:
         error: tuple[float, float],
         *,
         moving: bool,
-    ) -> tuple[list[ZmpRamp], tuple[float, float]]:
-        """Decide on the landing of the swing foot; the ZMP reference and its DCM."""
+    ) -> tuple[list[ZmpRamp], tuple[float, float], bool]:
+        """Decide on the landing of the swing foot.
+
+        Returns:
+            the ZMP reference, its DCM, and whether the landing is the nominal one.
+        """
         gait, lipm = self._gait, self._lipm
         if gait.stepping and not gait.double and not gait.held:
             force = body.feet[gait.swing].force
@@ -268,7 +285,30 @@ class WalkingEngine:
         if gait.landing != nominal:
             ramps = gait.plan(gait.landing, wish, moving=moving)
             dcm = dcm_reference(lipm, ramps)
-        return ramps, dcm
+        return ramps, dcm, caught == nominal
+
+    def _admit(
+        self,
+        ramps: list[ZmpRamp],
+        region: SupportRegion,
+        wish: Wish,
+        *,
+        moving: bool,
+        forced: bool,
+    ) -> list[ZmpRamp]:
+        """Reference of the plan that the generator admits."""
+        transition = self._transition
+        admitted = transition.admit(
+            self._pendulum, ramps, region, wish, moving=moving, forced=forced
+        )
+        share, wanted = transition.share, self._steering.velocity
+        if share < 1.0:
+            self._binding.append(Limit.ZMP_REGION)
+            a, b, c = (g + share * (w - g) for g, w in zip(self._given, wanted, strict=True))
+            self._given = (a, b, c)
+        else:
+            self._given = wanted
+        return admitted
 
     def _region(self, margin: float) -> SupportRegion:
         first, second = self._gait.support_feet

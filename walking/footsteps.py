@@ -106,10 +106,18 @@ class FootstepPlanner:
         return Timing(*ticks, lift), bound
 
     @staticmethod
-    def distance(placement: Placement) -> float:
-        """Distance between feet that `explicit` would place so, across their mean direction [m]."""
-        x, y, turned = placement
-        return abs(y * cos(0.5 * turned) - x * sin(0.5 * turned)) / cos(0.5 * turned)
+    def command_state(strides: Strides, timing: Timing) -> CommandState:
+        """The command state that `explicit` and `timing` make into these."""
+        x, y, turned = strides.left
+        ch, sh = cos(0.5 * turned), sin(0.5 * turned)
+        return CommandState(
+            single_support=timing.single * CONTROL_PERIOD,
+            double_support=timing.double * CONTROL_PERIOD,
+            forward=x * ch + y * sh,
+            side=(y * ch - x * sh) / ch,
+            direction=turned,
+            swing_height=timing.lift,
+        )
 
     def stride_limits(self, velocity: Velocity) -> list[Limit]:
         """Limits of a footstep that bind on a velocity."""

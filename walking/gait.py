@@ -10,6 +10,7 @@ from walking.stride import Timing, Wish
 from walking.swing import MinimumJerk, lift_profile
 
 Point = tuple[float, float]
+Clock = tuple[Timing, tuple[int, int, Point, float], tuple[int, int, int, float]]
 
 SHORTEST_SWING = 10  # ticks that a foot in the air keeps until it is down
 LIFT_CHANGE = 0.001  # of the swing height per tick while the foot is in the air [m]
@@ -194,6 +195,20 @@ class Gait:
             self._retime_swing(timing.single)
         return self._single == timing.single
 
+    def clock(self) -> Clock:
+        """The times of now, for `set_clock`."""
+        return (
+            self.timing,
+            (self._ramp_start, self._ramp_ticks, self._origin, self._weight_origin),
+            (self._single, self._swing_first, self._swing_last, self._swing_origin),
+        )
+
+    def set_clock(self, clock: Clock) -> None:
+        """Take back a change of timing made in this tick."""
+        self.timing, ramp, swing = clock
+        self._ramp_start, self._ramp_ticks, self._origin, self._weight_origin = ramp
+        self._single, self._swing_first, self._swing_last, self._swing_origin = swing
+
     def _retime_ramp(self, ticks: int) -> None:
         origin, weight = self._zmp_reference(), self.right_weight
         self._origin, self._weight_origin = origin, weight
@@ -235,7 +250,8 @@ class Gait:
         if not self.stepping:
             here, centre = self._zmp_reference(), self._centre(*self.footholds)
             self._future, self._ends = [], True
-            return [ZmpRamp(max(1, self._ramp_ticks - self._tick), *here, *centre)]
+            feet = (self.footholds[self.support], self.footholds[self.swing])
+            return [ZmpRamp(max(1, self._ramp_ticks - self._tick), *here, *centre, feet)]
         support = self.footholds[self.support]
         steps, ends = self._planner.sequence(support, landing, wish, moving=moving)
         self._future, self._ends = steps, ends
@@ -243,18 +259,20 @@ class Gait:
         ramps = []
         if self._tick < self._ramp_ticks:
             here = self._zmp_reference()
-            ramps.append(ZmpRamp(self._ramp_ticks - self._tick, *here, *last))
-            ramps.append(ZmpRamp(self._single, *last, *last))
+            feet = (self.footholds[self.swing], support)
+            ramps.append(ZmpRamp(self._ramp_ticks - self._tick, *here, *last, feet))
+            ramps.append(ZmpRamp(self._single, *last, *last, (support, support)))
         else:
-            ramps.append(ZmpRamp(self.ticks_left, *last, *last))
+            ramps.append(ZmpRamp(self.ticks_left, *last, *last, (support, support)))
         before = support
         for step in steps[:-1] if ends else steps:
             point = self._zmp_point(step)
-            ramps.append(ZmpRamp(self.timing.double, *last, *point))
-            ramps.append(ZmpRamp(self.timing.single, *point, *point))
+            ramps.append(ZmpRamp(self.timing.double, *last, *point, (before, step)))
+            ramps.append(ZmpRamp(self.timing.single, *point, *point, (step, step)))
             before, last = step, point
         if ends:
-            ramps.append(ZmpRamp(self._stop, *last, *self._centre(before, steps[-1])))
+            centre = self._centre(before, steps[-1])
+            ramps.append(ZmpRamp(self._stop, *last, *centre, (before, steps[-1])))
         return ramps
 
     def footsteps(self) -> tuple[Footstep, ...]:
@@ -301,12 +319,15 @@ class Gait:
         self.feet[swing].stand(self.landing)
         self.completed += 1
         here = self._zmp_point(self.footholds[support])
+        following = self._future[1] if len(self._future) > 1 else None
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
             self._tick, self._ramp_start, self._ramp_ticks = 0, 0, self._stop
             self._origin, self._weight_origin = here, float(support)
             return
         self._begin(swing, self.timing.double, here, float(support))
+        if following is not None:
+            self.landing = following
 
     def _begin(self, support: int, ticks: int, origin: Point, weight: float) -> None:
         self.stepping = True

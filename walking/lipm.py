@@ -48,6 +48,26 @@ class Lipm:
             d * w * self._sinh + velocity * self._cosh,
         )
 
+    def hold(
+        self, position: float, velocity: float, zmp: float, time: float
+    ) -> tuple[float, float]:
+        """Position [m] and velocity [m/s] a `time` [s] later under a constant ZMP."""
+        w = self.omega
+        c, s, d = cosh(w * time), sinh(w * time), position - zmp
+        return zmp + d * c + velocity / w * s, d * w * s + velocity * c
+
+    def slide(
+        self, position: float, velocity: float, before: float, after: float
+    ) -> tuple[float, float]:
+        """Position [m] and velocity [m/s] one tick later under a ZMP moving linearly."""
+        w, rate = self.omega, (after - before) / CONTROL_PERIOD
+        # The ZMP itself solves the equation of motion; what is left is free.
+        d, v = position - before, velocity - rate
+        return (
+            after + d * self._cosh + v / w * self._sinh,
+            rate + d * w * self._sinh + v * self._cosh,
+        )
+
     def ramp(self, ticks: int) -> RampCoefficients:
         """How the DCM moves over `ticks` of a ZMP that moves linearly."""
         found = self._ramps.get(ticks)

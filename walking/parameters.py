@@ -48,8 +48,9 @@ class GaitParameters:
 class PatternParameters:
     """The ZMP pattern and the point that follows it."""
 
-    generator: Literal["dcm", "preview"] = "dcm"
-    """Preview of the footholds by the DCM recursion or by Kajita's regulator."""
+    generator: Literal["dcm", "preview", "paper"] = "dcm"
+    """Preview of the footholds by the DCM recursion or by Kajita's regulator, or the modifiable
+    walking pattern of the paper: two-level ZMP functions in single support."""
     pelvis_height: Annotated[float, Gt(0.0)] = 0.204
     """Height of the hips while walking [m]."""
     lipm_height: Annotated[float, Gt(0.0)] = 0.19

@@ -10,6 +10,7 @@ from typing import Protocol
 from walking.lipm import Lipm
 from walking.parameters import PatternParameters
 from walking.preview import preview_gains
+from walking.state import Footstep
 from walking.support import SupportRegion
 
 
@@ -21,6 +22,7 @@ class ZmpRamp:
         ticks: its duration in control ticks.
         ax, ay: ZMP at its start [m].
         bx, by: ZMP at its end [m].
+        feet: the unloading and the loading foot, the same foot twice in single support.
     """
 
     ticks: int
@@ -28,6 +30,7 @@ class ZmpRamp:
     ay: float
     bx: float
     by: float
+    feet: tuple[Footstep, Footstep]
 
 
 def dcm_reference(lipm: Lipm, ramps: list[ZmpRamp]) -> tuple[float, float]:
@@ -63,7 +66,22 @@ class PendulumState:
 
 
 class PatternGenerator(Protocol):
-    """Moves the pendulum one tick along the reference."""
+    """Moves the pendulum one tick along the reference.
+
+    Attributes:
+        selective: whether there are references that `admits` turns down.
+    """
+
+    selective: bool
+
+    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+        """Whether the pendulum can go over to a reference with the ZMP in the soles.
+
+        Args:
+            state: of the pendulum.
+            ramps: ZMP reference from now on.
+            region: where the ZMP may be in this tick.
+        """
 
     def advance(
         self,
@@ -93,9 +111,15 @@ class DcmGenerator:
         parameters: gain of the DCM error.
     """
 
+    selective = False
+
     def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
         self._lipm = lipm
         self._gain = parameters.dcm_gain
+
+    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+        """Always: a reference that asks too much is tracked late."""
+        return True
 
     def advance(
         self,
@@ -140,9 +164,15 @@ class PreviewGenerator:
         parameters: horizon and weight.
     """
 
+    selective = False
+
     def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
         self._lipm = lipm
         self._gains = preview_gains(lipm, parameters)
+
+    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+        """Always: a reference that asks too much is tracked late."""
+        return True
 
     def advance(
         self,
@@ -193,10 +223,3 @@ class PreviewGenerator:
                 break
         rest = self._gains.total - sums[start]
         return x + rest * end_x, y + rest * end_y
-
-
-def make_generator(lipm: Lipm, parameters: PatternParameters) -> PatternGenerator:
-    """The generator that the parameters name."""
-    if parameters.generator == "preview":
-        return PreviewGenerator(lipm, parameters)
-    return DcmGenerator(lipm, parameters)

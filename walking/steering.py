@@ -4,7 +4,7 @@ from walking.admission import AdmissionReport, Limit
 from walking.command import Command, CommandState, VelocityCommand
 from walking.footsteps import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, LimitParameters
-from walking.stride import Timing, Velocity, Wish
+from walking.stride import Strides, Timing, Velocity, Wish
 from walking.velocity import VelocitySlew, speed_limits
 
 SAME_SPEED = 1e-9  # difference of velocities that is rounding
@@ -70,20 +70,24 @@ class Steering:
         time = (self.timing.double + self.timing.single) * CONTROL_PERIOD
         return self._planner.explicit(state, turn_rate * time)[0]
 
-    def report(self, binding: list[Limit], given: Velocity | None = None) -> AdmissionReport:
+    def report(
+        self, binding: list[Limit], given: Velocity, strides: Strides | None, timing: Timing
+    ) -> AdmissionReport:
         """Account of this tick.
 
         Args:
             binding: limits met after the command had become a wish.
-            given: velocity in place of the wished one.
+            given: velocity that the footsteps obey.
+            strides: that the footsteps obey in place of the wished ones, if others.
+            timing: that the footsteps obey.
         """
-        bound = (*self._bound, *binding)
-        asked = self._asked
+        bound, asked = (*self._bound, *binding), self._asked
         if not bound:
             return AdmissionReport(asked, asked, ())
-        if self._state is not None:
-            return AdmissionReport(asked, self._given_state(self._state), bound)
-        return AdmissionReport(asked, VelocityCommand(*(given or self.velocity)), bound)
+        if self._state is None:
+            return AdmissionReport(asked, VelocityCommand(*given), bound)
+        obeyed = strides or self._planner.explicit(self._state, 0.0)[0]
+        return AdmissionReport(asked, self._planner.command_state(obeyed, timing), bound)
 
     def _follow_velocity(self, command: VelocityCommand) -> None:
         self._state = None
@@ -104,16 +108,5 @@ class Steering:
         self._bound.extend(late)
         time = (self.timing.double + self.timing.single) * CONTROL_PERIOD
         # A velocity command that comes next sets out from here.
-        self._slew.start(self._given_state(command).forward / time, 0.0, strides.left[2] / time)
-
-    def _given_state(self, command: CommandState) -> CommandState:
-        limits, timing = self._limits, self.timing
-        strides = self._planner.explicit(command, 0.0)[0]
-        return CommandState(
-            single_support=timing.single * CONTROL_PERIOD,
-            double_support=timing.double * CONTROL_PERIOD,
-            forward=min(limits.step_forward, max(-limits.step_forward, command.forward)),
-            side=self._planner.distance(strides.left),
-            direction=strides.left[2],
-            swing_height=timing.lift,
-        )
+        given = self._planner.command_state(strides, self.timing)
+        self._slew.start(given.forward / time, 0.0, given.direction / time)

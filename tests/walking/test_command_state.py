@@ -84,14 +84,17 @@ def test_mirrored_command_states_give_mirrored_footsteps(robot):
 
 
 @pytest.mark.parametrize("forward", [-0.05, 0.1])
-@pytest.mark.parametrize("direction", [-0.3, 0.0, 0.3])
-def test_the_distance_between_the_feet_is_read_back(robot, forward, direction):
+@pytest.mark.parametrize("direction", [-0.1, 0.0, 0.1])
+def test_strides_and_timing_are_read_back_as_the_command_state(robot, forward, direction):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
-    command = CommandState(forward=forward, side=0.11, direction=direction)
+    command = CommandState(0.3, 0.1, forward, 0.13, direction, 0.02)
     strides, bound = planner.explicit(command, 0.0)
-    if not bound:
-        assert planner.distance(strides.left) == pytest.approx(0.11)
-        assert planner.distance(strides.right) == pytest.approx(0.11)
+    timing, late = planner.timing(command)
+    assert not bound
+    assert not late
+    read = planner.command_state(strides, timing)
+    for name in ("single_support", "double_support", "forward", "side", "direction"):
+        assert getattr(read, name) == pytest.approx(getattr(command, name))
 
 
 @pytest.fixture

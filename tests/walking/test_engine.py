@@ -13,6 +13,7 @@ from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Phase
 
 AHEAD = HeadTarget()
+GENERATORS = ["dcm", "preview", "paper"]
 MIRROR_LEG = np.array([-1, -1, 1, 1, 1, -1])
 MIRROR_ARM = np.array([1, -1, -1, 1, -1, -1])
 
@@ -42,7 +43,7 @@ def twists(now):
     return VelocityCommand(forward, left, turn)
 
 
-@pytest.mark.parametrize("generator", ["dcm", "preview"])
+@pytest.mark.parametrize("generator", GENERATORS)
 @pytest.mark.parametrize(
     "velocity", [(0.2, 0.0, 0.0), (-0.1, 0.0, 0.0), (0.0, 0.08, 0.0), (0.0, 0.0, -0.5)]
 )
@@ -78,7 +79,7 @@ def test_it_stands_still_without_a_command(robot, ideal_body):
     np.testing.assert_allclose(rows[-1], rows[-100], atol=1e-6)
 
 
-@pytest.mark.parametrize("generator", ["dcm", "preview"])
+@pytest.mark.parametrize("generator", GENERATORS)
 def test_it_stops_with_parallel_feet(robot, ideal_body, generator):
     parameters = WalkingParameters()
     pattern = replace(parameters.pattern, generator=generator)
@@ -108,7 +109,7 @@ def test_mirrored_commands_give_the_mirrored_motion(robot, ideal_body):
         np.testing.assert_allclose(b[:, RIGHT_ARM], a[:, LEFT_ARM] * MIRROR_ARM, atol=1e-6)
 
 
-@pytest.mark.parametrize("generator", ["dcm", "preview"])
+@pytest.mark.parametrize("generator", GENERATORS)
 def test_the_planned_zmp_never_leaves_the_support_polygon(robot, ideal_body, generator):
     parameters = WalkingParameters()
     pattern = replace(parameters.pattern, generator=generator)

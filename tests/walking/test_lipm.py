@@ -38,3 +38,19 @@ def test_dcm_under_a_ramp(ticks):
 def test_a_ramp_of_equal_ends_is_a_constant_zmp():
     c = LIPM.ramp(20)
     assert c.first + c.last == pytest.approx(c.growth - 1.0)
+
+
+def test_any_time_under_a_constant_zmp():
+    np.testing.assert_allclose(
+        LIPM.hold(0.03, -0.2, 0.01, 0.0123),
+        integrate(0.03, -0.2, lambda _t: 0.01, 0.0123),
+        atol=1e-11,
+    )
+
+
+def test_one_tick_under_a_sliding_zmp():
+    np.testing.assert_allclose(
+        LIPM.slide(0.03, -0.2, 0.01, -0.02),
+        integrate(0.03, -0.2, lambda t: 0.01 - 0.03 * t / CONTROL_PERIOD, CONTROL_PERIOD),
+        atol=1e-11,
+    )

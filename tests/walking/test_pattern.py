@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from walking.generator import make_generator
 from walking.lipm import Lipm
 from walking.parameters import PatternParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference, make_generator
+from walking.pattern import PendulumState, ZmpRamp, dcm_reference
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.support import support_region
@@ -13,18 +14,19 @@ from walking.support import support_region
 LIPM = Lipm(0.19)
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
 LEFT, RIGHT = Footstep(True, 0.0, 0.042, 0.0), Footstep(False, 0.0, -0.042, 0.0)
+FEET = (RIGHT, LEFT)
 BOTH = support_region(SOLE, RIGHT, LEFT, 0.005)
 GENERATORS = ["dcm", "preview"]
 
 
 def shift(ramps, dx, dy):
-    return [ZmpRamp(r.ticks, r.ax + dx, r.ay + dy, r.bx + dx, r.by + dy) for r in ramps]
+    return [ZmpRamp(r.ticks, r.ax + dx, r.ay + dy, r.bx + dx, r.by + dy, FEET) for r in ramps]
 
 
 RAMPS = [
-    ZmpRamp(20, 0.0, 0.0, 0.01, 0.03),
-    ZmpRamp(54, 0.01, 0.03, 0.01, 0.03),
-    ZmpRamp(14, 0.01, 0.03, 0.05, -0.03),
+    ZmpRamp(20, 0.0, 0.0, 0.01, 0.03, FEET),
+    ZmpRamp(54, 0.01, 0.03, 0.01, 0.03, FEET),
+    ZmpRamp(14, 0.01, 0.03, 0.05, -0.03, FEET),
 ]
 
 
@@ -43,8 +45,8 @@ def test_dcm_reference_moves_with_the_footholds():
 
 
 def test_dcm_reference_forgets_the_far_future():
-    far = [*RAMPS, ZmpRamp(300, 0.05, -0.03, 0.05, -0.03)]
-    moved = [*far, ZmpRamp(1, 0.05, -0.03, 5.0, 5.0)]
+    far = [*RAMPS, ZmpRamp(300, 0.05, -0.03, 0.05, -0.03, FEET)]
+    moved = [*far, ZmpRamp(1, 0.05, -0.03, 5.0, 5.0, FEET)]
     assert dcm_reference(LIPM, moved) == pytest.approx(dcm_reference(LIPM, far), abs=1e-3)
 
 
@@ -52,7 +54,7 @@ def test_dcm_reference_forgets_the_far_future():
 def test_a_displaced_pendulum_comes_to_rest_over_the_reference(name):
     generator = make_generator(LIPM, PatternParameters(generator=name))
     state = PendulumState(0.02, 0.01, 0.0, 0.05, 0.02, 0.01)
-    ramps = [ZmpRamp(1, 0.01, 0.0, 0.01, 0.0)]
+    ramps = [ZmpRamp(1, 0.01, 0.0, 0.01, 0.0, FEET)]
     for _ in range(400):
         generator.advance(state, ramps, dcm_reference(LIPM, ramps), BOTH)
         assert BOTH.clip(state.zmp_x, state.zmp_y) == (state.zmp_x, state.zmp_y)
@@ -69,7 +71,10 @@ def test_the_zmp_tracks_a_sideways_shift(name):
     for k in range(60):
         left = max(1, 60 - k)
         here = 0.03 * min(1.0, k / 60)
-        ramps = [ZmpRamp(left, 0.01, here, 0.01, 0.03), ZmpRamp(200, 0.01, 0.03, 0.01, 0.03)]
+        ramps = [
+            ZmpRamp(left, 0.01, here, 0.01, 0.03, FEET),
+            ZmpRamp(200, 0.01, 0.03, 0.01, 0.03, FEET),
+        ]
         generator.advance(state, ramps, dcm_reference(LIPM, ramps), region)
     assert state.y + state.vy / LIPM.omega == pytest.approx(0.03, abs=6e-3)
 
@@ -80,7 +85,7 @@ def test_generators_mirror(name):
     for sign in (1.0, -1.0):
         generator = make_generator(LIPM, PatternParameters(generator=name))
         state = PendulumState(0.0, sign * 0.01, 0.1, sign * 0.02, 0.0, sign * 0.01)
-        ramps = [ZmpRamp(r.ticks, r.ax, sign * r.ay, r.bx, sign * r.by) for r in RAMPS]
+        ramps = [ZmpRamp(r.ticks, r.ax, sign * r.ay, r.bx, sign * r.by, FEET) for r in RAMPS]
         generator.advance(state, ramps, dcm_reference(LIPM, ramps), BOTH)
         states.append((state.x, sign * state.y, state.zmp_x, sign * state.zmp_y))
     assert states[0] == pytest.approx(states[1], abs=1e-12)
