@@ -89,6 +89,8 @@ class TrackingParameters:
     """Normalised innovation squared above which a mover has changed its velocity [1]."""
     manoeuvre_sigma: Positive = 0.06
     """Velocity uncertainty added to a mover in view that changes its velocity [m/s]."""
+    turning_lag: Positive = 4.0
+    """Summed lag behind the prediction that shows a mover in view turning back [1]."""
     line_width: Positive = 0.15
     """Distance from where it could be at which a mover may still be found [m]."""
     reversal_sigma: Positive = 0.03

@@ -34,6 +34,8 @@ class TrackedObject:
         expected_for: time in clear view since the last detection or miss [s].
         particles: hypotheses while lost, else None.
         presence: probability of what was not seen since, given the particles.
+        lag: how far it lags behind going on, summed [standard deviations].
+        on_course: when that sum was zero last [s].
     """
 
     id: int
@@ -54,6 +56,8 @@ class TrackedObject:
     expected_for: float = 0.0
     particles: Particles | None = None
     presence: float = 1.0
+    lag: float = 0.0
+    on_course: float = 0.0
 
     @property
     def position(self) -> Array:

@@ -20,6 +20,7 @@ from navigation.observation import Observation
 from navigation.resighting import found_again, resight_mover
 from navigation.sightings import Sightings
 from navigation.tracked_object import TrackedObject
+from navigation.turning import accumulated_lag, perhaps_turned
 from navigation.visibility import Mask, Viewpoint
 
 Array = NDArray[np.float64]
@@ -158,6 +159,7 @@ class Tracker:
                     x[i], P[i] = found_again(z[i], raw[i], np.zeros(2), p.resighting_sigma)
                 else:
                     P[i, 2:, 2:] += p.manoeuvre_sigma**2 * np.eye(2)
+            P[i] = self._turning(o, time, x[i], P[i], (z[i], R[i]))
         moving = track_filter.innovation(x[:, :2], P[:, :2, :2], z, R)
         still = track_filter.innovation(s, S, z, R)
         gain = moving.log_likelihood - still.log_likelihood
@@ -183,6 +185,24 @@ class Tracker:
             o.particles = None
             o.presence = 1.0
             o.classify(p)
+
+    def _turning(
+        self, o: TrackedObject, time: float, x: Array, P: Array, sighting: tuple[Array, Array]
+    ) -> Array:
+        """Covariance before an update; wider if a mover in view has perhaps turned back."""
+        p = self._parameters
+        z, R = sighting
+        in_view = time - o.last_time <= p.lost_time
+        if in_view and o.motion is Motion.MOVING and o.speed > p.moving_speed:
+            o.lag = accumulated_lag(o.lag, z - x[:2], P[:2, :2] + R, x[2:])
+        else:
+            o.lag = 0.0
+        if o.lag > p.turning_lag:
+            P = perhaps_turned(x, P, time - o.on_course)
+            o.lag = 0.0
+        if o.lag == 0.0:
+            o.on_course = time
+        return P
 
     def _widen(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
         """Fuse the radius, unless only part of the obstacle was seen."""

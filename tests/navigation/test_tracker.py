@@ -258,3 +258,21 @@ def test_cleared_means_forgotten(stage):
     stage.watch(1.0, (1.0, 0.0, 0.0, 0.0))
     stage.tracker.clear()
     assert stage.show() == ()
+
+
+def time_to_see_the_turn(view, observe, seed, turning_lag):
+    """How long a mover in view has turned back until half of that is believed [s]."""
+    stage = Stage(view, observe, seed, TrackingParameters(turning_lag=turning_lag))
+    stage.watch(4.0, (1.0, -0.4, 0.0, 0.1), noise=0.03)
+    for k in range(1, 60):
+        (track,) = stage.show((1.0, -0.1 * DT * k), noise=0.03)
+        if track.velocity[1] < 0.0:
+            return k * DT
+    return 60 * DT
+
+
+def test_a_turn_in_view_is_seen_sooner_by_the_summed_lag(view, observe):
+    with_sum = [time_to_see_the_turn(view, observe, seed, 4.0) for seed in range(6)]
+    without = [time_to_see_the_turn(view, observe, seed, 1e9) for seed in range(6)]
+    assert max(with_sum) < 1.1
+    assert np.mean(with_sum) < 0.8 * np.mean(without)
