@@ -20,12 +20,11 @@ from hsr8.world.camera import RenderedCamera
 from hsr8.world.generator import draw_layout
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
-from hsr8.world.truth import Truth
+from hsr8.world.truth import EPISODE_GAP, Truth
 from vision.camera import PinholeCamera
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
 FALL_DWELL = 0.6  # and for so long after a fall, so that it can be seen [s]
-EPISODE_GAP = 0.5  # a contact after a pause as long as this is a new collision [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +203,7 @@ class _EventWatch:
         for contact in truth.contacts:
             before = self._touched.get(contact.obstacle, -np.inf)
             self._touched[contact.obstacle] = truth.time
-            if truth.time - before >= EPISODE_GAP:
+            if truth.time - before >= EPISODE_GAP - 1e-9:
                 what = "mover" if contact.moving else "obstacle"
                 self._tell("collision", f"{contact.robot_geom} touches {what} {contact.obstacle}")
         if frame is None:

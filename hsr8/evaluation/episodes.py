@@ -2,9 +2,7 @@
 
 from dataclasses import dataclass
 
-from hsr8.world.truth import Contact
-
-GAP = 0.5  # a contact after a pause as long as this is a new collision [s]
+from hsr8.world.truth import EPISODE_GAP, Contact
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +34,7 @@ class Episodes:
         for obstacle in sorted({contact.obstacle for contact in contacts}):
             before = self._touched_at.get(obstacle)
             self._touched_at[obstacle] = time
-            if before is not None and time - before < GAP - 1e-9:
+            if before is not None and time - before < EPISODE_GAP - 1e-9:
                 continue
             touching = [c for c in contacts if c.obstacle == obstacle]
             self.collisions.append(
