@@ -8,6 +8,7 @@ import cv2
 from rich.console import Console
 from rich.table import Table
 
+from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.options import Check
 from hsr8.errors import UsageError
 from hsr8.scenario.loader import load
@@ -31,8 +32,7 @@ def main(options: Check) -> int:
         ScenarioError: the scenario is wrong or its world cannot be drawn.
         UsageError: the picture cannot be written.
     """
-    settings = [setting for group in options.set for setting in group]
-    scenario = load(options.scenario, settings, options.seed)
+    scenario = load(options.scenario, settings(options), options.seed)
     layout = draw_layout(scenario, scenario.seed)
     certificate = certify(layout)
     if options.png is not None:
@@ -42,6 +42,8 @@ def main(options: Check) -> int:
         print(json.dumps(summary))
     else:
         _show(scenario, layout, summary)
+        command = " ".join(run_command(options, scenario.seed))
+        print(f"run it: {command}")
     return 0
 
 
@@ -113,7 +115,6 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     console.print(facts)
     if layout.obstacles:
         console.print(_obstacles(layout))
-    console.print(f"run it: hsr8 run {scenario.name} --seed {scenario.seed}")
 
 
 def _points(layout: Layout) -> str:

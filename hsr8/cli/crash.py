@@ -36,11 +36,26 @@ class CrashReport:
     ) -> None:
         if not isinstance(error, Exception) or isinstance(error, Hsr8Error):
             return
-        folder = self._folder or Path(tempfile.mkdtemp(prefix="hsr8-"))
-        file = folder / FILE
-        file.write_text("".join(traceback.format_exception(error)), encoding="utf-8")
         what = str(error).strip().splitlines()
         raise InternalError(
             f"internal error, {type(error).__name__}: {what[0] if what else 'no message'}"
-            f"\n  traceback: {file}"
+            f"\n  traceback: {self._keep(''.join(traceback.format_exception(error)))}"
         ) from error
+
+    def _keep(self, trace: str) -> str:
+        """Where the traceback is; a run folder on a full disk does not take it."""
+        try:
+            if self._folder is not None:
+                return _write(self._folder, trace)
+        except OSError:
+            pass
+        try:
+            return _write(Path(tempfile.mkdtemp(prefix="hsr8-")), trace)
+        except OSError as error:
+            return f"cannot be written: {error}"
+
+
+def _write(folder: Path, trace: str) -> str:
+    file = folder / FILE
+    file.write_text(trace, encoding="utf-8")
+    return str(file)

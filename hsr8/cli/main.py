@@ -59,6 +59,8 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         )
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else 2
+    except KeyboardInterrupt:
+        return _interrupted()
     try:
         with CrashReport():
             module = importlib.import_module(MODULES[type(command)])
@@ -67,6 +69,10 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         print(f"hsr8: {error}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
-        print("hsr8: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        return _interrupted()
     return code
+
+
+def _interrupted() -> int:
+    print("hsr8: interrupted", file=sys.stderr)
+    return INTERRUPTED

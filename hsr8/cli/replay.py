@@ -1,5 +1,7 @@
 """``hsr8 replay``: the log of a run in the Rerun viewer."""
 
+import shlex
+
 from hsr8.cli.options import Replay
 from hsr8.cli.size import parse_size
 from hsr8.errors import UsageError
@@ -21,18 +23,24 @@ def main(options: Replay) -> int:
     if options.screenshot is not None:
         time = options.time if options.time is not None else _middle(run)
         picture = viewer.screenshot(run.log_file, time, parse_size(options.size))
-        options.screenshot.write_bytes(picture)
+        try:
+            options.screenshot.write_bytes(picture)
+        except OSError as error:
+            raise UsageError(
+                f"--screenshot {options.screenshot}: cannot be written: {error.strerror}"
+            ) from None
         if options.json:
             print(atomic.dumps({"screenshot": str(options.screenshot), "time_s": time}))
         else:
             print(f"picture     {options.screenshot} (at {time:.1f} s)")
         return 0
     if not viewer.has_display():
+        run_word, log_word = shlex.quote(str(run.path)), shlex.quote(str(run.log_file))
         version = versions()["rerun-sdk"]
         raise UsageError(
             "there is no display to open the viewer on"
-            f"\n  a picture of it:     hsr8 replay {run.path} --screenshot log.png"
-            f"\n  on another machine:  copy {run.log_file}, then"
+            f"\n  a picture of it:     hsr8 replay {run_word} --screenshot log.png"
+            f"\n  on another machine:  copy {log_word}, then"
             f"\n                       pip install rerun-sdk=={version} && rerun log.rrd"
         )
     code = viewer.show(run.log_file)

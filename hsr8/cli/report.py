@@ -1,5 +1,6 @@
 """The result of a run, for people."""
 
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -49,12 +50,13 @@ def show(
     console.print(table)
     if checks:
         console.print(_criteria(checks))
-    log = path / run_folder.LOG
-    console.print(f"run folder  {path}", highlight=False, soft_wrap=True)
-    if log.exists():
-        console.print(f"look at it  hsr8 replay {path}", highlight=False, soft_wrap=True)
-    console.print(f"video       hsr8 render {path}", highlight=False, soft_wrap=True)
-    console.print(f"again       {' '.join(command)}", highlight=False, soft_wrap=True)
+    word = shlex.quote(str(path))
+    lines = [f"run folder  {path}", f"video       hsr8 render {word}"]
+    if (path / run_folder.LOG).exists():
+        lines.insert(1, f"look at it  hsr8 replay {word}")
+    lines.append(f"again       {' '.join(command)}")
+    for line in lines:
+        console.print(line, highlight=False, soft_wrap=True, markup=False)
 
 
 def _criteria(checks: Sequence[Check]) -> Table:

@@ -1,13 +1,15 @@
 """``hsr8 run``: one run, its folder and its result."""
 
-import shlex
 import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from hsr8.cli import report
+from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run
 from hsr8.errors import SimulationDiverged
@@ -22,7 +24,8 @@ from hsr8.recorder.record import Listener
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.scenario.loader import dump, load
-from hsr8.scenario.schema import Scenario
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 def main(options: Run) -> int:
@@ -32,9 +35,11 @@ def main(options: Run) -> int:
         UsageError: the scenario, a setting or the output folder will not do.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
-    scenario = load(options.scenario, overrides(options), options.seed)
+    scenario = load(
+        options.scenario, settings(options), options.seed, options=option_tables(options)
+    )
     renderer = require_gl() if scenario.camera.source == "egl" else "analytic"
-    command = rerun_command(options, scenario.seed)
+    command = run_command(options, scenario.seed)
     simulation = Simulation(scenario, scenario.seed)
     path = RunFolder.create(options.out, scenario.name, scenario.seed)
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer)
@@ -43,9 +48,10 @@ def main(options: Run) -> int:
         folder = RunFolder(path, manifest, dump(scenario), movers)
         mission = scenario.navigation_parameters().mission
         metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
-        simulation.listeners.extend(_listeners(options, scenario, simulation, folder, metrics))
         message = ""
         with _interruptible(simulation):
+            simulation.listeners += [folder, metrics]
+            simulation.listeners += _extra_listeners(options, simulation, path)
             try:
                 outcome = simulation.run()
                 reason, state_hash = outcome.exit_reason, outcome.state_hash
@@ -70,47 +76,27 @@ def main(options: Run) -> int:
     return code
 
 
-def overrides(options: Run) -> tuple[str, ...]:
-    """Options that are settings of the scenario, as ``key=value``; ``--set`` comes last."""
-    settings = (
-        ("duration", options.duration),
-        ("robot.body", options.body),
-        ("camera.source", options.camera),
-    )
-    return (
-        *(f"{key}={value}" for key, value in settings if value is not None),
-        *(setting for group in options.set for setting in group),
-    )
+def option_tables(options: Run) -> dict[str, dict[str, Any]]:
+    """What the options set in the scenario, by option; ``--set`` comes after them."""
+    tables: dict[str, dict[str, Any]] = {}
+    if options.duration is not None:
+        tables["--duration"] = {"duration": options.duration}
+    if options.body is not None:
+        tables["--body"] = {"robot": {"body": options.body}}
+    if options.camera is not None:
+        tables["--camera"] = {"camera": {"source": options.camera}}
+    return tables
 
 
-def rerun_command(options: Run, seed: int) -> tuple[str, ...]:
-    """Command line that repeats this run exactly."""
-    words = ["hsr8", "run", options.scenario, "--seed", str(seed)]
-    for flag, value in (
-        ("--duration", options.duration),
-        ("--body", options.body),
-        ("--camera", options.camera),
-    ):
-        if value is not None:
-            words += [flag, str(value)]
-    for group in options.set:
-        words += ["--set", *group]
-    return tuple(shlex.quote(word) for word in words)
-
-
-def _listeners(
-    options: Run,
-    scenario: Scenario,
-    simulation: Simulation,
-    folder: RunFolder,
-    metrics: Metrics,
-) -> list[Listener]:
-    listeners: list[Listener] = [folder, metrics]
+def _extra_listeners(options: Run, simulation: Simulation, path: Path) -> list[Listener]:
+    """Those that the options may leave out."""
+    scenario = simulation.scenario
+    listeners: list[Listener] = []
     if not options.no_log:
         camera = scenario.camera
         listeners.append(
             RerunLog(
-                folder.path / run_folder.LOG,
+                path / run_folder.LOG,
                 simulation.model,
                 simulation.layout,
                 (camera.width, camera.height),
@@ -124,14 +110,15 @@ def _listeners(
 
 @contextmanager
 def _interruptible(simulation: Simulation) -> Iterator[None]:
-    """The first Ctrl-C ends the run after the present tick, the second at once."""
+    """Ctrl-C or SIGTERM ends the run after the present tick, a second one at once."""
 
     def interrupt(number: int, frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(number, signal.default_int_handler)
         simulation.interrupt()
 
-    before = signal.signal(signal.SIGINT, interrupt)
+    before = {number: signal.signal(number, interrupt) for number in SIGNALS}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -2,7 +2,7 @@
 
 import json
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
@@ -29,13 +29,20 @@ def built_in_names() -> list[str]:
     return sorted(path.stem for path in BUILT_IN.glob("*.toml"))
 
 
-def load(name_or_path: str, overrides: Sequence[str] = (), seed: int | None = None) -> Scenario:
+def load(
+    name_or_path: str,
+    overrides: Sequence[str] = (),
+    seed: int | None = None,
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+) -> Scenario:
     """Read a scenario.
 
     Args:
         name_or_path: name of a built-in scenario, or a TOML file.
         overrides: ``key=value`` with dots in the key and a TOML value; text needs no quotes.
         seed: replaces the seed of the file.
+        options: tables given by options of the command line, by the option's name; the
+            overrides go over them.
 
     Raises:
         ScenarioError: the file or an override is wrong; the message lists every mistake
@@ -43,6 +50,8 @@ def load(name_or_path: str, overrides: Sequence[str] = (), seed: int | None = No
     """
     file = _find(name_or_path)
     draft = _read(file, ())
+    for option, table in (options or {}).items():
+        draft.add(dict(table), option)
     for override in overrides:
         draft.add(_parse_override(override, draft.data), f"--set {override}")
     if seed is not None:

@@ -44,3 +44,9 @@ def test_a_picture_that_cannot_be_written_is_one_clear_error(tmp_path):
 def test_a_wrong_scenario_is_one_clear_error():
     with pytest.raises(ScenarioError, match="did you mean 'quick'"):
         main(Check("quik"))
+
+
+def test_the_run_it_leads_to_is_the_one_that_was_checked(capsys):
+    main(Check("quick", set=(("world.n_static=3",),)))
+    told = capsys.readouterr().out.splitlines()[-1]
+    assert told == "run it: hsr8 run quick --seed 2 --set world.n_static=3"

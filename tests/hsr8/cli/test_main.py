@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from hsr8.cli.crash import CrashReport, InternalError
 from hsr8.cli.main import MODULES, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
 
@@ -86,6 +87,26 @@ def test_our_own_mistakes_leave_their_traceback_in_a_file(failing, capsys, tmp_p
     (report,) = tmp_path.glob("hsr8-*/crash.txt")
     assert str(report) in printed
     assert "Traceback" in report.read_text()
+
+
+def test_a_run_folder_that_takes_no_traceback_is_no_obstacle(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.raises(InternalError) as caught, CrashReport(tmp_path / "no" / "such"):
+        raise OSError("No space left on device")
+    (report,) = tmp_path.glob("hsr8-*/crash.txt")
+    assert str(report) in str(caught.value)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
+    with pytest.raises(InternalError, match="cannot be written"), CrashReport():
+        raise OSError("No space left on device")
+
+
+def test_ctrl_c_while_the_command_line_is_read(monkeypatch, capsys):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tyro.cli", interrupted)
+    assert entry(["list"]) == 130
+    assert capsys.readouterr().err == "hsr8: interrupted\n"
 
 
 def test_the_module_can_be_run():

@@ -50,3 +50,10 @@ def test_the_screenshot_is_of_the_middle_unless_asked_for(run, monkeypatch, caps
 def test_no_such_run(tmp_path, capsys):
     assert entry(["replay", str(tmp_path / "nothing")]) == 2
     assert "no run folder" in capsys.readouterr().err
+
+
+def test_a_picture_that_cannot_be_written_is_one_clear_error(run, monkeypatch, capsys, tmp_path):
+    (run / run_folder.LOG).touch()
+    monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: b"PNG")
+    assert entry(["replay", str(run), "--screenshot", str(tmp_path)]) == 2
+    assert "cannot be written" in capsys.readouterr().err

@@ -41,3 +41,12 @@ def test_a_log_can_be_replayed(tmp_path):
         console=Console(file=stream, width=200),
     )
     assert f"hsr8 replay {tmp_path}" in stream.getvalue()
+
+
+def test_a_path_with_spaces_can_be_typed_again(tmp_path):
+    path = tmp_path / "my runs"
+    path.mkdir()
+    stream = io.StringIO()
+    console = Console(file=stream, width=200)
+    report.show("quick", results={}, checks=(), path=path, command=(), console=console)
+    assert f"hsr8 render '{path}'" in stream.getvalue()

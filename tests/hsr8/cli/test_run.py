@@ -7,7 +7,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.cli.options import Run
-from hsr8.cli.run import overrides, rerun_command
+from hsr8.cli.run import option_tables
 from hsr8.errors import SimulationDiverged
 from hsr8.loop import Simulation
 from hsr8.recorder.run_reader import open_run
@@ -73,25 +73,37 @@ def test_a_run_that_meets_its_criteria_passes(tmp_path, capsys):
     assert "passed" in capsys.readouterr().out
 
 
-def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys, number):
     """The signal comes while the run goes on; it ends after the present tick."""
     publish = Simulation._publish
 
     def interrupting(self, tick, *rest):
         publish(self, tick, *rest)
         if tick == 100:
-            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), number)
 
     monkeypatch.setattr(Simulation, "_publish", interrupting)
-    handler = signal.getsignal(signal.SIGINT)
+    handler = signal.getsignal(number)
     assert _run(tmp_path, "--json") == 130
-    assert signal.getsignal(signal.SIGINT) is handler
+    assert signal.getsignal(number) is handler
     results = json.loads(capsys.readouterr().out)
     assert results["exit_reason"] == "interrupted"
     assert 0.4 < results["sim_time_s"] < 0.6
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == "interrupted"
     assert len(run.trajectory()) > 20
+
+
+def test_ctrl_c_while_the_run_is_set_up_leaves_a_whole_folder(tmp_path, monkeypatch, capsys):
+    def interrupted(*_):
+        os.kill(os.getpid(), signal.SIGINT)
+        return []
+
+    monkeypatch.setattr("hsr8.cli.run._extra_listeners", interrupted)
+    assert _run(tmp_path, "--quiet") == 130
+    run = open_run(tmp_path)
+    assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"
 
 
 def test_a_diverged_run_is_told_and_recorded(tmp_path, monkeypatch, capsys):
@@ -144,11 +156,19 @@ def test_an_unwritable_folder_is_a_usage_error(tmp_path, capsys):
     assert "--out" in capsys.readouterr().err
 
 
-def test_options_become_settings_and_come_back():
-    options = Run(
-        "course", seed=3, duration=2.5, set=(("a=1", "b=2"), ("c=x y",)), body="kinematic"
-    )
-    assert overrides(options) == ("duration=2.5", "robot.body=kinematic", "a=1", "b=2", "c=x y")
-    assert " ".join(rerun_command(options, 3)) == (
-        "hsr8 run course --seed 3 --duration 2.5 --body kinematic --set a=1 b=2 --set 'c=x y'"
-    )
+def test_an_option_that_is_wrong_is_named_as_it_was_typed(tmp_path, capsys):
+    assert _run(tmp_path, "--duration", "-3") == 2
+    assert "  --duration: duration: must be greater than 0, got -3.0" in capsys.readouterr().err
+
+
+def test_options_become_tables_of_the_scenario():
+    options = Run("course", seed=3, duration=2.5, set=(("a=1",),), body="kinematic")
+    assert option_tables(options) == {
+        "--duration": {"duration": 2.5},
+        "--body": {"robot": {"body": "kinematic"}},
+    }
+
+
+def test_what_is_set_goes_over_the_other_options(tmp_path, capsys):
+    _run(tmp_path, "--no-log", "--quiet", "--set", "duration=0.4")
+    assert open_run(tmp_path).metrics()["sim_time_s"] == pytest.approx(0.4)
