@@ -52,7 +52,7 @@ class TrackingParameters:
     correlation_time: NonNegative = 0.08
     """Correlation time of the error of successive detections of one obstacle [s]."""
     cut_inflation: Annotated[float, Ge(1.0)] = 2.0
-    """Factor on the standard deviations of a detection cut by the image border [1]."""
+    """Factor on the standard deviations of a detection that is both cut and occluded [1]."""
     gate: Positive = 13.8
     """Squared Mahalanobis distance above which a detection belongs to another track [1]."""
     birth_density: Positive = 0.1

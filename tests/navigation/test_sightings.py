@@ -32,11 +32,12 @@ def test_covariance_is_the_first_order_propagation(observe):
         assert np.allclose(seen.covariances[0], J @ whole @ J.T, atol=1e-8)
 
 
-def test_a_cut_blob_is_trusted_less(observe):
+def test_only_what_is_both_cut_and_occluded_is_trusted_less(observe):
     pose, P = (0.0, 0.0, 0.0), np.zeros((3, 3))
     plain = convert([observe(pose, (1.0, 0.2))], pose, P)
-    cut = convert([observe(pose, (1.0, 0.2), cut=True)], pose, P)
-    assert np.allclose(cut.covariances, 4.0 * plain.covariances)
+    for cut, occluded, factor in ((True, False, 1.0), (False, True, 1.0), (True, True, 4.0)):
+        seen = convert([observe(pose, (1.0, 0.2), cut=cut, occluded=occluded)], pose, P)
+        assert np.allclose(seen.covariances, factor * plain.covariances)
 
 
 def test_a_lost_pose_does_not_drown_the_tracks(observe):
