@@ -2,15 +2,14 @@
 
 import json
 from math import degrees, hypot
-from pathlib import Path
 
-import cv2
 from rich.console import Console
 from rich.table import Table
 
 from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.options import Check
 from hsr8.errors import UsageError
+from hsr8.render.png import write_png
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.certificate import Certificate, certify, straight_length
@@ -36,7 +35,10 @@ def main(options: Check) -> int:
     layout = draw_layout(scenario, scenario.seed)
     certificate = certify(layout)
     if options.png is not None:
-        _write(layout, options.png)
+        try:
+            write_png(options.png, PlanView(layout).draw())
+        except OSError as error:
+            raise UsageError(f"--png {options.png}: cannot be written: {error.strerror}") from None
     summary = summarize(scenario, layout, certificate)
     if options.json:
         print(json.dumps(summary))
@@ -156,14 +158,3 @@ def _obstacles(layout: Layout) -> Table:
         x, y = o.position
         table.add_row(str(i), f"{x:.2f}", f"{y:.2f}", f"{o.radius:.3f}", speed, o.colour, motion)
     return table
-
-
-def _write(layout: Layout, path: Path) -> None:
-    image = cv2.cvtColor(PlanView(layout).draw(), cv2.COLOR_RGB2BGR)
-    coded, data = cv2.imencode(".png", image)
-    if not coded:
-        raise UsageError(f"the picture {str(path)!r} cannot be coded")
-    try:
-        path.write_bytes(data.tobytes())
-    except OSError as error:
-        raise UsageError(f"the picture {str(path)!r} cannot be written: {error}") from None

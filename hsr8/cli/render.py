@@ -29,6 +29,8 @@ def main(options: Render) -> int:
     run = open_run(options.run)
     renderer = require_gl()
     out = options.out or run.path / run_folder.VIDEO
+    if out.suffix.lower() != ".mp4":
+        raise UsageError(f"--out {out}: give a file that ends in .mp4")
     if not out.parent.is_dir():
         raise UsageError(f"--out {out}: there is no folder {out.parent}")
     shot = Shot(
@@ -46,7 +48,10 @@ def main(options: Render) -> int:
     columns = (TextColumn("drawing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("drawing", total=None)
-        made = film(run, shot, out, lambda n, total: bar.update(task, completed=n, total=total))
+        try:
+            made = film(run, shot, out, lambda n, total: bar.update(task, completed=n, total=total))
+        except OSError as error:
+            raise UsageError(f"{out} cannot be written: {error.strerror}; see --out") from error
     wall = clock.perf_counter() - started
     if options.json:
         result = {

@@ -1,9 +1,7 @@
 """One camera frame as a line of JSON: what the dashboard of a video shows."""
 
 import json
-from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from hsr8.recorder.record import FrameRecord
@@ -95,15 +93,6 @@ def to_line(frame: FrameRecord, truth: Truth) -> str:
         "virtual": [_rounded([*o.position.tolist(), o.radius]) for o in motion.virtual_obstacles],
     }
     return json.dumps(line, separators=(",", ":"))
-
-
-def read_frames(path: Path) -> Iterator[FrameSummary]:
-    """Frames of a run in order; a line cut off by a kill ends them."""
-    with path.open(encoding="utf-8") as file:
-        for line in file:
-            if not line.endswith("\n"):
-                return
-            yield from_line(line)
 
 
 def from_line(line: str) -> FrameSummary:

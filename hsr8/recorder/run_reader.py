@@ -7,7 +7,8 @@ from typing import Any
 
 from hsr8.errors import UsageError
 from hsr8.recorder import run_folder
-from hsr8.recorder.frame_summary import FrameSummary, read_frames
+from hsr8.recorder.frame_summary import FrameSummary, from_line
+from hsr8.recorder.json_lines import read_lines
 from hsr8.recorder.trajectory import Trajectory, read_trajectory
 
 
@@ -52,15 +53,22 @@ class Run:
         return read_trajectory(self.path / run_folder.TRAJECTORY)
 
     def frames(self) -> tuple[FrameSummary, ...]:
-        """Belief and decisions at every camera frame; empty if there were none."""
+        """Belief and decisions at every camera frame; empty if there were none.
+
+        Raises:
+            UsageError: a line is damaged.
+        """
         file = self.path / run_folder.FRAMES
-        return tuple(read_frames(file)) if file.exists() else ()
+        return tuple(read_lines(file, from_line)) if file.exists() else ()
 
     def events(self) -> tuple[dict[str, Any], ...]:
-        """What happened, each with ``time``, ``kind`` and ``text``."""
+        """What happened, each with ``time``, ``kind`` and ``text``.
+
+        Raises:
+            UsageError: a line is damaged.
+        """
         file = self.path / run_folder.EVENTS
-        lines = file.read_text(encoding="utf-8").splitlines(keepends=True) if file.exists() else []
-        return tuple(json.loads(line) for line in lines if line.endswith("\n"))
+        return tuple(read_lines(file, _event)) if file.exists() else ()
 
 
 def open_run(path: Path) -> Run:
@@ -70,7 +78,7 @@ def open_run(path: Path) -> Run:
         UsageError: there is no run there.
     """
     if (path / run_folder.MANIFEST).is_file():
-        return Run(path, _json(path / run_folder.MANIFEST))
+        return _run(path)
     if not path.exists():
         raise UsageError(f"there is no run folder {path}{_known(path.parent)}")
     runs = sorted(path.glob(f"**/{run_folder.MANIFEST}"), key=lambda file: file.stat().st_mtime_ns)
@@ -79,7 +87,20 @@ def open_run(path: Path) -> Run:
             f"{path} holds no run: a run folder has a {run_folder.MANIFEST}; "
             "`hsr8 run SCENARIO` makes one"
         )
-    return Run(runs[-1].parent, _json(runs[-1]))
+    return _run(runs[-1].parent)
+
+
+def _run(path: Path) -> Run:
+    file = path / run_folder.MANIFEST
+    manifest = _json(file)
+    if not isinstance(manifest.get("seed"), int):
+        raise UsageError(f"cannot read {file}: it names no seed")
+    return Run(path, manifest)
+
+
+def _event(line: str) -> dict[str, Any]:
+    event = json.loads(line)
+    return {"time": float(event["time"]), "kind": str(event["kind"]), "text": str(event["text"])}
 
 
 def _known(parent: Path) -> str:

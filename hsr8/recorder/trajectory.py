@@ -98,9 +98,9 @@ def read_trajectory(path: Path) -> Trajectory:
     (length,) = _LENGTH.unpack_from(content, len(MAGIC))
     try:
         header = json.loads(content[start : start + length])
-    except ValueError as error:
-        raise UsageError(f"{path} was cut off within its header") from error
-    nq, movers = int(header["nq"]), int(header["movers"])
+        nq, movers = int(header["nq"]), int(header["movers"])
+    except (ValueError, TypeError, KeyError) as error:
+        raise UsageError(f"{path} has no whole header") from error
     width = 1 + nq + 2 * movers
     first = start + length
     rows = (len(content) - first) // (8 * width)

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.recorder.run_reader import Run
+from hsr8.render.png import write_png
 from hsr8.render.scene_pictures import Pictures
 from hsr8.render.video import VideoWriter
 from hsr8.scenario.loader import load
@@ -70,6 +70,7 @@ def film(run: Run, shot: Shot, out: Path, tell: Callable[[int, int], None]) -> F
         tell: called with the number of frames done and of all.
 
     Raises:
+        OSError: a file cannot be written.
         UsageError: the run has no motion in the time asked for, or there is no such camera.
         RenderingUnavailable: no OpenGL draws here.
     """
@@ -94,7 +95,7 @@ def film(run: Run, shot: Shot, out: Path, tell: Callable[[int, int], None]) -> F
                 picture = draw(index)
                 video.add(picture)
                 if index == middle:
-                    cv2.imwrite(str(thumbnail), cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+                    write_png(thumbnail, picture)
                 tell(index + 1, len(times))
     return Film(out, thumbnail, len(times), len(times) / shot.fps, speed)
 

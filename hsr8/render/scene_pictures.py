@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.errors import UsageError
 from hsr8.recorder.frame_summary import FrameSummary
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.trajectory import Trajectory, rows_at
@@ -17,7 +18,7 @@ from hsr8.render.follow import FollowCamera
 from hsr8.render.stage import Image, Stage
 from hsr8.render.top_down import TRAIL, TopDown
 from hsr8.scenario.schema import Scenario
-from hsr8.world.assembly import Optics
+from hsr8.world.assembly import Optics, Quality
 from hsr8.world.camera import HEAD_CAMERA
 from hsr8.world.layout import Layout
 
@@ -97,16 +98,17 @@ class Pictures:
         stage.require_camera(name)
         return lambda i: self._placed(stage, i).draw(name)
 
-    def _stage(self, quality: str, size: tuple[int, int]) -> Stage:
-        return self._stack.enter_context(
-            Stage(
-                self._layout,
-                "show" if quality == "show" else "vision",
-                size,
-                optics=self._optics,
-                fine=self._fine,
-            )
+    def _stage(self, quality: Quality, size: tuple[int, int]) -> Stage:
+        stage = self._stack.enter_context(
+            Stage(self._layout, quality, size, optics=self._optics, fine=self._fine)
         )
+        recorded = (self._trajectory.qpos.shape[1], self._trajectory.movers.shape[1])
+        if recorded != (stage.model.nq, len(self._layout.movers)):
+            raise UsageError(
+                "the trajectory of this run belongs to another robot or scenario than its "
+                "scenario file"
+            )
+        return stage
 
     def _placed(self, stage: Stage, index: int) -> Stage:
         row = int(self._rows[index])

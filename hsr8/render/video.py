@@ -67,9 +67,10 @@ class VideoWriter:
         finally:
             self._worker.shutdown()
             self._container.close()
-            if complete:
-                self._draft.replace(self._path)
-            else:
+            try:
+                if complete:
+                    self._draft.replace(self._path)
+            finally:
                 self._draft.unlink(missing_ok=True)
 
     def __enter__(self) -> Self:

@@ -32,6 +32,7 @@ def test_json_is_all_there_is_on_standard_output(run, tmp_path, capsys):
         (["--fps", "0"], "--fps"),
         (["--speed", "-1"], "--speed"),
         (["--out", "nowhere/v.mp4"], "nowhere"),
+        (["--out", "v.png"], "ends in .mp4"),
         (["--start", "7"], "ended at 0.5 s"),
     ],
 )
@@ -48,3 +49,13 @@ def test_without_opengl_it_says_so(run, capsys, monkeypatch):
     monkeypatch.setattr("hsr8.cli.render.require_gl", unavailable)
     assert entry(["render", str(run)]) == 2
     assert "no OpenGL" in capsys.readouterr().err
+
+
+@pytest.mark.gl
+def test_a_video_that_cannot_be_written_is_one_clear_error(run, tmp_path, capsys):
+    video = tmp_path / "v.mp4"
+    video.mkdir()
+    options = ["--size", "64x64", "--fps", "4", "--out", str(video), "--quiet"]
+    assert entry(["render", str(run), *options]) == 2
+    assert "cannot be written" in capsys.readouterr().err
+    assert [p.name for p in tmp_path.iterdir() if p.suffix == ".part"] == []

@@ -86,10 +86,21 @@ def test_no_run_is_a_usage_error_that_names_the_runs_there_are(tmp_path):
 
 
 def test_a_broken_manifest_is_a_usage_error(tmp_path):
-    for text in ("{", json.dumps([1])):
+    for text in ("{", json.dumps([1]), "{}", json.dumps({"seed": "one"})):
         (tmp_path / run_folder.MANIFEST).write_text(text)
         with pytest.raises(UsageError, match="cannot read"):
             open_run(tmp_path)
+
+
+@pytest.mark.parametrize("name", [run_folder.EVENTS, run_folder.FRAMES])
+def test_a_damaged_line_is_a_usage_error(folder, fake, name):
+    folder.on_record(fake.record(0.0, frame=fake.frame(0.0)))
+    folder.close("completed")
+    with (folder.path / name).open("a") as file:
+        file.write("{}\n")
+    run = open_run(folder.path)
+    with pytest.raises(UsageError, match=name):
+        run.events() if name == run_folder.EVENTS else run.frames()
 
 
 def test_a_folder_that_cannot_be_made_is_a_usage_error(tmp_path):

@@ -1,3 +1,5 @@
+import struct
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -62,3 +64,9 @@ def test_a_missing_file_is_a_usage_error(tmp_path):
 def test_rows_at_takes_the_last_row_not_after_the_time():
     time = 0.02 * np.arange(5)
     assert rows_at(time, [0.0, 0.019, 0.02, 0.06, 9.0, -1.0]).tolist() == [0, 0, 1, 3, 4, 0]
+
+
+def test_a_header_without_sizes_is_refused(tmp_path):
+    (tmp_path / "t").write_bytes(b"HSR8TRJ1" + struct.pack("<Q", 2) + b"{}")
+    with pytest.raises(UsageError, match="header"):
+        read_trajectory(tmp_path / "t")

@@ -1,8 +1,11 @@
+import shutil
+
 import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
+from hsr8.recorder import run_folder
 from hsr8.recorder.run_reader import open_run
 from hsr8.render.movie import Shot, film, instants
 
@@ -68,3 +71,15 @@ def test_an_unknown_camera_is_a_usage_error_that_names_the_others(run, tmp_path)
     with pytest.raises(UsageError, match="egocentric"):
         film(run, Shot(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.gl
+def test_a_trajectory_of_another_scenario_is_a_usage_error(run, tmp_path):
+    copy = tmp_path / "run"
+    shutil.copytree(run.path, copy)
+    scenario = (copy / run_folder.SCENARIO).read_text()
+    other = scenario.replace("n_moving = 1", "n_moving = 0")
+    assert other != scenario
+    (copy / run_folder.SCENARIO).write_text(other)
+    with pytest.raises(UsageError, match="belongs to another"):
+        film(open_run(copy), Shot(size=(64, 64)), tmp_path / "v.mp4", lambda n, total: None)

@@ -1,0 +1,17 @@
+"""Single pictures as files."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+
+def write_png(path: Path, image: NDArray[np.uint8]) -> None:
+    """Write `image` (height, width, 3), RGB, as PNG whatever `path` ends with.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    _, data = cv2.imencode(".png", cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
+    path.write_bytes(data.tobytes())
