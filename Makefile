@@ -37,9 +37,10 @@ types: setup  ## mypy, strict
 layers: setup  ## who may import whom
 	@.venv/bin/lint-imports --no-logo
 
-fix: setup  ## let ruff mend and format
+fix: setup  ## let ruff mend and format; write docs/scenarios.md anew
 	@$(PY) -m ruff check --fix $(SOURCES)
 	@$(PY) -m ruff format $(SOURCES)
+	@$(PY) scripts/write_scenario_reference.py
 
 lock:  ## resolve the dependencies anew into requirements.lock (needs the network)
 	@bash scripts/lock.sh $(ARGS)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import hsr8
+from hsr8.scenario.loader import loads
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -98,3 +99,10 @@ def test_readme_links_lead_somewhere() -> None:
     for page in [*ROOT.glob("*.md"), *ROOT.glob("models/*/*.md")]:
         for target in re.findall(r"\]\(([^)#:]+)\)|src=\"([^\":]+)\"", page.read_text()):
             assert (page.parent / "".join(target)).exists(), f"{page.name}: {''.join(target)}"
+
+
+def test_scenarios_in_the_readme_are_right() -> None:
+    examples = re.findall(r"^```toml\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S)
+    assert examples
+    for text in examples:
+        assert loads(text).description

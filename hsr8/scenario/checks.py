@@ -1,14 +1,14 @@
 """What a scenario must satisfy beyond the type and range of each key."""
 
 from collections.abc import Iterator
-from math import hypot
+from math import cos, hypot, radians, sin
 
 from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.toml_lines import Path
-from hsr8.scenario.world import CircleMover, ShuttleMover
+from hsr8.scenario.world import CircleMover, Mover, ShuttleMover
 
 ROBOT_RADIUS = 0.12
 """Radius of the circle in which the walking robot fits, S_robot [m]."""
@@ -110,14 +110,22 @@ def _free(scenario: Scenario) -> Iterator[Problem]:
             if _apart(obstacle.position, other.position) < obstacle.radius + other.radius:
                 yield Problem(path, f"stands in world.obstacle[{k}] at {list(other.position)}")
     for i, mover in enumerate(world.mover):
-        if isinstance(mover, CircleMover):
-            continue
         if isinstance(mover, ShuttleMover) and mover.start == mover.end:
             yield Problem(("world", "mover", i, "end"), "is the same point as start")
-        if start is not None and _apart(mover.start, start) < mover.radius + ROBOT_RADIUS:
+        key, begin = _begin(mover)
+        if start is not None and _apart(begin, start) < mover.radius + ROBOT_RADIUS:
             yield Problem(
-                ("world", "mover", i, "start"), f"is on the start of the robot at {list(start)}"
+                ("world", "mover", i, key), f"begins on the start of the robot at {list(start)}"
             )
+
+
+def _begin(mover: Mover) -> tuple[str, Point]:
+    """Where a mover is at time zero, and the key that says so."""
+    if not isinstance(mover, CircleMover):
+        return "start", mover.start
+    angle = radians(mover.angle_deg)
+    x, y = mover.centre
+    return "centre", (x + mover.path_radius * cos(angle), y + mover.path_radius * sin(angle))
 
 
 def _apart(a: Point, b: Point) -> float:

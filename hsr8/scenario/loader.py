@@ -1,6 +1,7 @@
 """Scenario files: found, inherited, overridden, checked, and written again."""
 
 import json
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -170,13 +171,18 @@ def _layered(
     except ValueError as error:
         raise ScenarioError(f"{source}: no valid TOML: {error}") from None
     lines = locate(text, data)
-    data.setdefault("name", stem)
+    data.setdefault("name", _name(stem))
     draft = _Draft()
     if "extends" in data:
         place = f"{source}:{lines.get(('extends',), 1)}: extends"
         draft = _read(_parent(data.pop("extends"), place, folder, files), files)
     draft.add(data, source, lines)
     return draft
+
+
+def _name(stem: str) -> str:
+    """Name of a scenario for the name of its file, which may hold anything."""
+    return (re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-") or "scenario")[:64]
 
 
 def _parent(name: object, place: str, folder: FilePath, files: tuple[FilePath, ...]) -> FilePath:

@@ -90,6 +90,12 @@ mode = "deadlin"
             + "[[world.obstacle]]\nposition = [0.1, 0.0]",
             "is on the start of the robot",
         ),
+        (
+            COURSE
+            + "[robot.start]\nposition = [0.5, 0.0]\n"
+            + '[[world.mover]]\nmotion = "circle"\ncentre = [0.0, 0.0]\npath_radius = 0.6',
+            "world.mover[0].centre: begins on the start of the robot",
+        ),
         (COURSE + "[[world.obstacle]]\nposition = [9.0, 0.0]", "is outside the field"),
         (
             COURSE + "[[world.obstacle]]\nposition = [0.0, 0.0]\nradius = -0.1",
@@ -306,3 +312,19 @@ def test_reading_a_scenario_needs_no_mujoco():
         "sys.exit(any(m in sys.modules for m in ('mujoco', 'rerun', 'cv2', 'pinocchio')))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("file", "name"),
+    [
+        ("my room.toml", "my-room"),
+        ("_x.toml", "x"),
+        ("ä.toml", "scenario"),
+        ("a.b-c_d.toml", "a.b-c_d"),
+    ],
+)
+def test_a_file_of_any_name_is_a_scenario(tmp_path, file, name):
+    (tmp_path / file).write_text(COURSE)
+    assert load(str(tmp_path / file)).name == name
+    (tmp_path / file).write_text(f'name = "own"\n{COURSE}')
+    assert load(str(tmp_path / file)).name == "own"
