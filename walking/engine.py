@@ -49,7 +49,7 @@ class WalkingEngine:
         self._parameters = parameters
         pattern = parameters.pattern
         self._lipm = Lipm(pattern.lipm_height)
-        self._generator = make_generator(self._lipm, pattern)
+        self._generator = make_generator(self._lipm, pattern, robot.sole)
         self._planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
         stance = _stance(robot)
         self._gait = Gait(parameters, self._planner, stance)
@@ -116,8 +116,7 @@ class WalkingEngine:
         pendulum = self._pendulum
         region = self._region(pattern.sole_margin)
         if self._generator.selective:
-            forced = gait.held or not nominal
-            ramps = self._admit(ramps, region, wish, moving=moving, forced=forced)
+            ramps = self._admit(ramps, region, wish, moving=moving, forced=not nominal)
             dcm = dcm_reference(self._lipm, ramps)
             moving = self._transition.moving
         else:

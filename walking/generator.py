@@ -4,12 +4,16 @@ from walking.lipm import Lipm
 from walking.paper_pattern import PaperGenerator
 from walking.parameters import PatternParameters
 from walking.pattern import DcmGenerator, PatternGenerator, PreviewGenerator
+from walking.robot_model import Sole
+from walking.robust_pattern import RobustGenerator
 
 
-def make_generator(lipm: Lipm, parameters: PatternParameters) -> PatternGenerator:
+def make_generator(lipm: Lipm, parameters: PatternParameters, sole: Sole) -> PatternGenerator:
     """The generator that the parameters name."""
     if parameters.generator == "preview":
         return PreviewGenerator(lipm, parameters)
     if parameters.generator == "paper":
         return PaperGenerator(lipm, parameters)
+    if parameters.generator == "robust":
+        return RobustGenerator(lipm, parameters, sole)
     return DcmGenerator(lipm, parameters)

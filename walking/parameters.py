@@ -48,9 +48,10 @@ class GaitParameters:
 class PatternParameters:
     """The ZMP pattern and the point that follows it."""
 
-    generator: Literal["dcm", "preview", "paper"] = "dcm"
-    """Preview of the footholds by the DCM recursion or by Kajita's regulator, or the modifiable
-    walking pattern of the paper: two-level ZMP functions in single support."""
+    generator: Literal["dcm", "preview", "paper", "robust"] = "dcm"
+    """Preview of the footholds by the DCM recursion or by Kajita's regulator; the modifiable
+    walking pattern of the paper, two-level ZMP functions in single support; or a plan whose ZMP
+    is inside the soles at all times, a command that does not allow one being altered."""
     pelvis_height: Annotated[float, Gt(0.0)] = 0.204
     """Height of the hips while walking [m]."""
     lipm_height: Annotated[float, Gt(0.0)] = 0.19
@@ -62,6 +63,8 @@ class PatternParameters:
     """Where the ZMP is meant to be inward of the ankle [m]."""
     sole_margin: Annotated[float, Ge(0.0)] = 0.005
     """Distance that the planned ZMP keeps from the edge of the sole [m]."""
+    zmp_rate: Annotated[float, Gt(0.0)] = 4.0
+    """Fastest move of the robust plan's ZMP in single support [m/s]."""
     dcm_gain: Annotated[float, Gt(1.0)] = 3.0
     """ZMP moved per error of the planned DCM [1]."""
     preview_time: Annotated[float, Gt(0.0)] = 1.2

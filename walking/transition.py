@@ -32,7 +32,7 @@ class Transition:
         self._gait = gait
         self._planner = planner
         self._generator = generator
-        self._stepping = gait.stepping
+        self._stepping, self._held = gait.stepping, gait.held
         self._landing = gait.landing
         self._clock = gait.clock()
         self.share = 1.0
@@ -42,7 +42,7 @@ class Transition:
     def remember(self) -> None:
         """Keep the plan of the last tick, before anything about it changes."""
         gait = self._gait
-        self._stepping = gait.stepping
+        self._stepping, self._held = gait.stepping, gait.held
         self._landing = gait.landing
         self._clock = gait.clock()
 
@@ -64,14 +64,19 @@ class Transition:
             region: where the ZMP may be in this tick.
             wish: strides or velocity of the wanted plan.
             moving: whether the wanted plan goes on walking.
-            forced: whether the plan has to change, because the body has left the old one.
+            forced: whether the landing has to change, because the body has left the old plan.
         """
         before, wanted = self.strides, self._planner.strides(wish)
-        free = before is None or forced or not self._stepping or not self._gait.stepping
+        free = before is None or not self._stepping or not self._gait.stepping
         if before is None or free or self._generator.admits(state, ramps, region):
             self.share, self.moving, self.strides = 1.0, moving, wanted
             return ramps
         landing, clock = self._gait.landing, self._gait.clock()
+        if forced or (self._gait.held and not self._held):
+            # The landing is as it is; at least nothing else adds to it.
+            self.share, self.strides = 0.0, before
+            self._gait.set_clock(self._clock)
+            return self._plan(landing, before, 1.0)
         low, high, best = 0.0, 1.0, ramps
         for _ in range(BISECTIONS):
             share = 0.5 * (low + high)

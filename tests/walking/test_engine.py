@@ -13,7 +13,7 @@ from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Phase
 
 AHEAD = HeadTarget()
-GENERATORS = ["dcm", "preview", "paper"]
+GENERATORS = ["dcm", "preview", "paper", "robust"]
 MIRROR_LEG = np.array([-1, -1, 1, 1, 1, -1])
 MIRROR_ARM = np.array([1, -1, -1, 1, -1, -1])
 

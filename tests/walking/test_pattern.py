@@ -52,7 +52,7 @@ def test_dcm_reference_forgets_the_far_future():
 
 @pytest.mark.parametrize("name", GENERATORS)
 def test_a_displaced_pendulum_comes_to_rest_over_the_reference(name):
-    generator = make_generator(LIPM, PatternParameters(generator=name))
+    generator = make_generator(LIPM, PatternParameters(generator=name), SOLE)
     state = PendulumState(0.02, 0.01, 0.0, 0.05, 0.02, 0.01)
     ramps = [ZmpRamp(1, 0.01, 0.0, 0.01, 0.0, FEET)]
     for _ in range(400):
@@ -65,7 +65,7 @@ def test_a_displaced_pendulum_comes_to_rest_over_the_reference(name):
 
 @pytest.mark.parametrize("name", GENERATORS)
 def test_the_zmp_tracks_a_sideways_shift(name):
-    generator = make_generator(LIPM, PatternParameters(generator=name))
+    generator = make_generator(LIPM, PatternParameters(generator=name), SOLE)
     state = PendulumState(0.01, 0.0, zmp_x=0.01)
     region = BOTH
     for k in range(60):
@@ -83,7 +83,7 @@ def test_the_zmp_tracks_a_sideways_shift(name):
 def test_generators_mirror(name):
     states = []
     for sign in (1.0, -1.0):
-        generator = make_generator(LIPM, PatternParameters(generator=name))
+        generator = make_generator(LIPM, PatternParameters(generator=name), SOLE)
         state = PendulumState(0.0, sign * 0.01, 0.1, sign * 0.02, 0.0, sign * 0.01)
         ramps = [ZmpRamp(r.ticks, r.ax, sign * r.ay, r.bx, sign * r.by, FEET) for r in RAMPS]
         generator.advance(state, ramps, dcm_reference(LIPM, ramps), BOTH)

@@ -93,9 +93,12 @@ def test_times_change_by_the_same_share(setting):
     assert gait.timing.single == 64
 
 
-def test_a_forced_change_is_never_turned_down(setting):
-    _, generator, transition, _ = setting
+def test_a_forced_landing_is_never_turned_down_but_the_rest_is(setting):
+    gait, generator, transition, _ = setting
     tick(setting, SLOW)
+    slow, timing = transition.strides, gait.timing
     generator.reach = -1.0
-    tick(setting, FAST, forced=True)
-    assert transition.share == 1.0
+    tick(setting, FAST, forced=True, timing=Timing(20, 80, 0.03))
+    assert gait.landing.x == pytest.approx(0.3 * PARAMETERS.gait.footstep_time)
+    assert transition.strides == slow
+    assert gait.timing == timing
