@@ -13,23 +13,27 @@ from hsr8.errors import RenderingUnavailable
 
 APT_LINE = "apt-get install -y libegl1 libgl1"
 BACKENDS = ("egl", "osmesa")
+ASKED = os.environ.get("MUJOCO_GL", "").strip()  # by the user, before `choose_backend` writes it
 _LIBRARIES = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
+# What else MuJoCo takes on Linux: a window of a display, or nothing at all.
+_OTHERS = {"glfw", "glx", "enable", "enabled", "on", "true", "1"}
+_OTHERS |= {"disable", "disabled", "off", "false", "0"}
 SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "software")
 
 
 def choose_backend() -> str:
     """Set ``MUJOCO_GL``: what the user asked for, else EGL, else OSMesa.
 
-    A backend whose library is missing is switched off, for it would make the import of
-    MuJoCo fail although physics needs no drawing.
+    A backend that is unknown or whose library is missing is switched off, for it would make
+    the import of MuJoCo fail although physics needs no drawing.
 
     Returns:
         The backend in force; empty where MuJoCo is to choose by itself (not Linux).
     """
-    asked = os.environ.get("MUJOCO_GL", "").lower()
-    if not sys.platform.startswith("linux") or (asked and asked not in BACKENDS):
+    asked = os.environ.get("MUJOCO_GL", "").strip().lower()
+    if not sys.platform.startswith("linux") or asked in _OTHERS:
         return asked
-    wanted = (asked,) if asked else BACKENDS
+    wanted = [name for name in BACKENDS if asked in ("", name)]
     chosen = next((name for name in wanted if _loads(_LIBRARIES[name])), "disable")
     os.environ["MUJOCO_GL"] = chosen
     return chosen
@@ -79,11 +83,16 @@ def _loads(library: str) -> bool:
 
 
 def _advice(reason: str) -> str:
-    backend = os.environ.get("MUJOCO_GL", "") or "default"
     why = reason.splitlines()[0] if reason else "no reason given"
+    if ASKED:
+        cause = f"no OpenGL can draw with MUJOCO_GL={ASKED} ({why})"
+        cure = f"let hsr8 choose:      unset MUJOCO_GL   (or choose {', '.join(BACKENDS)})"
+    else:
+        cause = f"no OpenGL can draw here ({why})"
+        cure = f"install it, as root:  {APT_LINE}"
     return (
-        f"no OpenGL can draw here (MUJOCO_GL={backend}: {why})"
-        f"\n  install it, as root:  {APT_LINE}"
+        f"{cause}"
+        f"\n  {cure}"
         "\n  or run without it:    --camera analytic"
         "\n  details:              hsr8 doctor"
     )

@@ -14,7 +14,7 @@ from rich.table import Table
 from hsr8 import __version__
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
-from hsr8.gl import APT_LINE, BACKENDS, is_software
+from hsr8.gl import APT_LINE, ASKED, BACKENDS, is_software
 from hsr8.recorder import atomic
 from hsr8.recorder.manifest import versions
 from hsr8.world.models import models_dir
@@ -59,6 +59,7 @@ def examine() -> list[Finding]:
             for name, version in versions().items()
         ),
         *opengl({backend: probe(backend) for backend in BACKENDS}),
+        *_asked(ASKED),
         _models(),
         _disk(),
         _viewer(),
@@ -110,6 +111,17 @@ def opengl(renderers: dict[str, str | None]) -> list[Finding]:
             )
         )
     return findings
+
+
+def _asked(backend: str) -> list[Finding]:
+    """Whether the backend that the user's environment asks for draws."""
+    if not backend:
+        return []
+    name = f"MUJOCO_GL={backend}"
+    renderer = probe(backend)
+    if renderer is None:
+        return [Finding(name, "missing", "is set, but does not draw here: unset MUJOCO_GL")]
+    return [Finding(name, "ok", f"is set and draws: {renderer}")]
 
 
 def _models() -> Finding:

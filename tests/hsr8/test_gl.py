@@ -43,6 +43,15 @@ def test_a_missing_library_is_not_left_to_break_the_import(libraries, monkeypatc
     assert gl.choose_backend() == "disable"
 
 
+@pytest.mark.parametrize("asked", ["bogus", "EGL "])
+def test_a_backend_that_does_not_exist_is_not_left_to_break_the_import(
+    libraries, monkeypatch, asked
+):
+    libraries("EGL")
+    monkeypatch.setenv("MUJOCO_GL", asked)
+    assert gl.choose_backend() == ("egl" if asked == "EGL " else "disable")
+
+
 def test_other_systems_choose_by_themselves(libraries, monkeypatch):
     libraries("EGL")
     monkeypatch.setattr(sys, "platform", "darwin")
@@ -50,13 +59,24 @@ def test_other_systems_choose_by_themselves(libraries, monkeypatch):
     assert "MUJOCO_GL" not in os.environ
 
 
-def test_without_opengl_the_message_says_what_to_do(libraries):
+def test_without_opengl_the_message_says_what_to_do(libraries, monkeypatch):
     libraries()
+    monkeypatch.setattr(gl, "ASKED", "")
     with pytest.raises(RenderingUnavailable) as caught:
         gl.require_gl.__wrapped__()
     assert gl.APT_LINE in str(caught.value)
     assert "--camera analytic" in str(caught.value)
     assert caught.value.exit_code == 2
+
+
+def test_a_backend_that_was_asked_for_in_vain_is_named(libraries, monkeypatch):
+    libraries("EGL")
+    monkeypatch.setenv("MUJOCO_GL", "osmesa")
+    monkeypatch.setattr(gl, "ASKED", "osmesa")
+    with pytest.raises(RenderingUnavailable, match="MUJOCO_GL=osmesa") as caught:
+        gl.require_gl.__wrapped__()
+    assert "unset MUJOCO_GL" in str(caught.value)
+    assert gl.APT_LINE not in str(caught.value)
 
 
 def test_physics_works_without_any_opengl():

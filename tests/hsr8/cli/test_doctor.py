@@ -7,6 +7,11 @@ from hsr8.cli.main import entry
 from hsr8.gl import APT_LINE
 
 
+@pytest.fixture(autouse=True)
+def nothing_asked(monkeypatch):
+    monkeypatch.setattr(doctor, "ASKED", "")
+
+
 @pytest.mark.parametrize(
     ("renderers", "states"),
     [
@@ -39,3 +44,12 @@ def test_a_backend_that_fails_is_a_note_not_an_error(monkeypatch):
     assert doctor.probe("egl") is None
     monkeypatch.setattr(doctor, "PROBE", "print('a renderer')")
     assert doctor.probe("egl") == "a renderer"
+
+
+def test_a_backend_that_is_asked_for_must_draw(monkeypatch, capsys):
+    monkeypatch.setattr(doctor, "ASKED", "osmesa")
+    monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe" if backend == "egl" else None)
+    assert entry(["doctor"]) == 2
+    assert "unset MUJOCO_GL" in " ".join(capsys.readouterr().out.split())
+    monkeypatch.setattr(doctor, "ASKED", "egl")
+    assert entry(["doctor"]) == 0
