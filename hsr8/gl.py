@@ -12,6 +12,7 @@ from functools import cache
 from hsr8.errors import RenderingUnavailable
 
 APT_LINE = "apt-get install -y libegl1 libgl1"
+VULKAN_LINE = "apt-get install -y mesa-vulkan-drivers"  # for the Rerun viewer
 BACKENDS = ("egl", "osmesa")
 ASKED = os.environ.get("MUJOCO_GL", "").strip()  # by the user, before `choose_backend` writes it
 _LIBRARIES = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}

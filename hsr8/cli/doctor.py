@@ -14,12 +14,13 @@ from rich.table import Table
 from hsr8 import __version__
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
-from hsr8.gl import APT_LINE, ASKED, BACKENDS, is_software
+from hsr8.gl import APT_LINE, ASKED, BACKENDS, VULKAN_LINE, is_software
 from hsr8.recorder import atomic
 from hsr8.recorder.manifest import versions
 from hsr8.world.models import models_dir
 
 PROBE_LIMIT = 60.0  # an OpenGL that needs longer hangs [s]
+VULKAN_FOLDERS = ("/usr/share", "/usr/local/share", "/etc")
 LEAST_DISK = 1.0  # [GB]
 PROBE = "from hsr8.gl import require_gl; print(require_gl())"
 
@@ -142,7 +143,16 @@ def _viewer() -> Finding:
     found = str(beside) if beside.exists() else shutil.which("rerun")
     if found is None:
         return Finding("Rerun viewer", "note", "not found; `pip install rerun-sdk` brings it")
-    return Finding("Rerun viewer", "ok", f"{found}; hsr8 binds it to 127.0.0.1 only")
+    text = f"{found}; hsr8 binds it to 127.0.0.1 only"
+    if sys.platform.startswith("linux") and not _vulkan_drivers():
+        return Finding("Rerun viewer", "note", f"{text}; it draws with Vulkan: {VULKAN_LINE}")
+    return Finding("Rerun viewer", "ok", text)
+
+
+def _vulkan_drivers() -> list[Path]:
+    return [
+        file for folder in VULKAN_FOLDERS for file in Path(folder, "vulkan/icd.d").glob("*.json")
+    ]
 
 
 def _show(findings: list[Finding]) -> None:

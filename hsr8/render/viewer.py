@@ -1,6 +1,7 @@
 """The Rerun viewer that belongs to the installed library, bound to this machine only."""
 
 import os
+import re
 import shutil
 import signal
 import socket
@@ -8,17 +9,18 @@ import subprocess
 import sys
 import time as clock
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from rerun.experimental import ViewerClient
 
 from hsr8.errors import UsageError
+from hsr8.gl import VULKAN_LINE
 
 TIMELINE = "sim_time"
 START_LIMIT = 30.0  # the viewer must answer within this wall time [s]
+ENDING = 2.0  # a viewer that went down is gone within this wall time [s]
 SETTLE = 6.0  # notices fade and views load in this wall time [s]
-VULKAN_LINE = "apt-get install -y mesa-vulkan-drivers"
 
 
 def executable() -> str:
@@ -55,16 +57,20 @@ def screenshot(log: Path, time: float, size: tuple[int, int]) -> bytes:
         size: width and height of the window [pixel].
 
     Raises:
-        UsageError: the viewer did not start, for example for want of Vulkan.
+        UsageError: the viewer did not start, for example for want of Vulkan, or `log` holds
+            no recording.
     """
     port = _free_port()
     window = ("--headless", "--window-size", f"{size[0]}x{size[1]}")
     with _running([*_command(log, port), *window]) as viewer:
-        client = _connect(viewer, port)
-        _wait_for_recording(client, viewer)
-        client.set_time(TIMELINE, duration=time, play_state="paused")
-        clock.sleep(SETTLE)
-        return bytes(client.take_screenshot())
+        try:
+            client = _connect(viewer, port)
+            _wait_for_recording(client, viewer, log)
+            client.set_time(TIMELINE, duration=time, play_state="paused")
+            clock.sleep(SETTLE)
+            return bytes(client.take_screenshot())
+        except ConnectionError:  # it went down while it was talked to
+            raise _failed(viewer) from None
 
 
 def _command(log: Path, port: int) -> list[str]:
@@ -102,21 +108,30 @@ def _connect(viewer: subprocess.Popen[bytes], port: int) -> ViewerClient:
     raise _failed(viewer)
 
 
-def _wait_for_recording(client: ViewerClient, viewer: subprocess.Popen[bytes]) -> None:
+def _wait_for_recording(client: ViewerClient, viewer: subprocess.Popen[bytes], log: Path) -> None:
     end = clock.monotonic() + START_LIMIT
     while clock.monotonic() < end and viewer.poll() is None:
         if client.get_state().recordings:
             return
         clock.sleep(0.2)
+    if viewer.poll() is None:
+        raise UsageError(f"the Rerun viewer finds no recording in {log}")
     raise _failed(viewer)
 
 
 def _failed(viewer: subprocess.Popen[bytes]) -> UsageError:
+    with suppress(subprocess.TimeoutExpired):
+        viewer.wait(ENDING)
     said = ""
     if viewer.poll() is not None and viewer.stderr is not None:
-        lines = viewer.stderr.read().decode(errors="replace").strip().splitlines()
-        said = f": {lines[-1]}" if lines else ""
+        said = complaint(viewer.stderr.read().decode(errors="replace"))
     return UsageError(
-        f"the Rerun viewer did not start{said}"
+        f"the Rerun viewer did not start{f': {said}' if said else ''}"
         f"\n  without a graphics card it needs Vulkan in software; as root:  {VULKAN_LINE}"
     )
+
+
+def complaint(said: str) -> str:
+    """The line of the viewer's messages that says what went wrong, without colours."""
+    lines = re.sub(r"\x1b\[[0-9;]*m", "", said).splitlines()
+    return next((line.strip() for line in lines if re.search(r"panicked|\berror", line, re.I)), "")

@@ -4,7 +4,7 @@ import pytest
 
 from hsr8.cli import doctor
 from hsr8.cli.main import entry
-from hsr8.gl import APT_LINE
+from hsr8.gl import APT_LINE, VULKAN_LINE
 
 
 @pytest.fixture(autouse=True)
@@ -53,3 +53,17 @@ def test_a_backend_that_is_asked_for_must_draw(monkeypatch, capsys):
     assert "unset MUJOCO_GL" in " ".join(capsys.readouterr().out.split())
     monkeypatch.setattr(doctor, "ASKED", "egl")
     assert entry(["doctor"]) == 0
+
+
+def test_the_viewer_of_logs_needs_vulkan_which_is_no_obstacle_to_a_run(
+    monkeypatch, capsys, tmp_path
+):
+    monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setattr(doctor, "VULKAN_FOLDERS", (str(tmp_path),))
+    assert entry(["doctor"]) == 0
+    assert VULKAN_LINE in " ".join(capsys.readouterr().out.split())
+    (tmp_path / "vulkan/icd.d").mkdir(parents=True)
+    (tmp_path / "vulkan/icd.d/lvp.json").touch()
+    entry(["doctor"])
+    assert VULKAN_LINE not in " ".join(capsys.readouterr().out.split())

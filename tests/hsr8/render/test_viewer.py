@@ -1,0 +1,25 @@
+import sys
+from pathlib import Path
+
+import pytest
+
+from hsr8.errors import UsageError
+from hsr8.gl import VULKAN_LINE
+from hsr8.render import viewer
+
+
+def test_the_line_that_says_what_went_wrong_is_found():
+    said = (
+        "\x1b[2m2026-01-01\x1b[0m \x1b[32m INFO\x1b[0m loading\n\n"
+        "thread 'main' panicked at 'no \x1b[1mcontext\x1b[0m'\nstack backtrace:\n 24: _start\n"
+    )
+    assert viewer.complaint(said) == "thread 'main' panicked at 'no context'"
+    assert viewer.complaint("INFO loading\nINFO loaded\n") == ""
+
+
+def test_a_viewer_that_goes_down_leads_to_the_cure(monkeypatch):
+    program = "import sys; sys.exit('Error: no graphics')"
+    monkeypatch.setattr(viewer, "_command", lambda log, port: [sys.executable, "-c", program])
+    with pytest.raises(UsageError, match="did not start: Error: no graphics") as caught:
+        viewer.screenshot(Path("log.rrd"), 0.0, (64, 64))
+    assert VULKAN_LINE in str(caught.value)
