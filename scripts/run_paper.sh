@@ -18,5 +18,6 @@ status=0
 ((status <= 1)) || exit "$status"
 
 .venv/bin/hsr8 render "$out/paper"  # its newest run
+[[ " $* " == *" --no-log "* ]] && exit
 echo
 echo "the log, opened:  .venv/bin/hsr8 replay $out/paper"

@@ -9,6 +9,7 @@ from typing import Self
 from hsr8.errors import Hsr8Error
 
 FILE = "crash.txt"
+EXPECTED = (Hsr8Error, BrokenPipeError)  # told by the command line itself
 
 
 class InternalError(Hsr8Error):
@@ -34,7 +35,7 @@ class CrashReport:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if not isinstance(error, Exception) or isinstance(error, Hsr8Error):
+        if not isinstance(error, Exception) or isinstance(error, EXPECTED):
             return
         what = str(error).strip().splitlines()
         raise InternalError(

@@ -1,6 +1,7 @@
 """The command line ``hsr8``."""
 
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 from typing import Annotated
@@ -27,6 +28,7 @@ MODULES: dict[type, str] = {
     options.Replay: "hsr8.cli.replay",
 }
 INTERRUPTED = 130
+READER_LEFT = 141  # as of a program that SIGPIPE ends
 
 Commands = (
     Annotated[options.Run, tyro.conf.subcommand("run")]
@@ -65,11 +67,16 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         with CrashReport():
             module = importlib.import_module(MODULES[type(command)])
             code: int = module.main(command)
+            print(end="", flush=True)
     except Hsr8Error as error:
         print(f"hsr8: {error}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
         return _interrupted()
+    except (BrokenPipeError, SystemExit):  # rich turns the former into the latter
+        # What is still to be written, at the latest when Python ends, has no reader.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return READER_LEFT
     return code
 
 

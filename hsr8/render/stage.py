@@ -84,9 +84,8 @@ class Stage:
         """
         names = [self.model.camera(i).name for i in range(self.model.ncam)]
         if name not in names:
-            raise UsageError(
-                f"there is no camera {name!r}; choose dashboard, follow, head, {', '.join(names)}"
-            )
+            choices = ", ".join(dict.fromkeys(("dashboard", "follow", "head", *names)))
+            raise UsageError(f"there is no camera {name!r}; choose {choices}")
 
     def close(self) -> None:
         """Free the OpenGL context."""

@@ -109,6 +109,17 @@ def test_ctrl_c_while_the_command_line_is_read(monkeypatch, capsys):
     assert capsys.readouterr().err == "hsr8: interrupted\n"
 
 
+@pytest.mark.parametrize("arguments", [["list"], ["list", "--json"]])
+def test_a_reader_that_leaves_is_no_mistake_of_ours(arguments):
+    with subprocess.Popen(
+        [sys.executable, "-m", "hsr8", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        process.stdout.close()
+        said = process.stderr.read()
+        assert process.wait(60) == 141
+    assert said == b""
+
+
 def test_the_module_can_be_run():
     done = subprocess.run(
         [sys.executable, "-m", "hsr8", "list", "--json"],

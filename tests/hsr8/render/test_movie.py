@@ -68,7 +68,7 @@ def test_every_camera_draws(run, camera, tmp_path):
 
 @pytest.mark.gl
 def test_an_unknown_camera_is_a_usage_error_that_names_the_others(run, tmp_path):
-    with pytest.raises(UsageError, match="egocentric"):
+    with pytest.raises(UsageError, match="dashboard, follow, head, top, corner, front, egocentric"):
         film(run, Shot(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
     assert list(tmp_path.iterdir()) == []
 
