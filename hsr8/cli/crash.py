@@ -37,6 +37,9 @@ class CrashReport:
     ) -> None:
         if not isinstance(error, Exception) or isinstance(error, EXPECTED):
             return
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            # Ctrl-C during the import of a compiled module arrives as an ImportError.
+            raise KeyboardInterrupt from error
         what = str(error).strip().splitlines()
         raise InternalError(
             f"internal error, {type(error).__name__}: {what[0] if what else 'no message'}"

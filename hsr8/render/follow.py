@@ -15,6 +15,7 @@ ELEVATION = -22.0  # looking down [deg]
 BESIDE = 35.0  # the camera stands so far to the right of straight behind [deg]
 HEIGHT = 0.22  # of the point looked at [m]
 STEADY = 0.6  # time constant of the position, in video time [s]
+NEAR = 1.2  # and at most this in simulated time, or the robot leaves a fast video [s]
 CALM = 2.5  # time constant of the direction, in video time [s]
 
 
@@ -24,11 +25,12 @@ class FollowCamera:
     Args:
         qpos: of the robot at each frame of the video (n, nq).
         fps: frames per second of the video.
+        speed: simulated seconds per second of video.
     """
 
-    def __init__(self, qpos: Array, fps: float) -> None:
+    def __init__(self, qpos: Array, fps: float, speed: float = 1.0) -> None:
         yaw = np.unwrap([heading(row[3:7]) for row in qpos])
-        self._place = _smooth(qpos[:, :2], STEADY * fps)
+        self._place = _smooth(qpos[:, :2], min(STEADY, NEAR / speed) * fps)
         direction = _smooth(np.column_stack([np.cos(yaw), np.sin(yaw)]), CALM * fps)
         self._yaw = np.unwrap([atan2(y, x) for x, y in direction.tolist()])
 

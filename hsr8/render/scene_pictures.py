@@ -63,7 +63,7 @@ class Pictures:
         self._frames = run.frames()
         self._frame_times = [frame.time for frame in self._frames]
         self._collisions = [e["time"] for e in run.events() if e["kind"] == "collision"]
-        self._follow = FollowCamera(self._trajectory.qpos[self._rows], fps)
+        self._follow = FollowCamera(self._trajectory.qpos[self._rows], fps, speed)
         camera = scenario.camera
         self._optics = Optics(
             camera.width,

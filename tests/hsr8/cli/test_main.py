@@ -100,6 +100,14 @@ def test_a_run_folder_that_takes_no_traceback_is_no_obstacle(tmp_path, monkeypat
         raise OSError("No space left on device")
 
 
+def test_ctrl_c_during_the_import_of_a_compiled_module(failing, capsys):
+    wrapped = ImportError("initialization failed")
+    wrapped.__cause__ = KeyboardInterrupt()
+    failing(wrapped)
+    assert entry(["list"]) == 130
+    assert capsys.readouterr().err == "hsr8: interrupted\n"
+
+
 def test_ctrl_c_while_the_command_line_is_read(monkeypatch, capsys):
     def interrupted(*_, **__):
         raise KeyboardInterrupt

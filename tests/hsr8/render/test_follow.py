@@ -40,3 +40,13 @@ def test_the_camera_does_not_lag_behind():
     follow = FollowCamera(_walk(500, np.zeros(500)), 25)
     middle = follow.at(250).lookat[0]
     assert abs(middle - 2.0 * 250 / 499) < 0.01
+
+
+def test_a_robot_that_turns_back_stays_in_a_fast_picture():
+    """Ten times as fast: 0.2 m/s for 15 s and back again, seen from less than 2 m away."""
+    qpos = _walk(150, np.zeros(150))
+    time = np.arange(150) * 10 / 25
+    qpos[:, 0] = 0.2 * np.abs((time % 30.0) - 15.0)
+    follow = FollowCamera(qpos, 25, speed=10.0)
+    away = [abs(follow.at(i).lookat[0] - qpos[i, 0]) for i in range(150)]
+    assert max(away) < 0.3
