@@ -112,8 +112,9 @@ class Simulation:
             except KeyboardInterrupt:
                 reason = "interrupted"
             finally:
-                for listener in self.listeners:
-                    listener.close(reason)
+                with ExitStack() as farewell:  # each is closed, also when another one fails
+                    for listener in reversed(self.listeners):
+                        farewell.callback(listener.close, reason)
         return RunOutcome(reason, self._body.time, self.state_hash())
 
     def state_hash(self) -> str:

@@ -89,3 +89,27 @@ def test_a_scripted_walk_goes_where_it_is_told(simulate):
     _, recorded, _ = simulate("walk", duration=6.0)
     way = recorded.records[-1].truth.robot - recorded.records[0].truth.robot
     assert np.hypot(*way[:2]) > 0.3
+
+
+def test_every_listener_is_closed_though_one_fails():
+    class Fails:
+        def on_record(self, record):
+            pass
+
+        def on_event(self, time, kind, text):
+            pass
+
+        def close(self, exit_reason):
+            raise OSError("disk full")
+
+    class Closes(Fails):
+        reason = None
+
+        def close(self, exit_reason):
+            self.reason = exit_reason
+
+    last = Closes()
+    settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=0.1"]
+    with pytest.raises(OSError, match="disk full"):
+        Simulation(load("quick", settings), 0, [Fails(), last]).run()
+    assert last.reason == "timeout"

@@ -3,6 +3,7 @@
 import dataclasses
 
 import numpy as np
+import pytest
 
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
@@ -23,8 +24,15 @@ class Forbidden:
         raise AssertionError(f"the loop looked at truth.{name}")
 
 
-def test_the_loop_runs_the_same_without_the_truth(monkeypatch):
-    scenario = load("quick", ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"])
+@pytest.mark.parametrize(
+    "parts",
+    [
+        ['robot.body="kinematic"', 'camera.source="analytic"'],
+        pytest.param(['robot.body="full"', 'camera.source="egl"'], marks=pytest.mark.gl),
+    ],
+)
+def test_the_loop_runs_the_same_without_the_truth(monkeypatch, parts):
+    scenario = load("quick", [*parts, "duration=2.0"])
     expected = Simulation(scenario, 0).run()
     blind = Simulation(scenario, 0)
     body = blind._body
