@@ -18,7 +18,7 @@ from hsr8.world.layout import Layout
 from hsr8.world.plan_view import PlanView
 
 # Measured on two cores without a graphics card, `paper` at its defaults.
-REAL_TIME_FACTOR = 3.5
+REAL_TIME_FACTOR = 4.4
 LOG_RATE = 0.19  # megabytes of log and records per simulated second
 
 Summary = dict[str, object]
