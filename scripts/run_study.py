@@ -9,6 +9,7 @@ the table and not the end of the study. The raw rows go beside the table as JSON
 import argparse
 import json
 import platform
+import shlex
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -126,7 +127,7 @@ def main() -> None:
             rows[seed] = row
             print(seed, {k: show(row.get(k, "")) for k in COLUMNS}, flush=True)
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
-    command = " ".join(["python scripts/run_study.py", *sys.argv[1:]])
+    command = shlex.join(["python", "scripts/run_study.py", *sys.argv[1:]])
     arguments.out.write_text(table(arguments.scenario, rows, command))
     raw = arguments.out.with_suffix(".jsonl")
     raw.write_text("".join(json.dumps({"seed": s} | r) + "\n" for s, r in sorted(rows.items())))
