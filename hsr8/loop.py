@@ -17,10 +17,11 @@ from hsr8.world.analytic import AnalyticCamera
 from hsr8.world.assembly import Optics, assemble
 from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
+from hsr8.world.episodes import Episodes
 from hsr8.world.generator import draw_layout
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
-from hsr8.world.truth import EPISODE_GAP, Truth
+from hsr8.world.truth import Truth
 from vision.camera import PinholeCamera
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
@@ -194,19 +195,16 @@ class _EventWatch:
 
     def __init__(self, tell: Callable[[str, str], None]) -> None:
         self._tell = tell
-        self._touched: dict[int, float] = {}
+        self._episodes = Episodes()
         self._index = 0
         self._lost = False
         self._done = False
 
     def look(self, truth: Truth, frame: FrameRecord | None) -> None:
         """Tell what changed since the last record."""
-        for contact in truth.contacts:
-            before = self._touched.get(contact.obstacle, -np.inf)
-            self._touched[contact.obstacle] = truth.time
-            if truth.time - before >= EPISODE_GAP - 1e-9:
-                what = "mover" if contact.moving else "obstacle"
-                self._tell("collision", f"{contact.robot_geom} touches {what} {contact.obstacle}")
+        for collision in self._episodes.add(truth.time, truth.contacts):
+            what = "mover" if collision.moving else "obstacle"
+            self._tell("collision", f"{collision.robot_geom} touches {what} {collision.obstacle}")
         if frame is None:
             return
         if frame.task.index > self._index:

@@ -6,8 +6,8 @@ from math import degrees, hypot, inf, isfinite, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.evaluation.episodes import Episodes
 from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.world.episodes import Episodes
 from hsr8.world.layout import Layout
 from hsr8.world.truth import Truth
 from navigation.angles import wrap

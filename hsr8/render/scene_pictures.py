@@ -2,7 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from math import hypot
 from typing import Self
 
@@ -100,7 +100,7 @@ class Pictures:
 
     def _stage(self, quality: Quality, size: tuple[int, int]) -> Stage:
         stage = self._stack.enter_context(
-            Stage(self._layout, quality, size, optics=self._optics, fine=self._fine)
+            closing(Stage(self._layout, quality, size, optics=self._optics, fine=self._fine))
         )
         recorded = (self._trajectory.qpos.shape[1], self._trajectory.movers.shape[1])
         if recorded != (stage.model.nq, len(self._layout.movers)):

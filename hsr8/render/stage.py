@@ -1,8 +1,5 @@
 """A recorded world set up again, to be drawn from any camera."""
 
-from types import TracebackType
-from typing import Self
-
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -90,14 +87,3 @@ class Stage:
     def close(self) -> None:
         """Free the OpenGL context."""
         self._renderer.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

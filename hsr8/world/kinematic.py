@@ -127,7 +127,7 @@ class KinematicBody:
         )
 
     def state_bytes(self) -> bytes:
-        """Configuration, planted foot and slip generator's next draw are all of the state."""
+        """Configuration, movers and the place of the planted foot."""
         return b"".join(a.tobytes() for a in (self.data.qpos, self.data.mocap_pos, self._anchor))
 
     def _foot_on_floor(self, side: int) -> Array:

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-EPISODE_GAP = 0.5  # a contact after a pause as long as this is a new collision [s]
-
 
 @dataclass(frozen=True, slots=True)
 class Contact:

@@ -1,4 +1,5 @@
 import struct
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from hsr8.recorder.trajectory import TrajectoryWriter, read_trajectory, rows_at
 def _write(path, rows, nq=5, movers=2):
     rng = np.random.default_rng(1)
     qpos, places = rng.normal(size=(rows, nq)), rng.normal(size=(rows, movers, 2))
-    with TrajectoryWriter(path, nq, movers) as writer:
+    with closing(TrajectoryWriter(path, nq, movers)) as writer:
         for k in range(rows):
             writer.append(0.02 * k, qpos[k], places[k])
     return qpos, places

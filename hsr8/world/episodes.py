@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 
-from hsr8.world.truth import EPISODE_GAP, Contact
+from hsr8.world.truth import Contact
+
+EPISODE_GAP = 0.5  # a contact after a pause as long as this is a new collision [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,12 +15,14 @@ class Collision:
         time: when it began [s].
         obstacle: index in the layout.
         moving: whether the obstacle moves.
+        robot_geom: geom of the robot that touched it.
         closing: the robot's own motion closed the gap when it began.
     """
 
     time: float
     obstacle: int
     moving: bool
+    robot_geom: str
     closing: bool
 
 
@@ -29,8 +33,13 @@ class Episodes:
         self._touched_at: dict[int, float] = {}
         self.collisions: list[Collision] = []
 
-    def add(self, time: float, contacts: tuple[Contact, ...]) -> None:
-        """Take the contacts of one record; several geoms touching one obstacle are one."""
+    def add(self, time: float, contacts: tuple[Contact, ...]) -> list[Collision]:
+        """Take the contacts of one record; several geoms touching one obstacle are one.
+
+        Returns:
+            The collisions that begin with it.
+        """
+        known = len(self.collisions)
         for obstacle in sorted({contact.obstacle for contact in contacts}):
             before = self._touched_at.get(obstacle)
             self._touched_at[obstacle] = time
@@ -42,6 +51,8 @@ class Episodes:
                     time=time,
                     obstacle=obstacle,
                     moving=touching[0].moving,
+                    robot_geom=touching[0].robot_geom,
                     closing=any(c.closing for c in touching),
                 )
             )
+        return self.collisions[known:]

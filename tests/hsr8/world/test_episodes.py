@@ -1,6 +1,6 @@
 import pytest
 
-from hsr8.evaluation.episodes import Episodes
+from hsr8.world.episodes import Episodes
 from hsr8.world.truth import Contact
 
 
