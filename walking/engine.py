@@ -65,7 +65,7 @@ class WalkingEngine:
         self._stabilizer = Stabilizer(robot, parameters.stabilizer, self._lipm.omega)
         self._posture = Posture(robot, parameters)
         self._feedforward = FeedForward(robot, parameters.stabilizer, pattern.pelvis_height)
-        self._odometry = LegOdometry()
+        self._odometry = LegOdometry(parameters.odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
         self._pelvis = self._posture.pelvis(self._gait, (self._pendulum.x, self._pendulum.y))
@@ -170,7 +170,12 @@ class WalkingEngine:
         self._tilt.update(roll, pitch, sensors.gyro.tolist())
         body = measure(self._robot, sensors, self._tilt.roll, self._tilt.pitch, heading)
         left, right = body.feet
-        self._odometry.update(heading, ((left.x, left.y), (right.x, right.y)), body.right_load)
+        self._odometry.update(
+            heading,
+            ((left.x, left.y), (right.x, right.y)),
+            body.right_load,
+            stepping=self._gait.stepping,
+        )
         self._sensors, self._body = sensors, body
         self._ticks += 1
         return body

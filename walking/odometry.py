@@ -1,9 +1,92 @@
 """Where the robot went: support-foot kinematics with the IMU's heading."""
 
+from dataclasses import dataclass
 from math import cos, sin
 
+import numpy as np
+from numpy.typing import NDArray
+
+from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.rotation import wrap
 from walking.state import Odometry
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Increment:
+    """Motion of the robot frame between two readings of the odometry.
+
+    Attributes:
+        motion: displacement in the robot frame of the earlier reading, and turn
+            (3,) [m, m, rad].
+        covariance: of its error (3, 3); independent of that of any other stretch.
+    """
+
+    motion: Array
+    covariance: Array
+
+
+def increment(before: Odometry, after: Odometry) -> Increment:
+    """What the odometry says of the motion between two of its readings."""
+    c, s = cos(before.yaw), sin(before.yaw)
+    dx, dy = after.x - before.x, after.y - before.y
+    # A turn of the odometry frame moves the robot about the frame's origin; what counts is
+    # the robot's own displacement, seen from where it stood.
+    to_robot = np.array(
+        [
+            [c, s, s * after.x - c * after.y],
+            [-s, c, c * after.x + s * after.y],
+            [0.0, 0.0, 1.0],
+        ]
+    )
+    return Increment(
+        motion=np.array([c * dx + s * dy, c * dy - s * dx, after.yaw - before.yaw]),
+        covariance=to_robot @ (after.covariance - before.covariance) @ to_robot.T,
+    )
+
+
+class ErrorGrowth:
+    """Covariance of the dead reckoning's error.
+
+    In every tick a displacement of the robot and a turn of its heading go unseen, both
+    independent of those before. As motions of the whole odometry frame they just add up.
+
+    Args:
+        parameters: how much goes unseen.
+    """
+
+    def __init__(self, parameters: OdometryParameters) -> None:
+        self._forward = parameters.forward_noise**2 * CONTROL_PERIOD
+        self._left = parameters.left_noise**2 * CONTROL_PERIOD
+        self._turn = parameters.yaw_drift**2 * CONTROL_PERIOD
+        self._xx = self._xy = self._xw = self._yy = self._yw = self._ww = 0.0
+
+    def add(self, x: float, y: float, yaw: float, *, stepping: bool) -> None:
+        """One tick at a pose [m, m, rad]."""
+        turn = self._turn
+        self._xx += y * y * turn
+        self._xy -= x * y * turn
+        self._xw += y * turn
+        self._yy += x * x * turn
+        self._yw -= x * turn
+        self._ww += turn
+        if stepping:
+            c, s = cos(yaw), sin(yaw)
+            along, across = self._forward, self._left
+            self._xx += c * c * along + s * s * across
+            self._xy += c * s * (along - across)
+            self._yy += s * s * along + c * c * across
+
+    def covariance(self) -> Array:
+        """Error so far as a motion of the odometry frame (3, 3)."""
+        return np.array(
+            [
+                [self._xx, self._xy, self._xw],
+                [self._xy, self._yy, self._yw],
+                [self._xw, self._yw, self._ww],
+            ]
+        )
 
 
 class LegOdometry:
@@ -12,9 +95,13 @@ class LegOdometry:
     A foot on the floor stays where it is, so the body moves by the change of the vector
     from that foot to the body; both feet count by the load they carry. Encoder noise does
     not add up within a support because the changes telescope.
+
+    Args:
+        parameters: how much of the motion goes unseen.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, parameters: OdometryParameters) -> None:
+        self._growth = ErrorGrowth(parameters)
         self._yaw: float | None = None
         self._raw_yaw = 0.0
         self._arms: tuple[tuple[float, float], tuple[float, float]] | None = None
@@ -26,7 +113,12 @@ class LegOdometry:
         return self._yaw or 0.0
 
     def update(
-        self, imu_yaw: float, feet: tuple[tuple[float, float], tuple[float, float]], load: float
+        self,
+        imu_yaw: float,
+        feet: tuple[tuple[float, float], tuple[float, float]],
+        load: float,
+        *,
+        stepping: bool,
     ) -> None:
         """One tick.
 
@@ -34,6 +126,7 @@ class LegOdometry:
             imu_yaw: heading of the IMU [rad].
             feet: horizontal position of the left and right foot in the robot frame [m].
             load: share of the weight on the right foot [1].
+            stepping: whether the feet leave the floor.
         """
         if self._yaw is None:
             self._yaw = 0.0
@@ -49,8 +142,9 @@ class LegOdometry:
             rest = 1.0 - load
             self.x += rest * (left[0] - plx) + load * (right[0] - prx)
             self.y += rest * (left[1] - ply) + load * (right[1] - pry)
+            self._growth.add(self.x, self.y, self._yaw, stepping=stepping)
         self._arms = left, right
 
     def pose(self) -> Odometry:
         """Pose of the robot frame in the odometry frame."""
-        return Odometry(x=self.x, y=self.y, yaw=self.yaw)
+        return Odometry(x=self.x, y=self.y, yaw=self.yaw, covariance=self._growth.covariance())

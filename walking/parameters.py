@@ -94,6 +94,18 @@ class EstimatorParameters:
 
 
 @dataclass(frozen=True)
+class OdometryParameters:
+    """How much of the robot's motion its dead reckoning does not see."""
+
+    forward_noise: Annotated[float, Ge(0.0)] = 0.0022
+    """Random walk along the heading while stepping [m/√s]."""
+    left_noise: Annotated[float, Ge(0.0)] = 0.0018
+    """Random walk across the heading while stepping [m/√s]."""
+    yaw_drift: Annotated[float, Ge(0.0)] = 0.0011
+    """Random walk of the IMU's yaw [rad/√s]."""
+
+
+@dataclass(frozen=True)
 class StabilizerParameters:
     """Feedback and feed-forward on the servos' set-points."""
 
@@ -210,6 +222,8 @@ class WalkingParameters:
     """ZMP pattern."""
     estimator: EstimatorParameters = field(default_factory=EstimatorParameters)
     """State estimation."""
+    odometry: OdometryParameters = field(default_factory=OdometryParameters)
+    """Dead reckoning."""
     stabilizer: StabilizerParameters = field(default_factory=StabilizerParameters)
     """Balance."""
     limits: LimitParameters = field(default_factory=LimitParameters)

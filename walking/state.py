@@ -43,11 +43,15 @@ class Odometry:
     Attributes:
         x, y: position [m].
         yaw: heading [rad], unwrapped.
+        covariance: of the error since the start, as a displacement and a turn of the whole
+            odometry frame about its origin (3, 3) [m², m rad, rad²]. The errors of successive
+            stretches add up there; `odometry.increment` takes those of one stretch out again.
     """
 
     x: float
     y: float
     yaw: float
+    covariance: Array
 
 
 @dataclass(frozen=True, slots=True)

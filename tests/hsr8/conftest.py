@@ -167,7 +167,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
         truth=Truth(**(fields | truth)),
         walking=WalkingState(
             phase=Phase.LEFT_SUPPORT if int(time / 0.34) % 2 else Phase.RIGHT_SUPPORT,
-            odometry=Odometry(x, y, yaw),
+            odometry=Odometry(x, y, yaw, np.zeros((3, 3))),
             camera=HeadCameraPose(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3),
             given=np.array([0.2, 0.0, 0.0]),
             footsteps=(
