@@ -23,12 +23,12 @@ from walking.posture import Posture
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
 from walking.sensing import BodySensors
-from walking.snapshot import PlanToOdometry, camera_pose
+from walking.snapshot import PlanToOdometry, balance, camera_pose
 from walking.stabilizer import Stabilizer
 from walking.state import Footstep, WalkingState
 from walking.steering import Steering
 from walking.stride import Wish
-from walking.support import SupportRegion, support_region
+from walking.support import Footing, SupportRegion, depth, support_region
 from walking.targets import JointTargets
 from walking.transition import Transition
 
@@ -75,6 +75,8 @@ class WalkingEngine:
         self._weight = self._gait.right_weight
         self._held_turn = 0.0
         self._last_opening_left = False
+        self._footing = Footing(robot.sole, self._gait.support_feet)
+        self._capture = (0.0, 0.0)
         self._ticks = 0
         self._sensors: BodySensors | None = None
         self._body: BodyMeasurement | None = None
@@ -89,6 +91,16 @@ class WalkingEngine:
         """What became of the last tick's command."""
         strides = self._transition.strides if self._transition.share < 1.0 else None
         return self._steering.report(self._binding, self._given, strides, self._gait.timing)
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """Constraints that altered the last tick's command, none if it is obeyed."""
+        return (*self._steering.bound, *self._binding)
+
+    @property
+    def zmp_depth(self) -> float:
+        """How far the last tick's planned ZMP lay inside the soles that carry it [m]."""
+        return depth(self._footing.polygon(), self._pendulum.zmp_x, self._pendulum.zmp_y)
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """One control tick.
@@ -126,6 +138,7 @@ class WalkingEngine:
         load = self._right_load(region, zmp)
         reachable = self._region(self._parameters.stabilizer.sole_margin)
         self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
+        self._footing.feet = gait.support_feet
         gait.advance(moving=moving)
         return self._realize(body, zmp, load, self._head.advance(head))
 
@@ -156,6 +169,15 @@ class WalkingEngine:
             pitch=body.pitch,
             step_count=gait.completed,
             fallen=self._fallen,
+            balance=balance(
+                plan,
+                gait,
+                pendulum,
+                error=self._error,
+                omega=w,
+                footing=self._footing,
+                capture=self._capture,
+            ),
             admission=self.admission,
         )
 
@@ -283,6 +305,7 @@ class WalkingEngine:
             off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
             support = gait.footholds[gait.support]
             caught = self._stabilizer.capture(self._planner, support, nominal, off, gait.ticks_left)
+        self._capture = (caught.x - nominal.x, caught.y - nominal.y)
         if caught != nominal:
             self._binding.append(Limit.BALANCE)
         gait.aim(caught)

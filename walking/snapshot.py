@@ -4,11 +4,15 @@ from math import cos, sin
 
 import numpy as np
 
+from walking.estimator import ErrorFilter
+from walking.gait import Gait
 from walking.joints import HEAD
 from walking.measurement import BodyMeasurement
+from walking.pattern import PendulumState
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
-from walking.state import Footstep, HeadCameraPose, Odometry
+from walking.state import Balance, Footstep, HeadCameraPose, Odometry
+from walking.support import Footing, depth
 
 
 class PlanToOdometry:
@@ -35,6 +39,10 @@ class PlanToOdometry:
         """A point of the plan frame in the odometry frame (2,) [m]."""
         return np.array([self._x + self._c * x - self._s * y, self._y + self._s * x + self._c * y])
 
+    def vector(self, x: float, y: float) -> np.ndarray:
+        """A direction of the plan frame in the odometry frame (2,)."""
+        return np.array([self._c * x - self._s * y, self._s * x + self._c * y])
+
     def footstep(self, step: Footstep) -> Footstep:
         """A foothold of the plan frame in the odometry frame."""
         x, y = self.point(step.x, step.y).tolist()
@@ -54,4 +62,42 @@ def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) 
         position=R_RB @ p_BC + np.array([0.0, 0.0, height]),
         pan=pan,
         tilt=tilt,
+    )
+
+
+def balance(
+    plan: PlanToOdometry,
+    gait: Gait,
+    pendulum: PendulumState,
+    *,
+    error: ErrorFilter,
+    omega: float,
+    footing: Footing,
+    capture: tuple[float, float],
+) -> Balance:
+    """Planned and measured motion of one tick in the odometry frame.
+
+    Args:
+        plan: transform from the plan frame.
+        gait: references of the feet.
+        pendulum: planned motion.
+        error: of the body against it.
+        omega: of the pendulum [1/s].
+        footing: soles that carry.
+        capture: what balance adds to the landing, plan frame [m].
+    """
+    polygon = footing.polygon()
+    dcm_x = pendulum.x + error.x + (pendulum.vx + error.vx) / omega
+    dcm_y = pendulum.y + error.y + (pendulum.vy + error.vy) / omega
+    feet = [
+        (*plan.point(f.x.position, f.y.position), f.height, plan.yaw + f.yaw.position)
+        for f in gait.feet
+    ]
+    return Balance(
+        com=plan.point(pendulum.x, pendulum.y),
+        dcm=plan.point(dcm_x, dcm_y),
+        support=np.array([plan.point(x, y) for x, y in polygon]),
+        zmp_depth=depth(polygon, pendulum.zmp_x, pendulum.zmp_y),
+        feet=np.array(feet),
+        capture=plan.vector(*capture),
     )

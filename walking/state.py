@@ -72,6 +72,28 @@ class HeadCameraPose:
 
 
 @dataclass(frozen=True, slots=True)
+class Balance:
+    """What balance is about, all of it in the odometry frame.
+
+    Attributes:
+        com: planned centre of mass of the pendulum (2,) [m].
+        dcm: measured divergent component of motion, the planned one and its error (2,) [m].
+        support: corners of the planned support polygon, counter-clockwise (n, 2) [m].
+        zmp_depth: how far inside that polygon the planned ZMP lies, negative outside [m].
+        feet: reference of the left and of the right foot: x, y, height above the floor [m]
+            and direction [rad] (2, 4).
+        capture: what balance adds to the landing of the swing foot (2,) [m].
+    """
+
+    com: Array
+    dcm: Array
+    support: Array
+    zmp_depth: float
+    feet: Array
+    capture: Array
+
+
+@dataclass(frozen=True, slots=True)
 class WalkingState:
     """Snapshot of the walking engine after a tick.
 
@@ -87,6 +109,7 @@ class WalkingState:
         roll, pitch: measured attitude of the trunk [rad].
         step_count: number of completed steps.
         fallen: whether the robot believes that it has fallen.
+        balance: planned and measured motion in detail.
         admission: what became of the last command.
     """
 
@@ -102,4 +125,5 @@ class WalkingState:
     pitch: float
     step_count: int
     fallen: bool
+    balance: Balance
     admission: AdmissionReport | None = None

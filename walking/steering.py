@@ -33,6 +33,11 @@ class Steering:
         self.timing = usual
 
     @property
+    def bound(self) -> tuple[Limit, ...]:
+        """Limits that altered the command before it became a wish."""
+        return tuple(self._bound)
+
+    @property
     def moving(self) -> bool:
         """Whether more than standing is wanted."""
         return self._state is not None or self._slew.moving

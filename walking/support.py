@@ -1,10 +1,15 @@
 """The region where the floor can push: the convex hull of one or two soles."""
 
 from dataclasses import dataclass
-from math import cos, sin
+from math import cos, hypot, inf, sin
 
 from walking.robot_model import Sole
 from walking.state import Footstep
+
+Polygon = tuple[tuple[float, float], ...]
+"""Corners of a convex polygon, counter-clockwise [m]."""
+
+COLLINEAR = 1e-12  # twice the area under which three corners are taken for a line [m²]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,3 +78,69 @@ def support_region(sole: Sole, first: Footstep, second: Footstep, margin: float)
         half_length=sole.half_length - margin,
         half_width=sole.half_width - margin,
     )
+
+
+class Footing:
+    """The soles that carry and their hull, computed only when they change.
+
+    Args:
+        sole: rectangle of either sole.
+        feet: the unloading and the loading foot, the same foot twice in single support.
+    """
+
+    def __init__(self, sole: Sole, feet: tuple[Footstep, Footstep]) -> None:
+        self._sole = sole
+        self.feet = self._known = feet
+        self._polygon = support_polygon(sole, *feet)
+
+    def polygon(self) -> Polygon:
+        """Hull of the soles."""
+        (first, second), (known_first, known_second) = self.feet, self._known
+        if first is not known_first or second is not known_second:
+            self._known = self.feet
+            self._polygon = support_polygon(self._sole, first, second)
+        return self._polygon
+
+
+def support_polygon(sole: Sole, first: Footstep, second: Footstep) -> Polygon:
+    """Convex hull of two soles on the floor, or one sole when both are the same foot."""
+    corners = _corners(sole, second)
+    return corners if second is first else _hull([*_corners(sole, first), *corners])
+
+
+def depth(polygon: Polygon, x: float, y: float) -> float:
+    """How far inside a convex polygon a point lies; negative outside [m]."""
+    least = inf
+    ax, ay = polygon[-1]
+    for bx, by in polygon:
+        dx, dy = bx - ax, by - ay
+        least = min(least, (dx * (y - ay) - dy * (x - ax)) / hypot(dx, dy))
+        ax, ay = bx, by
+    return least
+
+
+def _corners(sole: Sole, foot: Footstep) -> Polygon:
+    c, s = cos(foot.yaw), sin(foot.yaw)
+    front, back = sole.centre + sole.half_length, sole.centre - sole.half_length
+    side = sole.half_width
+    return tuple(
+        (foot.x + c * u - s * v, foot.y + s * u + c * v)
+        for u, v in ((front, -side), (front, side), (back, side), (back, -side))
+    )
+
+
+def _hull(points: list[tuple[float, float]]) -> Polygon:
+    """Convex hull, counter-clockwise: Andrew's monotone chain."""
+    points = sorted(set(points))
+    halves = []
+    for ordered in (points, points[::-1]):
+        chain: list[tuple[float, float]] = []
+        for x, y in ordered:
+            while len(chain) > 1:
+                (ax, ay), (bx, by) = chain[-2:]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > COLLINEAR:
+                    break
+                chain.pop()
+            chain.append((x, y))
+        halves += chain[:-1]
+    return tuple(halves)

@@ -18,7 +18,7 @@ from navigation.local_map import LocalMap
 from navigation.observation import CameraView
 from vision.detection import Detection
 from walking.command import HeadTarget, VelocityCommand
-from walking.state import Footstep, HeadCameraPose, Odometry, Phase, WalkingState
+from walking.state import Balance, Footstep, HeadCameraPose, Odometry, Phase, WalkingState
 
 NQ = 33
 READY = np.concatenate([[0.0, 0.0, 0.245, 1.0, 0.0, 0.0, 0.0], np.zeros(NQ - 7)])
@@ -131,6 +131,19 @@ def _frame(layout, time, pose, **change):
     )
 
 
+def _balance(x, y, yaw):
+    """Standing on both feet, the planned ZMP 2 cm inside."""
+    sole = np.array([[0.06, -0.07], [0.06, 0.07], [-0.04, 0.07], [-0.04, -0.07]])
+    return Balance(
+        com=np.array([x, y]),
+        dcm=np.array([x, y]),
+        support=sole + np.array([x, y]),
+        zmp_depth=0.02,
+        feet=np.array([[x, y + 0.042, 0.0, yaw], [x, y - 0.042, 0.0, yaw]]),
+        capture=np.zeros(2),
+    )
+
+
 def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, frame=None, **truth):
     """Record of a robot truly at `pose`; contacts are obstacle indices."""
     x, y, yaw = pose
@@ -181,6 +194,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
             pitch=0.02,
             step_count=int(time / 0.34),
             fallen=fallen,
+            balance=_balance(x, y, yaw),
         ),
         command=VelocityCommand(0.2, 0.0, 0.0),
         head=HeadTarget(),

@@ -226,3 +226,43 @@ def test_head_turns_to_its_target(robot, ideal_body):
 def test_there_is_no_state_before_the_first_tick(robot):
     with pytest.raises(RuntimeError, match="first tick"):
         WalkingEngine(robot, WalkingParameters()).state()
+
+
+@pytest.mark.parametrize("generator", ["robust", "dcm"])
+def test_the_planned_zmp_is_told_to_be_in_the_soles_and_is(robot, ideal_body, generator):
+    """The depth that is told is that of the told ZMP in the told polygon, never negative."""
+    parameters = WalkingParameters()
+    pattern = replace(parameters.pattern, generator=generator)
+    depths = []
+
+    def watch(engine, k):
+        depths.append(engine.zmp_depth)
+        if k % 7 == 0 and len(engine.state().balance.support) > 3:
+            state = engine.state()
+            hull = ConvexHull(state.balance.support)
+            out = (hull.equations[:, :2] @ state.zmp + hull.equations[:, 2]).max()
+            assert depths[-1] == state.balance.zmp_depth == pytest.approx(-out, abs=1e-9)
+
+    run(robot, ideal_body, twists, 4.0, replace(parameters, pattern=pattern), watch)
+    assert min(depths) > -1e-9
+
+
+def test_without_disturbance_the_measured_motion_is_the_planned(robot, ideal_body):
+    apart = []
+
+    def watch(engine, _k):
+        state = engine.state()
+        apart.append(np.abs(state.balance.dcm - state.dcm).max())
+        planned = {(f.left): (f.x, f.y) for f in state.footsteps[:1]}
+        for left, (x, y) in planned.items():
+            assert state.balance.feet[0 if left else 1, :2] == pytest.approx((x, y), abs=1e-9)
+
+    run(robot, ideal_body, always(0.15, 0.0, 0.0), 3.0, None, watch)
+    assert max(apart) < 0.03
+
+
+def test_the_limits_are_those_of_the_report(robot, ideal_body):
+    def watch(engine, _k):
+        assert engine.limits == engine.admission.limits
+
+    run(robot, ideal_body, twists, 2.0, None, watch)

@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.support import support_region
+from walking.support import Footing, depth, support_polygon, support_region
 
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
 MARGIN = 0.005
@@ -55,3 +55,27 @@ def test_load_share_runs_from_one_foot_to_the_other():
     assert region.share(0.01, -0.042) == pytest.approx(0.0)
     assert region.share(0.01, 0.0) == pytest.approx(0.5)
     assert region.share(0.01, 0.2) == 1.0
+
+
+@given(coordinates, coordinates, st.floats(-0.1, 0.1), st.floats(-0.7, 0.7))
+def test_depth_in_the_polygon_agrees_with_the_hull(x, y, ahead, yaw):
+    left = Footstep(True, ahead, 0.08, yaw)
+    polygon = support_polygon(SOLE, RIGHT, left)
+    assert depth(polygon, x, y) == pytest.approx(-outside((x, y), (RIGHT, left), 0.0), abs=1e-9)
+
+
+def test_the_polygon_of_one_foot_is_its_sole():
+    foot = Footstep(True, 0.2, -0.1, 0.4)
+    polygon = support_polygon(SOLE, foot, foot)
+    assert len(polygon) == 4
+    centre = np.mean(polygon, axis=0)
+    assert depth(polygon, *centre) == pytest.approx(SOLE.half_width)
+    assert centre == pytest.approx([0.2 + 0.01 * np.cos(0.4), -0.1 + 0.01 * np.sin(0.4)])
+
+
+def test_a_footing_follows_its_feet():
+    footing = Footing(SOLE, (RIGHT, RIGHT))
+    left = Footstep(True, 0.0, 0.042, 0.0)
+    for feet in ((RIGHT, left), (left, left), (RIGHT, RIGHT)):
+        footing.feet = feet
+        assert footing.polygon() == support_polygon(SOLE, *feet)
