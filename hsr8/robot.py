@@ -137,7 +137,8 @@ class Robot:
         else:
             assert sensed.image is not None
             detections = self._vision.detect(sensed.image, camera_pose(state.camera))
-        belief = self._belief.update(self._frame(sensed.time, state, detections))
+        measured = self._frame(sensed.time, state, detections)
+        belief = self._belief.update(measured)
         task = self._mission.update(belief.pose)
         motion = self._decide_motion(sensed.time, state, belief, task)
         gaze = self._gaze.choose(belief, task, motion)
@@ -149,6 +150,7 @@ class Robot:
             time=sensed.time,
             image=sensed.image,
             detections=detections,
+            measured=measured,
             belief=belief,
             gaze=gaze,
             motion=motion,

@@ -49,17 +49,22 @@ def build_robot(
         ),
         camera=camera,
         vision=Detector(camera, scenario.vision_parameters(), arms()),
-        belief=Estimator(
-            scenario.belief_parameters(),
-            beacons,
-            np.array(layout.start),
-            np.diag(np.square(START_SIGMA)),
-            rng,
-        ),
+        belief=build_estimator(scenario, layout, rng),
         mission=mission,
         gaze=GazePlanner(navigation, limits, beacons, camera.horizontal_fov, camera.vertical_fov),
         planner=planner,
         footstep=limits.footstep,
+    )
+
+
+def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator) -> Estimator:
+    """The belief of the robot of `scenario`; `rng` draws its particles."""
+    return Estimator(
+        scenario.belief_parameters(),
+        {b.name: b.position for b in layout.beacons},
+        np.array(layout.start),
+        np.diag(np.square(START_SIGMA)),
+        rng,
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from hsr8.world.truth import Truth
 from navigation.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
+from navigation.observation import Frame
 from vision.detection import Detection
 from walking.command import HeadTarget, VelocityCommand
 from walking.state import WalkingState
@@ -25,6 +26,7 @@ class FrameRecord:
         time: capture time [s].
         image: (height, width, 3) RGB, or None with the analytic camera.
         detections: what vision found in it.
+        measured: all that reached the belief.
         belief: what the robot believes after it.
         gaze: where it decided to look.
         motion: how it decided to move (the decision in force; new once per footstep).
@@ -35,6 +37,7 @@ class FrameRecord:
     time: float
     image: Image | None
     detections: tuple[Detection, ...]
+    measured: Frame
     belief: Belief
     gaze: GazeDecision
     motion: MotionDecision

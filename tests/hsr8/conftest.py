@@ -15,7 +15,7 @@ from navigation.belief import Belief, Motion, Track
 from navigation.belief_parameters import LocalMapParameters
 from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObstacle
 from navigation.local_map import LocalMap
-from navigation.observation import CameraView
+from navigation.observation import CameraView, Frame
 from vision.detection import Detection
 from walking.command import HeadTarget, VelocityCommand
 from walking.state import Balance, Footstep, HeadCameraPose, Odometry, Phase, WalkingState
@@ -117,6 +117,7 @@ def _frame(layout, time, pose, **change):
                 box=(100, 80, 140, 160),
             ),
         ),
+        measured=Frame(time, np.asarray(pose, float), True, belief["view"], ()),
         belief=Belief(**belief),
         gaze=GazeDecision(0.3, -0.3, 0.2, 0.4, 0.6, 0.1, gaze_map),
         motion=MotionDecision(
