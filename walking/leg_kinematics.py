@@ -31,6 +31,11 @@ class LegDimensions:
     shank: float
     ankle_height: float
 
+    @property
+    def length(self) -> float:
+        """Hip to sole along the straight leg [m]."""
+        return self.thigh + self.shank + self.ankle_height
+
 
 @dataclass(frozen=True, slots=True)
 class FootPose:

@@ -1,12 +1,34 @@
 """Every number of the walking engine that is a choice, not a property of the robot.
 
-The defaults were chosen in full physics with ``scripts/walk_study.py``.
+The defaults were chosen for HSR-VIII in full physics with ``scripts/walk_study.py``. Every
+number carries what it goes with from robot to robot; `walking.similarity.parameters_for`
+makes of the defaults those of another robot.
 """
 
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Interval
+
+from walking.dimension import (
+    ACCELERATION,
+    ANKLE_TIME,
+    CHANGE_WEIGHT,
+    FORCE,
+    HEIGHT,
+    LEFT_PER_TICK,
+    LENGTH,
+    NUMBER,
+    PER_LENGTH,
+    RATE,
+    RATE_CHANGE,
+    SOLE,
+    SOLE_SPEED,
+    SPEED,
+    STANCE,
+    TAKEN_PER_TICK,
+    TIME,
+)
 
 CONTROL_PERIOD = 0.005  # Yoo & Kim: the walking pattern is recomputed every 5 ms [s]
 GRAVITY = 9.81  # [m/s²]
@@ -16,29 +38,29 @@ GRAVITY = 9.81  # [m/s²]
 class GaitParameters:
     """Shape and timing of a footstep."""
 
-    footstep_time: Annotated[float, Gt(0.0)] = 0.34
+    footstep_time: Annotated[float, Gt(0.0), TIME] = 0.34
     """Duration of a footstep, double support included [s]."""
-    double_support: Annotated[float, Interval(gt=0.0, lt=1.0)] = 0.2
+    double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.2
     """Share of the footstep in double support [1]."""
-    start_time: Annotated[float, Gt(0.0)] = 0.3
+    start_time: Annotated[float, Gt(0.0), TIME] = 0.3
     """Double support before the first footstep [s]."""
-    stop_time: Annotated[float, Gt(0.0)] = 0.3
+    stop_time: Annotated[float, Gt(0.0), TIME] = 0.3
     """Time to bring the ZMP back between the feet after the last footstep [s]."""
-    settle_time: Annotated[float, Ge(0.0)] = 0.5
+    settle_time: Annotated[float, Ge(0.0), TIME] = 0.5
     """Standing before the first command is obeyed [s]."""
-    half_stance: Annotated[float, Gt(0.0)] = 0.042
+    half_stance: Annotated[float, Gt(0.0), STANCE] = 0.042
     """Lateral distance of a foot from the middle of the stance [m]."""
-    lift: Annotated[float, Gt(0.0)] = 0.025
+    lift: Annotated[float, Gt(0.0), LENGTH] = 0.025
     """Height of the swing foot at mid-swing [m]."""
-    swing_start: Annotated[float, Interval(ge=0.0, lt=1.0)] = 0.05
+    swing_start: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.05
     """Share of single support after which the foot lifts [1]."""
-    swing_end: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.9
+    swing_end: Annotated[float, Interval(gt=0.0, le=1.0), NUMBER] = 0.9
     """Share of single support after which the foot is down [1]."""
-    landing_freeze: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.8
+    landing_freeze: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.8
     """Share of the swing after which the landing no longer moves [1]."""
-    landing_speed: Annotated[float, Gt(0.0)] = 4.0
+    landing_speed: Annotated[float, Gt(0.0), SPEED] = 4.0
     """Fastest move of the landing while the foot is in the air [m/s]."""
-    foot_clearance: Annotated[float, Ge(0.0)] = 0.012
+    foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.012
     """Distance of every corner of a landing sole from the strip of the support foot [m]."""
     preview_steps: Annotated[int, Gt(0)] = 4
     """Footholds planned ahead [1]."""
@@ -52,24 +74,24 @@ class PatternParameters:
     """Preview of the footholds by the DCM recursion or by Kajita's regulator; the modifiable
     walking pattern of the paper, two-level ZMP functions in single support; or a plan whose ZMP
     is inside the soles at all times, a command that does not allow one being altered."""
-    pelvis_height: Annotated[float, Gt(0.0)] = 0.204
+    pelvis_height: Annotated[float, Gt(0.0), LENGTH] = 0.204
     """Height of the hips while walking [m]."""
-    lipm_height: Annotated[float, Gt(0.0)] = 0.19
+    lipm_height: Annotated[float, Gt(0.0), HEIGHT] = 0.19
     """Height of the pendulum that the pelvis follows; less than the height of the centre
     of mass because half of the mass is in the legs [m]."""
-    zmp_forward: float = 0.010
+    zmp_forward: Annotated[float, LENGTH] = 0.010
     """Where the ZMP is meant to be ahead of the ankle [m]."""
-    zmp_inward: float = 0.0
+    zmp_inward: Annotated[float, STANCE] = 0.0
     """Where the ZMP is meant to be inward of the ankle [m]."""
-    sole_margin: Annotated[float, Ge(0.0)] = 0.005
+    sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.005
     """Distance that the planned ZMP keeps from the edge of the sole [m]."""
-    zmp_rate: Annotated[float, Gt(0.0)] = 4.0
+    zmp_rate: Annotated[float, Gt(0.0), SOLE_SPEED] = 4.0
     """Fastest move of the robust plan's ZMP in single support [m/s]."""
-    dcm_gain: Annotated[float, Gt(1.0)] = 3.0
+    dcm_gain: Annotated[float, Gt(1.0), NUMBER] = 3.0
     """ZMP moved per error of the planned DCM [1]."""
-    preview_time: Annotated[float, Gt(0.0)] = 1.2
+    preview_time: Annotated[float, Gt(0.0), TIME] = 1.2
     """Horizon of Kajita's regulator [s]."""
-    preview_weight: Annotated[float, Gt(0.0)] = 100.0
+    preview_weight: Annotated[float, Gt(0.0), CHANGE_WEIGHT] = 100.0
     """Weight of the ZMP's change per tick in Kajita's regulator, that of its error one [1]."""
 
 
@@ -77,19 +99,19 @@ class PatternParameters:
 class EstimatorParameters:
     """How far each sensor is trusted."""
 
-    tilt_gain: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.03
+    tilt_gain: Annotated[float, Interval(gt=0.0, le=1.0), TAKEN_PER_TICK] = 0.03
     """Pull of the IMU's attitude on the integrated gyro, per tick [1]."""
-    acceleration_noise: Annotated[float, Gt(0.0)] = 4.0
+    acceleration_noise: Annotated[float, Gt(0.0), ACCELERATION] = 4.0
     """Unknown acceleration of the centre of mass [m/s²]."""
-    position_noise: Annotated[float, Gt(0.0)] = 0.0006
+    position_noise: Annotated[float, Gt(0.0), LENGTH] = 0.0006
     """Noise of the measured centre of mass [m]."""
-    contact_force: Annotated[float, Gt(0.0)] = 8.0
+    contact_force: Annotated[float, Gt(0.0), FORCE] = 8.0
     """Load from which a swinging foot has touched the floor [N]."""
     contact_ticks: Annotated[int, Gt(0)] = 2
     """Control ticks that the load must last [1]."""
-    contact_phase: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.55
+    contact_phase: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.55
     """Share of the swing before which no touch-down is believed [1]."""
-    fall_tilt: Annotated[float, Gt(0.0)] = 0.8
+    fall_tilt: Annotated[float, Gt(0.0), NUMBER] = 0.8
     """Tilt of the trunk at which the robot believes that it has fallen [rad]."""
 
 
@@ -109,46 +131,46 @@ class OdometryParameters:
 class StabilizerParameters:
     """Feedback and feed-forward on the servos' set-points."""
 
-    dcm_gain: Annotated[float, Ge(0.0)] = 1.5
+    dcm_gain: Annotated[float, Ge(0.0), NUMBER] = 1.5
     """ZMP moved by the ankles per error of the measured DCM [1]."""
-    sole_margin: Annotated[float, Ge(0.0)] = 0.010
+    sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.010
     """Distance that the ZMP moved by the ankles keeps from the edge of the sole [m]."""
-    gyro_gain: Annotated[float, Ge(0.0)] = 0.02
+    gyro_gain: Annotated[float, Ge(0.0), ANKLE_TIME] = 0.02
     """Ankle set-point per angular velocity of the trunk [s]."""
-    load_gain: Annotated[float, Ge(0.0)] = 1.0
+    load_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the planned joint torques fed forward [1]."""
-    horizontal_gain: Annotated[float, Ge(0.0)] = 0.5
+    horizontal_gain: Annotated[float, Ge(0.0), NUMBER] = 0.5
     """Share of the floor's planned horizontal force in those torques; the pendulum has it
     act on the whole mass, the legs in truth take part in less of it [1]."""
-    inertia_gain: Annotated[float, Ge(0.0)] = 1.0
+    inertia_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the joints' planned acceleration in those torques [1]."""
-    inertia_limit: Annotated[float, Ge(0.0)] = 300.0
+    inertia_limit: Annotated[float, Ge(0.0), RATE_CHANGE] = 300.0
     """Largest acceleration of a joint in those torques [rad/s²]."""
-    velocity_gain: Annotated[float, Ge(0.0)] = 0.3
+    velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 0.3
     """Share of the servos' velocity lag fed forward, legs [1]."""
-    upper_velocity_gain: Annotated[float, Ge(0.0)] = 1.0
+    upper_velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the servos' velocity lag fed forward, head and arms [1]."""
-    capture_dead_zone: Annotated[float, Ge(0.0)] = 0.3
+    capture_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.3
     """DCM error left to the ankles, as a share of the ZMP room they have [1]."""
-    capture_forward: Annotated[float, Ge(0.0)] = 0.19
+    capture_forward: Annotated[float, Ge(0.0), LENGTH] = 0.19
     """Largest move of a landing forward or backward to catch a fall [m]."""
-    capture_side: Annotated[float, Ge(0.0)] = 0.13
+    capture_side: Annotated[float, Ge(0.0), LENGTH] = 0.13
     """Largest move of a landing sideways to catch a fall [m]."""
-    tilt_gain: Annotated[float, Ge(0.0)] = 0.7
+    tilt_gain: Annotated[float, Ge(0.0), NUMBER] = 0.7
     """Share of the trunk's tilt taken out of the swing foot [1]."""
-    tilt_dead_zone: Annotated[float, Ge(0.0)] = 0.019
+    tilt_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.019
     """Tilt below which the swing foot ignores it [rad]."""
-    tilt_decay: Annotated[float, Interval(ge=0.0, lt=1.0)] = 0.85
+    tilt_decay: Annotated[float, Interval(ge=0.0, lt=1.0), LEFT_PER_TICK] = 0.85
     """What is left per tick of the foot's compensation after touch-down [1]."""
-    contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0)] = 0.965
+    contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0), LEFT_PER_TICK] = 0.965
     """What is left per tick of the height at which a foot touched down early [1]."""
-    slew_error: Annotated[float, Gt(0.0)] = 0.03
+    slew_error: Annotated[float, Gt(0.0), LENGTH] = 0.03
     """DCM error beyond which the velocity no longer changes [m]."""
-    step_error: Annotated[float, Gt(0.0)] = 1.0
+    step_error: Annotated[float, Gt(0.0), NUMBER] = 1.0
     """DCM error, as a share of the ZMP room, at which a standing robot steps [1]."""
-    heading_gain: Annotated[float, Ge(0.0)] = 2.0
+    heading_gain: Annotated[float, Ge(0.0), RATE] = 2.0
     """Turn rate per error of the heading [1/s]."""
-    heading_rate: Annotated[float, Ge(0.0)] = 0.3
+    heading_rate: Annotated[float, Ge(0.0), RATE] = 0.3
     """Largest turn rate of the heading hold [rad/s]."""
 
 
@@ -156,39 +178,39 @@ class StabilizerParameters:
 class LimitParameters:
     """What may be asked of the legs."""
 
-    forward: Annotated[float, Gt(0.0)] = 0.32
+    forward: Annotated[float, Gt(0.0), SPEED] = 0.32
     """Fastest walk forward [m/s]."""
-    backward: Annotated[float, Gt(0.0)] = 0.22
+    backward: Annotated[float, Gt(0.0), SPEED] = 0.22
     """Fastest walk backward [m/s]."""
-    lateral: Annotated[float, Gt(0.0)] = 0.11
+    lateral: Annotated[float, Gt(0.0), SPEED] = 0.11
     """Fastest walk sideways [m/s]."""
-    turn: Annotated[float, Gt(0.0)] = 1.1
+    turn: Annotated[float, Gt(0.0), RATE] = 1.1
     """Fastest turn [rad/s]."""
-    combined: Annotated[float, Gt(0.0)] = 1.25
+    combined: Annotated[float, Gt(0.0), NUMBER] = 1.25
     """Largest norm of the velocity with every component in units of its limit [1]."""
-    forward_acceleration: Annotated[float, Gt(0.0)] = 0.6
+    forward_acceleration: Annotated[float, Gt(0.0), ACCELERATION] = 0.6
     """Change of the forward velocity [m/s²]."""
-    lateral_acceleration: Annotated[float, Gt(0.0)] = 0.5
+    lateral_acceleration: Annotated[float, Gt(0.0), ACCELERATION] = 0.5
     """Change of the lateral velocity [m/s²]."""
-    turn_acceleration: Annotated[float, Gt(0.0)] = 3.3
+    turn_acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 3.3
     """Change of the turn rate [rad/s²]."""
-    step_forward: Annotated[float, Gt(0.0)] = 0.125
+    step_forward: Annotated[float, Gt(0.0), LENGTH] = 0.125
     """Longest footstep forward or backward [m]."""
-    step_side: Annotated[float, Gt(0.0)] = 0.08
+    step_side: Annotated[float, Gt(0.0), LENGTH] = 0.08
     """Widest opening footstep beyond the stance [m]."""
-    step_turn: Annotated[float, Gt(0.0)] = 0.72
+    step_turn: Annotated[float, Gt(0.0), NUMBER] = 0.72
     """Largest turn of an opening footstep [rad]."""
-    reach_forward: Annotated[float, Gt(0.0)] = 0.20
+    reach_forward: Annotated[float, Gt(0.0), LENGTH] = 0.20
     """Semi-axis of the ellipse of reachable landings, forward [m]."""
-    reach_side: Annotated[float, Gt(0.0)] = 0.12
+    reach_side: Annotated[float, Gt(0.0), LENGTH] = 0.12
     """Semi-axis of the ellipse of reachable landings, sideways [m]."""
-    shortest_single: Annotated[float, Gt(0.0)] = 0.18
+    shortest_single: Annotated[float, Gt(0.0), TIME] = 0.18
     """Shortest single support of a command state [s]."""
-    longest_single: Annotated[float, Gt(0.0)] = 0.6
+    longest_single: Annotated[float, Gt(0.0), TIME] = 0.6
     """Longest single support of a command state [s]."""
-    longest_double: Annotated[float, Gt(0.0)] = 0.3
+    longest_double: Annotated[float, Gt(0.0), TIME] = 0.3
     """Longest double support of a command state [s]."""
-    swing_height: Annotated[float, Gt(0.0)] = 0.04
+    swing_height: Annotated[float, Gt(0.0), LENGTH] = 0.04
     """Highest swing of a command state [m]."""
 
 
@@ -196,9 +218,9 @@ class LimitParameters:
 class HeadParameters:
     """Pan and tilt."""
 
-    rate: Annotated[float, Gt(0.0)] = 6.0
+    rate: Annotated[float, Gt(0.0), RATE] = 6.0
     """Fastest turn of the head, each axis [rad/s]."""
-    acceleration: Annotated[float, Gt(0.0)] = 60.0
+    acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 60.0
     """Largest angular acceleration of the head, each axis [rad/s²]."""
 
 
@@ -206,9 +228,9 @@ class HeadParameters:
 class ArmParameters:
     """The counter-swing of the arms."""
 
-    swing: float = 2.0
+    swing: Annotated[float, PER_LENGTH] = 2.0
     """Shoulder pitch per distance between the feet along the heading [rad/m]."""
-    limit: Annotated[float, Ge(0.0)] = 0.35
+    limit: Annotated[float, Ge(0.0), NUMBER] = 0.35
     """Largest swing from the ready posture [rad]."""
 
 

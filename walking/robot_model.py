@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import asin, atan2, sqrt
 from os import PathLike, fspath
 from typing import Any
 from xml.etree import ElementTree
@@ -11,12 +12,18 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from walking.joints import HEAD, JOINT_NAMES
-from walking.leg_kinematics import LegDimensions
+from walking.joints import HEAD, JOINT_NAMES, LEFT_LEG, RIGHT_LEG
+from walking.leg_kinematics import FootPose, LegDimensions, foot_pose, leg_angles
+from walking.parameters import GRAVITY
+from walking.yardsticks import Yardsticks
 
 Array = NDArray[np.float64]
 
 READY = "walk_ready"
+BENT = 5.0 / 6.0  # height of the hips with the knees bent for a walk, as a share of the leg
+SMALL = 1e-5  # step of a difference quotient [m]
+SERVOS = ("position", "general")  # elements of MJCF that can be a position servo
+FITS = 1e-5  # error of a foot's pose that is rounding [m, rad]
 # Columns are the camera's right, down and forward in the frame of the head, which looks along x.
 R_HC = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
@@ -54,7 +61,7 @@ class RobotModel:
         damping: of each servo with its joint (26,) [N m s/rad].
 
     Raises:
-        ValueError: a joint, frame or the ready posture is missing.
+        ValueError: a joint, frame or the ready posture is missing, or a leg has other axes.
     """
 
     def __init__(self, model: Any, stiffness: Array, servo_damping: Array) -> None:
@@ -80,6 +87,7 @@ class RobotModel:
         self.upper: Array = np.array(model.upperPositionLimit)[self._q_index]
         self.stiffness = stiffness
         self.damping: Array = servo_damping + np.array(model.damping)[self._v_index]
+        self._check_legs()
 
     @classmethod
     def from_mjcf(cls, path: str | PathLike[str]) -> RobotModel:
@@ -129,6 +137,47 @@ class RobotModel:
         asked: Array = torque[self._v_index]
         return asked
 
+    def pendulum_height(self) -> float:
+        """Height of the pendulum that the robot is for its base [m].
+
+        Both feet on the floor and the knees bent, a base that accelerates by a takes the legs
+        along by part of that only; the floor's moment is that of the whole mass accelerated
+        by a at this height.
+        """
+        q = self.ready.copy()
+        rest, motion = np.zeros_like(q), np.zeros_like(q)
+        for leg, part in zip(self.legs, (LEFT_LEG, RIGHT_LEG), strict=True):
+            height = BENT * leg.length - leg.hip_z
+            foot = FootPose(leg.hip_x, leg.hip_y, -height, 0.0, 0.0, 0.0)
+            q[part] = leg_angles(leg, foot)[0]
+            ahead = leg_angles(leg, replace(foot, x=foot.x - SMALL))[0]
+            behind = leg_angles(leg, replace(foot, x=foot.x + SMALL))[0]
+            motion[part] = (np.array(ahead) - behind) / (2.0 * SMALL)
+        self.joint_torque(q, rest, rest, (0.0, 0.0))
+        still = self._data.tau[:6].copy()
+        self.joint_torque(q, rest, motion, (1.0, 0.0))
+        force, moment = (self._data.tau[:6] - still)[[0, 4]].tolist()
+        return float((moment + height * force) / self.mass)
+
+    def yardsticks(self) -> Yardsticks:
+        """The measures that a walk goes with.
+
+        They have six digits: no more is known of a robot, and the rounding of a file's reader
+        shall not alter a walk.
+        """
+        leg, height = self.legs[0], self.pendulum_height()
+        weight = self.mass * GRAVITY
+        stiffness = 0.5 * float(self.stiffness[4] + self.stiffness[5])
+        exact = (
+            leg.length,
+            0.5 * (leg.hip_y - self.legs[1].hip_y),
+            self.sole.half_width,
+            sqrt(height / GRAVITY),
+            weight,
+            weight * height / stiffness,
+        )
+        return Yardsticks(*(float(f"{measure:.6g}") for measure in exact))
+
     def camera_pose(self, joint_position: Array) -> tuple[Array, Array]:
         """Rotation R_BC (3, 3) and position p_BC (3,) [m] of the head camera."""
         q = self._q
@@ -168,6 +217,24 @@ class RobotModel:
         ].translation.tolist()
         return place
 
+    def _check_legs(self) -> None:
+        """The closed form of the legs must be what the model says."""
+        q = np.zeros_like(self.ready)
+        bend = np.array([0.2, 0.3, -0.5, 0.9, -0.4, 0.1])
+        for leg, part, side in zip(self.legs, (LEFT_LEG, RIGHT_LEG), "lr", strict=True):
+            q[part] = bend
+            a, b, c, d, e, f = bend.tolist()
+            foot = foot_pose(leg, (a, b, c, d, e, f))
+            R, p = self.frame_pose(f"{side}_foot", q)
+            missed = [*(p - (foot.x, foot.y, foot.z)), atan2(R[1, 0], R[0, 0]) - foot.yaw]
+            missed += [-asin(R[2, 0]) - foot.pitch, atan2(R[2, 1], R[2, 2]) - foot.roll]
+            if max(map(abs, missed)) > FITS:
+                raise ValueError(
+                    f"the leg {side!r} of the robot model is none with hip yaw, roll and pitch "
+                    "through one point, a knee and ankle pitch and roll through another one "
+                    "straight below"
+                )
+
     def _leg(self, side: str) -> LegDimensions:
         hip = self._placement(f"{side}_hip_yaw")
         foot = self._model.frames[self._frame(f"{side}_foot")].placement.translation.tolist()
@@ -194,21 +261,36 @@ class RobotModel:
 
 
 def _servo_gains(path: str) -> dict[str, tuple[float, float]]:
-    """Stiffness and damping of every position servo, by joint; Pinocchio does not read them."""
-    root = ElementTree.parse(path).getroot()
-    defaults: dict[str, dict[str, str]] = {}
+    """Stiffness and damping of every position servo, by joint; Pinocchio does not read them.
 
-    def collect(element: ElementTree.Element, inherited: dict[str, str]) -> None:
-        own = element.find("position")
-        values = {**inherited, **(own.attrib if own is not None else {})}
-        defaults[element.get("class", "main")] = values
+    MuJoCo saves a position servo as a general actuator with affine bias; both are understood.
+    """
+    root = ElementTree.parse(path).getroot()
+    defaults: dict[tuple[str, str], dict[str, str]] = {}
+
+    def collect(element: ElementTree.Element, inherited: dict[str, dict[str, str]]) -> None:
+        values = dict(inherited)
+        for kind in SERVOS:
+            own = element.find(kind)
+            values[kind] = {**inherited[kind], **(own.attrib if own is not None else {})}
+            defaults[element.get("class", "main"), kind] = values[kind]
         for child in element.findall("default"):
             collect(child, values)
 
     for element in root.findall("default"):
-        collect(element, {})
+        collect(element, {kind: {} for kind in SERVOS})
     gains = {}
-    for servo in root.iterfind("actuator/position"):
-        values = {**defaults.get(servo.get("class", "main"), {}), **servo.attrib}
-        gains[values["joint"]] = (float(values.get("kp", "1")), float(values.get("kv", "0")))
+    for kind in SERVOS:
+        for servo in root.iterfind(f"actuator/{kind}"):
+            name = servo.get("class", "main")
+            values = {**defaults.get((name, kind), {}), **servo.attrib}
+            if kind == "position":
+                gain = float(values.get("kp", "1")), float(values.get("kv", "0"))
+            elif values.get("biastype") == "affine":
+                bias = [float(value) for value in values["biasprm"].split()]
+                gain = -bias[1], -bias[2] if len(bias) > 2 else 0.0
+            else:
+                continue
+            if "joint" in values:
+                gains[values["joint"]] = gain
     return gains

@@ -1,0 +1,141 @@
+"""Parameters derived for other robots: dynamic similarity."""
+
+from dataclasses import astuple, fields, replace
+from math import sqrt
+
+import pytest
+
+from walking.dimension import (
+    ACCELERATION,
+    LEFT_PER_TICK,
+    LENGTH,
+    NUMBER,
+    RATE,
+    SPEED,
+    TAKEN_PER_TICK,
+    TIME,
+)
+from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.similarity import carried, parameters_for, rules_of
+from walking.yardsticks import HSR_VIII, Yardsticks
+
+SECTIONS = [type(getattr(WalkingParameters(), f.name)) for f in fields(WalkingParameters)]
+
+
+def scaled(y: Yardsticks, size: float) -> Yardsticks:
+    return Yardsticks(
+        y.leg * size, y.hip * size, y.sole * size, y.time * sqrt(size), y.weight * size**3, y.ankle
+    )
+
+
+SLENDER = Yardsticks(leg=0.4, hip=0.05, sole=0.035, time=0.19, weight=90.0, ankle=0.2)
+
+
+def numbers(parameters: WalkingParameters) -> dict[str, float]:
+    return {
+        f"{group.name}.{f.name}": getattr(getattr(parameters, group.name), f.name)
+        for group in fields(parameters)
+        for f in fields(getattr(parameters, group.name))
+        if isinstance(getattr(getattr(parameters, group.name), f.name), float)
+    }
+
+
+@pytest.mark.parametrize("section", SECTIONS, ids=lambda section: section.__name__)
+def test_every_number_says_what_it_goes_with(section):
+    floats = {f.name for f in fields(section) if isinstance(f.default, float)}
+    assert floats <= set(rules_of(section))
+
+
+def test_the_parameters_of_the_reference_are_the_defaults(robot):
+    assert robot.yardsticks() == HSR_VIII
+    assert parameters_for(robot) == WalkingParameters()
+
+
+def test_a_choice_is_kept_and_the_rest_is_the_robots_own(robot):
+    chosen = replace(WalkingParameters().gait, footstep_time=0.4)
+    given = replace(WalkingParameters(), gait=chosen)
+    assert parameters_for(robot, given) == given
+
+    class Giant:
+        def yardsticks(self):
+            return scaled(HSR_VIII, 4.0)
+
+    made = parameters_for(Giant(), given)
+    assert made.gait.footstep_time == 0.4
+    assert made.gait.lift == pytest.approx(4.0 * given.gait.lift)
+    assert made.limits.forward == pytest.approx(2.0 * given.limits.forward)
+    assert made.pattern.generator == given.pattern.generator
+
+
+@pytest.mark.parametrize("other", [scaled(HSR_VIII, 0.5), scaled(HSR_VIII, 3.0), SLENDER])
+def test_going_over_composes_and_can_be_undone(other):
+    start, third = WalkingParameters(), scaled(SLENDER, 0.7)
+    made = carried(start, HSR_VIII, other)
+    direct = carried(start, HSR_VIII, third)
+    assert numbers(carried(made, other, third)) == pytest.approx(numbers(direct), rel=1e-12)
+    assert numbers(carried(made, other, HSR_VIII)) == pytest.approx(numbers(start), rel=1e-12)
+
+
+@pytest.mark.parametrize("size", [0.3, 0.8, 1.3, 4.0])
+def test_dimensionless_numbers_stay_what_they_are(size):
+    old, new = HSR_VIII, scaled(HSR_VIII, size)
+    made = carried(WalkingParameters(), old, new)
+
+    def groups(p, y):
+        w = sqrt(GRAVITY / p.pattern.lipm_height)
+        step = p.limits.forward * p.gait.footstep_time
+        return (
+            w * p.gait.footstep_time,
+            p.limits.forward**2 / (GRAVITY * y.leg),
+            step / p.limits.step_forward,
+            p.pattern.pelvis_height / y.leg,
+            p.gait.half_stance / y.hip,
+            p.limits.turn * p.gait.footstep_time,
+            p.limits.forward_acceleration / GRAVITY,
+            p.estimator.contact_force / y.weight,
+            p.pattern.zmp_rate / (y.sole * w),
+            p.arms.swing * step,
+            p.stabilizer.gyro_gain * w,
+            p.stabilizer.tilt_decay ** (p.gait.footstep_time / CONTROL_PERIOD),
+            (1.0 - p.estimator.tilt_gain) ** (p.gait.footstep_time / CONTROL_PERIOD),
+        )
+
+    assert groups(made, new) == pytest.approx(groups(WalkingParameters(), old), rel=1e-12)
+
+
+def test_constraints_hold_at_any_size():
+    for size in (0.1, 10.0):
+        made = carried(WalkingParameters(), HSR_VIII, scaled(HSR_VIII, size))
+        assert 0.0 < made.estimator.tilt_gain < 1.0
+        assert 0.0 < made.stabilizer.contact_decay < 1.0
+        assert round(made.gait.footstep_time / CONTROL_PERIOD) > 10
+
+
+def test_a_softer_ankle_is_moved_further():
+    soft = replace(HSR_VIII, ankle=2.0 * HSR_VIII.ankle)
+    made = carried(WalkingParameters(), HSR_VIII, soft)
+    before = numbers(WalkingParameters())
+    changed = {name for name, value in numbers(made).items() if value != before[name]}
+    assert changed == {"stabilizer.gyro_gain"}
+    assert made.stabilizer.gyro_gain == 2.0 * before["stabilizer.gyro_gain"]
+
+
+def test_dimensions_multiply():
+    assert SPEED * TIME == LENGTH
+    assert ACCELERATION == SPEED / TIME
+    assert RATE * TIME == NUMBER
+    other = scaled(HSR_VIII, 2.0)
+    assert NUMBER.carry(0.37, HSR_VIII, other) == 0.37
+    left = LEFT_PER_TICK.carry(0.9, HSR_VIII, other)
+    assert TAKEN_PER_TICK.carry(0.1, HSR_VIII, other) == pytest.approx(1.0 - left, rel=1e-12)
+    assert left > 0.9
+
+
+def test_measures_follow_the_mass_and_the_servos(robot):
+    y = robot.yardsticks()
+    assert y.leg == pytest.approx(sum(astuple(robot.legs[0])[3:]), rel=1e-5)
+    height = GRAVITY * y.time**2
+    assert y.ankle == pytest.approx(robot.mass * GRAVITY * height / robot.stiffness[4], rel=1e-5)
+    # Between the hips, which all of the mass would follow on a weightless leg, and the floor.
+    base = 5.0 / 6.0 * y.leg
+    assert 0.5 * base < height < base + robot.com(robot.ready)[2]
