@@ -75,7 +75,7 @@ Rule = Dimension | ShareLeft | ShareTaken
 """How a parameter goes over to another robot."""
 
 NUMBER = Dimension()
-"""A share, a gain or an angle: the same for every robot."""
+"""A share, a gain, an angle or a sensor's property: the same for every robot."""
 LENGTH = Dimension(leg=1.0)
 """A length of the walk."""
 STANCE = Dimension(hip=1.0)
@@ -94,6 +94,8 @@ SPEED = LENGTH / TIME
 """A speed of the walk."""
 SOLE_SPEED = SOLE / TIME
 """A speed within the sole."""
+DIFFUSION = LENGTH / TIME**0.5
+"""A random walk of so much in the square root of time."""
 ACCELERATION = LENGTH / TIME**2.0
 """An acceleration of the walk."""
 RATE = TIME**-1.0

@@ -14,6 +14,7 @@ from walking.dimension import (
     ACCELERATION,
     ANKLE_TIME,
     CHANGE_WEIGHT,
+    DIFFUSION,
     FORCE,
     HEIGHT,
     LEFT_PER_TICK,
@@ -119,11 +120,11 @@ class EstimatorParameters:
 class OdometryParameters:
     """How much of the robot's motion its dead reckoning does not see."""
 
-    forward_noise: Annotated[float, Ge(0.0)] = 0.0022
+    forward_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0022
     """Random walk along the heading while stepping [m/√s]."""
-    left_noise: Annotated[float, Ge(0.0)] = 0.0018
+    left_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0018
     """Random walk across the heading while stepping [m/√s]."""
-    yaw_drift: Annotated[float, Ge(0.0)] = 0.0011
+    yaw_drift: Annotated[float, Ge(0.0), NUMBER] = 0.0011
     """Random walk of the IMU's yaw [rad/√s]."""
 
 
