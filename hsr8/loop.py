@@ -17,6 +17,7 @@ from hsr8.world.analytic import AnalyticCamera
 from hsr8.world.assembly import Optics, assemble
 from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
+from hsr8.world.camera_feed import CameraFeed, Picture
 from hsr8.world.episodes import Episodes
 from hsr8.world.generator import draw_layout
 from hsr8.world.kinematic import KinematicBody
@@ -73,7 +74,7 @@ class Simulation:
         self.model = assemble(
             self.layout,
             "vision",
-            Optics(camera.width, camera.height, fov, scenario.world.brightness),
+            Optics(camera.width, camera.height, fov, scenario.world.brightness, camera.shadows),
         )
         body_rng = named_rng(seed, "body")
         kind: Callable[..., Body] = PhysicsBody if scenario.robot.body == "full" else KinematicBody
@@ -84,8 +85,12 @@ class Simulation:
         self._interrupted = False
         self._rendered: RenderedCamera | None = None
         self._analytic: AnalyticCamera | None = None
+        self._camera_rng = named_rng(seed, "camera")
         if camera.source == "analytic":
-            self._analytic = AnalyticCamera(self.layout, self._pinhole, named_rng(seed, "camera"))
+            self._analytic = AnalyticCamera(
+                self.layout, self._pinhole, self._camera_rng, scenario.camera
+            )
+        self._feed = CameraFeed(camera, self._take, named_rng(seed, "camera_feed"))
 
     def interrupt(self) -> None:
         """Ask the run to end after the present tick."""
@@ -100,9 +105,8 @@ class Simulation:
         reason = "error"
         with ExitStack() as stack:
             if self._analytic is None:
-                camera = self.scenario.camera
                 self._rendered = stack.enter_context(
-                    closing(RenderedCamera(self.model, camera.width, camera.height))
+                    closing(RenderedCamera(self.model, self.scenario.camera, self._camera_rng))
                 )
             try:
                 reason = self._ticks()
@@ -130,13 +134,12 @@ class Simulation:
 
     def _ticks(self) -> str:
         scenario = self.scenario
-        camera_ticks = round(scenario.camera.period_ms / 1000 / CONTROL_PERIOD)
         record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
         last = round(scenario.duration / CONTROL_PERIOD)
         end: tuple[int, str] | None = None
         published: FrameRecord | None = None
         for tick in range(last + 1):
-            sensed = self._sense(tick % camera_ticks == 0)
+            sensed = self._sense(tick)
             targets = self._robot.step(sensed)
             if tick % record_ticks == 0:
                 truth = self._body.truth()
@@ -152,14 +155,18 @@ class Simulation:
         finite = len(self.layout.waypoints) > 0 and not self.layout.endless
         return "timeout" if finite else "completed"
 
-    def _sense(self, camera_due: bool) -> SensorFrame:
-        body = self._body.sense()
-        if not camera_due:
-            return SensorFrame(self._body.time, body)
+    def _sense(self, tick: int) -> SensorFrame:
+        body, time = self._body.sense(), self._body.time
+        shutter, picture = self._feed.shutter(tick), self._feed.arrived(tick, self._body)
+        if picture is None:
+            return SensorFrame(time, body, shutter)
+        return SensorFrame(time, body, shutter, picture.captured, picture.image, picture.detections)
+
+    def _take(self, body: Body) -> Picture:
         if self._rendered is not None:
-            return SensorFrame(self._body.time, body, image=self._rendered.capture(self._body))
+            return Picture(body.time, image=self._rendered.capture(body))
         assert self._analytic is not None
-        return SensorFrame(self._body.time, body, detections=self._analytic.capture(self._body))
+        return Picture(body.time, detections=self._analytic.capture(body))
 
     def _ending(self, tick: int, truth: Truth) -> tuple[int, str] | None:
         """Tick and reason of an end that is now decided."""

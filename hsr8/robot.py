@@ -1,5 +1,6 @@
 """The robot side of the loop: sensors in, joint targets out. It never meets the truth."""
 
+from collections import deque
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -9,6 +10,7 @@ from hsr8.recorder.record import FrameRecord, Image
 from navigation.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import CameraView, Frame, Observation
+from navigation.prediction import predict
 from vision.camera import CameraPose, PinholeCamera
 from vision.detection import Detection
 from walking.command import HeadTarget, VelocityCommand
@@ -23,6 +25,7 @@ TILT_SIGMA = 0.003  # [rad]
 ROLL_SIGMA = 0.003  # [rad]
 YAW_SIGMA = 0.002  # [rad]
 HEIGHT_SIGMA = 0.001  # [m]
+UNDER_WAY = 128  # pictures that may be under way at a time
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +35,16 @@ class SensorFrame:
     Attributes:
         time: simulated time [s].
         body: encoders, IMU, foot pads.
-        image: (height, width, 3) picture taken now, if the camera is due.
+        shutter: the camera takes a picture now, which may arrive later or never.
+        captured: when the picture that arrives now was taken [s].
+        image: (height, width, 3) picture that arrives now, if any.
         detections: what a camera without pixels reports instead.
     """
 
     time: float
     body: BodySensors
+    shutter: bool = False
+    captured: float = 0.0
     image: Image | None = None
     detections: tuple[Detection, ...] | None = None
 
@@ -115,6 +122,7 @@ class Robot:
         self._planned_at = -np.inf
         self._planned_step = -1
         self._frames = 0
+        self._taken: deque[tuple[float, WalkingState]] = deque(maxlen=UNDER_WAY)
         self.command = VelocityCommand()
         self.head = HeadTarget()
         self.frame: FrameRecord | None = None
@@ -122,6 +130,8 @@ class Robot:
     def step(self, sensed: SensorFrame) -> JointTargets:
         """One control tick: walk on, and look and decide when a camera frame came."""
         targets = self._walking.step(sensed.body, self.command, self.head)
+        if sensed.shutter:
+            self._taken.append((sensed.time, self._walking.state()))
         if sensed.image is not None or sensed.detections is not None:
             self._perceive(sensed)
         return targets
@@ -131,14 +141,20 @@ class Robot:
         return self._walking.state()
 
     def _perceive(self, sensed: SensorFrame) -> None:
-        state = self._walking.state()
+        then = self._state_at(sensed.captured)
         if sensed.detections is not None:
             detections = sensed.detections
         else:
             assert sensed.image is not None
-            detections = self._vision.detect(sensed.image, camera_pose(state.camera))
-        measured = self._frame(sensed.time, state, detections)
+            detections = self._vision.detect(sensed.image, camera_pose(then.camera))
+        measured = self._frame(sensed.captured, then, detections)
         belief = self._belief.update(measured)
+        state = then
+        if sensed.time > sensed.captured:
+            state = self._walking.state()
+            belief = predict(
+                belief, _odometry(then), _odometry(state), sensed.time, self._view(state)
+            )
         task = self._mission.update(belief.pose)
         motion = self._decide_motion(sensed.time, state, belief, task)
         gaze = self._gaze.choose(belief, task, motion)
@@ -158,6 +174,13 @@ class Robot:
         )
         self._frames += 1
 
+    def _state_at(self, captured: float) -> WalkingState:
+        """The body when a picture was taken; what was taken earlier never arrives."""
+        time, state = self._taken.popleft()
+        while time < captured:
+            time, state = self._taken.popleft()
+        return state
+
     def _decide_motion(
         self, time: float, state: WalkingState, belief: Belief, task: Task
     ) -> MotionDecision:
@@ -169,20 +192,23 @@ class Robot:
             self._planned_step = state.step_count
         return self._motion
 
+    def _view(self, state: WalkingState) -> CameraView:
+        head = state.camera
+        return CameraView(
+            rotation=head.rotation,
+            position=head.position,
+            pan=head.pan,
+            tilt=head.tilt,
+            horizontal_fov=self._camera.horizontal_fov,
+            vertical_fov=self._camera.vertical_fov,
+        )
+
     def _frame(self, time: float, state: WalkingState, detections: tuple[Detection, ...]) -> Frame:
-        odometry, head = state.odometry, state.camera
         return Frame(
             time=time,
-            odometry=np.array([odometry.x, odometry.y, odometry.yaw]),
+            odometry=_odometry(state),
             walking=state.phase is not Phase.STANDING,
-            view=CameraView(
-                rotation=head.rotation,
-                position=head.position,
-                pan=head.pan,
-                tilt=head.tilt,
-                horizontal_fov=self._camera.horizontal_fov,
-                vertical_fov=self._camera.vertical_fov,
-            ),
+            view=self._view(state),
             observations=tuple(
                 Observation(
                     kind=d.kind,
@@ -198,6 +224,12 @@ class Robot:
                 for d in detections
             ),
         )
+
+
+def _odometry(state: WalkingState) -> np.ndarray:
+    """Pose of R in the odometry frame (3,) [m, m, rad]."""
+    odometry = state.odometry
+    return np.array([odometry.x, odometry.y, odometry.yaw])
 
 
 def camera_pose(head: HeadCameraPose) -> CameraPose:

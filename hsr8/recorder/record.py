@@ -23,11 +23,11 @@ class FrameRecord:
 
     Attributes:
         index: number of the frame.
-        time: capture time [s].
+        time: when it reached the robot [s].
         image: (height, width, 3) RGB, or None with the analytic camera.
         detections: what vision found in it.
-        measured: all that reached the belief.
-        belief: what the robot believes after it.
+        measured: all that reached the belief, at the capture; earlier by the latency.
+        belief: what the robot believes after it, at `time`.
         gaze: where it decided to look.
         motion: how it decided to move (the decision in force; new once per footstep).
         task: where it is going.
@@ -55,7 +55,7 @@ class TickRecord:
         walking: what the walking engine knows of itself.
         command: velocity asked of it.
         head: gaze asked of it.
-        frame: the camera frame taken since the last record, if any.
+        frame: the camera frame that arrived since the last record, if any.
     """
 
     tick: int

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from hsr8.scenario.robot import LENSES
+from hsr8.scenario.camera import LENSES
 from navigation.decision_parameters import NavigationParameters
 
 Table = dict[str, Any]

@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 from annotated_types import Interval, Len
 from pydantic import Field
 
+from hsr8.scenario.camera import Camera
 from hsr8.scenario.mission import Course, Mission, Points, Stretch, Tour, Walk
-from hsr8.scenario.robot import Camera, Robot
+from hsr8.scenario.robot import Robot
 from hsr8.scenario.section import PeriodMs, Section
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.scenario.world import World

@@ -10,11 +10,13 @@ from math import asin, atan2, cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.scenario.camera import Camera
 from hsr8.world.body import Body
 from hsr8.world.camera import HEAD_CAMERA
 from hsr8.world.layout import Layout
 from hsr8.world.rotation import heading
 from vision.camera import PinholeCamera
+from vision.colour import COLOUR_CLASSES
 from vision.detection import Detection
 
 Array = NDArray[np.float64]
@@ -27,7 +29,10 @@ BEARING_SIGMA = 0.008  # [rad]
 RANGE_SIGMA = 0.010  # at no distance [m]
 RANGE_SIGMA_RATE = 0.015  # and per metre
 RADIUS_SIGMA = 0.006  # [m]
+OBSTACLE_COLOURS = tuple(c.name for c in COLOUR_CLASSES.values() if c.kind == "obstacle")
 CUT_FACTOR = 3.0  # a thing cut by the border is located so much worse
+FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of what is not there [m]
+FALSE_RANGE = (0.3, 2.5)  # where things seem to be that are not there [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +50,20 @@ class AnalyticCamera:
         layout: obstacles and beacons.
         camera: intrinsics.
         rng: generator of noise and misses.
+        settings: faults of the images.
     """
 
-    def __init__(self, layout: Layout, camera: PinholeCamera, rng: np.random.Generator) -> None:
+    def __init__(
+        self,
+        layout: Layout,
+        camera: PinholeCamera,
+        rng: np.random.Generator,
+        settings: Camera | None = None,
+    ) -> None:
         self._camera = camera
         self._rng = rng
+        self._fault_rng = rng.spawn(1)[0]
+        self._settings = settings or Camera()
         self._movers = layout.motion()
         static = layout.obstacles[: len(layout.obstacles) - len(self._movers)]
         self._static = np.array([o.position for o in static], dtype=float).reshape(-1, 2)
@@ -73,15 +87,20 @@ class AnalyticCamera:
         rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
         robot = np.array([*data.qpos[root : root + 2], heading(data.qpos[root + 3 : root + 7])])
         places = np.concatenate([self._static, self._movers.positions(body.time), self._posts])
-        return self._detect(places, position, rotation, robot)
+        found = self._detect(places, position, rotation, robot)
+        found += self._not_there(position, rotation, robot)
+        if self._settings.black(body.time):
+            return ()
+        return tuple(sorted(found, key=lambda d: (d.distance, d.label)))
 
     def _detect(
         self, places: Array, position: Array, rotation: Array, robot: Array
-    ) -> tuple[Detection, ...]:
+    ) -> list[Detection]:
         offsets = places - position[:2]
         ranges = np.hypot(offsets[:, 0], offsets[:, 1])
         spans: list[tuple[float, float]] = []  # azimuth and half width, nearer first
         found = []
+        missed = self._settings.noise.missed
         for i in np.argsort(ranges, kind="stable").tolist():
             thing, distance = self._things[i], float(ranges[i])
             if distance <= thing.radius:
@@ -95,13 +114,32 @@ class AnalyticCamera:
             noise = self._rng.standard_normal(3)
             if distance > limit or hidden > HIDDEN or draw > DETECTED:
                 continue
+            if missed and self._fault_rng.random() < missed:
+                continue
             box = self._box(places[i], thing, position, rotation)
             if box is None:
                 continue
             x, y = (places[i] - robot[:2]).tolist()
             polar = (hypot(x, y), atan2(y, x) - float(robot[2]))
             found.append(_detection(polar, thing, box, hidden=hidden, noise=noise))
-        return tuple(sorted(found, key=lambda d: (d.distance, d.label)))
+        return found
+
+    def _not_there(self, position: Array, rotation: Array, robot: Array) -> list[Detection]:
+        """Detections of obstacles that are not there."""
+        mean, rng = self._settings.noise.false_blobs, self._fault_rng
+        ahead = atan2(rotation[1, 2], rotation[0, 2]) - float(robot[2])
+        half = 0.5 * self._camera.horizontal_fov
+        found = []
+        for _ in range(int(rng.poisson(mean)) if mean else 0):
+            colour = OBSTACLE_COLOURS[rng.integers(len(OBSTACLE_COLOURS))]
+            thing = _Thing("obstacle", colour, FALSE_RADIUS, FALSE_HEIGHT)
+            polar = (rng.uniform(*FALSE_RANGE), ahead + rng.uniform(-half, half))
+            direction = polar[1] + float(robot[2])
+            place = robot[:2] + polar[0] * np.array([cos(direction), sin(direction)])
+            box = self._box(place, thing, position, rotation)
+            if box is not None:
+                found.append(_detection(polar, thing, box, hidden=0.0, noise=np.zeros(3)))
+        return found
 
     def _box(
         self, place: Array, thing: _Thing, position: Array, rotation: Array

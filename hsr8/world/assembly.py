@@ -23,6 +23,7 @@ PAINT = 0.0005  # height of what is painted on the floor [m]
 STRIPE = 0.010  # half height of the stripe that marks a mover, for people only [m]
 APRON = 1.5  # distance of the walls the robot sees from the rim of the field [m]
 WALL_HEIGHT = 4.0  # [m]
+SHADOW_SIZE = 2048  # resolution of the shadows the robot sees [texel]
 USUAL_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
 HEAD_CAMERA = "egocentric"
 
@@ -44,12 +45,14 @@ class Optics:
         width, height: of the offscreen buffer [pixel].
         vertical_fov: of the head camera [rad].
         brightness: of all lights, 1 is normal.
+        shadows: the robot's camera sees cast shadows.
     """
 
     width: int = 320
     height: int = 240
     vertical_fov: float = float(np.radians(70.0))
     brightness: float = 1.0
+    shadows: bool = False
 
 
 def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel:
@@ -64,6 +67,8 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     spec.visual.global_.offwidth = optics.width
     spec.visual.global_.offheight = optics.height
     _set_lights(spec, optics.brightness, max(layout.field_size))
+    if quality == "vision" and optics.shadows:
+        _cast_shadows(spec, max(layout.field_size))
     camera = spec.camera(HEAD_CAMERA)
     camera.fovy = float(np.degrees(optics.vertical_fov))
     camera.resolution = [optics.width, optics.height]
@@ -88,6 +93,13 @@ def _set_lights(spec: mujoco.MjSpec, brightness: float, side: float) -> None:
     for light in spec.lights:
         light.diffuse = brightness * np.asarray(light.diffuse)
         light.pos = max(1.0, side / USUAL_SIDE) * np.asarray(light.pos)
+
+
+def _cast_shadows(spec: mujoco.MjSpec, side: float) -> None:
+    """Let the sun cast shadows on the whole field."""
+    spec.visual.quality.shadowsize = SHADOW_SIZE
+    spec.visual.map.shadowclip = (0.5 * side + APRON) / spec.stat.extent
+    spec.light("sun").castshadow = True
 
 
 def _add_rim(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:

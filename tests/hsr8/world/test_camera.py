@@ -3,6 +3,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 
+from hsr8.scenario.camera import Camera, CameraNoise
 from hsr8.world.camera import RenderedCamera
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.layout import Obstacle
@@ -10,6 +11,7 @@ from vision.camera import CameraPose, PinholeCamera
 from vision.detector import Detector
 from vision.parameters import VisionParameters
 
+CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))
 pytestmark = pytest.mark.gl
 
 
@@ -22,7 +24,7 @@ def body(world, silent):
 
 
 def test_an_image_shows_the_world_as_it_is_now(body):
-    with closing(RenderedCamera(body.model, 320, 240)) as camera:
+    with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
         before = camera.capture(body)
         again = camera.capture(body)
         body.data.joint("head_pan").qpos[0] = 0.5
@@ -34,7 +36,7 @@ def test_an_image_shows_the_world_as_it_is_now(body):
 
 
 def test_vision_finds_the_obstacle_where_it_stands(body):
-    with closing(RenderedCamera(body.model, 320, 240)) as camera:
+    with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
         image = camera.capture(body)
     fixed = body.data.camera("egocentric")
     rotation = fixed.xmat.reshape(3, 3) * (1.0, -1.0, -1.0)

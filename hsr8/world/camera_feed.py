@@ -1,0 +1,67 @@
+"""How images reach the robot: some never, the others after the camera's latency."""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.scenario.camera import Camera
+from hsr8.scenario.section import CONTROL_PERIOD_MS
+from vision.detection import Detection
+
+if TYPE_CHECKING:
+    from hsr8.world.body import Body
+
+Image = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """What the camera delivers.
+
+    Attributes:
+        captured: when it was taken [s].
+        image: (height, width, 3), or None of a camera without pixels.
+        detections: what a camera without pixels reports instead.
+    """
+
+    captured: float
+    image: Image | None = None
+    detections: tuple[Detection, ...] | None = None
+
+
+class CameraFeed:
+    """Takes a picture every period and hands it over when it has arrived.
+
+    Args:
+        settings: period, latency and share of dropped images.
+        take: takes a picture of the world as it is now.
+        rng: generator of the dropped images.
+    """
+
+    def __init__(
+        self, settings: Camera, take: Callable[["Body"], Picture], rng: np.random.Generator
+    ) -> None:
+        self._take = take
+        self._rng = rng
+        self._dropped = settings.noise.dropped
+        self._period = settings.period_ms // CONTROL_PERIOD_MS
+        self._latency = settings.latency_ms // CONTROL_PERIOD_MS
+        self._under_way: deque[tuple[int, Picture]] = deque()
+
+    def shutter(self, tick: int) -> bool:
+        """Whether a picture is taken in control tick `tick`."""
+        return tick % self._period == 0
+
+    def arrived(self, tick: int, body: "Body") -> Picture | None:
+        """Take the picture that is due in control tick `tick`; return the one that arrives."""
+        if self.shutter(tick):
+            picture = self._take(body)
+            if not (self._dropped and self._rng.random() < self._dropped):
+                self._under_way.append((tick + self._latency, picture))
+        if self._under_way and self._under_way[0][0] == tick:
+            return self._under_way.popleft()[1]
+        return None
