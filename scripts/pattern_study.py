@@ -135,9 +135,9 @@ class Walker:
         p, w = self.state, self.lipm.omega
         own = (p.x + p.vx / w, p.y + p.vy / w)
         self.late = hypot(own[0] - x, own[1] - y)
-        planned = self.generator.planned_dcm(p, (x, y))
+        planned = self.generator.planned_dcm(p, ramps)
         self.missed = hypot(own[0] - planned[0], own[1] - planned[1])
-        self.generator.advance(p, ramps, (x, y), region)
+        self.generator.advance(p, ramps, region)
         self.cost = time.process_time() - begin
         self.clipped = region.clipped
         self.feet = gait.support_feet if gait.double else (gait.support_feet[1],)

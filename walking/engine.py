@@ -18,7 +18,7 @@ from walking.lipm import Lipm
 from walking.measurement import BodyMeasurement, measure
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference
+from walking.pattern import PendulumState, ZmpRamp
 from walking.posture import Posture
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
@@ -123,17 +123,16 @@ class WalkingEngine:
         gait = self._gait
         if not gait.stepping:
             self._maybe_start(error, moving=moving)
-        ramps, dcm, nominal = self._plan(body, wish, error, moving=moving)
+        ramps, nominal = self._plan(body, wish, error, moving=moving)
         pattern = self._parameters.pattern
         pendulum = self._pendulum
         region = self._region(pattern.sole_margin)
         if self._generator.selective:
             ramps = self._admit(ramps, region, wish, moving=moving, forced=not nominal)
-            dcm = dcm_reference(self._lipm, ramps)
             moving = self._transition.moving
         else:
             self._given = self._steering.velocity
-        self._generator.advance(pendulum, ramps, dcm, region)
+        self._generator.advance(pendulum, ramps, region, forced=not nominal)
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
         reachable = self._region(self._parameters.stabilizer.sole_margin)
@@ -281,11 +280,11 @@ class WalkingEngine:
         error: tuple[float, float],
         *,
         moving: bool,
-    ) -> tuple[list[ZmpRamp], tuple[float, float], bool]:
+    ) -> tuple[list[ZmpRamp], bool]:
         """Decide on the landing of the swing foot.
 
         Returns:
-            the ZMP reference, its DCM, and whether the landing is the nominal one.
+            the ZMP reference, and whether the landing is the nominal one.
         """
         gait, lipm = self._gait, self._lipm
         if gait.stepping and not gait.double and not gait.held:
@@ -296,12 +295,11 @@ class WalkingEngine:
         if not gait.adjustable and gait.stepping and _apart(gait.nominal(wish), nominal):
             self._binding.append(Limit.LANDING_FROZEN)
         ramps = gait.plan(nominal, wish, moving=moving)
-        dcm = dcm_reference(lipm, ramps)
         caught = nominal
         if gait.adjustable and not gait.double:
             # What the nominal footholds do not catch of the measured DCM.
             p, w = self._pendulum, lipm.omega
-            x, y = self._generator.planned_dcm(p, dcm)
+            x, y = self._generator.planned_dcm(p, ramps)
             off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
             support = gait.footholds[gait.support]
             caught = self._stabilizer.capture(self._planner, support, nominal, off, gait.ticks_left)
@@ -311,8 +309,7 @@ class WalkingEngine:
         gait.aim(caught)
         if gait.landing != nominal:
             ramps = gait.plan(gait.landing, wish, moving=moving)
-            dcm = dcm_reference(lipm, ramps)
-        return ramps, dcm, caught == nominal
+        return ramps, caught == nominal
 
     def _admit(
         self,

@@ -125,28 +125,29 @@ class PaperGenerator:
         self,
         state: PendulumState,
         ramps: list[ZmpRamp],
-        dcm: tuple[float, float],
         region: SupportRegion,
+        *,
+        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
         Args:
             state: of the pendulum.
             ramps: ZMP reference from now on.
-            dcm: `dcm_reference` of the ramps [m].
             region: where the ZMP may be.
+            forced: whether the footholds of the reference are moved to catch the body.
         """
         ramp = ramps[0]
         if ramp.feet[0] is not ramp.feet[1]:
             self._target = None
             self._residual = (0.0, 0.0)
-            self._double.advance(state, ramps, dcm, region)
+            self._double.advance(state, ramps, region)
             return
         if not self.admits(state, ramps, region):
             self._catch(state, ramps, region)
         self._follow(state, ramp)
 
-    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
         """The pendulum's own DCM, less what the ZMP functions could not bring about."""
         w = self._lipm.omega
         rx, ry = self._residual

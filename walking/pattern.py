@@ -87,20 +87,26 @@ class PatternGenerator(Protocol):
         self,
         state: PendulumState,
         ramps: list[ZmpRamp],
-        dcm: tuple[float, float],
         region: SupportRegion,
+        *,
+        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
         Args:
             state: of the pendulum.
             ramps: ZMP reference from now on.
-            dcm: `dcm_reference` of the ramps [m].
             region: where the ZMP may be.
+            forced: whether the footholds of the reference are moved to catch the body.
         """
 
-    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
-        """DCM [m] that the generator holds for right, `dcm` being that of the footholds."""
+    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
+        """DCM [m] that the generator holds for right.
+
+        Args:
+            state: of the pendulum.
+            ramps: reference that no body has to be caught by.
+        """
 
 
 class DcmGenerator:
@@ -125,19 +131,20 @@ class DcmGenerator:
         self,
         state: PendulumState,
         ramps: list[ZmpRamp],
-        dcm: tuple[float, float],
         region: SupportRegion,
+        *,
+        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
         Args:
             state: of the pendulum.
             ramps: ZMP reference from now on.
-            dcm: `dcm_reference` of the ramps [m].
             region: where the ZMP may be.
+            forced: whether the footholds of the reference are moved to catch the body.
         """
         lipm, first = self._lipm, ramps[0]
-        ref_x, ref_y = dcm
+        ref_x, ref_y = dcm_reference(lipm, ramps)
         middle = 0.5 / first.ticks
         px = first.ax + (first.bx - first.ax) * middle
         py = first.ay + (first.by - first.ay) * middle
@@ -148,9 +155,9 @@ class DcmGenerator:
         state.y, state.vy = lipm.step(state.y, state.vy, py)
         state.zmp_x, state.zmp_y = px, py
 
-    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
         """The DCM of the footholds: the pendulum is late only after a disturbance."""
-        return dcm
+        return dcm_reference(self._lipm, ramps)
 
 
 class PreviewGenerator:
@@ -178,16 +185,17 @@ class PreviewGenerator:
         self,
         state: PendulumState,
         ramps: list[ZmpRamp],
-        dcm: tuple[float, float],
         region: SupportRegion,
+        *,
+        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
         Args:
             state: of the pendulum.
             ramps: ZMP reference from now on.
-            dcm: `dcm_reference` of the ramps [m].
             region: where the ZMP may be.
+            forced: whether the footholds of the reference are moved to catch the body.
         """
         lipm, gains = self._lipm, self._gains
         ahead_x, ahead_y = self._preview(ramps)
@@ -200,7 +208,7 @@ class PreviewGenerator:
         state.y, state.vy = lipm.step(state.y, state.vy, py)
         state.zmp_x, state.zmp_y = px, py
 
-    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
         """The pendulum's own DCM: weighing the ZMP's change, it keeps off that of the footholds."""
         w = self._lipm.omega
         return state.x + state.vx / w, state.y + state.vy / w

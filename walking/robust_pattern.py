@@ -16,20 +16,15 @@ equations and bounds. Its dual has two unknowns, found by Newton's method; witho
 bounds that is one division.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from walking.lipm import Lipm
-from walking.parameters import CONTROL_PERIOD, PatternParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference
+from walking.parameters import PatternParameters
+from walking.pattern import PendulumState, ZmpRamp
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.support import SupportRegion, support_region
-from walking.zmp_fit import Knot, ZmpFit, knot_at, limit_rate
-
-SINGLE_SPACING = 9  # ticks between knots in single support
-LATER_SPACING = 27  # ticks between knots in the single support after that
-DOUBLE_SPACING = 18  # ticks between knots in a long double support
-REST = 72  # ticks that a plan that ends goes on standing
+from walking.support import SupportRegion
+from walking.zmp_program import DOUBLE_SPACING, Knot, Lean, ZmpProgram
 
 Feet = tuple[Footstep, Footstep]
 
@@ -42,16 +37,33 @@ class ZmpPlan:
         knots: ticks since the one before, x, y [m].
         supports: end of the first ramps in ticks from now, and their feet.
         missed: DCM that the plan does not lead back to the reference, zero if feasible [m].
+        dual: of its program, see `ZmpFit` [1/m].
     """
 
-    knots: list[tuple[int, float, float]]
+    knots: list[Knot]
     supports: list[tuple[int, Feet]]
     missed: tuple[float, float]
+    dual: tuple[float, float]
 
     @property
     def feasible(self) -> bool:
         """Whether the plan leads to its end."""
         return self.missed == (0.0, 0.0)
+
+
+@dataclass(slots=True)
+class Undisturbed:
+    """What the pendulum would do had it not to catch the body.
+
+    Attributes:
+        state: of the pendulum.
+        knots: that it follows.
+        missed: DCM that they do not lead back to the reference [m].
+    """
+
+    state: PendulumState
+    knots: list[Knot]
+    missed: tuple[float, float]
 
 
 class RobustGenerator:
@@ -67,51 +79,77 @@ class RobustGenerator:
 
     def __init__(self, lipm: Lipm, parameters: PatternParameters, sole: Sole) -> None:
         self._lipm = lipm
-        self._margin = parameters.sole_margin
-        self._reach = parameters.zmp_rate * CONTROL_PERIOD
+        self._parameters = parameters
         self._sole = sole
-        self._plan = ZmpPlan([], [], (0.0, 0.0))
+        self._plan = ZmpPlan([], [], (0.0, 0.0), (0.0, 0.0))
         self._age = 0
         self._candidate: tuple[list[ZmpRamp], ZmpPlan] | None = None
+        self._undisturbed: Undisturbed | None = None
 
     def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
         """Whether a plan with all knots in place leads into a reference."""
         plan = self._solve(state, ramps)
-        if plan.feasible:
+        if plan is not None:
             self._candidate = (ramps, plan)
-        return plan.feasible
+        return plan is not None
 
     def advance(
         self,
         state: PendulumState,
         ramps: list[ZmpRamp],
-        dcm: tuple[float, float],
         region: SupportRegion,
+        *,
+        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
         Args:
             state: of the pendulum.
             ramps: ZMP reference from now on.
-            dcm: `dcm_reference` of the ramps [m].
             region: where the ZMP may be.
+            forced: whether the footholds of the reference catch the body.
         """
+        self._set_aside(state, forced=forced)
         candidate, self._candidate = self._candidate, None
         plan = candidate[1] if candidate and candidate[0] is ramps else self._solve(state, ramps)
-        if plan.feasible or not self._still_holds(ramps):
+        if plan is not None:
             self._plan, self._age = plan, 0
-        self._follow(state)
+        elif not self._still_holds(ramps):
+            self._plan, self._age = self._nearest(state, ramps), 0
+        self._follow(state, self._plan.knots)
         self._age += 1
 
-    def planned_dcm(self, state: PendulumState, dcm: tuple[float, float]) -> tuple[float, float]:
-        """The pendulum's own DCM, less what the plan does not lead back to the reference."""
-        w = self._lipm.omega
-        mx, my = self._plan.missed
-        return state.x + state.vx / w - mx, state.y + state.vy / w - my
+    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
+        """DCM of a pendulum that had no body to catch, if it can be led back to its reference.
 
-    def _follow(self, state: PendulumState) -> None:
-        """One tick along the plan, which loses its first segment when that is over."""
-        lipm, knots = self._lipm, self._plan.knots
+        While footholds are moved to catch the body the pendulum goes with it; the body's
+        distance from this DCM is what has to be caught.
+        """
+        aside, w, growth = self._undisturbed, self._lipm.omega, self._lipm.ramp(self._age).growth
+        if aside is not None:
+            state, missed, growth = aside.state, aside.missed, 1.0
+        else:
+            missed = self._plan.missed
+        mx, my = missed
+        return state.x + state.vx / w - growth * mx, state.y + state.vy / w - growth * my
+
+    def _set_aside(self, state: PendulumState, *, forced: bool) -> None:
+        """Begin, carry on or end the motion that catches nothing."""
+        aside, growth = self._undisturbed, self._lipm.ramp(1).growth
+        if not forced:
+            self._undisturbed = None
+            return
+        if aside is None:
+            plan, elapsed = self._plan, self._lipm.ramp(self._age).growth
+            mx, my = plan.missed
+            aside = Undisturbed(replace(state), list(plan.knots), (elapsed * mx, elapsed * my))
+            self._undisturbed = aside
+        self._follow(aside.state, aside.knots)
+        aside.missed = (growth * aside.missed[0], growth * aside.missed[1])
+
+    def _follow(self, state: PendulumState, knots: list[Knot]) -> None:
+        """One tick along a plan, which loses its first segment when that is over."""
+        lipm = self._lipm
         px, py = state.zmp_x, state.zmp_y
         if knots:
             ticks, x, y = knots[0]
@@ -132,92 +170,37 @@ class RobustGenerator:
             return False
         return all((end + age, feet) in plan.supports for end, feet in _supports(ramps)[:2])
 
-    def _solve(self, state: PendulumState, ramps: list[ZmpRamp]) -> ZmpPlan:
-        """The plan nearest to a reference, or the one that misses its DCM by little."""
-        near, far = _split(ramps)
-        last = near[-1]
-        knots = self._knots(state, near)
-        left = sum(ramp.ticks for ramp in near) - sum(knot.ticks for knot in knots)
-        end = (last.bx, last.by)
-        rest = dcm_reference(self._lipm, far) if far else end
-        fit = ZmpFit(knots, *self._weigh(state, knots, left, end, rest))
-        missed = fit.solve()
-        points = [
-            (k.ticks, k.cx + k.c * k.u - k.s * k.v, k.cy + k.s * k.u + k.c * k.v) for k in knots
-        ]
-        return ZmpPlan([*points, (left, *end)], _supports(ramps), missed)
+    def _solve(self, state: PendulumState, ramps: list[ZmpRamp]) -> ZmpPlan | None:
+        """The plan nearest to a reference, or None if none leads into it."""
+        program = self._program(state, ramps, None)
+        growth = self._lipm.ramp(self._age).growth
+        lx, ly = self._plan.dual
+        if not program.fit.solve((lx / growth, ly / growth)):
+            if not _long_double(ramps):
+                return None
+            # Two soles have more room than the slices about the reference.
+            program = self._program(state, ramps, program.fit.approach())
+            if not program.fit.solve((0.0, 0.0)):
+                return None
+        return ZmpPlan(program.knots(), _supports(ramps), (0.0, 0.0), program.fit.dual)
 
-    def _knots(self, state: PendulumState, near: list[ZmpRamp]) -> list[Knot]:
-        knots: list[Knot] = []
-        spacing = SINGLE_SPACING
-        for index, ramp in enumerate(near):
-            first, second = ramp.feet
-            region = support_region(self._sole, first, second, self._margin)
-            since = 0
-            every = spacing if first is second else DOUBLE_SPACING
-            # Counted from the end, so that the knots keep their times as time goes by.
-            for ticks in (*range(ramp.ticks - 1 - (ramp.ticks - 1) % every, 0, -every), 0):
-                now = ramp.ticks - ticks
-                if ticks == 0 and index == len(near) - 1:
-                    break
-                share = now / ramp.ticks
-                x = ramp.ax + share * (ramp.bx - ramp.ax)
-                y = ramp.ay + share * (ramp.by - ramp.ay)
-                lands = ticks == 0 and near[index + 1].feet == (second, second)
-                knots.append(knot_at(now - since, region, x, y, on_second=lands))
-                since = now
-            if first is second:
-                spacing = LATER_SPACING
-        if knots and near[0].feet[0] is near[0].feet[1]:
-            limit_rate(knots[0], state.zmp_x, state.zmp_y, self._reach * knots[0].ticks)
-        return knots
+    def _nearest(self, state: PendulumState, ramps: list[ZmpRamp]) -> ZmpPlan:
+        """The plan that misses the DCM of a reference by as little as may be."""
+        program = self._program(state, ramps, None)
+        missed = program.fit.approach()
+        if _long_double(ramps):
+            program = self._program(state, ramps, missed)
+            missed = program.fit.approach()
+        return ZmpPlan(program.knots(), _supports(ramps), missed, (0.0, 0.0))
 
-    def _weigh(
-        self,
-        state: PendulumState,
-        knots: list[Knot],
-        left: int,
-        end: tuple[float, float],
-        rest: tuple[float, float],
-    ) -> tuple[float, float]:
-        """Set the weights of the knots; the DCM that they have to bring about [m].
-
-        Args:
-            state: of the pendulum.
-            knots: all but the first point and the last.
-            left: ticks from the last knot to the end.
-            end: ZMP there [m].
-            rest: DCM there [m].
-        """
-        w, lipm = self._lipm.omega, self._lipm
-        c = lipm.ramp(knots[0].ticks)
-        decay = 1.0 / c.growth
-        now, weight = decay * c.first, decay * c.last
-        spans = [*(knot.ticks for knot in knots[1:]), left]
-        for knot, ticks in zip(knots, spans, strict=True):
-            c = lipm.ramp(ticks)
-            decay /= c.growth
-            knot.weight = weight + decay * c.first
-            weight = decay * c.last
-        return (
-            state.x + state.vx / w - now * state.zmp_x - weight * end[0] - decay * rest[0],
-            state.y + state.vy / w - now * state.zmp_y - weight * end[1] - decay * rest[1],
-        )
+    def _program(self, state: PendulumState, ramps: list[ZmpRamp], lean: Lean | None) -> ZmpProgram:
+        return ZmpProgram(self._lipm, self._parameters, self._sole, state, ramps, lean=lean)
 
 
-def _split(ramps: list[ZmpRamp]) -> tuple[list[ZmpRamp], list[ZmpRamp]]:
-    """The ramps whose ZMP is planned, and the others.
-
-    Planned is the ZMP up to the end of the second single support and through the double
-    support after it; a reference that ends before is drawn out by a time of standing.
-    """
-    singles = 0
-    for index, ramp in enumerate(ramps[:-1]):
-        singles += ramp.feet[0] is ramp.feet[1]
-        if singles == 2:
-            return ramps[: index + 2], ramps[index + 2 :]
-    last = ramps[-1]
-    return [*ramps, ZmpRamp(REST, last.bx, last.by, last.bx, last.by, last.feet)], []
+def _long_double(ramps: list[ZmpRamp]) -> bool:
+    """Whether the reference begins with a double support that has knots within."""
+    first = ramps[0]
+    return first.feet[0] is not first.feet[1] and first.ticks > DOUBLE_SPACING
 
 
 def _supports(ramps: list[ZmpRamp]) -> list[tuple[int, Feet]]:
