@@ -15,8 +15,9 @@ from vision.camera import CameraPose, PinholeCamera
 from vision.detection import Detection
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.odometry import increment
 from walking.sensing import BodySensors
-from walking.state import HeadCameraPose, Phase, WalkingState
+from walking.state import HeadCameraPose, Odometry, WalkingState
 from walking.targets import JointTargets
 
 # How well encoders, IMU and leg kinematics know the camera's pose while walking: twice to
@@ -123,6 +124,7 @@ class Robot:
         self._planned_step = -1
         self._frames = 0
         self._taken: deque[tuple[float, WalkingState]] = deque(maxlen=UNDER_WAY)
+        self._odometry: Odometry | None = None
         self.command = VelocityCommand()
         self.head = HeadTarget()
         self.frame: FrameRecord | None = None
@@ -201,13 +203,16 @@ class Robot:
             tilt=head.tilt,
             horizontal_fov=self._camera.horizontal_fov,
             vertical_fov=self._camera.vertical_fov,
+            yaw_sigma=YAW_SIGMA,
         )
 
     def _frame(self, time: float, state: WalkingState, detections: tuple[Detection, ...]) -> Frame:
+        motion = increment(self._odometry or state.odometry, state.odometry)
+        self._odometry = state.odometry
         return Frame(
             time=time,
             odometry=_odometry(state),
-            walking=state.phase is not Phase.STANDING,
+            motion_covariance=motion.covariance,
             view=self._view(state),
             observations=tuple(
                 Observation(

@@ -13,24 +13,16 @@ NonNegative = Annotated[float, Ge(0.0)]
 class LocalizationParameters:
     """Unscented Kalman filter of the robot's pose from odometry and beacons."""
 
-    slip: NonNegative = 0.03
-    """Standard deviation of a footstep's displacement and turn, as a share of it [1]."""
-    drift: NonNegative = 0.003
-    """Standard deviation of the odometry's speed error over a footstep while stepping [m/s]."""
-    turn_drift: NonNegative = 0.006
-    """Standard deviation of the odometry's turn rate error over a footstep [rad/s]."""
-    footstep: Positive = 0.34
-    """Time over which an odometry error stays the same, one footstep [s]."""
-    standing_drift: NonNegative = 0.0005
-    """Random walk of the position while standing; of the heading in radians [m/s^0.5]."""
-    correlation_time: NonNegative = 0.08
-    """Correlation time of the error of successive sightings of one beacon [s]."""
+    drift: NonNegative = 0.0003
+    """Random walk of position and heading that the odometry's covariance lacks [m/s^0.5]."""
     gate: Positive = 13.8
     """Normalised innovation squared above which a beacon sighting is rejected [1]."""
     lost_run: Annotated[int, Ge(2)] = 8
     """Rejected sightings in a row, of two or more beacons, that mean being lost [1]."""
     lost_time: Positive = 2.0
     """Duration of such a run that means being lost whatever the number of beacons [s]."""
+    displaced_hits: Annotated[int, Ge(2)] = 10
+    """Frames in a row that contradict one beacon and fit others: it was moved [1]."""
     lost_sigma: Positive = 1.0
     """Standard deviation of position and heading while lost [m, rad]."""
     recovery_sigma: Positive = 0.15

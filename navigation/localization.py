@@ -1,13 +1,14 @@
-"""Where the robot is: an unscented Kalman filter over odometry and beacons.
+"""Localization: an unscented Kalman filter of the pose with known beacons.
 
-The filter is filterpy's with Julier's sigma points, the distribution-approximation
-filter of Yoo & Kim. State: x, y, heading of R in W. Being lost is noticed by the
-innovations, never by the covariance, which stays small when it is wrong.
+filterpy's filter with Julier's sigma points, the distribution-approximation filter of
+Yoo & Kim. State: x, y, heading of R in W. What the measurements share is modelled once:
+all bearings of a frame contain the same error of the camera's direction, so the beacons of
+a frame are one measurement.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import atan2, cos, inf, isfinite, sin
+from collections.abc import Mapping, Sequence
+from functools import partial
+from math import cos, isfinite, sin
 
 import numpy as np
 from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter
@@ -15,31 +16,36 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap, wrap_array
 from navigation.belief_parameters import LocalizationParameters
-from navigation.correlated_noise import variance_inflation
-from navigation.landmark import pose_from_points, sighting
+from navigation.landmark import sighting
 from navigation.observation import Frame, Observation
+from navigation.relocalization import Relocalization
 
 Array = NDArray[np.float64]
+Landmarks = Sequence[tuple[float, float]]
 
-# State and measurement both end with an angle, so they share mean, residual and sum.
+# The state ends with an angle; of a measurement every second entry is one.
+STATE = slice(2, None)
+MEASUREMENT = slice(1, None, 2)
+SHARED_LIMIT = 0.98
+"""Largest share of a bearing's variance that may be common to the whole frame [1]."""
 
 
-def _mean(points: Array, weights: Array) -> Array:
+def _mean(angles: slice, points: Array, weights: Array) -> Array:
     mean: Array = weights @ points
-    angles = points[:, -1]
-    mean[-1] = atan2(float(weights @ np.sin(angles)), float(weights @ np.cos(angles)))
+    turned = points[:, angles]
+    mean[angles] = np.arctan2(weights @ np.sin(turned), weights @ np.cos(turned))
     return mean
 
 
-def _residual(a: Array, b: Array) -> Array:
-    difference = a - b
-    difference[-1] = wrap(float(difference[-1]))
+def _difference(angles: slice, a: Array, b: Array) -> Array:
+    difference: Array = a - b
+    difference[angles] = [wrap(v) for v in difference[angles].tolist()]
     return difference
 
 
-def _sum(a: Array, b: Array) -> Array:
-    total = a + b
-    total[-1] = wrap(float(total[-1]))
+def _moved_on(state: Array, step: Array) -> Array:
+    total: Array = state + step
+    total[2] = wrap(float(total[2]))
     return total
 
 
@@ -50,11 +56,13 @@ def _transform(
     noise: Array,
     _mean_fn: object,
     _residual_fn: object,
+    *,
+    angles: slice,
 ) -> tuple[Array, Array]:
     """Unscented transform of all points at once; filterpy's own loops over them."""
-    mean = _mean(points, mean_weights)
+    mean = _mean(angles, points, mean_weights)
     spread = points - mean
-    spread[:, -1] = wrap_array(spread[:, -1])
+    spread[:, angles] = wrap_array(spread[:, angles])
     return mean, (spread.T * covariance_weights) @ spread + noise
 
 
@@ -67,16 +75,9 @@ def _moved(pose: Array, _dt: float, increment: tuple[float, float, float]) -> Ar
     return np.array([x + c * forward - s * left, y + s * forward + c * left, heading + turn])
 
 
-def _seen(pose: Array, landmark: tuple[float, float]) -> Array:
-    return np.array(sighting(pose.tolist(), landmark))
-
-
-@dataclass(frozen=True, slots=True)
-class _Sighting:
-    """A beacon as the odometry frame remembers it."""
-
-    time: float
-    point: tuple[float, float]
+def _seen(pose: Array, landmarks: Landmarks) -> Array:
+    x = pose.tolist()
+    return np.array([v for landmark in landmarks for v in sighting(x, landmark)])
 
 
 class Localizer:
@@ -98,6 +99,7 @@ class Localizer:
     ) -> None:
         self._parameters = parameters
         self._beacons = {name: (float(x), float(y)) for name, (x, y) in beacons.items()}
+        self._relocalization = Relocalization(parameters, self._beacons)
         self._filter = UnscentedKalmanFilter(
             dim_x=3,
             dim_z=2,
@@ -105,16 +107,14 @@ class Localizer:
             hx=_seen,
             fx=_moved,
             points=JulierSigmaPoints(3, kappa=0.0),
-            x_mean_fn=_mean,
-            z_mean_fn=_mean,
-            residual_x=_residual,
-            residual_z=_residual,
-            state_add=_sum,
+            x_mean_fn=partial(_mean, STATE),
+            z_mean_fn=partial(_mean, MEASUREMENT),
+            residual_x=partial(_difference, STATE),
+            residual_z=partial(_difference, MEASUREMENT),
+            state_add=_moved_on,
         )
         self._set(np.asarray(pose, float), np.asarray(covariance, float))
         self._previous: tuple[float, list[float]] | None = None
-        self._sightings: dict[str, _Sighting] = {}
-        self._rejected: list[tuple[float, str]] = []
         self._lost = False
         self._faults = 0
         self._recoveries = 0
@@ -135,6 +135,11 @@ class Localizer:
     def lost(self) -> bool:
         """Whether the beacons have contradicted the pose for too long."""
         return self._lost
+
+    @property
+    def displaced(self) -> frozenset[str]:
+        """Beacons found to stand elsewhere than they should."""
+        return self._relocalization.displaced
 
     @property
     def faults(self) -> int:
@@ -159,21 +164,19 @@ class Localizer:
             )
         # One blob split in two would otherwise count as two independent sightings.
         seen = {o.label: o for o in reversed(frame.observations) if o.kind == "beacon"}
-        beacons = [o for name, o in seen.items() if name in self._beacons]
+        useless = self._relocalization.displaced
+        beacons = [o for n, o in seen.items() if n in self._beacons and n not in useless]
         try:
             self._predict(frame)
-            intervals = [self._remember(o, frame) for o in beacons]
+            for observation in beacons:
+                self._relocalization.remember(observation, frame)
             if self._lost:
                 self._recover(frame, beacons)
-            else:
-                for observation, interval in zip(beacons, intervals, strict=True):
-                    self._correct(observation, interval, frame.time)
-                self._judge(frame.time)
+            elif beacons:
+                self._judge(frame.time, beacons, self._correct(frame, beacons))
         except np.linalg.LinAlgError:
-            self._faults += 1
             self._restart()
         if not (np.isfinite(self._filter.x).all() and np.isfinite(self._filter.P).all()):
-            self._faults += 1
             self._restart()
 
     def _set(self, pose: Array, covariance: Array) -> None:
@@ -185,9 +188,10 @@ class Localizer:
 
     def _restart(self) -> None:
         """Start again, lost, from the last sound pose."""
+        self._faults += 1
         self._set(self._sound, np.eye(3) * self._parameters.lost_sigma**2)
         self._lost = True
-        self._rejected.clear()
+        self._relocalization.begin()
 
     def _predict(self, frame: Frame) -> None:
         odometry = frame.odometry.tolist()
@@ -201,68 +205,48 @@ class Localizer:
         middle = last[2] + 0.5 * turn
         c, s = cos(middle), sin(middle)
         increment = (c * dx + s * dy, c * dy - s * dx, turn)
-        self._filter.Q = self._process_noise(increment, frame.time - previous[0], frame.walking)
-        self._filter.predict(UT=_transform, increment=increment)
-        self._tidy()
-
-    def _process_noise(
-        self, increment: tuple[float, float, float], dt: float, walking: bool
-    ) -> Array:
-        p = self._parameters
-        if not walking:
-            return np.eye(3) * (p.standing_drift**2 * dt)
-        # An error that lasts one footstep adds up over its frames; a white one of equal
-        # effect over many footsteps is larger per frame by the number of frames in one.
-        frames = max(1.0, p.footstep / dt)
-        forward, left, turn = increment
-        step = (p.drift * dt) ** 2
-        slip = p.slip**2
-        vf = frames * (slip * forward * forward + step)
-        vl = frames * (slip * left * left + step)
-        vt = frames * (slip * turn * turn + (p.turn_drift * dt) ** 2)
         heading = float(self._filter.x[2])
         c, s = cos(heading), sin(heading)
-        cross = c * s * (vf - vl)
-        return np.array(
-            [
-                [c * c * vf + s * s * vl, cross, 0.0],
-                [cross, s * s * vf + c * c * vl, 0.0],
-                [0.0, 0.0, vt],
-            ]
-        )
+        to_world = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        unseen = self._parameters.drift**2 * (frame.time - previous[0])
+        self._filter.Q = to_world @ frame.motion_covariance @ to_world.T + unseen * np.eye(3)
+        self._filter.predict(UT=partial(_transform, angles=STATE), increment=increment)
+        self._tidy()
 
-    def _remember(self, observation: Observation, frame: Frame) -> float:
-        """Keep the sighting in the odometry frame; return the time since the last one [s]."""
-        x, y, yaw = frame.odometry.tolist()
-        direction = yaw + observation.bearing
-        point = (
-            x + observation.distance * cos(direction),
-            y + observation.distance * sin(direction),
-        )
-        before = self._sightings.get(observation.label)
-        self._sightings[observation.label] = _Sighting(frame.time, point)
-        return inf if before is None else frame.time - before.time
-
-    def _correct(self, observation: Observation, interval: float, time: float) -> None:
+    def _correct(self, frame: Frame, beacons: list[Observation]) -> list[str]:
+        """Take in all beacons that fit, as one measurement; return their names."""
         f = self._filter
-        x, P = f.x, f.P
         # filterpy keeps the sigma points of the prediction; they must follow every update.
         f.sigmas_f = f.points_fn.sigma_points(f.x, f.P)
-        inflation = variance_inflation(interval, self._parameters.correlation_time)
-        z = np.array([observation.distance, observation.bearing])
+        fit = [o for o in beacons if self._distance(o) <= self._parameters.gate]
+        if not fit:
+            return []
+        R = np.zeros((2 * len(fit), 2 * len(fit)))
+        smallest = min(float(o.covariance[1, 1]) for o in fit)
+        R[1::2, 1::2] = min(frame.view.yaw_sigma**2, SHARED_LIMIT * smallest)
+        for i, o in enumerate(fit):
+            R[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = o.covariance
         f.update(
-            z,
-            R=observation.covariance * inflation,
-            UT=_transform,
-            landmark=self._beacons[observation.label],
+            np.array([v for o in fit for v in (o.distance, o.bearing)]),
+            R=R,
+            UT=partial(_transform, angles=MEASUREMENT),
+            landmarks=[self._beacons[o.label] for o in fit],
         )
-        nis = float(f.y @ f.SI @ f.y)
-        if nis > self._parameters.gate or not isfinite(nis):
-            f.x, f.P = x, P
-            self._rejected.append((time, observation.label))
-        else:
-            self._rejected.clear()
-            self._tidy()
+        self._tidy()
+        return [o.label for o in fit]
+
+    def _distance(self, observation: Observation) -> float:
+        """Normalised innovation squared of one beacon; infinite if it is not finite."""
+        f = self._filter
+        landmarks = [self._beacons[observation.label]]
+        points = np.array([_seen(point, landmarks) for point in f.sigmas_f])
+        R = observation.covariance
+        mean, S = _transform(points, f.Wm, f.Wc, R, None, None, angles=MEASUREMENT)
+        u = observation.distance - float(mean[0])
+        w = wrap(observation.bearing - float(mean[1]))
+        (a, b), (_, d) = S.tolist()
+        nis = (d * u * u - 2.0 * b * u * w + a * w * w) / (a * d - b * b)
+        return nis if isfinite(nis) else float("inf")
 
     def _tidy(self) -> None:
         f = self._filter
@@ -270,41 +254,19 @@ class Localizer:
         f.P = 0.5 * (f.P + f.P.T)
         self._sound = f.x.copy()
 
-    def _judge(self, time: float) -> None:
-        """Decide by the run of rejected sightings whether the pose is wrong."""
-        p = self._parameters
-        run = self._rejected
-        if len(run) < p.lost_run:
-            return
-        several = len({name for _, name in run}) > 1
-        if several or time - run[0][0] > p.lost_time:
-            # What was seen before the run began belongs to another odometry frame.
-            self._sightings = {n: s for n, s in self._sightings.items() if s.time >= run[0][0]}
-            run.clear()
+    def _judge(self, time: float, beacons: list[Observation], accepted: list[str]) -> None:
+        rejected = [o.label for o in beacons if o.label not in accepted]
+        if self._relocalization.judge(time, accepted, rejected):
+            self._relocalization.begin()
             self._lost = True
-            self._filter.P = np.eye(3) * p.lost_sigma**2
+            self._filter.P = np.eye(3) * self._parameters.lost_sigma**2
 
     def _recover(self, frame: Frame, beacons: list[Observation]) -> None:
         """Lay the beacons seen of late over the known ones."""
-        p = self._parameters
-        recent = {
-            n: s for n, s in self._sightings.items() if frame.time - s.time <= p.recovery_window
-        }
-        if len(recent) < 2 or not beacons:
-            return
-        x, y, yaw = frame.odometry.tolist()
-        c, s = cos(yaw), sin(yaw)
-        points = np.array([seen.point for seen in recent.values()]) - (x, y)
-        seen_R = points @ np.array([[c, -s], [s, c]])
-        known = np.array([self._beacons[name] for name in recent])
-        pose = pose_from_points(seen_R, known)
-        c, s = cos(pose[2]), sin(pose[2])
-        fit = seen_R @ np.array([[c, s], [-s, c]]) + pose[:2]
-        # A beacon out of place, or one of the wrong name, does not fit the others.
-        if float(np.max(np.linalg.norm(fit - known, axis=1))) > p.recovery_sigma:
+        pose = self._relocalization.locate(frame, self._filter.x) if beacons else None
+        if pose is None:
             return
         self._lost = False
         self._recoveries += 1
-        self._set(pose, np.eye(3) * p.recovery_sigma**2)
-        for observation in beacons:
-            self._correct(observation, inf, frame.time)
+        self._set(pose, np.eye(3) * self._parameters.recovery_sigma**2)
+        self._correct(frame, beacons)

@@ -45,6 +45,8 @@ class CameraView:
         position: p_RC (3,) [m].
         pan, tilt: measured head angles [rad].
         horizontal_fov, vertical_fov: [rad].
+        yaw_sigma: standard deviation of its direction about the vertical, an error that all
+            bearings of the frame have in common and contain in their covariance [rad].
     """
 
     rotation: Array
@@ -53,6 +55,7 @@ class CameraView:
     tilt: float
     horizontal_fov: float
     vertical_fov: float
+    yaw_sigma: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,13 +66,14 @@ class Frame:
         time: capture time [s].
         odometry: pose of R in the odometry frame at capture (x, y, yaw) (3,) [m, m, rad];
             yaw is unwrapped.
-        walking: whether the robot was stepping since the last frame.
+        motion_covariance: of the error of the odometry since the frame before, a displacement
+            in R as it was then and a turn (3, 3).
         view: where the camera looked.
         observations: what it recognised.
     """
 
     time: float
     odometry: Array
-    walking: bool
+    motion_covariance: Array
     view: CameraView
     observations: tuple[Observation, ...]

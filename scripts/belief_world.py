@@ -1,4 +1,4 @@
-"""The 2-D world of the belief study: cylinders, a walking robot, and a noisy camera."""
+"""A 2-D stand-in for field and camera: shuttling cylinders and a noisy detector."""
 
 from dataclasses import dataclass
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
@@ -22,7 +22,7 @@ HFOV, VFOV = 1.50, 1.22
 FOCAL = 171.0
 RANGE, BEACON_RANGE = 2.5, 5.0
 PITCH_SIGMA, YAW_SIGMA = 0.009, 0.006
-FRAME, HEAD_SPEED, TILT = 0.06, 6.0, -0.44
+FRAME = 0.06
 
 
 @dataclass
@@ -62,28 +62,6 @@ class Smooth:
             self.rng.standard_normal()
         )
         return self.value
-
-
-def random_world(rng: np.random.Generator, statics: int, movers: int) -> list[Obstacle]:
-    """Cylinders with gaps of at least 0.4 m; movers keep clear of the still ones."""
-    placed: list[Array] = []
-    obstacles: list[Obstacle] = []
-    while len(obstacles) < statics:
-        p = rng.uniform(-2.2, 2.2, 2)
-        if all(np.linalg.norm(p - q) > 0.58 for q in placed):
-            placed.append(p)
-            label = COLOURS[len(obstacles) % 4]
-            obstacles.append(Obstacle(label, p, p, 0.0, float(rng.uniform(0.06, 0.11))))
-    while len(obstacles) < statics + movers:
-        a, way = rng.uniform(-2.2, 2.2, 2), float(rng.uniform(-pi, pi))
-        b = a + rng.uniform(0.8, 1.8) * np.array([cos(way), sin(way)])
-        line = a + np.linspace(0, 1, 20)[:, None] * (b - a)
-        clear = np.linalg.norm(line[:, None] - np.array(placed), axis=2).min() > 0.40
-        if np.abs(b).max() < 2.3 and clear:
-            label = COLOURS[int(rng.integers(4))]
-            speed, phase = float(rng.uniform(0.06, 0.14)), float(rng.uniform(0, 2))
-            obstacles.append(Obstacle(label, a, b, speed, float(rng.uniform(0.06, 0.11)), phase))
-    return obstacles
 
 
 BEACONS = {
@@ -192,38 +170,3 @@ def view(pan: float, tilt: float) -> CameraView:
     down = np.cross(forward, right)
     rotation = np.stack([right, down, forward], axis=1)
     return CameraView(rotation, np.array([0.0, 0.0, CAMERA_HEIGHT]), pan, tilt, HFOV, VFOV)
-
-
-class Walker:
-    """The robot on a random tour: true pose, slipping odometry and a head that looks around."""
-
-    def __init__(self, rng: np.random.Generator, legs: np.random.Generator) -> None:
-        self.rng, self.legs = rng, legs
-        self.pose = np.array([*rng.uniform(-1.5, 1.5, 2), rng.uniform(-pi, pi)])
-        self.odometry = np.zeros(3)
-        self.pan = self.pan_goal = self.dwell = self.step_end = 0.0
-        self.target = self.pose[:2]
-        self.scale = 1 + 0.03 * float(legs.standard_normal())
-        self.slip = self.drift = np.zeros(3)
-
-    def step(self, time: float, dt: float) -> None:
-        """Walk on and turn the head for one frame."""
-        if np.hypot(*(self.target - self.pose[:2])) < 0.2:
-            self.target = self.rng.uniform(-1.8, 1.8, 2)
-        error = wrap(atan2(*(self.target - self.pose[:2])[::-1].tolist()) - float(self.pose[2]))
-        felt = np.array([0.18 * max(0.0, cos(error)), 0.0, max(-0.8, min(0.8, 1.5 * error))])
-        if time >= self.step_end:
-            self.step_end += 0.34
-            self.slip = self.legs.normal(0, [0.06, 0.06, 0.04])
-            self.drift = self.legs.normal(0, [0.005, 0.005, 0.02])
-        done = felt * (1 + self.slip) * [self.scale, 1, 1] + self.drift
-        for body, pose in ((done, self.pose), (felt, self.odometry)):
-            heading = pose[2] + 0.5 * body[2] * dt
-            pose[0] += dt * (cos(heading) * body[0] - sin(heading) * body[1])
-            pose[1] += dt * (sin(heading) * body[0] + cos(heading) * body[1])
-            pose[2] += dt * body[2]
-        if time >= self.dwell:
-            self.pan_goal = float(self.rng.uniform(-1.5, 1.5))
-            turn = abs(self.pan_goal - self.pan) / HEAD_SPEED
-            self.dwell = time + turn + float(self.rng.uniform(0.2, 0.9))
-        self.pan += max(-HEAD_SPEED * dt, min(HEAD_SPEED * dt, self.pan_goal - self.pan))

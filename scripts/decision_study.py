@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 import tyro
-from belief_world import BEACONS, COLOURS, HFOV, VFOV, Camera, Obstacle, view
+from belief_world import BEACONS, COLOURS, FRAME, HFOV, VFOV, Camera, Obstacle, view
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
@@ -184,6 +184,12 @@ class Walker:
             pose[1] += TICK * (sin(heading) * velocity[0] + cos(heading) * velocity[1])
             pose[2] += TICK * velocity[2]
 
+    def motion_covariance(self, dt: float) -> Array:
+        """Covariance of the odometry's error over `dt`, which lasts for a footstep each."""
+        stepping = np.abs(self.command).max() > 1e-6
+        speed = np.square(self.body) * (np.square(SLIP) + 0.03**2) + np.square(DRIFT) * stepping
+        return np.diag(speed * dt * LIMITS.footstep)
+
 
 @dataclass
 class Episode:
@@ -285,9 +291,14 @@ class Run:
             if self._in_tilt(np.array(p), tilt, pan, 0.25, 0.35)
         ]
         seen = self.camera.observe(time, self.walker.pose, pan, things)
-        walking = bool(np.abs(self.walker.body).max() > 1e-6)
         return self.estimator.update(
-            Frame(time, self.walker.odometry.copy(), walking, view(pan, tilt), seen)
+            Frame(
+                time,
+                self.walker.odometry.copy(),
+                self.walker.motion_covariance(FRAME),
+                view(pan, tilt),
+                seen,
+            )
         )
 
     def _in_tilt(self, point: Array, tilt: float, pan: float, low: float, high: float) -> bool:

@@ -117,7 +117,7 @@ def _frame(layout, time, pose, **change):
                 box=(100, 80, 140, 160),
             ),
         ),
-        measured=Frame(time, np.asarray(pose, float), True, belief["view"], ()),
+        measured=Frame(time, np.asarray(pose, float), np.zeros((3, 3)), belief["view"], ()),
         belief=Belief(**belief),
         gaze=GazeDecision(0.3, -0.3, 0.2, 0.4, 0.6, 0.1, gaze_map),
         motion=MotionDecision(

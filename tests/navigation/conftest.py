@@ -49,8 +49,9 @@ def _observe(
     )
 
 
-def _frame(time, odometry, observations, camera=None, walking=True):
-    return Frame(time, np.array(odometry, float), walking, camera or _view(), tuple(observations))
+def _frame(time, odometry, observations, camera=None):
+    motion = np.diag([4e-6, 4e-6, 1e-6])
+    return Frame(time, np.array(odometry, float), motion, camera or _view(), tuple(observations))
 
 
 @pytest.fixture(scope="session")

@@ -147,7 +147,7 @@ def test_nonsense_in_frames_does_no_lasting_harm(view, observe, frame, seed):
             for kind in rng.choice(["obstacle", "beacon"], int(rng.integers(0, 12)))
         ]
         camera = view(pan=rng.uniform(-1.5, 1.5), tilt=rng.uniform(-1.0, 0.3))
-        belief = e.update(frame(time, odometry, seen, camera, walking=bool(rng.random() < 0.5)))
+        belief = e.update(frame(time, odometry, seen, camera))
         assert np.isfinite(belief.pose).all()
         assert np.linalg.eigvalsh(belief.pose_covariance)[0] > 0
         assert len({t.id for t in belief.tracks}) == len(belief.tracks)

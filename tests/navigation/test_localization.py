@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import permutations
 from math import cos, pi, sin
 
@@ -18,8 +19,12 @@ DT = 0.1
 VIEW = CameraView(np.eye(3), np.zeros(3), 0.0, 0.0, 1.5, 1.2)
 
 
-def frame(time, odometry, observations):
-    return Frame(time, np.array(odometry, float), True, VIEW, tuple(observations))
+SLIP, DRIFT, TURN_DRIFT, FOOTSTEP = 0.03, 0.003, 0.006, 0.34
+
+
+def frame(time, odometry, observations, motion=(4e-6, 4e-6, 1e-6), yaw_sigma=0.0):
+    view = replace(VIEW, yaw_sigma=yaw_sigma)
+    return Frame(time, np.array(odometry, float), np.diag(motion), view, tuple(observations))
 
 
 def beacon(pose, name, noise=(0.0, 0.0), place=None):
@@ -32,21 +37,21 @@ def beacon(pose, name, noise=(0.0, 0.0), place=None):
 
 def walk(rng, start, seconds, names_at, parameters=None, speed=0.15, turn=0.4):
     """Walk in circles with slipping odometry; yield the localizer and the true pose."""
-    p = parameters or LocalizationParameters(correlation_time=0.0)
     pose, odometry = np.array(start, float), np.zeros(3)
-    localizer = Localizer(p, BEACONS, pose, P0)
-    frames = max(1.0, p.footstep / DT)
+    localizer = Localizer(parameters or LocalizationParameters(), BEACONS, pose, P0)
+    frames = FOOTSTEP / DT
     for k in range(1, int(seconds / DT)):
-        slip = rng.normal(0, p.slip * np.sqrt(frames), 3)
-        drift = rng.normal(0, [p.drift, p.drift, p.turn_drift]) * np.sqrt(frames)
+        slip = rng.normal(0, SLIP * np.sqrt(frames), 3)
+        drift = rng.normal(0, [DRIFT, DRIFT, TURN_DRIFT]) * np.sqrt(frames)
         body = np.array([speed, 0.0, turn])
+        motion = frames * DT**2 * ((SLIP * body) ** 2 + np.square([DRIFT, DRIFT, TURN_DRIFT]))
         for u, q in ((body * (1 + slip) + drift, pose), (body, odometry)):
             middle = q[2] + 0.5 * u[2] * DT
             q[0] += DT * (cos(middle) * u[0] - sin(middle) * u[1])
             q[1] += DT * (sin(middle) * u[0] + cos(middle) * u[1])
             q[2] += DT * u[2]
         seen = [beacon(pose, n, (rng.normal(0, 0.05), rng.normal(0, 0.02))) for n in names_at(k)]
-        localizer.update(frame(k * DT, odometry, seen))
+        localizer.update(frame(k * DT, odometry, seen, motion))
         yield localizer, pose
 
 
@@ -194,3 +199,41 @@ def test_an_old_frame_is_refused():
     localizer.update(frame(1.0, (0, 0, 0), []))
     with pytest.raises(ValueError, match="order of their capture"):
         localizer.update(frame(1.0, (0, 0, 0), []))
+
+
+def test_the_shared_error_of_a_frame_is_counted_once():
+    """Four bearings with the same error of the camera's direction tell the heading no better."""
+    sigmas = {}
+    for shared in (0.0, 0.0198):
+        localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+        seen = [beacon((0, 0, 0), f"b{i}") for i in (0, 2, 4, 6)]
+        localizer.update(frame(0.1, (0, 0, 0), seen, yaw_sigma=shared))
+        sigmas[shared] = np.sqrt(localizer.covariance[2, 2])
+    prior = 0.02
+    assert sigmas[0.0] == pytest.approx((prior**-2 + 4 * 0.02**-2) ** -0.5, rel=0.1)
+    assert sigmas[0.0198] > 0.9 * (prior**-2 + 0.02**-2) ** -0.5
+
+
+def test_a_moved_beacon_is_found_out_and_no_longer_misleads():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    for k in range(1, 40):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved, beacon((0, 0, 0), "b1")]))
+    assert localizer.displaced == {"b0"}
+    for k in range(40, 100):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved]))
+    assert not localizer.lost
+    assert np.hypot(*localizer.pose[:2]) < 0.05
+
+
+def test_a_moved_beacon_does_not_spoil_finding_back():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    for k in range(1, 30):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved]))
+    assert localizer.lost
+    seen = [moved, beacon((0, 0, 0), "b2"), beacon((0, 0, 0), "b5")]
+    localizer.update(frame(3.0, (0, 0, 0), seen[1:]))
+    localizer.update(frame(3.1, (0, 0, 0), seen))
+    assert not localizer.lost
+    assert np.hypot(*localizer.pose[:2]) < 0.05
