@@ -72,11 +72,15 @@ def report(name: str, trace: Trace) -> None:
     )
 
 
-def mean_velocity(trace: Trace, settle: float = 3.0) -> np.ndarray:
-    """Mean forward, left, turn velocity after `settle` [m/s, m/s, rad/s] (3,)."""
+def mean_velocity(trace: Trace, settle: float = 3.0, stride: int = 34) -> np.ndarray:
+    """Mean forward, left, turn velocity after `settle` [m/s, m/s, rad/s] (3,).
+
+    Every `stride` samples, two footsteps, so that the sway cancels.
+    """
     truth, _, _ = upright(trace)
-    stride = 34  # two footsteps, so that the sway cancels
     rows = truth[round(settle / SAMPLE_TIME) :: stride]
+    if len(rows) < 2:
+        return np.full(3, np.nan)
     return in_heading(rows).mean(axis=0) / (stride * SAMPLE_TIME)
 
 

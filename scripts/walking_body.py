@@ -1,4 +1,4 @@
-"""HSR-VIII in full physics under sensor noise, with errors of its model to order."""
+"""A robot in full physics under sensor noise, with errors of its model to order."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
 
 ROBOT = Path(__file__).resolve().parents[1] / "models" / "hsr8" / "hsr8.xml"
-FALLEN_HEIGHT = 0.13  # [m]
+FALLEN_SHARE = 0.64  # of the height of the ready robot's hips
 FALLEN_COSINE = 0.5
 SUBSTEPS = 2
 BUMP_FIELD = 2.5  # half of the side of the square with bumps [m]
@@ -25,6 +25,7 @@ class Plant:
     """What body and floor are in truth; the engine knows the nominal ones.
 
     Attributes:
+        robot: MJCF file.
         noise: multiple of the sensor noise [1].
         friction: between soles and floor [1].
         mass: multiple of all masses [1].
@@ -35,6 +36,7 @@ class Plant:
         bump: height of the boxes strewn on the floor [m].
     """
 
+    robot: Path = ROBOT
     noise: float = 1.0
     friction: float = 0.8
     mass: float = 1.0
@@ -54,7 +56,7 @@ class Plant:
 
 def build(plant: Plant, rng: np.random.Generator) -> mujoco.MjModel:
     """Model of a plant; its errors are in the source, so that all derived numbers follow."""
-    spec = mujoco.MjSpec.from_file(str(ROBOT))
+    spec = mujoco.MjSpec.from_file(str(plant.robot))
     floor = spec.worldbody.add_geom(
         name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], quat=plant.floor_quaternion
     )
@@ -93,7 +95,7 @@ def _bump(spec: mujoco.MjSpec, height: float, rng: np.random.Generator) -> mujoc
 
 
 class Body:
-    """HSR-VIII on a floor with noisy sensors.
+    """A robot on a floor with noisy sensors.
 
     Args:
         rng: of noise and bumps.
@@ -105,6 +107,7 @@ class Body:
         self.data = mujoco.MjData(self.model)
         model, data = self.model, self.data
         mujoco.mj_resetDataKeyframe(model, data, model.key("walk_ready").id)
+        self._lying = FALLEN_SHARE * data.qpos[2]
         upright, at = data.qpos[3:7].copy(), data.qpos[:3].copy()
         mujoco.mju_mulQuat(data.qpos[3:7], plant.floor_quaternion, upright)
         mujoco.mju_rotVecQuat(data.qpos[:3], at, plant.floor_quaternion)
@@ -166,7 +169,7 @@ class Body:
     @property
     def fallen(self) -> bool:
         """Whether the robot lies."""
-        return bool(self._normal @ self.data.qpos[:3] < FALLEN_HEIGHT or self.up < FALLEN_COSINE)
+        return bool(self._normal @ self.data.qpos[:3] < self._lying or self.up < FALLEN_COSINE)
 
     @property
     def pose(self) -> np.ndarray:
