@@ -250,8 +250,9 @@ def pushed(walker: Walker, seed: int, impulse: float) -> Outcome:
         angle = 0.25 * pi * direction
         force = strength / length * np.array([cos(angle), sin(angle)])
         begin = 4.0 * walker.time + 2.0 * phase * walker.parameters.gait.footstep_time
+        push = Push(begin, begin + length, force)
 
-        def body(push: Push = Push(begin, begin + length, force)) -> Body:
+        def body(push: Push = push) -> Body:
             return PushedBody(rng, Plant(robot=walker.path), push)
 
         end = begin + 2.5 * walker.time
