@@ -5,7 +5,7 @@ from math import cos, hypot, sin
 import numpy as np
 
 from walking.admission import AdmissionReport, Limit
-from walking.command import Command, HeadTarget
+from walking.command import Command, CommandState, HeadTarget
 from walking.estimator import ErrorFilter, TiltFilter, TouchDown
 from walking.feedforward import FeedForward
 from walking.footsteps import PLACE_TOLERANCE, FootstepPlanner
@@ -27,7 +27,7 @@ from walking.snapshot import PlanToOdometry, balance, camera_pose
 from walking.stabilizer import Stabilizer
 from walking.state import Footstep, WalkingState
 from walking.steering import Steering
-from walking.stride import Wish
+from walking.stride import Strides
 from walking.support import Footing, SupportRegion, depth, support_region
 from walking.targets import JointTargets
 from walking.transition import Transition
@@ -53,10 +53,10 @@ class WalkingEngine:
         self._planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
         stance = _stance(robot)
         self._gait = Gait(parameters, self._planner, stance)
-        zmp = self._gait.plan(stance[1], (0.0, 0.0, 0.0), moving=False)[-1]
+        zmp = self._gait.plan(stance[1], self._planner.still, moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
-        self._steering = Steering(self._planner, parameters.limits, self._gait.usual)
-        self._transition = Transition(self._gait, self._planner, self._generator)
+        self._steering = Steering(self._planner, parameters.limits)
+        self._transition = Transition(self._gait, self._generator)
         self._binding: list[Limit] = []
         self._given = self._steering.velocity
         self._tilt = TiltFilter(parameters.estimator)
@@ -244,9 +244,11 @@ class WalkingEngine:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
         balanced = hypot(*error) < self._parameters.stabilizer.slew_error
         self._steering.follow(command, settled=settled, balanced=balanced)
-        self._binding = [] if self._gait.retime(self._steering.timing) else [Limit.TIMING]
+        retimed = self._gait.retime(self._steering.timing)
+        late = isinstance(command, CommandState) and not retimed
+        self._binding = [Limit.TIMING] if late else []
 
-    def _wish(self) -> Wish:
+    def _wish(self) -> Strides:
         """What the footsteps obey, with the heading hold."""
         p = self._parameters.stabilizer
         if not self._gait.stepping:
@@ -276,7 +278,7 @@ class WalkingEngine:
     def _plan(
         self,
         body: BodyMeasurement,
-        wish: Wish,
+        wish: Strides,
         error: tuple[float, float],
         *,
         moving: bool,
@@ -315,7 +317,7 @@ class WalkingEngine:
         self,
         ramps: list[ZmpRamp],
         region: SupportRegion,
-        wish: Wish,
+        wish: Strides,
         *,
         moving: bool,
         forced: bool,

@@ -1,13 +1,13 @@
 """Velocities and command states to footholds."""
 
-from math import cos, sin
+from math import cos, sin, sqrt
 
 from walking.admission import Limit
 from walking.command import CommandState
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.stride import Placement, Strides, Timing, Velocity, Wish
+from walking.stride import Placement, Strides, Timing, Velocity
 
 STILL: Velocity = (0.0, 0.0, 0.0)
 PLACE_TOLERANCE = 1e-3  # of a foothold that counts as parallel [m, rad]
@@ -24,15 +24,18 @@ class FootstepPlanner:
         gait: timing, stance, clearance.
         limits: longest footstep and reach.
         sole: rectangle of the soles.
+
+    Attributes:
+        still: strides of stepping in place.
     """
 
     def __init__(self, gait: GaitParameters, limits: LimitParameters, sole: Sole) -> None:
         self._gait = gait
         self._limits = limits
         self._sole = sole
-        self._velocity: Velocity = STILL
-        self._rest = (self._stride(STILL, -1.0), self._stride(STILL, 1.0))
-        self._strides = self._rest
+        self._asked: tuple[Velocity, float] = (STILL, gait.footstep_time)
+        self.still = self._strides = self._make(STILL, gait.footstep_time)
+        self._cadence: tuple[Velocity, Timing] = (STILL, self._timing(gait.footstep_time))
 
     def opening_left(self, velocity: Velocity) -> bool | None:
         """Whether the left foot opens the stance for `velocity`; None when neither does."""
@@ -40,26 +43,39 @@ class FootstepPlanner:
         tendency = left / self._limits.lateral + turn / self._limits.turn
         return None if tendency == 0.0 else tendency > 0.0
 
-    def landing(self, support: Footstep, wish: Wish) -> Footstep:
-        """Next foothold of the other foot.
+    def landing(self, support: Footstep, wish: Strides) -> Footstep:
+        """Next foothold of the foot that is not `support`."""
+        return self._at(support, *(wish.right if support.left else wish.left))
+
+    def cadence(self, velocity: Velocity) -> Timing:
+        """Clock and lift for a velocity (forward, left, turn) [m/s, m/s, rad/s].
+
+        A walk is quickened rather than its footsteps stretched beyond their limits, all
+        components together.
+        """
+        if velocity != self._cadence[0]:
+            gait, limits = self._gait, self._limits
+            forward, left, turn = velocity
+            rate = sqrt(
+                (forward / limits.step_forward) ** 2
+                + (2.0 * left / limits.step_side) ** 2
+                + (2.0 * turn / limits.step_turn) ** 2
+            )
+            time = 1.0 / max(rate, 1.0 / gait.footstep_time)
+            self._cadence = (velocity, self._timing(max(gait.shortest_time, time)))
+        return self._cadence[1]
+
+    def strides(self, velocity: Velocity, time: float) -> Strides:
+        """Strides of a velocity (forward, left, turn) [m/s, m/s, rad/s].
 
         Args:
-            support: the foot on the floor.
-            wish: velocity (forward, left, turn) [m/s, m/s, rad/s] or strides.
+            velocity: of the stance's middle.
+            time: duration of a footstep [s].
         """
-        if isinstance(wish, Strides):
-            return self._at(support, *(wish.right if support.left else wish.left))
-        if wish != self._velocity:
-            self._velocity = wish
-            self._strides = (self._stride(wish, -1.0), self._stride(wish, 1.0))
-        x, y, turned = self._strides[0 if support.left else 1]
-        return self._at(support, x, y, turned)
-
-    def strides(self, wish: Wish) -> Strides:
-        """Strides that `landing` makes of a wish."""
-        if isinstance(wish, Strides):
-            return wish
-        return Strides(right=self._stride(wish, -1.0), left=self._stride(wish, 1.0))
+        if (velocity, time) != self._asked:
+            self._asked = (velocity, time)
+            self._strides = self._make(velocity, time)
+        return self._strides
 
     def explicit(self, command: CommandState, turn: float) -> tuple[Strides, list[Limit]]:
         """Strides of a command state, and the limits that altered it.
@@ -119,10 +135,10 @@ class FootstepPlanner:
             swing_height=timing.lift,
         )
 
-    def stride_limits(self, velocity: Velocity) -> list[Limit]:
-        """Limits of a footstep that bind on a velocity."""
+    def stride_limits(self, velocity: Velocity, time: float) -> list[Limit]:
+        """Limits that bind on the footsteps of a velocity, each lasting `time` [s]."""
         forward, left, turn = velocity
-        limits, time = self._limits, self._gait.footstep_time
+        limits = self._limits
         bound = []
         if abs(forward) * time > limits.step_forward:
             bound.append(Limit.STEP_LENGTH)
@@ -132,11 +148,21 @@ class FootstepPlanner:
             bound.append(Limit.STEP_TURN)
         return bound
 
-    def _stride(self, velocity: Velocity, side: float) -> Placement:
+    def _timing(self, time: float) -> Timing:
+        """A footstep of a duration [s], in whole ticks."""
+        ticks = round(time / CONTROL_PERIOD)
+        double = max(1, round(self._gait.double_support * ticks))
+        return Timing(double, ticks - double, self._gait.lift)
+
+    def _make(self, velocity: Velocity, time: float) -> Strides:
+        return Strides(
+            right=self._stride(velocity, time, -1.0), left=self._stride(velocity, time, 1.0)
+        )
+
+    def _stride(self, velocity: Velocity, time: float, side: float) -> Placement:
         """Landing in the frame of the support foot; `side` is that of the swing foot."""
         forward, left, turn = velocity
         gait, limits = self._gait, self._limits
-        time = gait.footstep_time
         dx = min(limits.step_forward, max(-limits.step_forward, forward * time))
         dy = 2.0 * left * time if left * side > 0.0 else 0.0
         dy = min(limits.step_side, max(-limits.step_side, dy))
@@ -178,14 +204,14 @@ class FootstepPlanner:
         return x, y
 
     def sequence(
-        self, support: Footstep, landing: Footstep, wish: Wish, *, moving: bool
+        self, support: Footstep, landing: Footstep, wish: Strides, *, moving: bool
     ) -> tuple[list[Footstep], bool]:
         """Footholds from `landing` on, and whether the walk ends after the last.
 
         Args:
             support: the foot on the floor.
             landing: where the other foot is about to land.
-            wish: velocity (forward, left, turn) [m/s, m/s, rad/s] or strides.
+            wish: strides.
             moving: whether more than closing the stance is wanted.
         """
         steps = [landing]
@@ -199,7 +225,7 @@ class FootstepPlanner:
 
     def parallel(self, support: Footstep, other: Footstep) -> bool:
         """Whether the two feet stand side by side as for standing."""
-        rest = self._at(support, *self._rest[0 if support.left else 1])
+        rest = self.landing(support, self.still)
         return (
             abs(other.x - rest.x) < PLACE_TOLERANCE
             and abs(other.y - rest.y) < PLACE_TOLERANCE

@@ -6,7 +6,7 @@ from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import ZmpRamp
 from walking.state import Footstep, Phase
-from walking.stride import Timing, Wish
+from walking.stride import Strides, Timing
 from walking.swing import MinimumJerk, lift_profile
 
 Point = tuple[float, float]
@@ -65,7 +65,6 @@ class Gait:
         landing: where the swing foot is about to land.
         completed: number of completed footsteps.
         held: whether the swing foot has met the floor before its time.
-        usual: timing of the parameters.
         timing: of the footsteps to come.
     """
 
@@ -76,14 +75,11 @@ class Gait:
         stance: tuple[Footstep, Footstep],
     ) -> None:
         gait = parameters.gait
-        ticks = round(gait.footstep_time / CONTROL_PERIOD)
         self._planner = planner
         self._zmp_forward = parameters.pattern.zmp_forward
         self._zmp_inward = parameters.pattern.zmp_inward
         self._contact_decay = parameters.stabilizer.contact_decay
-        double = max(1, round(gait.double_support * ticks))
-        self.usual = Timing(double, ticks - double, gait.lift)
-        self.timing = self.usual
+        self.timing = planner.cadence(STILL)
         self._start = round(gait.start_time / CONTROL_PERIOD)
         self._stop = round(gait.stop_time / CONTROL_PERIOD)
         self._swing_share = (gait.swing_start, gait.swing_end)
@@ -101,8 +97,8 @@ class Gait:
         self._tick = self._stop
         self._ramp_start, self._ramp_ticks = 0, self._stop
         self._ramp_fixed = True
-        self._set_single(self.usual.single)
-        self._lift = self.usual.lift
+        self._set_single(self.timing.single)
+        self._lift = self.timing.lift
         self._origin = self._centre(*stance)
         self._weight_origin = 0.5
         self._ends = True
@@ -170,7 +166,7 @@ class Gait:
         self._begin(support, ticks, self._zmp_reference(), self.right_weight)
         self._ramp_fixed = not at_once
 
-    def nominal(self, wish: Wish) -> Footstep:
+    def nominal(self, wish: Strides) -> Footstep:
         """Landing that the wish asks for."""
         return self._planner.landing(self.footholds[self.support], wish)
 
@@ -245,7 +241,7 @@ class Gait:
             yaw=wanted.yaw,
         )
 
-    def plan(self, landing: Footstep, wish: Wish, *, moving: bool) -> list[ZmpRamp]:
+    def plan(self, landing: Footstep, wish: Strides, *, moving: bool) -> list[ZmpRamp]:
         """ZMP reference from now on if the swing foot lands at `landing`."""
         if not self.stepping:
             here, centre = self._zmp_reference(), self._centre(*self.footholds)
@@ -338,7 +334,7 @@ class Gait:
         self._set_single(self.timing.single)
         self._lift = self.timing.lift
         self._origin, self._weight_origin = origin, weight
-        self.landing = self.nominal(STILL)
+        self.landing = self.nominal(self._planner.still)
 
     @property
     def _ramp_share(self) -> float:

@@ -40,7 +40,9 @@ class GaitParameters:
     """Shape and timing of a footstep."""
 
     footstep_time: Annotated[float, Gt(0.0), TIME] = 0.34
-    """Duration of a footstep, double support included [s]."""
+    """Duration of a footstep, double support included, while that keeps it short enough [s]."""
+    shortest_time: Annotated[float, Gt(0.0), TIME] = 0.26
+    """Duration of a footstep at the quickest [s]."""
     double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.2
     """Share of the footstep in double support [1]."""
     start_time: Annotated[float, Gt(0.0), TIME] = 0.3
@@ -179,15 +181,15 @@ class StabilizerParameters:
 class LimitParameters:
     """What may be asked of the legs."""
 
-    forward: Annotated[float, Gt(0.0), SPEED] = 0.32
+    forward: Annotated[float, Gt(0.0), SPEED] = 0.55
     """Fastest walk forward [m/s]."""
-    backward: Annotated[float, Gt(0.0), SPEED] = 0.22
+    backward: Annotated[float, Gt(0.0), SPEED] = 0.45
     """Fastest walk backward [m/s]."""
-    lateral: Annotated[float, Gt(0.0), SPEED] = 0.11
+    lateral: Annotated[float, Gt(0.0), SPEED] = 0.20
     """Fastest walk sideways [m/s]."""
-    turn: Annotated[float, Gt(0.0), RATE] = 1.1
+    turn: Annotated[float, Gt(0.0), RATE] = 2.0
     """Fastest turn [rad/s]."""
-    combined: Annotated[float, Gt(0.0), NUMBER] = 1.25
+    combined: Annotated[float, Gt(0.0), NUMBER] = 1.15
     """Largest norm of the velocity with every component in units of its limit [1]."""
     forward_acceleration: Annotated[float, Gt(0.0), ACCELERATION] = 0.6
     """Change of the forward velocity [m/s²]."""
@@ -195,11 +197,13 @@ class LimitParameters:
     """Change of the lateral velocity [m/s²]."""
     turn_acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 3.3
     """Change of the turn rate [rad/s²]."""
-    step_forward: Annotated[float, Gt(0.0), LENGTH] = 0.125
+    braking_time: Annotated[float, Gt(0.0), TIME] = 0.25
+    """Time to come to rest from the fastest walk [s]."""
+    step_forward: Annotated[float, Gt(0.0), LENGTH] = 0.145
     """Longest footstep forward or backward [m]."""
-    step_side: Annotated[float, Gt(0.0), LENGTH] = 0.08
+    step_side: Annotated[float, Gt(0.0), LENGTH] = 0.12
     """Widest opening footstep beyond the stance [m]."""
-    step_turn: Annotated[float, Gt(0.0), NUMBER] = 0.72
+    step_turn: Annotated[float, Gt(0.0), NUMBER] = 1.2
     """Largest turn of an opening footstep [rad]."""
     reach_forward: Annotated[float, Gt(0.0), LENGTH] = 0.20
     """Semi-axis of the ellipse of reachable landings, forward [m]."""

@@ -3,8 +3,8 @@
 from walking.admission import AdmissionReport, Limit
 from walking.command import Command, CommandState, VelocityCommand
 from walking.footsteps import FootstepPlanner
-from walking.parameters import CONTROL_PERIOD, LimitParameters
-from walking.stride import Strides, Timing, Velocity, Wish
+from walking.parameters import LimitParameters
+from walking.stride import Strides, Timing, Velocity
 from walking.velocity import VelocitySlew, speed_limits
 
 SAME_SPEED = 1e-9  # difference of velocities that is rounding
@@ -16,21 +16,19 @@ class Steering:
     Args:
         planner: makes strides of commands.
         limits: speed and acceleration limits.
-        usual: timing of the footsteps under a velocity command.
 
     Attributes:
         timing: wanted of the footsteps.
     """
 
-    def __init__(self, planner: FootstepPlanner, limits: LimitParameters, usual: Timing) -> None:
+    def __init__(self, planner: FootstepPlanner, limits: LimitParameters) -> None:
         self._planner = planner
         self._limits = limits
-        self._usual = usual
         self._slew = VelocitySlew(limits)
         self._asked: Command = VelocityCommand()
         self._state: CommandState | None = None
         self._bound: list[Limit] = []
-        self.timing = usual
+        self.timing = planner.cadence(self.velocity)
 
     @property
     def bound(self) -> tuple[Limit, ...]:
@@ -67,13 +65,13 @@ class Steering:
         else:
             self._follow_velocity(command)
 
-    def wish(self, turn_rate: float) -> Wish:
+    def wish(self, turn_rate: float) -> Strides:
         """What the footsteps obey, turning by `turn_rate` [rad/s] more to hold the heading."""
-        slew, state = self._slew, self._state
-        if state is None:
-            return slew.forward, slew.left, slew.turn + turn_rate
-        time = (self.timing.double + self.timing.single) * CONTROL_PERIOD
-        return self._planner.explicit(state, turn_rate * time)[0]
+        slew, time = self._slew, self.timing.duration
+        if self._state is None:
+            velocity = slew.forward, slew.left, slew.turn + turn_rate
+            return self._planner.strides(velocity, time)
+        return self._planner.explicit(self._state, turn_rate * time)[0]
 
     def report(
         self, binding: list[Limit], given: Velocity, strides: Strides | None, timing: Timing
@@ -96,14 +94,14 @@ class Steering:
 
     def _follow_velocity(self, command: VelocityCommand) -> None:
         self._state = None
-        self.timing = self._usual
         wanted = self._slew.follow(command)
         bound = self._bound
         bound.extend(speed_limits(command, self._limits))
         given = self.velocity
+        self.timing = self._planner.cadence(given)
         if max(abs(a - b) for a, b in zip(given, wanted, strict=True)) > SAME_SPEED:
             bound.append(Limit.ACCELERATION)
-        bound.extend(self._planner.stride_limits(given))
+        bound.extend(self._planner.stride_limits(given, self.timing.duration))
 
     def _follow_state(self, command: CommandState) -> None:
         self._state = command
@@ -111,7 +109,7 @@ class Steering:
         strides, altered = self._planner.explicit(command, 0.0)
         self._bound.extend(altered)
         self._bound.extend(late)
-        time = (self.timing.double + self.timing.single) * CONTROL_PERIOD
+        time = self.timing.duration
         # A velocity command that comes next sets out from here.
         given = self._planner.command_state(strides, self.timing)
         self._slew.start(given.forward / time, 0.0, given.direction / time)

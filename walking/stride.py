@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from walking.parameters import CONTROL_PERIOD
+
 Velocity = tuple[float, float, float]
 """Forward [m/s], left [m/s], turn [rad/s]."""
 
@@ -28,10 +30,6 @@ class Strides:
         )
 
 
-Wish = Velocity | Strides
-"""What the footsteps obey: a velocity, or strides given explicitly."""
-
-
 @dataclass(frozen=True, slots=True)
 class Timing:
     """Clock and lift of a footstep.
@@ -44,6 +42,11 @@ class Timing:
     double: int
     single: int
     lift: float
+
+    @property
+    def duration(self) -> float:
+        """Of the footstep [s]."""
+        return (self.double + self.single) * CONTROL_PERIOD
 
     def towards(self, other: "Timing", share: float) -> "Timing":
         """Timing `share` of the way to another, in whole ticks."""

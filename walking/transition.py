@@ -1,10 +1,9 @@
 """From the plan of the last tick to the one now wanted, as far as the ZMP allows."""
 
-from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.pattern import PatternGenerator, PendulumState, ZmpRamp
 from walking.state import Footstep
-from walking.stride import Strides, Wish
+from walking.stride import Strides
 from walking.support import SupportRegion
 
 BISECTIONS = 4  # an admitted change is at least 1/16 short of the largest possible
@@ -19,7 +18,6 @@ class Transition:
 
     Args:
         gait: holds landing and times.
-        planner: of the gait.
         generator: judges the plans.
 
     Attributes:
@@ -28,9 +26,8 @@ class Transition:
         strides: of the admitted plan.
     """
 
-    def __init__(self, gait: Gait, planner: FootstepPlanner, generator: PatternGenerator) -> None:
+    def __init__(self, gait: Gait, generator: PatternGenerator) -> None:
         self._gait = gait
-        self._planner = planner
         self._generator = generator
         self._stepping, self._held = gait.stepping, gait.held
         self._landing = gait.landing
@@ -51,7 +48,7 @@ class Transition:
         state: PendulumState,
         ramps: list[ZmpRamp],
         region: SupportRegion,
-        wish: Wish,
+        wish: Strides,
         *,
         moving: bool,
         forced: bool,
@@ -62,14 +59,14 @@ class Transition:
             state: of the pendulum.
             ramps: reference of the wanted plan.
             region: where the ZMP may be in this tick.
-            wish: strides or velocity of the wanted plan.
+            wish: strides of the wanted plan.
             moving: whether the wanted plan goes on walking.
             forced: whether the landing has to change, because the body has left the old plan.
         """
-        before, wanted = self.strides, self._planner.strides(wish)
+        before = self.strides
         free = before is None or not self._stepping or not self._gait.stepping
         if before is None or free or self._generator.admits(state, ramps, region):
-            self.share, self.moving, self.strides = 1.0, moving, wanted
+            self.share, self.moving, self.strides = 1.0, moving, wish
             return ramps
         landing, clock = self._gait.landing, self._gait.clock()
         if forced or (self._gait.held and not self._held):
@@ -82,12 +79,12 @@ class Transition:
             share = 0.5 * (low + high)
             self._gait.set_clock(self._clock)
             self._gait.retime(self._clock[0].towards(clock[0], share))
-            trial = self._plan(landing, before.towards(wanted, share), share)
+            trial = self._plan(landing, before.towards(wish, share), share)
             if self._generator.admits(state, trial, region):
                 low, best = share, trial
             else:
                 high = share
-        self.share, self.strides = low, before.towards(wanted, low)
+        self.share, self.strides = low, before.towards(wish, low)
         self._gait.set_clock(self._clock)
         if low == 0.0:
             return self._plan(landing, before, 0.0)

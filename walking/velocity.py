@@ -1,5 +1,6 @@
 """What the legs make of a velocity command: limits and slew."""
 
+from dataclasses import dataclass
 from math import sqrt
 
 from walking.admission import Limit
@@ -38,6 +39,23 @@ def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limi
     return bound
 
 
+@dataclass(frozen=True, slots=True)
+class _Axis:
+    """Largest change of one component per tick, away from rest and towards it."""
+
+    speeding: float
+    braking: float
+
+    def towards(self, now: float, wanted: float) -> float:
+        """The component a tick later."""
+        change = wanted - now
+        slowing = now * change < 0.0
+        most = self.braking if slowing else self.speeding
+        if slowing and abs(now) < min(most, abs(change)):
+            return 0.0  # a reversal passes through rest
+        return now + min(most, max(-most, change))
+
+
 class VelocitySlew:
     """Velocity that follows the command with bounded acceleration.
 
@@ -50,11 +68,10 @@ class VelocitySlew:
 
     def __init__(self, limits: LimitParameters) -> None:
         self._limits = limits
-        self._steps = (
-            limits.forward_acceleration * CONTROL_PERIOD,
-            limits.lateral_acceleration * CONTROL_PERIOD,
-            limits.turn_acceleration * CONTROL_PERIOD,
-        )
+        tick, braking = CONTROL_PERIOD, CONTROL_PERIOD / limits.braking_time
+        self._forward = _Axis(limits.forward_acceleration * tick, limits.forward * braking)
+        self._left = _Axis(limits.lateral_acceleration * tick, limits.lateral * braking)
+        self._turn = _Axis(limits.turn_acceleration * tick, limits.turn * braking)
         self.forward = self.left = self.turn = 0.0
 
     @property
@@ -73,8 +90,7 @@ class VelocitySlew:
             the limited command [m/s, m/s, rad/s].
         """
         forward, left, turn = limited(command, self._limits)
-        a, b, c = self._steps
-        self.forward += min(a, max(-a, forward - self.forward))
-        self.left += min(b, max(-b, left - self.left))
-        self.turn += min(c, max(-c, turn - self.turn))
+        self.forward = self._forward.towards(self.forward, forward)
+        self.left = self._left.towards(self.left, left)
+        self.turn = self._turn.towards(self.turn, turn)
         return forward, left, turn
