@@ -107,9 +107,9 @@ class Walker:
         h = gait.half_stance
         stance = (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0))
         self.gait = Gait(self.parameters, self.planner, stance)
-        self.steering = Steering(self.planner, self.parameters.limits, self.gait.usual)
-        self.transition = Transition(self.gait, self.planner, self.generator)
-        start = self.gait.plan(stance[1], (0.0, 0.0, 0.0), moving=False)[-1]
+        self.steering = Steering(self.planner, self.parameters.limits)
+        self.transition = Transition(self.gait, self.generator)
+        start = self.gait.plan(stance[1], self.planner.still, moving=False)[-1]
         self.state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
         self.clipped = self.cost = self.late = self.missed = 0.0
         self.feet: tuple[Footstep, ...] = stance

@@ -197,7 +197,7 @@ class LimitParameters:
     """Change of the lateral velocity [m/s²]."""
     turn_acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 3.3
     """Change of the turn rate [rad/s²]."""
-    braking_time: Annotated[float, Gt(0.0), TIME] = 0.25
+    braking_time: Annotated[float, Gt(0.0), TIME] = 0.3
     """Time to come to rest from the fastest walk [s]."""
     step_forward: Annotated[float, Gt(0.0), LENGTH] = 0.145
     """Longest footstep forward or backward [m]."""

@@ -9,6 +9,7 @@ from walking.parameters import CONTROL_PERIOD, WalkingParameters
 
 AHEAD = HeadTarget()
 LIMITS = WalkingParameters().limits
+HALF_STANCE = WalkingParameters().gait.half_stance
 
 
 @pytest.fixture
@@ -42,7 +43,7 @@ def test_acceleration_binds_until_the_speed_is_reached(engine, ideal_body):
     ("command", "limit"),
     [
         (VelocityCommand(1.0), Limit.SPEED),
-        (VelocityCommand(0.3, 0.1, 1.0), Limit.COMBINED_SPEED),
+        (VelocityCommand(0.5, 0.15, 1.5), Limit.COMBINED_SPEED),
         (CommandState(forward=0.3), Limit.STEP_LENGTH),
         (CommandState(side=0.4), Limit.STEP_SIDE),
         (CommandState(side=0.02), Limit.CLEARANCE),
@@ -60,12 +61,13 @@ def test_the_limit_that_binds_is_named(engine, ideal_body, command, limit):
 
 
 def test_what_is_given_for_a_command_state_is_within_the_limits(engine, ideal_body):
-    given = walk(engine, ideal_body, CommandState(0.05, 2.0, 0.3, 0.4, 0.0, 0.2), 1.0)[-1].given
+    given = walk(engine, ideal_body, CommandState(0.05, 2.0, 0.3, 0.1, 0.0, 0.2), 1.0)[-1].given
     assert given.forward == LIMITS.step_forward
     assert given.single_support == pytest.approx(LIMITS.shortest_single)
     assert given.double_support == pytest.approx(LIMITS.longest_double)
     assert given.swing_height == LIMITS.swing_height
-    assert given.side < 0.4
+    wide = walk(engine, ideal_body, CommandState(side=0.4), 1.0)[-1].given
+    assert wide.side == pytest.approx(2.0 * HALF_STANCE + LIMITS.step_side)
 
 
 def test_a_footstep_within_all_limits_is_given_as_asked(engine, ideal_body):

@@ -11,7 +11,7 @@ from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Footstep, Phase
-from walking.stride import Timing
+from walking.stride import Strides, Timing
 
 AHEAD = HeadTarget()
 PARAMETERS = WalkingParameters()
@@ -107,7 +107,8 @@ def gait(robot):
 
 
 def tick(gait):
-    gait.plan(gait.landing, (0.0, 0.0, 0.0), moving=True)
+    still = Strides(right=(0.0, -0.084, 0.0), left=(0.0, 0.084, 0.0))
+    gait.plan(gait.landing, still, moving=True)
     gait.advance(moving=True)
 
 

@@ -38,10 +38,14 @@ def seen_from(support, step):
     return c * dx + s * dy, c * dy - s * dx, step.yaw - support.yaw
 
 
+def landed(support, velocity):
+    return PLANNER.landing(support, PLANNER.strides(velocity, GAIT.footstep_time))
+
+
 def walk(velocity, count):
     feet = [RIGHT, LEFT]
     for _ in range(count):
-        feet.append(PLANNER.landing(feet[-1], velocity))
+        feet.append(landed(feet[-1], velocity))
     return feet
 
 
@@ -52,22 +56,22 @@ def middle(feet):
 @given(velocities)
 def test_mirrored_velocity_gives_mirrored_footholds(velocity):
     forward, left, turn = velocity
-    here = PLANNER.landing(LEFT, velocity)
-    there = PLANNER.landing(RIGHT, (forward, -left, -turn))
+    here = landed(LEFT, velocity)
+    there = landed(RIGHT, (forward, -left, -turn))
     assert fields(mirror(here)) == (there.left, (there.x, there.y, there.yaw))
 
 
 @given(velocities, yaws)
 def test_footholds_turn_and_move_with_the_support_foot(velocity, yaw):
     support = Footstep(True, 1.0, -2.0, yaw)
-    assert seen_from(support, PLANNER.landing(support, velocity)) == pytest.approx(
-        seen_from(LEFT, PLANNER.landing(LEFT, velocity)), abs=1e-9
+    assert seen_from(support, landed(support, velocity)) == pytest.approx(
+        seen_from(LEFT, landed(LEFT, velocity)), abs=1e-9
     )
 
 
 @given(velocities, st.floats(-0.2, 0.2), st.floats(-0.2, 0.2))
 def test_every_corner_of_a_landing_clears_the_support_foot(velocity, dx, dy):
-    landing = PLANNER.reachable(LEFT, PLANNER.landing(LEFT, velocity), dx, dy)
+    landing = PLANNER.reachable(LEFT, landed(LEFT, velocity), dx, dy)
     _, y, yaw = seen_from(LEFT, landing)
     for u in (SOLE.centre - SOLE.half_length, SOLE.centre + SOLE.half_length):
         for v in (-SOLE.half_width, SOLE.half_width):
@@ -97,8 +101,8 @@ def test_turning_on_the_spot_turns_as_commanded_and_stays(turn):
 
 
 def test_stopping_closes_the_stance():
-    landing = PLANNER.landing(LEFT, (0.2, -0.05, -0.3))
-    steps, ends = PLANNER.sequence(LEFT, landing, (0.0, 0.0, 0.0), moving=False)
+    landing = landed(LEFT, (0.2, -0.05, -0.3))
+    steps, ends = PLANNER.sequence(LEFT, landing, PLANNER.still, moving=False)
     assert ends
     assert len(steps) == 2
     assert PLANNER.parallel(steps[0], steps[1])
@@ -106,7 +110,8 @@ def test_stopping_closes_the_stance():
 
 def test_walking_on_plans_all_steps_with_alternating_feet():
     velocity = (0.2, 0.0, 0.1)
-    steps, ends = PLANNER.sequence(LEFT, PLANNER.landing(LEFT, velocity), velocity, moving=True)
+    strides = PLANNER.strides(velocity, GAIT.footstep_time)
+    steps, ends = PLANNER.sequence(LEFT, landed(LEFT, velocity), strides, moving=True)
     assert not ends
     assert [step.left for step in steps] == [False, True, False, True]
 
@@ -115,3 +120,16 @@ def test_the_foot_on_the_side_of_the_motion_opens():
     assert PLANNER.opening_left((0.1, 0.05, 0.0)) is True
     assert PLANNER.opening_left((0.1, 0.0, -0.5)) is False
     assert PLANNER.opening_left((0.1, 0.0, 0.0)) is None
+
+
+@given(velocities)
+def test_a_walk_is_quickened_before_its_footsteps_are_cut(velocity):
+    timing = PLANNER.cadence(velocity)
+    assert GAIT.shortest_time - 0.005 < timing.duration <= GAIT.footstep_time
+    quickest = timing.duration == pytest.approx(GAIT.shortest_time)
+    assert quickest or not PLANNER.stride_limits(velocity, timing.duration - 0.0025)
+
+
+def test_a_slow_walk_keeps_the_usual_time():
+    for velocity in ((0.2, 0.0, 0.0), (-0.1, 0.08, 0.0), (0.2, 0.0, 0.8)):
+        assert PLANNER.cadence(velocity).duration == pytest.approx(GAIT.footstep_time)

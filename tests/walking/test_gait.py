@@ -8,26 +8,31 @@ import pytest
 from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.robot_model import Sole
 from walking.state import Footstep, Phase
 
 PARAMETERS = WalkingParameters()
 GAIT = PARAMETERS.gait
-FORWARD = (0.2, 0.0, 0.0)
+FORWARD, SLOWER = (0.2, 0.0, 0.0), (0.1, 0.0, 0.0)
 START = round(GAIT.start_time / CONTROL_PERIOD)
 STEP = round(GAIT.footstep_time / CONTROL_PERIOD)
 
 
+SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
+PLANNER = FootstepPlanner(GAIT, PARAMETERS.limits, SOLE)
+
+
 @pytest.fixture
-def gait(robot):
-    planner = FootstepPlanner(GAIT, PARAMETERS.limits, robot.sole)
+def gait():
     h = GAIT.half_stance
-    return Gait(PARAMETERS, planner, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
+    return Gait(PARAMETERS, PLANNER, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
 
 
 def tick(gait, velocity, *, moving=True):
+    strides = PLANNER.strides(velocity, GAIT.footstep_time)
     if gait.adjustable:
-        gait.aim(gait.nominal(velocity))
-    ramps = gait.plan(gait.landing, velocity, moving=moving)
+        gait.aim(gait.nominal(strides))
+    ramps = gait.plan(gait.landing, strides, moving=moving)
     gait.advance(moving=moving)
     return ramps
 
@@ -103,7 +108,7 @@ def test_the_landing_may_change_in_the_air_until_it_is_frozen(gait):
         tick(gait, FORWARD)
     planned = gait.landing.x
     while gait.adjustable:
-        tick(gait, (0.1, 0.0, 0.0))
+        tick(gait, SLOWER)
     assert gait.landing.x < planned - 0.02
     frozen = gait.landing
     while gait.completed == 0:

@@ -48,12 +48,12 @@ def test_a_foot_in_the_air_is_left_alone(stabilizer):
 
 
 def test_small_errors_move_no_foothold(stabilizer, planner):
-    landing = planner.landing(LEFT, (0.1, 0.0, 0.0))
+    landing = planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34))
     assert stabilizer.capture(planner, LEFT, landing, (0.005, 0.002), 40) is landing
 
 
 def test_the_capture_step_goes_where_the_error_will_be(stabilizer, planner, robot):
-    landing = planner.landing(LEFT, (0.1, 0.0, 0.0))
+    landing = planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34))
     room = PARAMETERS.capture_dead_zone * (robot.sole.half_length - PARAMETERS.sole_margin)
     caught = stabilizer.capture(planner, LEFT, landing, (room + 0.01, 0.0), 30)
     growth = exp(OMEGA * 30 * CONTROL_PERIOD)
@@ -62,7 +62,7 @@ def test_the_capture_step_goes_where_the_error_will_be(stabilizer, planner, robo
 
 
 def test_a_hopeless_error_still_gives_a_reachable_landing(stabilizer, planner):
-    landing = planner.landing(LEFT, (0.0, 0.0, 0.0))
+    landing = planner.landing(LEFT, planner.strides((0.0, 0.0, 0.0), 0.34))
     limits = LimitParameters()
     caught = stabilizer.capture(planner, LEFT, landing, (1.0, -1.0), 40)
     assert abs(caught.x - LEFT.x) <= limits.reach_forward + 1e-9

@@ -8,12 +8,16 @@ from walking.gait import Gait
 from walking.parameters import WalkingParameters
 from walking.pattern import PendulumState
 from walking.state import Footstep
-from walking.stride import Timing
+from walking.stride import Strides, Timing
 from walking.support import support_region
 from walking.transition import BISECTIONS, Transition
 
 PARAMETERS = WalkingParameters()
-SLOW, FAST = (0.1, 0.0, 0.0), (0.3, 0.0, 0.0)
+TIME = PARAMETERS.gait.footstep_time
+STANCE = 2.0 * PARAMETERS.gait.half_stance
+SLOW, FAST = (
+    Strides(right=(v * TIME, -STANCE, 0.0), left=(v * TIME, STANCE, 0.0)) for v in (0.1, 0.3)
+)
 
 
 class UpTo:
@@ -38,7 +42,7 @@ def setting(robot):
     gait.start(0)
     generator = UpTo(gait)
     region = support_region(robot.sole, *stance, 0.005)
-    return gait, generator, Transition(gait, planner, generator), region
+    return gait, generator, Transition(gait, generator), region
 
 
 def tick(setting, wish, *, forced=False, timing=None):
@@ -57,7 +61,7 @@ def test_an_admitted_change_is_made_at_once(setting):
     tick(setting, FAST)
     gait, _, transition, _ = setting
     assert transition.share == 1.0
-    assert gait.landing.x == pytest.approx(0.3 * PARAMETERS.gait.footstep_time)
+    assert gait.landing.x == pytest.approx(0.3 * TIME)
 
 
 def test_the_largest_admitted_share_is_found(setting):
@@ -99,6 +103,6 @@ def test_a_forced_landing_is_never_turned_down_but_the_rest_is(setting):
     slow, timing = transition.strides, gait.timing
     generator.reach = -1.0
     tick(setting, FAST, forced=True, timing=Timing(20, 80, 0.03))
-    assert gait.landing.x == pytest.approx(0.3 * PARAMETERS.gait.footstep_time)
+    assert gait.landing.x == pytest.approx(0.3 * TIME)
     assert transition.strides == slow
     assert gait.timing == timing

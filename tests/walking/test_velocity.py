@@ -51,3 +51,17 @@ def test_slew_comes_to_an_exact_stop():
     for _ in range(300):
         slew.follow(VelocityCommand())
     assert not slew.moving
+
+
+@pytest.mark.parametrize("wanted", [0.0, 0.1, -0.3])
+def test_a_walk_is_braked_in_the_braking_time_and_reverses_through_rest(wanted):
+    slew = VelocitySlew(LIMITS)
+    slew.start(LIMITS.forward, 0.0, 0.0)
+    speeds = [slew.forward]
+    while slew.forward > max(wanted, 0.0):
+        slew.follow(VelocityCommand(wanted))
+        speeds.append(slew.forward)
+    assert speeds[-1] == max(wanted, 0.0)
+    assert len(speeds) * CONTROL_PERIOD <= LIMITS.braking_time + 2.0 * CONTROL_PERIOD
+    slew.follow(VelocityCommand(wanted))
+    assert abs(slew.forward - speeds[-1]) <= LIMITS.forward_acceleration * CONTROL_PERIOD + 1e-12
