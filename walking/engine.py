@@ -255,6 +255,8 @@ class WalkingEngine:
             # Standing, the plan takes the heading as it is.
             self._held_turn = self._pelvis.yaw - self._odometry.yaw
             return self._steering.wish(0.0)
+        if not self._steering.moving:
+            return self._steering.wish(0.0)  # the last footsteps only close the stance
         missing = self._pelvis.yaw - self._odometry.yaw - self._held_turn
         rate = min(p.heading_rate, max(-p.heading_rate, p.heading_gain * missing))
         self._held_turn += rate * CONTROL_PERIOD
