@@ -22,6 +22,7 @@ from hsr8.world.episodes import Episodes
 from hsr8.world.generator import draw_layout
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.pushes import schedule
 from hsr8.world.truth import Truth
 from vision.camera import PinholeCamera
 
@@ -76,11 +77,15 @@ class Simulation:
             "vision",
             Optics(camera.width, camera.height, fov, scenario.world.brightness, camera.shadows),
         )
-        body_rng = named_rng(seed, "body")
-        kind: Callable[..., Body] = PhysicsBody if scenario.robot.body == "full" else KinematicBody
-        self._body = kind(self.model, self.layout, scenario.sensor_noise(), body_rng)
+        self._body = self._make_body()
         self._pinhole = PinholeCamera.from_vertical_fov(camera.width, camera.height, fov)
-        self._robot = build_robot(scenario, self.layout, self._pinhole, named_rng(seed, "belief"))
+        self._robot = build_robot(
+            scenario,
+            self.layout,
+            self._pinhole,
+            named_rng(seed, "belief"),
+            named_rng(seed, "command"),
+        )
         self._watch = _EventWatch(self._tell)
         self._interrupted = False
         self._rendered: RenderedCamera | None = None
@@ -131,6 +136,16 @@ class Simulation:
             for track in belief.tracks:
                 digest.update(track.position.tobytes() + track.covariance.tobytes())
         return digest.hexdigest()
+
+    def _make_body(self) -> Body:
+        scenario, rng = self.scenario, named_rng(self.seed, "body")
+        noise = scenario.sensor_noise()
+        if scenario.robot.body == "kinematic":
+            return KinematicBody(self.model, self.layout, noise, rng)
+        pushes = schedule(
+            scenario.disturbance, scenario.duration, CONTROL_PERIOD, named_rng(self.seed, "push")
+        )
+        return PhysicsBody(self.model, self.layout, noise, rng, pushes=pushes)
 
     def _ticks(self) -> str:
         scenario = self.scenario
@@ -185,6 +200,7 @@ class Simulation:
             time=self._body.time,
             truth=truth,
             walking=self._robot.walking_state(),
+            tally=self._robot.tally,
             command=self._robot.command,
             head=self._robot.head,
             frame=frame,
@@ -192,16 +208,17 @@ class Simulation:
         for listener in self.listeners:
             listener.on_record(record)
 
-    def _tell(self, kind: str, text: str) -> None:
+    def _tell(self, kind: str, text: str, time: float | None = None) -> None:
         for listener in self.listeners:
-            listener.on_event(self._body.time, kind, text)
+            listener.on_event(self._body.time if time is None else time, kind, text)
 
 
 class _EventWatch:
     """Turns records into events."""
 
-    def __init__(self, tell: Callable[[str, str], None]) -> None:
+    def __init__(self, tell: Callable[..., None]) -> None:
         self._tell = tell
+        self._pushes = 0
         self._episodes = Episodes()
         self._index = 0
         self._lost = False
@@ -209,6 +226,10 @@ class _EventWatch:
 
     def look(self, truth: Truth, frame: FrameRecord | None) -> None:
         """Tell what changed since the last record."""
+        for push in truth.pushes:
+            if push.number >= self._pushes:
+                self._pushes = push.number + 1
+                self._tell("push", push.text(), push.begin)
         for collision in self._episodes.add(truth.time, truth.contacts):
             what = "mover" if collision.moving else "obstacle"
             self._tell("collision", f"{collision.robot_geom} touches {what} {collision.obstacle}")

@@ -2,18 +2,20 @@
 
 from collections import deque
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Protocol
 
 import numpy as np
 
 from hsr8.recorder.record import FrameRecord, Image
+from hsr8.recorder.walk_tally import WalkTally
 from navigation.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import CameraView, Frame, Observation
 from navigation.prediction import predict
 from vision.camera import CameraPose, PinholeCamera
 from vision.detection import Detection
-from walking.command import HeadTarget, VelocityCommand
+from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.odometry import increment
 from walking.sensing import BodySensors
@@ -85,6 +87,13 @@ class Moves(Protocol):
         """Motion for the next footstep."""
 
 
+class Commands(Protocol):
+    """Asks for motion by the clock alone."""
+
+    def at(self, time: float) -> Command:
+        """Command in force at `time` [s]."""
+
+
 class Robot:
     """Perception, belief, gaze, planning and walking, one after the other.
 
@@ -97,6 +106,7 @@ class Robot:
         gaze: gaze planner.
         planner: motion planner.
         footstep: time between two motion decisions [s].
+        script: commands that walking obeys in place of the planner's, new in any tick.
     """
 
     def __init__(
@@ -110,6 +120,7 @@ class Robot:
         gaze: Looks,
         planner: Moves,
         footstep: float,
+        script: Commands | None = None,
     ) -> None:
         self._walking = walking
         self._camera = camera
@@ -119,19 +130,25 @@ class Robot:
         self._gaze = gaze
         self._planner = planner
         self._footstep = footstep
+        self._script = script
         self._motion: MotionDecision | None = None
         self._planned_at = -np.inf
         self._planned_step = -1
         self._frames = 0
         self._taken: deque[tuple[float, WalkingState]] = deque(maxlen=UNDER_WAY)
         self._odometry: Odometry | None = None
-        self.command = VelocityCommand()
+        self.command: Command = VelocityCommand()
+        self.tally = WalkTally()
         self.head = HeadTarget()
         self.frame: FrameRecord | None = None
 
     def step(self, sensed: SensorFrame) -> JointTargets:
         """One control tick: walk on, and look and decide when a camera frame came."""
+        if self._script is not None:
+            self.command = self._script.at(sensed.time)
+        started = perf_counter()
         targets = self._walking.step(sensed.body, self.command, self.head)
+        self.tally.add(self._walking, perf_counter() - started)
         if sensed.shutter:
             self._taken.append((sensed.time, self._walking.state()))
         if sensed.image is not None or sensed.detections is not None:
@@ -160,8 +177,9 @@ class Robot:
         task = self._mission.update(belief.pose)
         motion = self._decide_motion(sensed.time, state, belief, task)
         gaze = self._gaze.choose(belief, task, motion)
-        forward, left, turn = motion.velocity.tolist()
-        self.command = VelocityCommand(forward, left, turn)
+        if self._script is None:
+            forward, left, turn = motion.velocity.tolist()
+            self.command = VelocityCommand(forward, left, turn)
         self.head = HeadTarget(gaze.pan, gaze.tilt)
         self.frame = FrameRecord(
             index=self._frames,

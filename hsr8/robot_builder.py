@@ -5,7 +5,7 @@ import numpy as np
 from hsr8.robot import Goes, Moves, Robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
-from hsr8.script import ScriptedMission, ScriptedPlanner
+from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
 from hsr8.world.layout import Layout
 from hsr8.world.models import models_dir
 from navigation.estimator import Estimator
@@ -28,17 +28,31 @@ START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m,
 
 
 def build_robot(
-    scenario: Scenario, layout: Layout, camera: PinholeCamera, rng: np.random.Generator
+    scenario: Scenario,
+    layout: Layout,
+    camera: PinholeCamera,
+    rng: np.random.Generator,
+    command_rng: np.random.Generator,
 ) -> Robot:
-    """The robot of `scenario`, placed by `layout`; `rng` draws its particles."""
+    """The robot of `scenario`, placed by `layout`.
+
+    Args:
+        scenario: what to build.
+        layout: start, way points and beacons.
+        camera: intrinsics of the head camera.
+        rng: draws its particles.
+        command_rng: draws the commands of a walk.
+    """
     beacons = {b.name: b.position for b in layout.beacons}
     limits = scenario.speed_limits()
     navigation = scenario.navigation_parameters()
     mission: Goes
     planner: Moves
+    script: CommandScript | None = None
     if isinstance(scenario.mission, Walk):
+        script = command_script(scenario.command, scenario.duration, command_rng)
         mission = ScriptedMission()
-        planner = ScriptedPlanner(scenario.mission)
+        planner = ScriptedPlanner(script)
     else:
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
         planner = Planner(navigation, limits)
@@ -54,6 +68,7 @@ def build_robot(
         gaze=GazePlanner(navigation, limits, beacons, camera.horizontal_fov, camera.vertical_fov),
         planner=planner,
         footstep=limits.footstep,
+        script=script,
     )
 
 

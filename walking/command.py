@@ -17,6 +17,11 @@ class VelocityCommand:
     left: float = 0.0
     turn: float = 0.0
 
+    @property
+    def velocity(self) -> tuple[float, float, float]:
+        """Forward [m/s], left [m/s], turn [rad/s]."""
+        return self.forward, self.left, self.turn
+
 
 @dataclass(frozen=True, slots=True)
 class CommandState:
@@ -40,6 +45,12 @@ class CommandState:
     side: float = 0.084
     direction: float = 0.0
     swing_height: float = 0.025
+
+    @property
+    def velocity(self) -> tuple[float, float, float]:
+        """Mean velocity of the stance: forward [m/s], left [m/s], turn [rad/s]."""
+        time = self.single_support + self.double_support
+        return self.forward / time, 0.0, self.direction / time
 
 
 Command = VelocityCommand | CommandState

@@ -27,9 +27,35 @@ ROWS: tuple[tuple[str, str, str], ...] = (
     ("NEES / 3", "nees_mean", "{:.2f}"),
     ("obstacle speed RMSE", "obstacle_speed_rmse_mps", "{:.3f} m/s"),
     ("largest tilt", "max_tilt_deg", "{:.1f} deg"),
+    ("steps", "steps", "{}"),
+    (
+        "mean velocity",
+        "mean_velocity",
+        "{0[vx]:.3f} m/s forward, {0[vy]:.3f} left, {0[wz]:.3f} rad/s",
+    ),
+    (
+        "  from asked",
+        "velocity_error",
+        "{0[asked][vx]:+.3f} m/s, {0[asked][vy]:+.3f} m/s, {0[asked][wz]:+.3f} rad/s",
+    ),
+    (
+        "planned ZMP outside",
+        "zmp_outside_sole_ticks",
+        "{} of {walk_ticks} ticks; {zmp_least_margin_m:.4f} m inside at least",
+    ),
+    ("altered commands", "altered_commands", "{0:.1%}{binding}"),
+    (
+        "largest torque",
+        "peak_torque_share",
+        "{0:.0%} of the limit, {peak_torque_joint}; at it in {torque_saturated_ticks} ticks",
+    ),
+    ("walking tick", "walk_tick_mean_ms", "{0:.2f} ms, 99.9 % below {walk_tick_p999_ms:.2f} ms"),
+    ("pushes", "pushes", "{}"),
     ("simulated time", "sim_time_s", "{:.1f} s"),
     ("wall time", "wall_time_s", "{:.1f} s, {real_time_factor:.1f}x real time"),
 )
+UNTOLD = (("pushes", 0),)  # what goes without saying
+TOLD_LIMITS = 3  # reasons of altered commands that are told
 
 
 def show(
@@ -44,9 +70,10 @@ def show(
     """Print results, criteria, and what can be done with the run."""
     console = console or Console()
     table = Table(title=title, title_justify="left", show_header=False)
+    told = {**results, "binding": _binding(results)}
     for label, key, form in ROWS:
-        if results.get(key) is not None:
-            table.add_row(label, _say(form, results[key], results))
+        if results.get(key) is not None and (key, results[key]) not in UNTOLD:
+            table.add_row(label, _say(form, results[key], told))
     console.print(table)
     if checks:
         console.print(_criteria(checks))
@@ -57,6 +84,13 @@ def show(
     lines.append(f"again       {' '.join(command)}")
     for line in lines:
         console.print(line, highlight=False, soft_wrap=True, markup=False)
+
+
+def _binding(results: Mapping[str, Any]) -> str:
+    """What altered the commands most."""
+    by = results.get("altered_by") or {}
+    most = [f"{name.replace('_', ' ')} {share:.1%}" for name, share in by.items()][:TOLD_LIMITS]
+    return f" of the ticks: {', '.join(most)}" if most else ""
 
 
 def _criteria(checks: Sequence[Check]) -> Table:

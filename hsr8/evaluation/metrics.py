@@ -6,6 +6,7 @@ from math import degrees, hypot, inf, isfinite, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.world.episodes import Episodes
 from hsr8.world.layout import Layout
@@ -14,7 +15,7 @@ from navigation.angles import wrap
 from navigation.belief import Track
 
 Array = NDArray[np.float64]
-Value = float | int | bool | str | None
+Value = object
 
 TOLERANCE = 0.10  # the true position may be so much farther from a point than the believed [m]
 HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
@@ -64,11 +65,13 @@ class Metrics:
         self._faults = 0
         self._gaze: tuple[float, float] | None = None
         self._saccades = 0
+        self._walk = WalkMetrics()
 
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
         truth = record.truth
         self._move(truth)
+        self._walk.add(record)
         self._episodes.add(truth.time, truth.contacts)
         self._clearance = min(self._clearance, truth.clearance)
         if truth.fallen and not self._fallen:
@@ -133,6 +136,7 @@ class Metrics:
             "lost_share": self._lost / n if n else None,
             "filter_faults": self._faults,
             "camera_frames": n,
+            **self._walk.result(),
         }
 
     def _via_total(self) -> int:

@@ -29,6 +29,11 @@ def judge(criteria: Criteria, results: Mapping[str, Any]) -> tuple[Check, ...]:
     checks = [_at_most("falls", criteria.max_falls, int(results["falls"]))]
     if criteria.max_collisions is not None:
         checks.append(_at_most("collisions", criteria.max_collisions, int(results["collisions"])))
+    if criteria.max_zmp_outside_ticks is not None:
+        outside = int(results.get("zmp_outside_sole_ticks", 0))
+        checks.append(
+            _at_most("ticks with the ZMP outside", criteria.max_zmp_outside_ticks, outside)
+        )
     if criteria.goal_reached:
         reached = bool(results["goal_reached"])
         checks.append(Check("goal reached", "yes", "yes" if reached else "no", reached))

@@ -6,12 +6,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth import Truth
 from navigation.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import Frame
 from vision.detection import Detection
-from walking.command import HeadTarget, VelocityCommand
+from walking.command import Command, HeadTarget
 from walking.state import WalkingState
 
 Image = NDArray[np.uint8]
@@ -53,7 +54,8 @@ class TickRecord:
         time: simulated time [s].
         truth: state of the world.
         walking: what the walking engine knows of itself.
-        command: velocity asked of it.
+        tally: what was counted in every tick since the start; it counts on.
+        command: velocity or footsteps asked of it.
         head: gaze asked of it.
         frame: the camera frame that arrived since the last record, if any.
     """
@@ -62,7 +64,8 @@ class TickRecord:
     time: float
     truth: Truth
     walking: WalkingState
-    command: VelocityCommand
+    tally: WalkTally
+    command: Command
     head: HeadTarget
     frame: FrameRecord | None
 

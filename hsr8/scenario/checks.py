@@ -19,6 +19,8 @@ def check(scenario: Scenario) -> list[Problem]:
     return [
         *_speeds(scenario),
         *_mission(scenario),
+        *_command(scenario),
+        *_disturbance(scenario),
         *_inside(scenario),
         *_free(scenario),
     ]
@@ -53,6 +55,37 @@ def _mission(scenario: Scenario) -> Iterator[Problem]:
                 ("mission", "leg"),
                 f"legs of at least {mission.leg[0]:g} m do not fit into a field of "
                 f"{scenario.world.size[0]:g} m x {scenario.world.size[1]:g} m",
+            )
+
+
+def _command(scenario: Scenario) -> Iterator[Problem]:
+    walks = isinstance(scenario.mission, Walk)
+    if walks and scenario.command.empty:
+        yield Problem(
+            ("command",),
+            "nothing is asked: give vx, vy, wz [m/s, rad/s], footstep, random or stretch, "
+            "for example --set command.vx=0.2",
+        )
+    if not walks and not scenario.command.empty:
+        yield Problem(
+            ("command",),
+            f'a mission of kind "{scenario.mission.kind}" finds its own velocities; '
+            'mission.kind = "walk" obeys them',
+        )
+
+
+def _disturbance(scenario: Scenario) -> Iterator[Problem]:
+    disturbance = scenario.disturbance
+    if scenario.robot.body != "full" and not disturbance.empty:
+        yield Problem(
+            ("disturbance",),
+            f'a {scenario.robot.body} body has no dynamics to push; robot.body = "full" has',
+        )
+    for i, push in enumerate(disturbance.push):
+        if push.time >= scenario.duration:
+            yield Problem(
+                ("disturbance", "push", i, "time"),
+                f"{push.time:g} s is not before the end of the run at {scenario.duration:g} s",
             )
 
 

@@ -45,26 +45,11 @@ class Points(Section):
     """Whether the first point follows the last."""
 
 
-class Stretch(Section):
-    """One velocity for some time."""
-
-    duration: Annotated[float, Interval(gt=0.0, le=7200.0)]
-    """How long it is commanded [s]."""
-    forward: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.0
-    """Velocity along x of R [m/s]."""
-    left: Annotated[float, Interval(ge=-1.0, le=1.0)] = 0.0
-    """Velocity along y of R [m/s]."""
-    turn: Annotated[float, Interval(ge=-3.0, le=3.0)] = 0.0
-    """Turn rate, counter-clockwise positive [rad/s]."""
-
-
 class Walk(Section):
-    """No navigation: the robot walks the commanded velocities one after the other."""
+    """No navigation: the robot walks what the section `command` asks for."""
 
     kind: Literal["walk"]
-    """Commanded velocities."""
-    command: Annotated[tuple[Stretch, ...], Len(1, 100)]
-    """Velocities in order; after the last the robot stands."""
+    """Walking as commanded."""
 
 
 Mission = Annotated[Tour | Course | Points | Walk, Field(discriminator="kind")]

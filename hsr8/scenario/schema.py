@@ -7,7 +7,9 @@ from annotated_types import Interval, Len
 from pydantic import Field
 
 from hsr8.scenario.camera import Camera
-from hsr8.scenario.mission import Course, Mission, Points, Stretch, Tour, Walk
+from hsr8.scenario.command import Command
+from hsr8.scenario.disturbance import Disturbance
+from hsr8.scenario.mission import Course, Mission, Points, Tour, Walk
 from hsr8.scenario.robot import Robot
 from hsr8.scenario.section import PeriodMs, Section
 from hsr8.scenario.sensor_noise import SensorNoise
@@ -36,6 +38,8 @@ class Criteria(Section):
     """Contacts with obstacles that are still a pass, any number if left out [1]."""
     goal_reached: bool = False
     """Whether the goal must be reached."""
+    max_zmp_outside_ticks: Annotated[int, Interval(ge=0, le=10_000_000)] | None = None
+    """Control ticks with the planned ZMP outside the soles that are still a pass [1]."""
     min_via_points: Annotated[int, Interval(ge=0, le=100_000)] = 0
     """Via points that must be passed [1]."""
 
@@ -62,6 +66,10 @@ class Scenario(Section):
     """Field, obstacles, beacons and light."""
     mission: Mission
     """What the robot is asked to do."""
+    command: Command = Command()
+    """What walking is asked for in a mission of kind "walk"."""
+    disturbance: Disturbance = Disturbance()
+    """What disturbs the robot."""
     robot: Robot = Robot()
     """Body, start and speeds."""
     camera: Camera = Camera()
@@ -116,15 +124,16 @@ class Scenario(Section):
 
 __all__ = [
     "Camera",
+    "Command",
     "Course",
     "Criteria",
+    "Disturbance",
     "Mission",
     "Navigation",
     "Points",
     "Recorder",
     "Robot",
     "Scenario",
-    "Stretch",
     "Tour",
     "Walk",
     "World",

@@ -24,7 +24,8 @@ class Section(BaseModel):
     )
 
 
-def _ordered(bounds: tuple[float, float]) -> tuple[float, float]:
+def ordered(bounds: tuple[float, float]) -> tuple[float, float]:
+    """Refuse a range whose first bound is the greater."""
     if bounds[0] > bounds[1]:
         raise ValueError("the smaller bound comes first")
     return bounds
@@ -39,7 +40,7 @@ Speed = Annotated[float, Interval(gt=0.0, le=2.0)]
 Degrees = Annotated[float, Interval(ge=-360.0, le=360.0)]
 Ratio = Annotated[float, Interval(gt=0.0, le=3.0)]
 Length = Annotated[float, Interval(gt=0.0, le=20.0)]
-RadiusRange = Annotated[tuple[Radius, Radius], AfterValidator(_ordered)]
-RatioRange = Annotated[tuple[Ratio, Ratio], AfterValidator(_ordered)]
-LengthRange = Annotated[tuple[Length, Length], AfterValidator(_ordered)]
+RadiusRange = Annotated[tuple[Radius, Radius], AfterValidator(ordered)]
+RatioRange = Annotated[tuple[Ratio, Ratio], AfterValidator(ordered)]
+LengthRange = Annotated[tuple[Length, Length], AfterValidator(ordered)]
 Colour = Literal["red", "green", "blue", "violet"]

@@ -1,5 +1,7 @@
 """The full body: MuJoCo physics, two steps a control tick."""
 
+from collections.abc import Sequence
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -7,7 +9,9 @@ from numpy.typing import NDArray
 from hsr8.errors import SimulationDiverged
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.layout import Layout
+from hsr8.world.pushes import Pusher, ScheduledPush
 from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product, up_component
+from hsr8.world.saturation import SaturationWatch
 from hsr8.world.sensors import SensorSuite
 from hsr8.world.surroundings import Surroundings
 from hsr8.world.truth import Truth
@@ -41,18 +45,27 @@ class PhysicsBody:
         layout: what stands and moves in it.
         noise: sensor noise.
         rng: generator of the sensors.
+        pushes: what disturbs it, in the order in which it begins.
 
     Raises:
         ValueError: the control period is no multiple of the physics step.
     """
 
     def __init__(
-        self, model: mujoco.MjModel, layout: Layout, noise: SensorNoise, rng: np.random.Generator
+        self,
+        model: mujoco.MjModel,
+        layout: Layout,
+        noise: SensorNoise,
+        rng: np.random.Generator,
+        *,
+        pushes: Sequence[ScheduledPush] = (),
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
         self._around = Surroundings(model, layout)
         self._index = self._around.index
+        self._pusher = Pusher(model, pushes, CONTROL_PERIOD)
+        self._saturation = SaturationWatch(model, self._index)
         self._suite = SensorSuite(noise, rng, CONTROL_PERIOD)
         self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
         if abs(self._substeps * model.opt.timestep - CONTROL_PERIOD) > 1e-9:
@@ -93,12 +106,16 @@ class PhysicsBody:
             SimulationDiverged: MuJoCo warned or the state is no longer finite.
         """
         self.data.ctrl[self._index.actuators] = targets.position + targets.offset
+        root = self._index.root_qpos
+        yaw = heading(self.data.qpos[root + 3 : root + 7])
+        self._pusher.act(self.data, self._substep // self._substeps, yaw)
         for _ in range(self._substeps):
             # where the movers are at the end of this physics step
             self._around.move(self.data, (self._substep + 1) * self.model.opt.timestep)
             mujoco.mj_step(self.model, self.data)
             self._substep += 1
         self._around.watch.watch(self.data)
+        self._saturation.watch(self.data)
         self._guard()
 
     def update_kinematics(self) -> None:
@@ -128,6 +145,8 @@ class PhysicsBody:
             fallen=bool(
                 data.qpos[root + 2] < FALLEN_HEIGHT or up_component(quaternion) < FALLEN_TILT
             ),
+            pushes=self._pusher.take(),
+            saturation=self._saturation.so_far(),
         )
 
     def state_bytes(self) -> bytes:

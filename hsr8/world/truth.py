@@ -1,6 +1,7 @@
 """Ground truth of one instant: it leaves the world towards recorder and metrics only."""
 
 from dataclasses import dataclass
+from math import degrees, hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,62 @@ class Contact:
 
 
 @dataclass(frozen=True, slots=True)
+class PushActing:
+    """The world pushes the robot.
+
+    Attributes:
+        number: of the push in its run.
+        begin: when it began [s].
+        duration: how long it lasts in all [s].
+        body: name of the pushed body.
+        direction: from the robot's forward when it began, counter-clockwise [rad].
+        point: where it acted last in W (3,) [m].
+        force: in W (3,) [N].
+    """
+
+    number: int
+    begin: float
+    duration: float
+    body: str
+    direction: float
+    point: Array
+    force: Array
+
+    @property
+    def impulse(self) -> float:
+        """Force times duration [N s]."""
+        return hypot(*self.force.tolist()) * self.duration
+
+    def text(self) -> str:
+        """The push in words."""
+        return (
+            f"{self.impulse:.2f} N s in {1000 * self.duration:.0f} ms on {self.body}, to "
+            f"{degrees(self.direction):.0f} deg from forward"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Saturation:
+    """What was asked of the servos since the start of the run, order of ``JOINT_NAMES``.
+
+    Attributes:
+        torque_any: control ticks with any joint at its largest torque.
+        torque_ticks: the same by joint (26,).
+        stop_any: control ticks with any joint at the end of its range.
+        stop_ticks: the same by joint (26,).
+        peak_torque: largest share of the largest torque (26,) [1].
+        peak_speed: largest speed (26,) [rad/s].
+    """
+
+    torque_any: int
+    torque_ticks: NDArray[np.int64]
+    stop_any: int
+    stop_ticks: NDArray[np.int64]
+    peak_torque: Array
+    peak_speed: Array
+
+
+@dataclass(frozen=True, slots=True)
 class Truth:
     """State of the world at one instant.
 
@@ -43,6 +100,8 @@ class Truth:
         foot_force: true normal force under the left and right foot (2,) [N].
         zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.
         fallen: whether the robot lies.
+        pushes: those that acted since the previous record.
+        saturation: of the servos; a body without dynamics has none.
     """
 
     time: float
@@ -56,3 +115,5 @@ class Truth:
     foot_force: Array
     zmp: Array
     fallen: bool
+    pushes: tuple[PushActing, ...] = ()
+    saturation: Saturation | None = None

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.assembly import Optics, assemble
 from hsr8.world.layout import Beacon, Layout, Obstacle
 from hsr8.world.motion import Shuttle
@@ -197,6 +198,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
             fallen=fallen,
             balance=_balance(x, y, yaw),
         ),
+        tally=WalkTally(),
         command=VelocityCommand(0.2, 0.0, 0.0),
         head=HeadTarget(),
         frame=frame,

@@ -1,8 +1,12 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from hsr8.scenario.command import Command, RandomCommands
 from hsr8.scenario.loader import load
-from hsr8.script import ScriptedMission, ScriptedPlanner
+from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
+from walking.command import CommandState, VelocityCommand
 
 
 class At:
@@ -11,10 +15,12 @@ class At:
         self.pose = np.array([0.3, -0.2, 0.5])
 
 
-@pytest.fixture
-def planner():
-    commands = "[{duration = 2.0, forward = 0.1}, {duration = 1.0, left = 0.05, turn = -0.4}]"
-    return ScriptedPlanner(load("walk", [f"mission.command={commands}"]).mission)
+def script_of(*overrides, duration=10.0, seed=0):
+    command = load("walk", list(overrides)).command
+    return command_script(command, duration, np.random.default_rng(seed))
+
+
+STRETCHES = "command.stretch=[{duration = 2.0, vx = 0.1}, {duration = 1.0, vy = 0.05, wz = -0.4}]"
 
 
 @pytest.mark.parametrize(
@@ -27,9 +33,56 @@ def planner():
         (3.0, (0.0, 0.0, 0.0)),
     ],
 )
-def test_each_stretch_is_walked_in_turn_and_then_it_stands(planner, time, expected):
+def test_each_stretch_is_walked_in_turn_and_then_it_stands(time, expected):
+    script = script_of(STRETCHES)
+    assert script.at(time) == VelocityCommand(*expected)
+    planner = ScriptedPlanner(script)
     task = ScriptedMission().update(At(time).pose)
     assert planner.plan(At(time), task).velocity.tolist() == list(expected)
+
+
+def test_a_change_comes_in_its_tick_whatever_floating_point_makes_of_the_time():
+    script = CommandScript([(0.005, VelocityCommand(0.001 * k)) for k in range(1000)])
+    for k in range(1000):
+        assert script.at(k * 0.005) == VelocityCommand(0.001 * k)
+
+
+@pytest.mark.parametrize("time", [0.0, 5.0, 1e4])
+def test_one_velocity_takes_the_place_of_the_script(time):
+    script = script_of("command.vx=0.3", "command.wz=0")
+    assert script.at(time) == VelocityCommand(0.3, 0.0, 0.0)
+
+
+def test_footsteps_are_asked_explicitly():
+    state = CommandState(0.4, 0.1, 0.03, 0.09, 0.2, 0.03)
+    table = (
+        "{single_support=0.4, double_support=0.1, forward=0.03, side=0.09, direction=0.2, "
+        "swing_height=0.03}"
+    )
+    assert script_of(f"command.footstep={table}").at(3.0) == state
+    script = script_of(f"command.stretch=[{{duration=1, footstep={table}}}, {{duration=1}}]")
+    assert [script.at(t) for t in (0.5, 1.5)] == [state, VelocityCommand()]
+    assert state.velocity == pytest.approx((0.06, 0.0, 0.4))
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_drawn_commands_stay_in_their_box_and_come_from_the_seed(seed):
+    asked = Command(random=RandomCommands(vx=(-0.1, 0.3), wz=(-0.5, 0.0), stops=0.3))
+    one, same = (command_script(asked, 20.0, np.random.default_rng(seed)) for _ in range(2))
+    velocities = np.array([one.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
+    again = np.array([same.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
+    assert np.array_equal(again, velocities)
+    assert (velocities >= (-0.1, -0.15, -0.5)).all()
+    assert (velocities <= (0.3, 0.15, 0.0)).all()
+    changes = np.flatnonzero(np.any(np.diff(velocities, axis=0) != 0.0, axis=1))
+    assert np.diff(changes).min(initial=100) >= 0.5 / 0.05 - 1
+
+
+def test_the_share_of_stops_is_that_asked_for():
+    asked = Command(random=RandomCommands(stops=0.25, interval=(0.5, 0.5)))
+    script = command_script(asked, 5000.0, np.random.default_rng(1))
+    stops = np.mean([script.at(0.5 * k + 0.1) == VelocityCommand() for k in range(10000)])
+    assert stops == pytest.approx(0.25, abs=0.02)
 
 
 def test_the_gaze_has_something_ahead():

@@ -9,7 +9,7 @@ from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
 from hsr8.world.truth import Truth
 
-REFEREE = {"fallen", "contacts", "time"}  # what ends a run and what is told as an event
+REFEREE = {"fallen", "contacts", "pushes", "time"}  # what ends a run and what is told as an event
 
 
 class Forbidden:

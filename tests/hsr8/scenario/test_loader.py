@@ -203,7 +203,7 @@ def test_overrides_change_single_keys():
         [
             "camera.source=analytic",
             "world.brightness=0.5",
-            "mission.command.1.forward=0.05",
+            "command.stretch.1.vx=0.05",
             'robot.body="kinematic"',
         ],
         seed=77,
@@ -213,9 +213,9 @@ def test_overrides_change_single_keys():
     assert scenario.robot.body == "kinematic"
     assert scenario.world.brightness == 0.5
     assert scenario.seed == 77
-    assert scenario.mission.command[1].forward == 0.05
-    assert scenario.mission.command[1].duration == before.mission.command[1].duration
-    assert scenario.mission.command[0] == before.mission.command[0]
+    assert scenario.command.stretch[1].vx == 0.05
+    assert scenario.command.stretch[1].duration == before.command.stretch[1].duration
+    assert scenario.command.stretch[0] == before.command.stretch[0]
 
 
 def test_later_overrides_win():
@@ -228,7 +228,7 @@ def test_later_overrides_win():
         ("camera.perod_ms=80", "did you mean 'period_ms'"),
         ("camera.period_ms", "must be key=value"),
         ("=3", "must be key=value"),
-        ("mission.command.9.forward=1.0", "no entry of a list of 5"),
+        ("command.stretch.9.vx=1.0", "no entry of a list of 5"),
         ("duration=1\nseed=3", "duration: must be a valid number"),
     ],
 )
@@ -328,3 +328,39 @@ def test_a_file_of_any_name_is_a_scenario(tmp_path, file, name):
     assert load(str(tmp_path / file)).name == name
     (tmp_path / file).write_text(f'name = "own"\n{COURSE}')
     assert load(str(tmp_path / file)).name == "own"
+
+
+@pytest.mark.parametrize(
+    ("name", "override", "wanted"),
+    [
+        ("walk", "command.vz=0.1", "known here: vx, vy, wz"),
+        ("walk", "command.vx=3", "allowed: ≥ -1 and ≤ 1"),
+        ("walk", "command.footstep={forward=0.05, lift=1}", "known here: single_support"),
+        ("walk", "command.random.vx=[0.3, 0.1]", "the smaller bound comes first"),
+        ("walk", "command.stretch=[]", "nothing is asked"),
+        ("course", "command.vx=0.1", 'mission.kind = "walk" obeys them'),
+        ("walk", "disturbance.push=[{time=1}]", "give either impulse"),
+        ("walk", "disturbance.push=[{time=1, impulse=1, force=1}]", "give either impulse"),
+        ("walk", "disturbance.push=[{time=99, impulse=1}]", "not before the end of the run"),
+        ("walk", 'disturbance.push=[{time=1, impulse=1, body="torso"}]', "did you mean"),
+    ],
+)
+def test_commands_and_pushes_that_make_no_sense_are_named(name, override, wanted):
+    with pytest.raises(ScenarioError) as caught:
+        load(name, [override])
+    assert wanted in str(caught.value)
+    assert override.partition("=")[0].split(".")[0] in str(caught.value)
+
+
+def test_a_body_without_dynamics_cannot_be_pushed():
+    push = "disturbance.push=[{time=1, impulse=1}]"
+    assert load("walk", [push]).disturbance.push[0].impulse == 1.0
+    with pytest.raises(ScenarioError, match="has no dynamics to push"):
+        load("walk", [push, "robot.body=kinematic"])
+
+
+def test_a_velocity_and_a_footstep_at_once_are_refused():
+    with pytest.raises(ScenarioError, match="not both"):
+        load("walk", ["command.vx=0.1", "command.footstep={forward=0.05}"])
+    with pytest.raises(ScenarioError, match="not both"):
+        load("walk", ["command.stretch=[{duration=1, vx=0.1, footstep={forward=0.05}}]"])

@@ -27,9 +27,11 @@ def test_every_key_is_explained_and_every_measure_has_a_unit():
 
 
 def test_alternatives_are_chosen_by_their_kind():
-    data = {"mission": {"kind": "walk", "command": [{"duration": 1.0}]}}
-    assert keys_at(("mission",), data) == ["kind", "command"]
-    node = node_at(("mission", "command", 0, "duration"), data)
+    data = {"mission": {"kind": "walk"}, "command": {"stretch": [{"duration": 1.0}]}}
+    assert keys_at(("mission",), data) == ["kind"]
+    node = node_at(("command", "stretch", 0, "duration"), data)
     assert node is not None
     assert node["description"].endswith("[s].")
     assert node_at(("mission", "points"), data) is None
+    course = {"mission": {"kind": "course"}}
+    assert keys_at(("mission",), course) == ["kind", "via_points", "leg", "goal_heading_deg"]

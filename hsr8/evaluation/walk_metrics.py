@@ -1,0 +1,208 @@
+"""Results of walking: velocity against command, ZMP, altered commands, servos, time."""
+
+from dataclasses import dataclass
+from math import isfinite, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.recorder.record import TickRecord
+from hsr8.recorder.walk_tally import WalkTally
+from hsr8.world.truth import Saturation
+from navigation.angles import wrap
+from walking.joints import JOINT_NAMES
+
+Array = NDArray[np.float64]
+Velocity = dict[str, float]
+
+WARM_UP = 3.0  # velocities count from the first whole stride after this time [s]
+STRIDE = 2  # footsteps after which the gait repeats
+COMPONENTS = ("vx", "vy", "wz")
+
+
+@dataclass(frozen=True, slots=True)
+class Stride:
+    """One stride: the pose at its ends and what was asked in between.
+
+    Attributes:
+        time: its duration [s].
+        achieved: mean velocity in the robot frame (3,) [m/s, m/s, rad/s].
+        asked, given: mean commanded and admitted velocity (3,).
+    """
+
+    time: float
+    achieved: Array
+    asked: Array
+    given: Array
+
+
+class StrideMeter:
+    """Cuts a walk into strides and measures the velocity of each.
+
+    At the same moment of every stride the sway of the body is the same, so that what is
+    measured is the way alone. A robot that does not step is measured by the second.
+    """
+
+    def __init__(self) -> None:
+        self.strides: list[Stride] = []
+        self._begin: tuple[float, Array] | None = None
+        self._steps = 0
+        self._yaw = 0.0
+        self._last: tuple[float, Array, Array] | None = None
+        self._asked, self._given = np.zeros(3), np.zeros(3)
+
+    def add(self, record: TickRecord) -> None:
+        """Take one record."""
+        time, steps = record.time, record.walking.step_count
+        x, y, yaw = record.truth.robot.tolist()
+        self._yaw += wrap(yaw - self._yaw)
+        pose = np.array([x, y, self._yaw])
+        if self._last is not None:
+            elapsed = time - self._last[0]
+            self._asked += elapsed * self._last[1]
+            self._given += elapsed * self._last[2]
+        self._last = (time, np.array(record.command.velocity), record.walking.given)
+        if time < WARM_UP:
+            self._steps = steps
+            return
+        if self._begin is None:
+            if steps != self._steps or str(record.walking.phase) == "standing":
+                self._start(time, pose, steps)
+            return
+        stands = str(record.walking.phase) == "standing" and time - self._begin[0] >= 1.0
+        if steps - self._steps >= STRIDE or (stands and steps == self._steps):
+            self._finish(time, pose)
+            self._start(time, pose, steps)
+
+    def _start(self, time: float, pose: Array, steps: int) -> None:
+        self._begin, self._steps = (time, pose), steps
+        self._asked, self._given = np.zeros(3), np.zeros(3)
+
+    def _finish(self, time: float, pose: Array) -> None:
+        assert self._begin is not None
+        begin, start = self._begin
+        took = time - begin
+        self.strides.append(
+            Stride(
+                time=took,
+                achieved=mean_velocity(start, pose, took),
+                asked=self._asked / took,
+                given=self._given / took,
+            )
+        )
+
+
+def mean_velocity(start: Array, end: Array, time: float) -> Array:
+    """Velocity in the robot frame (3,) that leads from one pose (3,) to another in `time` [s].
+
+    The way between is taken for an arc walked at constant velocity; headings are unwrapped.
+    """
+    dx, dy, turn = (end - start).tolist()
+    half = 0.5 * turn
+    # The chord of the arc points half the turn away from the heading and is shorter than it.
+    arc = half / sin(half) if 1e-9 < abs(half) < pi else 1.0
+    c, s = np.cos(start[2] + half), np.sin(start[2] + half)
+    return np.array([arc * (c * dx + s * dy), arc * (c * dy - s * dx), turn]) / time
+
+
+class WalkMetrics:
+    """Computes the results of walking from the records of a run."""
+
+    def __init__(self) -> None:
+        self._meter = StrideMeter()
+        self._fallen = False
+        self._steps = 0
+        self._tally: WalkTally | None = None
+        self._saturation: Saturation | None = None
+        self._pushes = 0
+
+    def add(self, record: TickRecord) -> None:
+        """Take one record."""
+        self._fallen = self._fallen or record.truth.fallen
+        if not self._fallen:
+            self._meter.add(record)
+        self._steps = record.walking.step_count
+        self._tally = record.tally
+        self._saturation = record.truth.saturation
+        for push in record.truth.pushes:
+            self._pushes = max(self._pushes, push.number + 1)
+
+    def result(self) -> dict[str, object]:
+        """All results by name.
+
+        A body without dynamics has no servos to saturate, and its time is no measure: what is
+        said of both is left out.
+        """
+        results: dict[str, object] = {"steps": self._steps, "pushes": self._pushes}
+        results |= self._velocities()
+        if self._tally is not None and self._tally.ticks:
+            results |= _counted(self._tally)
+        if self._saturation is not None:
+            results |= _saturated(self._saturation)
+            if self._tally is not None and self._tally.ticks:
+                results |= _timed(self._tally)
+        return results
+
+    def _velocities(self) -> dict[str, object]:
+        strides = self._meter.strides
+        if not strides:
+            return {"mean_velocity": None, "velocity_error": None, "velocity_error_rms": None}
+        weight = np.array([s.time for s in strides])[:, None] / sum(s.time for s in strides)
+        achieved = np.array([s.achieved for s in strides])
+        errors = {
+            name: achieved - np.array([getattr(s, name) for s in strides])
+            for name in ("asked", "given")
+        }
+        return {
+            "mean_velocity": _named((weight * achieved).sum(axis=0)),
+            "velocity_error": {k: _named((weight * e).sum(axis=0)) for k, e in errors.items()},
+            "velocity_error_rms": {
+                k: _named(np.sqrt((weight * e**2).sum(axis=0))) for k, e in errors.items()
+            },
+        }
+
+
+def _named(velocity: Array) -> Velocity:
+    return dict(zip(COMPONENTS, velocity.tolist(), strict=True))
+
+
+def _counted(tally: WalkTally) -> dict[str, object]:
+    ticks = tally.ticks
+    return {
+        "walk_ticks": ticks,
+        "zmp_outside_sole_ticks": tally.outside,
+        "zmp_least_margin_m": tally.least_depth if isfinite(tally.least_depth) else None,
+        "altered_commands": tally.altered / ticks,
+        "altered_by": {
+            limit.value.replace(" ", "_"): count / ticks
+            for limit, count in tally.by_limit.most_common()
+        },
+    }
+
+
+def _timed(tally: WalkTally) -> dict[str, object]:
+    wall = 1000.0 * np.array(tally.wall)
+    return {
+        "walk_tick_mean_ms": float(wall.mean()),
+        "walk_tick_p999_ms": float(np.quantile(wall, 0.999)),
+        "walk_tick_max_ms": float(wall.max()),
+    }
+
+
+def _saturated(saturation: Saturation) -> dict[str, object]:
+    strongest = int(np.argmax(saturation.peak_torque))
+    fastest = int(np.argmax(saturation.peak_speed))
+    return {
+        "torque_saturated_ticks": saturation.torque_any,
+        "torque_saturated_by": _by_joint(saturation.torque_ticks),
+        "joint_stop_ticks": saturation.stop_any,
+        "joint_stop_by": _by_joint(saturation.stop_ticks),
+        "peak_torque_share": float(saturation.peak_torque[strongest]),
+        "peak_torque_joint": JOINT_NAMES[strongest],
+        "peak_joint_speed_radps": float(saturation.peak_speed[fastest]),
+        "peak_speed_joint": JOINT_NAMES[fastest],
+    }
+
+
+def _by_joint(ticks: NDArray[np.int64]) -> dict[str, int]:
+    return {name: n for name, n in zip(JOINT_NAMES, ticks.tolist(), strict=True) if n}

@@ -1,0 +1,121 @@
+from dataclasses import replace
+from math import cos, pi, sin
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.evaluation.walk_metrics import WalkMetrics, mean_velocity
+from hsr8.recorder.walk_tally import WalkTally
+from hsr8.world.truth import PushActing, Saturation
+from walking.admission import Limit
+from walking.command import VelocityCommand
+from walking.state import Phase
+
+STEP = 0.34
+speeds = st.floats(-0.5, 0.5)
+
+
+def integrated(start, velocity, time):
+    """Pose after a constant velocity in the robot frame, in small steps."""
+    x, y, yaw = start
+    vx, vy, wz = velocity
+    n = 20000
+    yaws = yaw + wz * time * (np.arange(n) + 0.5) / n
+    x += time / n * np.sum(np.cos(yaws) * vx - np.sin(yaws) * vy)
+    y += time / n * np.sum(np.sin(yaws) * vx + np.cos(yaws) * vy)
+    return np.array([x, y, yaw + wz * time])
+
+
+@given(speeds, speeds, st.floats(-2.0, 2.0), st.floats(-3.0, 3.0))
+def test_the_velocity_of_an_arc_is_found_again(vx, vy, wz, yaw):
+    start = np.array([0.3, -1.0, yaw])
+    end = integrated(start, (vx, vy, wz), 0.7)
+    assert mean_velocity(start, end, 0.7) == pytest.approx([vx, vy, wz], abs=1e-6)
+
+
+def records(fake, velocity, duration, *, given=None, steps=True):
+    """An arc walked at `velocity`, the body swaying by 2 cm with the gait, over the wrap of yaw."""
+    tally = WalkTally()
+    for k in range(round(duration * 50) + 1):
+        time = 0.02 * k
+        x, y, yaw = integrated(np.array([0.0, 0.0, 3.0]), velocity, max(time, 1e-9)).tolist()
+        sway = 0.02 * sin(pi * time / STEP)
+        yaw = (yaw + pi) % (2 * pi) - pi
+        record = fake.record(time, (x - sway * sin(yaw), y + sway * cos(yaw), yaw))
+        walking = replace(
+            record.walking,
+            step_count=int(time / STEP + 1e-9) if steps else 0,
+            phase=Phase.DOUBLE_SUPPORT if steps else Phase.STANDING,
+            given=np.array(velocity if given is None else given),
+        )
+        yield replace(record, walking=walking, tally=tally, command=VelocityCommand(*velocity))
+
+
+def results_of(stream):
+    metrics = WalkMetrics()
+    for record in stream:
+        metrics.add(record)
+    return metrics.result()
+
+
+@pytest.mark.parametrize("velocity", [(0.3, 0.0, 0.0), (0.1, 0.05, 0.6), (-0.1, 0.0, -0.8)])
+def test_the_sway_of_the_gait_is_no_velocity(fake, velocity):
+    results = results_of(records(fake, velocity, 8.0))
+    assert list(results["mean_velocity"].values()) == pytest.approx(velocity, abs=0.004)
+    assert list(results["velocity_error"]["asked"].values()) == pytest.approx([0] * 3, abs=0.004)
+    assert results["steps"] == 23
+
+
+def test_errors_are_signed_and_from_what_was_asked_and_given(fake):
+    stream = records(fake, (0.2, 0.0, 0.0), 8.0, given=(0.15, 0.0, 0.1))
+    error = results_of(stream)["velocity_error"]["given"]
+    assert list(error.values()) == pytest.approx([0.05, 0.0, -0.1], abs=0.003)
+
+
+def test_what_happens_in_the_first_seconds_does_not_count(fake):
+    def late(stream):
+        for record in stream:
+            yield replace(record, command=VelocityCommand(9.0 if record.time < 2.98 else 0.2))
+
+    error = results_of(late(records(fake, (0.2, 0.0, 0.0), 8.0)))["velocity_error"]["asked"]
+    assert error["vx"] == pytest.approx(0.0, abs=0.003)
+
+
+def test_a_robot_that_stands_has_no_velocity(fake):
+    results = results_of(records(fake, (0.0, 0.0, 0.0), 6.0, steps=False))
+    assert results["mean_velocity"]["wz"] == pytest.approx(0.0, abs=1e-9)
+    assert results["steps"] == 0
+
+
+def test_a_run_too_short_to_tell_says_so(fake):
+    assert results_of(records(fake, (0.2, 0.0, 0.0), 2.0))["mean_velocity"] is None
+
+
+def test_counts_are_shares_of_the_ticks(fake):
+    tally = WalkTally()
+    for limits in ((), (Limit.ACCELERATION,), (Limit.ACCELERATION, Limit.ZMP_REGION), ()):
+        tally.add(SimpleNamespace(limits=limits, zmp_depth=0.01), 0.002)
+    results = results_of([replace(fake.record(0.0), tally=tally)])
+    assert results["altered_commands"] == 0.5
+    assert results["altered_by"] == {"acceleration": 0.5, "zmp_region": 0.25}
+    assert results["zmp_outside_sole_ticks"] == 0
+    assert "walk_tick_mean_ms" not in results
+
+
+def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
+    tally = WalkTally()
+    tally.add(SimpleNamespace(limits=(), zmp_depth=0.01), 0.002)
+    ticks, peak = np.zeros(26, dtype=np.int64), np.zeros(26)
+    ticks[3], peak[3] = 7, 1.0
+    saturation = Saturation(7, ticks, 0, np.zeros(26, dtype=np.int64), peak, 5.0 * peak)
+    push = PushActing(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
+    record = fake.record(0.0, saturation=saturation, pushes=(push,))
+    results = results_of([replace(record, tally=tally)])
+    assert results["torque_saturated_by"] == {"l_knee": 7}
+    assert (results["peak_torque_joint"], results["peak_joint_speed_radps"]) == ("l_knee", 5.0)
+    assert results["walk_tick_mean_ms"] == pytest.approx(2.0)
+    assert results["pushes"] == 5
+    assert push.impulse == pytest.approx(0.25)

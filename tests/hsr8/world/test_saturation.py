@@ -1,0 +1,54 @@
+import mujoco
+import numpy as np
+import pytest
+
+from hsr8.world.assembly import Optics, assemble
+from hsr8.world.index import ModelIndex
+from hsr8.world.layout import Layout
+from hsr8.world.physics import place_robot
+from hsr8.world.saturation import SaturationWatch
+from walking.joints import JOINT_NAMES
+
+EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
+KNEE = JOINT_NAMES.index("l_knee")
+
+
+@pytest.fixture
+def watched():
+    model = assemble(EMPTY, "vision", Optics())
+    data = mujoco.MjData(model)
+    place_robot(model, data, np.zeros(3))
+    mujoco.mj_forward(model, data)
+    index = ModelIndex.of(model, 0, 0)
+    return model, data, index, SaturationWatch(model, index)
+
+
+def test_the_ready_posture_saturates_nothing(watched):
+    _, data, _, watch = watched
+    data.actuator_force[:] = 0.0
+    watch.watch(data)
+    seen = watch.so_far()
+    assert (seen.torque_any, seen.stop_any) == (0, 0)
+    assert seen.peak_torque.max() == seen.peak_speed.max() == 0.0
+
+
+def test_full_torque_a_stop_and_the_fastest_turn_are_seen_and_kept(watched):
+    model, data, index, watch = watched
+    data.actuator_force[:] = 0.0
+    data.actuator_force[index.actuators[KNEE]] = -model.actuator_forcerange[
+        index.actuators[KNEE], 1
+    ]
+    data.qvel[index.joint_dof[KNEE]] = -7.0
+    before = watch.so_far()
+    watch.watch(data)
+    data.actuator_force[:] = 0.0
+    data.qpos[index.joint_qpos[KNEE]] = model.joint("l_knee").range[1] + 0.01
+    watch.watch(data)
+    seen = watch.so_far()
+    assert (seen.torque_any, seen.stop_any) == (1, 1)
+    assert np.flatnonzero(seen.torque_ticks).tolist() == [KNEE]
+    assert np.flatnonzero(seen.stop_ticks).tolist() == [KNEE]
+    assert seen.peak_torque[KNEE] == pytest.approx(1.0)
+    assert seen.peak_speed[KNEE] == 7.0
+    assert before.torque_any == 0
+    assert before.peak_speed[KNEE] == 0.0
