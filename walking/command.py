@@ -1,6 +1,9 @@
 """What walking is asked to do: a body velocity or footsteps, and a direction to look."""
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from walking.dimension import LENGTH, NUMBER, RATE, SPEED, STANCE, TIME
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,9 +16,9 @@ class VelocityCommand:
         turn: about z, counter-clockwise positive [rad/s].
     """
 
-    forward: float = 0.0
-    left: float = 0.0
-    turn: float = 0.0
+    forward: Annotated[float, SPEED] = 0.0
+    left: Annotated[float, SPEED] = 0.0
+    turn: Annotated[float, RATE] = 0.0
 
     @property
     def velocity(self) -> tuple[float, float, float]:
@@ -28,7 +31,9 @@ class CommandState:
     """One footstep, given explicitly; it holds for every footstep until another comes.
 
     The command state of the modifiable walking pattern (Lee et al., IEEE T-RO 2008). A robot
-    under a command state steps; a zero velocity command closes the stance and stops it.
+    under a command state steps; a zero velocity command closes the stance and stops it. The
+    defaults are HSR-VIII's usual footstep in place; `walking.similarity.carried` makes it that
+    of another robot.
 
     Attributes:
         single_support: time on one foot [s].
@@ -39,12 +44,12 @@ class CommandState:
         swing_height: of the swing foot at mid-swing [m].
     """
 
-    single_support: float = 0.27
-    double_support: float = 0.07
-    forward: float = 0.0
-    side: float = 0.084
-    direction: float = 0.0
-    swing_height: float = 0.025
+    single_support: Annotated[float, TIME] = 0.27
+    double_support: Annotated[float, TIME] = 0.07
+    forward: Annotated[float, LENGTH] = 0.0
+    side: Annotated[float, STANCE] = 0.084
+    direction: Annotated[float, NUMBER] = 0.0
+    swing_height: Annotated[float, LENGTH] = 0.025
 
     @property
     def velocity(self) -> tuple[float, float, float]:

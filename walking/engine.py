@@ -8,7 +8,7 @@ from walking.admission import AdmissionReport, Limit
 from walking.command import Command, CommandState, HeadTarget
 from walking.estimator import ErrorFilter, TiltFilter, TouchDown
 from walking.feedforward import FeedForward
-from walking.footsteps import PLACE_TOLERANCE, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.head import Head
@@ -34,7 +34,7 @@ from walking.transition import Transition
 
 
 class WalkingEngine:
-    """Walks HSR-VIII: call `step` once per control tick of 5 ms.
+    """Walks a humanoid: call `step` once per control tick of 5 ms.
 
     The engine starts in the ready posture, stands until it is told to move, and stops with
     the feet side by side when it is told to stand.
@@ -64,7 +64,8 @@ class WalkingEngine:
         self._touch = TouchDown(parameters.estimator)
         self._stabilizer = Stabilizer(robot, parameters.stabilizer, self._lipm.omega)
         self._posture = Posture(robot, parameters)
-        self._feedforward = FeedForward(robot, parameters.stabilizer, pattern.pelvis_height)
+        base = pattern.pelvis_height - robot.legs[0].hip_z
+        self._feedforward = FeedForward(robot, parameters.stabilizer, base)
         self._odometry = LegOdometry(parameters.odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
@@ -296,7 +297,8 @@ class WalkingEngine:
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touch_down()
         nominal = gait.nominal(wish) if gait.adjustable else gait.landing
-        if not gait.adjustable and gait.stepping and _apart(gait.nominal(wish), nominal):
+        frozen = gait.stepping and not gait.adjustable
+        if frozen and not self._planner.same(gait.nominal(wish), nominal):
             self._binding.append(Limit.LANDING_FROZEN)
         ramps = gait.plan(nominal, wish, moving=moving)
         caught = nominal
@@ -376,15 +378,6 @@ class WalkingEngine:
             offset[6 * index + 4] += ankle.pitch
             offset[6 * index + 5] += ankle.roll
         return JointTargets(position=position, offset=offset)
-
-
-def _apart(one: Footstep, other: Footstep) -> bool:
-    """Whether two footholds differ by more than counts."""
-    return (
-        abs(one.x - other.x) > PLACE_TOLERANCE
-        or abs(one.y - other.y) > PLACE_TOLERANCE
-        or abs(one.yaw - other.yaw) > PLACE_TOLERANCE
-    )
 
 
 def _stance(robot: RobotModel) -> tuple[Footstep, Footstep]:

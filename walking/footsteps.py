@@ -10,7 +10,8 @@ from walking.state import Footstep
 from walking.stride import Placement, Strides, Timing, Velocity
 
 STILL: Velocity = (0.0, 0.0, 0.0)
-PLACE_TOLERANCE = 1e-3  # of a foothold that counts as parallel [m, rad]
+PLACE_TOLERANCE = 0.024  # between footholds that count as the same, of half the stance [1]
+TURN_TOLERANCE = 1e-3  # between their directions [rad]
 
 
 class FootstepPlanner:
@@ -26,13 +27,15 @@ class FootstepPlanner:
         sole: rectangle of the soles.
 
     Attributes:
+        sole: rectangle of the soles.
         still: strides of stepping in place.
     """
 
     def __init__(self, gait: GaitParameters, limits: LimitParameters, sole: Sole) -> None:
         self._gait = gait
         self._limits = limits
-        self._sole = sole
+        self._near = PLACE_TOLERANCE * gait.half_stance
+        self.sole = sole
         self._asked: tuple[Velocity, float] = (STILL, gait.footstep_time)
         self.still = self._strides = self._make(STILL, gait.footstep_time)
         self._cadence: tuple[Velocity, Timing] = (STILL, self._timing(gait.footstep_time))
@@ -226,15 +229,19 @@ class FootstepPlanner:
     def parallel(self, support: Footstep, other: Footstep) -> bool:
         """Whether the two feet stand side by side as for standing."""
         rest = self.landing(support, self.still)
+        return self.same(other, rest)
+
+    def same(self, one: Footstep, other: Footstep) -> bool:
+        """Whether two footholds of a foot differ by no more than counts."""
         return (
-            abs(other.x - rest.x) < PLACE_TOLERANCE
-            and abs(other.y - rest.y) < PLACE_TOLERANCE
-            and abs(other.yaw - rest.yaw) < PLACE_TOLERANCE
+            abs(one.x - other.x) < self._near
+            and abs(one.y - other.y) < self._near
+            and abs(one.yaw - other.yaw) < TURN_TOLERANCE
         )
 
     def _clear(self, y: float, turned: float, side: float) -> float:
         """Lateral landing with every corner clear of the strip of the support foot."""
-        sole = self._sole
+        sole = self.sole
         heel = sole.centre - sole.half_length
         toe = sole.centre + sole.half_length
         s = side * sin(turned)

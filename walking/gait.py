@@ -12,9 +12,6 @@ from walking.swing import MinimumJerk, lift_profile
 Point = tuple[float, float]
 Clock = tuple[Timing, tuple[int, int, Point, float], tuple[int, int, int, float]]
 
-SHORTEST_SWING = 10  # ticks that a foot in the air keeps until it is down
-LIFT_CHANGE = 0.001  # of the swing height per tick while the foot is in the air [m]
-
 
 class FootReference:
     """Reference of one foot in the plan frame: on the floor, or on its way.
@@ -76,7 +73,7 @@ class Gait:
     ) -> None:
         gait = parameters.gait
         self._planner = planner
-        self._zmp_forward = parameters.pattern.zmp_forward
+        self._zmp_forward = planner.sole.centre + parameters.pattern.zmp_forward
         self._zmp_inward = parameters.pattern.zmp_inward
         self._contact_decay = parameters.stabilizer.contact_decay
         self.timing = planner.cadence(STILL)
@@ -87,6 +84,8 @@ class Gait:
         self._swing_origin = 0.0
         self._freeze = gait.landing_freeze
         self._move = gait.landing_speed * CONTROL_PERIOD
+        self._lift_change = gait.lift_speed * CONTROL_PERIOD
+        self._shortest_swing = round(gait.shortest_swing / CONTROL_PERIOD)
         self.stepping = False
         self.support = 0
         self.footholds = list(stance)
@@ -174,7 +173,8 @@ class Gait:
         """Take over a timing as far as it may still change.
 
         A double support under way ends no earlier than in the next tick, a foot in the air
-        has `SHORTEST_SWING` ticks to come down, and once the landing is frozen the times are.
+        has the parameters' `shortest_swing` to come down, and once the landing is frozen the
+        times are.
 
         Returns:
             whether this footstep has the timing, too.
@@ -212,7 +212,7 @@ class Gait:
 
     def _retime_swing(self, single: int) -> None:
         phase, elapsed = self.swing_phase, self._tick - self._ramp_ticks
-        soonest = elapsed + SHORTEST_SWING
+        soonest = elapsed + self._shortest_swing
         while round(self._swing_share[1] * single) < soonest:
             single += 1
         self._set_single(single)
@@ -306,7 +306,7 @@ class Gait:
         if left >= 0:
             foot.advance(self.landing, left + 1)
             change = self.timing.lift - self._lift
-            self._lift += min(LIFT_CHANGE, max(-LIFT_CHANGE, change))
+            self._lift += min(self._lift_change, max(-self._lift_change, change))
             foot.height = self._lift * lift_profile(self.swing_phase)
 
     def _land(self, *, moving: bool) -> None:

@@ -5,10 +5,11 @@ from math import cos, sin
 
 from walking.joints import LEFT_LEG, RIGHT_LEG
 from walking.leg_kinematics import Vector, foot_pose
+from walking.parameters import GRAVITY
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 
-LIGHT_LOAD = 4.0  # the noise of a foot's pads stays below this [N]
+LIGHT_LOAD = 0.074  # noise of a foot's pads stays below this share of the weight [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,7 @@ class BodyMeasurement:
         gyro: angular velocity of the trunk [rad/s].
         feet: left and right foot.
         com: centre of mass [m].
+        right_load: share of the load on the right foot; half in the air [1].
     """
 
     roll: float
@@ -46,13 +48,7 @@ class BodyMeasurement:
     gyro: list[float]
     feet: tuple[FootMeasurement, FootMeasurement]
     com: Vector
-
-    @property
-    def right_load(self) -> float:
-        """Share of the load on the right foot; half in the air [1]."""
-        left = max(0.0, self.feet[0].force - LIGHT_LOAD)
-        right = max(0.0, self.feet[1].force - LIGHT_LOAD)
-        return right / (left + right) if left + right > 0.0 else 0.5
+    right_load: float
 
 
 def measure(
@@ -73,6 +69,9 @@ def measure(
         foot = foot_pose(leg, (a, b, c, d, e, f))
         x, y, z = level(foot.x, foot.y, foot.z)
         feet.append(FootMeasurement(x, y, z, foot.yaw, sum(pads)))
+    light = LIGHT_LOAD * robot.mass * GRAVITY
+    on_left, on_right = (max(0.0, foot.force - light) for foot in feet)
+    both = on_left + on_right
     return BodyMeasurement(
         roll=roll,
         pitch=pitch,
@@ -80,4 +79,5 @@ def measure(
         gyro=sensors.gyro.tolist(),
         feet=(feet[0], feet[1]),
         com=level(*robot.com(sensors.joint_position)),
+        right_load=on_right / both if both > 0.0 else 0.5,
     )

@@ -55,6 +55,8 @@ class GaitParameters:
     """Lateral distance of a foot from the middle of the stance [m]."""
     lift: Annotated[float, Gt(0.0), LENGTH] = 0.025
     """Height of the swing foot at mid-swing [m]."""
+    lift_speed: Annotated[float, Gt(0.0), SPEED] = 0.2
+    """Fastest change of that height while the foot is in the air [m/s]."""
     swing_start: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.05
     """Share of single support after which the foot lifts [1]."""
     swing_end: Annotated[float, Interval(gt=0.0, le=1.0), NUMBER] = 0.9
@@ -63,6 +65,8 @@ class GaitParameters:
     """Share of the swing after which the landing no longer moves [1]."""
     landing_speed: Annotated[float, Gt(0.0), SPEED] = 4.0
     """Fastest move of the landing while the foot is in the air [m/s]."""
+    shortest_swing: Annotated[float, Gt(0.0), TIME] = 0.05
+    """Time that a foot in the air keeps to come down when a footstep is cut short [s]."""
     foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.012
     """Distance of every corner of a landing sole from the strip of the support foot [m]."""
     preview_steps: Annotated[int, Gt(0)] = 4
@@ -82,8 +86,8 @@ class PatternParameters:
     lipm_height: Annotated[float, Gt(0.0), HEIGHT] = 0.19
     """Height of the pendulum that the pelvis follows; less than the height of the centre
     of mass because half of the mass is in the legs [m]."""
-    zmp_forward: Annotated[float, LENGTH] = 0.010
-    """Where the ZMP is meant to be ahead of the ankle [m]."""
+    zmp_forward: Annotated[float, LENGTH] = 0.0
+    """Where the ZMP is meant to be ahead of the middle of the sole [m]."""
     zmp_inward: Annotated[float, STANCE] = 0.0
     """Where the ZMP is meant to be inward of the ankle [m]."""
     sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.005
@@ -163,6 +167,8 @@ class StabilizerParameters:
     """Share of the trunk's tilt taken out of the swing foot [1]."""
     tilt_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.019
     """Tilt below which the swing foot ignores it [rad]."""
+    tilt_pull: Annotated[float, Interval(gt=0.0, le=1.0), TAKEN_PER_TICK] = 0.3
+    """Share of the way per tick on which the swing foot's compensation follows [1]."""
     tilt_decay: Annotated[float, Interval(ge=0.0, lt=1.0), LEFT_PER_TICK] = 0.85
     """What is left per tick of the foot's compensation after touch-down [1]."""
     contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0), LEFT_PER_TICK] = 0.965

@@ -41,7 +41,7 @@ class Posture:
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
         self._robot = robot
-        self._height = parameters.pattern.pelvis_height
+        self._height = parameters.pattern.pelvis_height - robot.legs[0].hip_z
         self._com_ahead = robot.com(robot.ready)[0]
         self._ready: list[float] = robot.ready.tolist()
         self._arms = parameters.arms
@@ -120,7 +120,8 @@ class Posture:
         flying = gait.stepping and index == gait.swing and not gait.double and not gait.held
         if flying and 0.0 < gait.swing_phase < 1.0:
             for axis in (0, 1):
-                own[axis] += 0.3 * (p.tilt_gain * beyond(tilt[axis], p.tilt_dead_zone) - own[axis])
+                wanted = p.tilt_gain * beyond(tilt[axis], p.tilt_dead_zone)
+                own[axis] += p.tilt_pull * (wanted - own[axis])
         elif own[0] != 0.0 or own[1] != 0.0:
             for axis in (0, 1):
                 own[axis] *= p.tilt_decay

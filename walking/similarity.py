@@ -28,7 +28,7 @@ def carried(parameters: Section, old: Yardsticks, new: Yardsticks) -> Section:
     """Parameters of a robot with measures `old`, made those of one with measures `new`.
 
     Args:
-        parameters: of the engine, or a section of them.
+        parameters: of the engine, a section of them, or a command.
         old: measures of the one robot.
         new: measures of the other.
     """

@@ -22,7 +22,7 @@ from walking.targets import JointTargets
 Array = NDArray[np.float64]
 
 CONTROL_PERIOD = 0.005  # Yoo & Kim: the walking pattern is recomputed every 5 ms [s]
-FALLEN_HEIGHT = 0.13  # a pelvis below this lies [m]
+FALLEN_SHARE = 0.64  # a pelvis below this share of its height when ready lies [1]
 FALLEN_TILT = 0.5  # cosine of the tilt beyond which the robot has fallen [1]
 
 
@@ -76,6 +76,7 @@ class PhysicsBody:
         self._substep = 0
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
         place_robot(model, self.data, np.array(layout.start))
+        self._lying = FALLEN_SHARE * float(self.data.qpos[self._index.root_qpos + 2])
         self._around.move(self.data, 0.0)
         # Warnings are counted and raised by `apply`; MuJoCo shall not write a file of its own.
         mujoco.set_mju_user_warning(lambda _message: None)
@@ -143,7 +144,7 @@ class PhysicsBody:
             foot_force=load,
             zmp=pressure,
             fallen=bool(
-                data.qpos[root + 2] < FALLEN_HEIGHT or up_component(quaternion) < FALLEN_TILT
+                data.qpos[root + 2] < self._lying or up_component(quaternion) < FALLEN_TILT
             ),
             pushes=self._pusher.take(),
             saturation=self._saturation.so_far(),
