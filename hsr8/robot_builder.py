@@ -17,6 +17,7 @@ from vision.detector import Detector
 from vision.own_body import BodyPart
 from walking.engine import WalkingEngine
 from walking.robot_model import RobotModel
+from walking.similarity import parameters_for
 
 # The arms as the head sees them, with room for their swing: shoulder, elbow, hand in R [m].
 # Measured over 25 s of walking: shoulders move 2 mm, hands 2 cm.
@@ -46,6 +47,7 @@ def build_robot(
     beacons = {b.name: b.position for b in layout.beacons}
     limits = scenario.speed_limits()
     navigation = scenario.navigation_parameters()
+    body = RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
     mission: Goes
     planner: Moves
     script: CommandScript | None = None
@@ -57,10 +59,7 @@ def build_robot(
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
         planner = Planner(navigation, limits)
     return Robot(
-        walking=WalkingEngine(
-            RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml"),
-            scenario.walking_parameters(),
-        ),
+        walking=WalkingEngine(body, parameters_for(body, scenario.walking_parameters())),
         camera=camera,
         vision=Detector(camera, scenario.vision_parameters(), arms()),
         belief=build_estimator(scenario, layout, rng),

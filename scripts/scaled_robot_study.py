@@ -30,7 +30,7 @@ from walking.joints import LEG_JOINTS
 from walking.leg_kinematics import FootPose, leg_angles
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.robot_model import READY, RobotModel
-from walking.similarity import parameters_for
+from walking.similarity import carried, parameters_for
 from walking.yardsticks import HSR_VIII
 
 STEADY = {
@@ -115,15 +115,13 @@ class Walker:
         path: its MJCF file.
         model: what the walking library makes of it.
         parameters: derived from that.
-        time, speed, rate: of its walk, in units of HSR-VIII's.
+        time: of its walk, in units of HSR-VIII's.
     """
 
     path: Path
     model: RobotModel
     parameters: WalkingParameters
     time: float
-    speed: float
-    rate: float
 
     def body(self, rng: np.random.Generator) -> Body:
         """It, standing ready."""
@@ -138,8 +136,7 @@ class Walker:
 
         def scaled(now: float) -> tuple[VelocityCommand, HeadTarget]:
             command, head = script(now / self.time)
-            forward, left = self.speed * command.forward, self.speed * command.left
-            return VelocityCommand(forward, left, self.rate * command.turn), head
+            return carried(command, HSR_VIII, self.model.yardsticks()), head
 
         return scaled
 
@@ -164,14 +161,11 @@ def build(name: str, folder: Path, *, derived: bool = True) -> Walker:
     _stand_ready(spec, model, parameters.pattern.pelvis_height)
     _write(spec, path)
     model = RobotModel.from_mjcf(path)
-    ratio, defaults = parameters.limits, WalkingParameters().limits
     return Walker(
         path=path,
         model=model,
         parameters=parameters if derived else WalkingParameters(),
         time=model.yardsticks().time / HSR_VIII.time,
-        speed=ratio.forward / defaults.forward,
-        rate=ratio.turn / defaults.turn,
     )
 
 

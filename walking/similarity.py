@@ -1,6 +1,7 @@
 """Parameters of any robot, derived from its model and from the choices made for HSR-VIII."""
 
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
 from walking.dimension import Dimension, Rule, ShareLeft, ShareTaken
@@ -32,7 +33,8 @@ def carried(parameters: Section, old: Yardsticks, new: Yardsticks) -> Section:
         old: measures of the one robot.
         new: measures of the other.
     """
-    rules = rules_of(type(parameters))
+    section: Any = type(parameters)
+    rules = rules_of(section)
     made: dict[str, Any] = {}
     for name, value in _values(parameters).items():
         if is_dataclass(value):
@@ -42,6 +44,7 @@ def carried(parameters: Section, old: Yardsticks, new: Yardsticks) -> Section:
     return replace(parameters, **made)  # type: ignore[type-var]
 
 
+@cache
 def rules_of(section: type) -> dict[str, Rule]:
     """How the parameters of a section go over to another robot, by name."""
     rules = {}

@@ -77,7 +77,7 @@ class Scenario(Section):
     sensors: SensorNoise = SensorNoise()
     """Noise of the body's sensors."""
     walking: WalkingParameters = WalkingParameters()
-    """The walking engine."""
+    """The walking engine; a key left at HSR-VIII's value has the value that suits the robot."""
     vision: VisionParameters = VisionParameters()
     """The detector."""
     belief: BeliefParameters = BeliefParameters()

@@ -5,6 +5,7 @@ from math import sqrt
 
 import pytest
 
+from walking.command import CommandState, VelocityCommand
 from walking.dimension import (
     ACCELERATION,
     LEFT_PER_TICK,
@@ -140,3 +141,13 @@ def test_measures_follow_the_mass_and_the_servos(robot):
     # Between the hips, which all of the mass would follow on a weightless leg, and the floor.
     base = 5.0 / 6.0 * y.leg
     assert 0.5 * base < height < base + robot.com(robot.ready)[2]
+
+
+def test_a_command_is_carried_over_whole():
+    double = replace(HSR_VIII, leg=2.0 * HSR_VIII.leg, hip=2.0 * HSR_VIII.hip)
+    made = carried(CommandState(forward=0.1), HSR_VIII, double)
+    assert (made.forward, made.side, made.swing_height) == (0.2, 0.168, 0.05)
+    assert made.single_support == CommandState().single_support
+    assert carried(VelocityCommand(0.2, 0.1, 0.5), HSR_VIII, scaled(HSR_VIII, 4.0)) == (
+        VelocityCommand(0.4, 0.2, 0.25)
+    )
