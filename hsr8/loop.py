@@ -20,6 +20,7 @@ from hsr8.world.camera import RenderedCamera
 from hsr8.world.camera_feed import CameraFeed, Picture
 from hsr8.world.episodes import Episodes
 from hsr8.world.generator import draw_layout
+from hsr8.world.index import ModelIndex
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
 from hsr8.world.pushes import schedule
@@ -96,6 +97,11 @@ class Simulation:
                 self.layout, self._pinhole, self._camera_rng, scenario.camera
             )
         self._feed = CameraFeed(camera, self._take, named_rng(seed, "camera_feed"))
+
+    @property
+    def index(self) -> ModelIndex:
+        """Addresses in the model."""
+        return ModelIndex.of(self.model, len(self.layout.static), len(self.layout.movers))
 
     def interrupt(self) -> None:
         """Ask the run to end after the present tick."""

@@ -26,6 +26,7 @@ MODULES: dict[type, str] = {
     options.Doctor: "hsr8.cli.doctor",
     options.Render: "hsr8.cli.render",
     options.Replay: "hsr8.cli.replay",
+    options.Plot: "hsr8.cli.plot",
 }
 INTERRUPTED = 130
 READER_LEFT = 141  # as of a program that SIGPIPE ends
@@ -37,6 +38,7 @@ Commands = (
     | Annotated[options.Doctor, tyro.conf.subcommand("doctor")]
     | Annotated[options.Render, tyro.conf.subcommand("render")]
     | Annotated[options.Replay, tyro.conf.subcommand("replay")]
+    | Annotated[options.Plot, tyro.conf.subcommand("plot")]
 )
 
 

@@ -125,4 +125,29 @@ class Replay:
     """Print one JSON object."""
 
 
-Command = Run | List | Check | Doctor | Render | Replay
+@dataclass(frozen=True)
+class Plot:
+    """Plot how a run walked: ZMP, CoM, DCM, soles, velocities, torques, tilt."""
+
+    run: Positional[RunPath]
+    what: Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"] = "walking"
+    """What to plot; walking is all of it."""
+    out: Annotated[
+        Path | None, _arg("FILE", ".png, .svg or .pdf; by default a PNG in the run folder")
+    ] = None
+    start: Annotated[float, tyro.conf.arg(name="from", metavar="S")] = 0.0
+    """Simulated time at which the plot begins [s]."""
+    stop: Annotated[
+        float | None,
+        tyro.conf.arg(
+            name="to",
+            metavar="S",
+            help="simulated time at which it ends [s]",
+            help_behavior_hint="",
+        ),
+    ] = None
+    json: bool = False
+    """Print one JSON object."""
+
+
+Command = Run | List | Check | Doctor | Render | Replay | Plot

@@ -81,6 +81,8 @@ def show(
     lines = [f"run folder  {path}", f"video       hsr8 render {word}"]
     if (path / run_folder.LOG).exists():
         lines.insert(1, f"look at it  hsr8 replay {word}")
+    if (path / run_folder.WALKING).exists():
+        lines.append(f"plots       hsr8 plot {word}")
     lines.append(f"again       {' '.join(command)}")
     for line in lines:
         console.print(line, highlight=False, soft_wrap=True, markup=False)

@@ -23,6 +23,7 @@ from hsr8.recorder.progress import Progress
 from hsr8.recorder.record import Listener
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump, load
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -89,9 +90,11 @@ def option_tables(options: Run) -> dict[str, dict[str, Any]]:
 
 
 def _extra_listeners(options: Run, simulation: Simulation, path: Path) -> list[Listener]:
-    """Those that the options may leave out."""
+    """Those beside the folder and the results."""
     scenario = simulation.scenario
-    listeners: list[Listener] = []
+    listeners: list[Listener] = [
+        WalkingTableWriter(path / run_folder.WALKING, simulation.model, simulation.index)
+    ]
     if not options.no_log:
         camera = scenario.camera
         listeners.append(

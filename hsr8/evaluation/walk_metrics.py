@@ -1,11 +1,12 @@
 """Results of walking: velocity against command, ZMP, altered commands, servos, time."""
 
 from dataclasses import dataclass
-from math import isfinite, pi, sin
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth import Saturation
@@ -90,19 +91,6 @@ class StrideMeter:
                 given=self._given / took,
             )
         )
-
-
-def mean_velocity(start: Array, end: Array, time: float) -> Array:
-    """Velocity in the robot frame (3,) that leads from one pose (3,) to another in `time` [s].
-
-    The way between is taken for an arc walked at constant velocity; headings are unwrapped.
-    """
-    dx, dy, turn = (end - start).tolist()
-    half = 0.5 * turn
-    # The chord of the arc points half the turn away from the heading and is shorter than it.
-    arc = half / sin(half) if 1e-9 < abs(half) < pi else 1.0
-    c, s = np.cos(start[2] + half), np.sin(start[2] + half)
-    return np.array([arc * (c * dx + s * dy), arc * (c * dy - s * dx), turn]) / time
 
 
 class WalkMetrics:

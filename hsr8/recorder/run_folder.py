@@ -5,6 +5,7 @@
     metrics.json     results, at the end
     events.jsonl     what happened, one line each
     trajectory.bin   motion of robot and movers
+    walking.bin      how it walked: ZMP, feet, torques, velocities
     frames.jsonl     belief and decisions, one camera frame a line
     log.rrd          everything, for the Rerun viewer
     video.mp4        after ``hsr8 render``
@@ -29,6 +30,7 @@ MANIFEST = "manifest.json"
 METRICS = "metrics.json"
 EVENTS = "events.jsonl"
 TRAJECTORY = "trajectory.bin"
+WALKING = "walking.bin"
 FRAMES = "frames.jsonl"
 LOG = "log.rrd"
 VIDEO = "video.mp4"

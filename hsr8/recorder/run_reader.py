@@ -10,6 +10,7 @@ from hsr8.recorder import run_folder
 from hsr8.recorder.frame_summary import FrameSummary, from_line
 from hsr8.recorder.json_lines import read_lines
 from hsr8.recorder.trajectory import Trajectory, read_trajectory
+from hsr8.recorder.walking_table import WalkingTable, read_walking_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,14 @@ class Run:
             UsageError: there is none.
         """
         return read_trajectory(self.path / run_folder.TRAJECTORY)
+
+    def walking(self) -> WalkingTable:
+        """How the robot walked.
+
+        Raises:
+            UsageError: there is no table.
+        """
+        return read_walking_table(self.path / run_folder.WALKING)
 
     def frames(self) -> tuple[FrameSummary, ...]:
         """Belief and decisions at every camera frame; empty if there were none.

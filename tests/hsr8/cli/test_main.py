@@ -9,7 +9,18 @@ from hsr8.cli.crash import CrashReport, InternalError
 from hsr8.cli.main import MODULES, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
 
-HEAVY = ("mujoco", "rerun", "numpy", "scipy", "cv2", "pinocchio", "filterpy", "av", "pydantic")
+HEAVY = (
+    "mujoco",
+    "rerun",
+    "numpy",
+    "scipy",
+    "cv2",
+    "pinocchio",
+    "filterpy",
+    "av",
+    "pydantic",
+    "matplotlib",
+)
 
 
 def test_help_imports_nothing_heavy():
@@ -21,7 +32,7 @@ def test_help_imports_nothing_heavy():
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
     )
     assert done.stderr.strip() == "[] 0"
-    for command in ("run", "list", "check", "doctor", "render", "replay"):
+    for command in ("run", "list", "check", "doctor", "render", "replay", "plot"):
         assert command in done.stdout
 
 

@@ -4,10 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from hsr8.evaluation.walk_metrics import WalkMetrics, mean_velocity
+from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth import PushActing, Saturation
 from walking.admission import Limit
@@ -15,7 +13,6 @@ from walking.command import VelocityCommand
 from walking.state import Phase
 
 STEP = 0.34
-speeds = st.floats(-0.5, 0.5)
 
 
 def integrated(start, velocity, time):
@@ -27,13 +24,6 @@ def integrated(start, velocity, time):
     x += time / n * np.sum(np.cos(yaws) * vx - np.sin(yaws) * vy)
     y += time / n * np.sum(np.sin(yaws) * vx + np.cos(yaws) * vy)
     return np.array([x, y, yaw + wz * time])
-
-
-@given(speeds, speeds, st.floats(-2.0, 2.0), st.floats(-3.0, 3.0))
-def test_the_velocity_of_an_arc_is_found_again(vx, vy, wz, yaw):
-    start = np.array([0.3, -1.0, yaw])
-    end = integrated(start, (vx, vy, wz), 0.7)
-    assert mean_velocity(start, end, 0.7) == pytest.approx([vx, vy, wz], abs=1e-6)
 
 
 def records(fake, velocity, duration, *, given=None, steps=True):

@@ -1,0 +1,43 @@
+"""``hsr8 plot``: how a run walked, as a picture to print."""
+
+from hsr8.cli.options import Plot
+from hsr8.errors import UsageError
+from hsr8.recorder import atomic
+from hsr8.recorder.run_reader import open_run
+from hsr8.render.walk_figure import SUFFIXES, draw, save
+
+
+def main(options: Plot) -> int:
+    """Draw the plot and say where it is.
+
+    Raises:
+        UsageError: there is no such run, it did not record how it walked, or an option will
+            not do.
+    """
+    run = open_run(options.run)
+    table = run.walking()
+    end = float(table.time[-1]) if len(table) else 0.0
+    start = options.start
+    stop = end if options.stop is None else min(options.stop, end)
+    if not 0.0 <= start < stop:
+        raise UsageError(
+            f"nothing to plot from {start:g} s to {stop:g} s: the run ended at {end:g} s"
+        )
+    out = options.out or run.path / f"{options.what}.png"
+    if out.suffix.lower() not in SUFFIXES:
+        raise UsageError(f"--out {out}: give a file that ends in {', '.join(SUFFIXES)}")
+    if not out.parent.is_dir():
+        raise UsageError(f"--out {out}: there is no folder {out.parent}")
+    title = f"{run.manifest.get('scenario', run.path.name)}, seed {run.seed}"
+    if (start, stop) != (0.0, end):
+        title += f", {start:g} to {stop:g} s"
+    figure = draw(table.window(start, stop), options.what, title)
+    try:
+        save(figure, out)
+    except OSError as error:
+        raise UsageError(f"--out {out}: cannot be written: {error.strerror}") from error
+    if options.json:
+        print(atomic.dumps({"plot": str(out), "what": options.what, "from_s": start, "to_s": stop}))
+    else:
+        print(f"plot        {out}")
+    return 0

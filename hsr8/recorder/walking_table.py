@@ -1,0 +1,224 @@
+"""How a run walked, in columns: what plots are drawn from afterwards.
+
+A file of rows: time [s] as a little-endian double, then every other column as a single. It
+begins with a magic word, the length of a JSON header and that header, which names the columns
+and holds what does not change. A file cut anywhere loses its last row at most.
+
+Points are in W. What the robot knows in its odometry frame is put there by its true pose of
+the moment, so that planned and true curves can be compared.
+"""
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, sin
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import UsageError
+from hsr8.recorder.record import TickRecord
+from hsr8.world.index import ModelIndex
+from walking.admission import Limit
+from walking.joints import JOINT_NAMES
+from walking.state import Phase
+
+Array = NDArray[np.float64]
+
+MAGIC = b"HSR8WLK1"
+_LENGTH = struct.Struct("<Q")
+FLUSH_PERIOD = 1.0  # a killed run loses so much at most [s]
+LEG_JOINTS = JOINT_NAMES[:12]
+PHASES = tuple(Phase)
+LIMITS = tuple(Limit)
+COLUMNS = (
+    "phase",
+    "steps",
+    *(f"{kind}_{c}" for kind in ("asked", "given") for c in ("vx", "vy", "wz")),
+    *(f"robot_{c}" for c in ("x", "y", "yaw")),
+    *(
+        f"{name}_{c}"
+        for name in ("zmp", "cop", "com", "measured_com", "dcm", "measured_dcm")
+        for c in ("x", "y")
+    ),
+    *(f"{foot}_{c}" for foot in ("left", "right") for c in ("x", "y", "z", "yaw", "force")),
+    "capture_x",
+    "capture_y",
+    "zmp_depth",
+    "roll",
+    "pitch",
+    "limits",
+    *(f"push_{c}" for c in ("x", "y", "z", "fx", "fy", "fz")),
+    *(f"torque_{name}" for name in LEG_JOINTS),
+)
+LIGHT = 1.0  # no centre of pressure is told under feet that carry less [N]
+
+
+@dataclass(frozen=True, slots=True)
+class WalkingTable:
+    """How a run walked.
+
+    Attributes:
+        time: of each row (n,) [s].
+        columns: by name (n,); lengths [m], angles [rad], forces [N], torques [N m].
+        sole: middle ahead of the ankle, half length and half width of a sole [m].
+        torque_limit: of each leg joint [N m].
+    """
+
+    time: Array
+    columns: dict[str, Array]
+    sole: tuple[float, float, float]
+    torque_limit: dict[str, float]
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __getitem__(self, name: str) -> Array:
+        return self.columns[name]
+
+    def points(self, name: str) -> Array:
+        """Both coordinates of a point (n, 2) [m]."""
+        return np.column_stack([self[f"{name}_x"], self[f"{name}_y"]])
+
+    def window(self, start: float, stop: float) -> "WalkingTable":
+        """The rows from `start` to `stop` [s]."""
+        chosen = (self.time >= start - 1e-9) & (self.time <= stop + 1e-9)
+        columns = {name: values[chosen] for name, values in self.columns.items()}
+        return WalkingTable(self.time[chosen], columns, self.sole, self.torque_limit)
+
+    def bound(self) -> dict[Limit, NDArray[np.bool_]]:
+        """Where each constraint altered the command (n,); those that never did are left out."""
+        mask = self["limits"].astype(np.int64)
+        found = {limit: (mask >> k) & 1 == 1 for k, limit in enumerate(LIMITS)}
+        return {limit: rows for limit, rows in found.items() if rows.any()}
+
+
+class WalkingTableWriter:
+    """Listener that writes the table of a run.
+
+    Args:
+        path: file to create.
+        model: compiled world.
+        index: addresses in it.
+    """
+
+    def __init__(self, path: Path, model: mujoco.MjModel, index: ModelIndex) -> None:
+        sole = index.foot_geoms[0]
+        header = json.dumps(
+            {
+                "columns": COLUMNS,
+                "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
+                "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
+            }
+        ).encode()
+        header += b" " * (-len(header) % 8)
+        self._flushed_at = 0.0
+        self._file = path.open("wb")
+        self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
+
+    def on_record(self, record: TickRecord) -> None:
+        """Append one row."""
+        self._file.write(struct.pack("<d", record.time))
+        self._file.write(np.array(_row(record), dtype="<f4").tobytes())
+        if record.time - self._flushed_at >= FLUSH_PERIOD:
+            self._flushed_at = record.time
+            self._file.flush()
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Events have a file of their own."""
+
+    def close(self, exit_reason: str) -> None:
+        """Finish the file."""
+        self._file.close()
+
+
+def read_walking_table(path: Path) -> WalkingTable:
+    """Read a table, also that of a run that was killed.
+
+    Raises:
+        UsageError: it is missing, or no such table.
+    """
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise UsageError(
+            f"{path.parent} does not tell how it walked: it has no {path.name}; run it again"
+        ) from None
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}") from error
+    start = len(MAGIC) + _LENGTH.size
+    if len(content) < start or not content.startswith(MAGIC):
+        raise UsageError(f"{path} is no walking table of this version of hsr8")
+    (length,) = _LENGTH.unpack_from(content, len(MAGIC))
+    try:
+        header = json.loads(content[start : start + length])
+        names = [str(name) for name in header["columns"]]
+        centre, half_length, half_width = map(float, header["sole"])
+        limits = dict(zip(LEG_JOINTS, map(float, header["torque_limit"]), strict=True))
+    except (ValueError, TypeError, KeyError) as error:
+        raise UsageError(f"{path} has no whole header") from error
+    row = np.dtype([("time", "<f8"), ("values", "<f4", (len(names),))])
+    rows = (len(content) - start - length) // row.itemsize
+    table = np.frombuffer(content, dtype=row, count=rows, offset=start + length)
+    values = table["values"].astype(np.float64)
+    return WalkingTable(
+        time=table["time"].astype(np.float64),
+        columns={name: values[:, k] for k, name in enumerate(names)},
+        sole=(centre, half_length, half_width),
+        torque_limit=limits,
+    )
+
+
+class OdometryToWorld:
+    """Puts what the robot knows in its odometry frame where the robot truly is.
+
+    Args:
+        record: of the moment.
+    """
+
+    def __init__(self, record: TickRecord) -> None:
+        here = record.walking.odometry
+        x, y, yaw = record.truth.robot.tolist()
+        self.turn = yaw - here.yaw
+        self._c, self._s = cos(self.turn), sin(self.turn)
+        self._x = x - self._c * here.x + self._s * here.y
+        self._y = y - self._s * here.x - self._c * here.y
+
+    def point(self, point: Sequence[float] | Array) -> tuple[float, float]:
+        """A point of the odometry frame in W [m]."""
+        x, y = float(point[0]), float(point[1])
+        return self._x + self._c * x - self._s * y, self._y + self._s * x + self._c * y
+
+    def vector(self, vector: Sequence[float] | Array) -> tuple[float, float]:
+        """A direction of the odometry frame in W."""
+        x, y = float(vector[0]), float(vector[1])
+        return self._c * x - self._s * y, self._s * x + self._c * y
+
+
+def _row(record: TickRecord) -> list[float]:
+    truth, walking, balance = record.truth, record.walking, record.walking.balance
+    there = OdometryToWorld(record)
+    force = truth.foot_force.tolist()
+    pressure = truth.zmp.tolist() if sum(force) > LIGHT else [float("nan")] * 2
+    row: list[float] = [PHASES.index(walking.phase), walking.step_count]
+    row += record.command.velocity
+    row += walking.given.tolist()
+    row += truth.robot.tolist()
+    row += (*there.point(walking.zmp), *pressure)
+    row += (*there.point(balance.com), *there.point(walking.com))
+    row += (*there.point(walking.dcm), *there.point(balance.dcm))
+    for (x, y, z, yaw), load in zip(balance.feet.tolist(), force, strict=True):
+        row += (*there.point((x, y)), z, yaw + there.turn, load)
+    row += there.vector(balance.capture)
+    row += (balance.zmp_depth, walking.roll, walking.pitch)
+    limits = walking.admission.limits if walking.admission is not None else ()
+    row.append(sum({1 << LIMITS.index(limit) for limit in limits}))
+    if truth.pushes:
+        row += (*truth.pushes[0].point.tolist(), *truth.pushes[0].force.tolist())
+    else:
+        row += [0.0] * 6
+    row += truth.joint_torque[: len(LEG_JOINTS)].tolist()
+    return row

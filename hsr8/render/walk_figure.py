@@ -1,0 +1,142 @@
+"""Plots of how a run walked, as they are printed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure, FigureBase
+from matplotlib.patches import Patch
+
+from hsr8.errors import UsageError
+from hsr8.recorder.walking_table import WalkingTable
+from hsr8.render import walk_panels as panels
+
+What = Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"]
+SUFFIXES = (".png", ".svg", ".pdf")
+WIDTH = 11.0  # of a figure [inch]
+STYLE: dict[Any, Any] = {
+    "font.size": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#E6E6E6",
+    "grid.linewidth": 0.6,
+    "axes.linewidth": 0.7,
+    "legend.frameon": False,
+    "legend.fontsize": 7.5,
+    "figure.dpi": 100,
+    "savefig.dpi": 150,
+    "svg.hashsalt": "hsr8",
+}
+Draw = Callable[[Axes, WalkingTable], None]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes over time.
+
+    Attributes:
+        height: [inch].
+        draw: draws it.
+        legend: whether its curves are named beside it.
+        patches: what else is named there.
+    """
+
+    height: float
+    draw: Callable[[Axes, WalkingTable], None]
+    legend: bool = True
+    patches: Callable[[], list[Patch]] = list
+
+
+TIME_PANELS: dict[str, tuple[Panel, ...]] = {
+    "zmp": (
+        Panel(2.0, partial(panels.along, axis=0), patches=panels.sole_legend),
+        Panel(2.0, partial(panels.along, axis=1), legend=False),
+    ),
+    "velocity": tuple(
+        Panel(0.9, partial(panels.velocity, component=k), legend=k == 0) for k in range(3)
+    ),
+    "torques": tuple(Panel(1.1, partial(panels.torque, group=group)) for group in panels.JOINTS),
+    "tilt": (Panel(0.9, panels.tilt),),
+}
+FEWEST = 4  # records that make a plot
+LOWEST, HIGHEST = 1.5, 4.5  # height of the view from above [inch]
+BESIDE = 0.8  # share of the width that the axes have [1]
+
+
+def draw(table: WalkingTable, what: What, title: str) -> Figure:
+    """Draw a figure.
+
+    Args:
+        table: the rows to draw.
+        what: one group of panels, or all of them.
+        title: of the figure.
+
+    Raises:
+        UsageError: there are too few rows to draw.
+    """
+    if len(table) < FEWEST:
+        raise UsageError(f"nothing to plot: there are only {len(table)} records in that time")
+    groups = tuple(TIME_PANELS) if what == "walking" else (what,)
+    rows = [panel for group in groups for panel in TIME_PANELS.get(group, ())]
+    above = _footsteps_height(table) if what in ("walking", "footsteps") else 0.0
+    heights = [panel.height for panel in rows]
+    if rows:
+        heights.append(0.16 * (1 + len(table.bound())) + 0.12)
+    with rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, above + sum(heights) + 0.9), layout="constrained")
+        FigureCanvasAgg(figure)
+        figure.suptitle(title, fontsize=11, x=0.01, ha="left", weight="bold")
+        parts: list[FigureBase] = [figure, figure]
+        if above and rows:
+            ratios = [above, sum(heights)]
+            parts = figure.subfigures(2, 1, height_ratios=ratios, squeeze=False)[:, 0].tolist()
+        if above:
+            axes = parts[0].subplots()
+            panels.footsteps(axes, table)
+            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        if rows:
+            column = parts[1].subplots(
+                len(heights), 1, sharex=True, squeeze=False, height_ratios=heights
+            )
+            _draw_over_time(column[:, 0].tolist(), rows, table)
+    return figure
+
+
+def save(figure: Figure, out: Path) -> None:
+    """Write a figure; the ending of the name says as what.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    with rc_context(STYLE):
+        figure.savefig(out, metadata=undated.get(out.suffix.lower()))
+
+
+def _draw_over_time(axes: list[Axes], rows: list[Panel], table: WalkingTable) -> None:
+    for one, panel in zip(axes, rows, strict=False):
+        panel.draw(one, table)
+        if panel.legend:
+            handles = [*one.get_legend_handles_labels()[0], *panel.patches()]
+            one.legend(handles=handles, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    panels.lanes(axes[-1], table)
+    axes[-1].legend(handles=panels.lane_legend(), loc="upper left", bbox_to_anchor=(1.0, 1.15))
+    panels.mark_pushes(axes, table)
+    axes[-1].set_xlim(float(table.time[0]), float(table.time[-1]))
+    axes[-1].set_xlabel("time [s]")
+
+
+def _footsteps_height(table: WalkingTable) -> float:
+    """Height of the view from above that shows the way in its true shape [inch]."""
+    origin, yaw = table.points("robot")[0], float(table["robot_yaw"][0])
+    way = panels.turned(table.points("robot"), origin, yaw)
+    extent = np.ptp(way, axis=0) + 0.25
+    return float(np.clip(BESIDE * WIDTH * extent[1] / extent[0], LOWEST, HIGHEST))

@@ -1,0 +1,100 @@
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from hsr8.errors import UsageError
+from hsr8.recorder.walking_table import (
+    COLUMNS,
+    OdometryToWorld,
+    WalkingTableWriter,
+    read_walking_table,
+)
+from hsr8.world.index import ModelIndex
+from hsr8.world.truth import PushActing
+from walking.admission import AdmissionReport, Limit
+from walking.command import VelocityCommand
+from walking.state import Odometry
+
+
+@pytest.fixture
+def written(tmp_path, model, walk):
+    """A walk of one second, its file, and its records."""
+    path, records = tmp_path / "walking.bin", list(walk(1.0))
+    writer = WalkingTableWriter(path, model, ModelIndex.of(model, 2, 1))
+    for record in records:
+        writer.on_record(record)
+    writer.close("goal")
+    return path, records
+
+
+def test_what_was_recorded_is_read_back(written):
+    path, records = written
+    table = read_walking_table(path)
+    assert table.time.tolist() == [r.time for r in records]
+    assert set(table.columns) == set(COLUMNS)
+    assert table["robot_x"] == pytest.approx([r.truth.robot[0] for r in records])
+    assert table["given_vx"] == pytest.approx([0.2] * len(records))
+    assert table["left_y"] == pytest.approx([0.042] * len(records))
+    assert table["left_force"] == pytest.approx([17.0] * len(records))
+    assert table.sole == pytest.approx((0.01, 0.0525, 0.03))
+    assert table.torque_limit["l_knee"] == 6.0
+
+
+def test_a_cut_file_loses_its_last_row(written):
+    path, records = written
+    path.write_bytes(path.read_bytes()[:-5])
+    assert len(read_walking_table(path)) == len(records) - 1
+
+
+def test_a_window_holds_both_ends(written):
+    table = read_walking_table(written[0]).window(0.2, 0.4)
+    assert table.time[[0, -1]].tolist() == pytest.approx([0.2, 0.4])
+    assert len(table["phase"]) == len(table) == 11
+
+
+def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
+    asked = VelocityCommand(0.5)
+    report = AdmissionReport(asked, asked, (Limit.SPEED, Limit.BALANCE, Limit.SPEED))
+    push = PushActing(
+        0, 0.0, 0.05, "torso_link", 0.0, np.array([0.1, 0.2, 0.3]), np.array([1.0, -2.0, 0.0])
+    )
+    records = [fake.record(0.0), fake.record(0.02, pushes=(push,))]
+    records[1] = replace(records[1], walking=replace(records[1].walking, admission=report))
+    writer = WalkingTableWriter(tmp_path / "w.bin", model, ModelIndex.of(model, 2, 1))
+    for record in records:
+        writer.on_record(record)
+    writer.close("goal")
+    table = read_walking_table(tmp_path / "w.bin")
+    assert {k: v.tolist() for k, v in table.bound().items()} == {
+        Limit.SPEED: [False, True],
+        Limit.BALANCE: [False, True],
+    }
+    assert table["push_fy"].tolist() == [0.0, -2.0]
+    assert table["push_z"] == pytest.approx([0.0, 0.3])
+
+
+def test_the_odometry_frame_is_put_where_the_robot_is(fake):
+    record = fake.record(0.0, (1.0, 2.0, pi / 2))
+    walking = replace(record.walking, odometry=Odometry(0.5, 0.0, 0.0, np.eye(3)))
+    there = OdometryToWorld(replace(record, walking=walking))
+    assert there.point((0.5, 0.0)) == pytest.approx((1.0, 2.0))
+    assert there.point((0.6, 0.0)) == pytest.approx((1.0, 2.1))
+    assert there.vector((1.0, 0.0)) == pytest.approx((0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("content", "wanted"),
+    [
+        (None, "run it again"),
+        (b"HSR8TRJ1", "no walking table"),
+        (b"HSR8WLK1" + b"x" * 8, "no whole header"),
+    ],
+)
+def test_no_table_is_told(tmp_path, content, wanted):
+    path = tmp_path / "walking.bin"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(UsageError, match=wanted):
+        read_walking_table(path)
