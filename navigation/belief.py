@@ -55,6 +55,7 @@ class Track:
         last_seen: where it was detected last (2,) [m].
         visible: detected in the latest frame.
         particles: hypotheses of a lost track that may move, else None.
+        reach: radius of the disc about `last_seen` that its axis cannot have left [m].
     """
 
     id: int
@@ -70,6 +71,7 @@ class Track:
     last_seen: Array
     visible: bool
     particles: Particles | None = None
+    reach: float = 0.0
 
     @property
     def position_sigma(self) -> float:

@@ -35,66 +35,66 @@ class LocalizationParameters:
 class TrackingParameters:
     """Obstacle tracks: filters, association, classification, birth and death."""
 
-    acceleration_noise: Positive = 0.03
-    """White acceleration of the constant-velocity filter [m/s^1.5]."""
-    static_diffusion: Positive = 5e-5
-    """Random walk of the static filter [m²/s]."""
-    velocity_sigma: Positive = 0.06
-    """Standard deviation of the velocity of a new track [m/s]."""
-    correlation_time: NonNegative = 0.08
+    acceleration_noise: Positive = 0.01
+    """White acceleration of a mover [m/s^1.5]."""
+    static_diffusion: Positive = 2e-5
+    """Random walk of what stands still [m²/s]."""
+    velocity_sigma: Positive = 0.07
+    """Standard deviation of each component of the velocity of what begins to move [m/s]."""
+    top_speed: Positive = 0.2
+    """Speed that no obstacle exceeds [m/s]."""
+    reversal_rate: NonNegative = 1.0 / 12.0
+    """Rate at which a mover turns back [1/s]."""
+    start_rate: Positive = 0.01
+    """Rate at which what stands still begins to move [1/s]."""
+    stop_rate: Positive = 0.01
+    """Rate at which a mover stops for good [1/s]."""
+    correlation_time: NonNegative = 0.03
     """Correlation time of the error of successive detections of one obstacle [s]."""
     cut_inflation: Annotated[float, Ge(1.0)] = 2.0
     """Factor on the standard deviations of a detection that is both cut and occluded [1]."""
     gate: Positive = 13.8
-    """Squared Mahalanobis distance above which a detection belongs to another track [1]."""
+    """Squared Mahalanobis distance above which no mode explains a detection [1]."""
+    anywhere: Annotated[float, Gt(0.0), Lt(1.0)] = 0.2
+    """Probability that a lost track is anywhere in reach rather than where its particles are."""
     birth_density: Positive = 0.1
-    """Density of detections of new obstacles against which association competes [1/m²]."""
+    """Density of new obstacles where the floor was not seen yet [1/m²]."""
+    intruder_density: Positive = 0.004
+    """Density of new obstacles where the floor was seen empty: movers not met before [1/m²]."""
     birth_hits: Annotated[int, Ge(2)] = 2
     """Detections that make a track [1]."""
     birth_time: Positive = 0.5
     """Time within which they must come [s]."""
-    evidence_limit: Positive = 3.0
-    """Largest change of the log likelihood ratio per detection [1]."""
-    evidence_floor: Annotated[float, Lt(0.0)] = -5.0
-    """Smallest log likelihood ratio of moving against static [1]."""
-    evidence_ceiling: Positive = 6.0
-    """Largest log likelihood ratio of moving against static [1]."""
-    moving_evidence: Positive = 2.5
-    """Log likelihood ratio above which a track moves [1]."""
+    birth_moving: Annotated[float, Gt(0.0), Lt(1.0)] = 0.3
+    """Probability that a new track moves [1]."""
+    intruder_moving: Annotated[float, Gt(0.0), Lt(1.0)] = 0.8
+    """The same where the floor was seen empty before [1]."""
+    evidence: Positive = 3.0
+    """Largest logarithm of the ratio of the modes' likelihoods, per detection [1]."""
+    cut_evidence: Positive = 0.5
+    """The same for a detection cut by the border of the image [1]."""
+    recognised: Annotated[float, Gt(0.5), Lt(1.0)] = 0.98
+    """Probability of moving above which an undecided track moves [1]."""
     moving_speed: NonNegative = 0.02
     """Speed above which a track may move [m/s]."""
     moving_hits: Annotated[int, Ge(1)] = 4
     """Detections without which no track moves [1]."""
-    static_evidence: Annotated[float, Lt(0.0)] = -3.0
-    """Log likelihood ratio below which an undecided track is static [1]."""
+    standing: Annotated[float, Gt(0.0), Lt(0.5)] = 0.02
+    """Probability of moving below which an undecided track is static [1]."""
     static_time: NonNegative = 2.0
     """Time from first to last detection without which no track is static [s]."""
     static_hits: Annotated[int, Ge(1)] = 6
     """Detections without which no track is static [1]."""
-    static_speed: Positive = 0.04
-    """Speed above which no undecided track is static [m/s]."""
-    doubt_evidence: float = 1.25
-    """Log likelihood ratio above which a static track is undecided again [1]."""
-    stopped_evidence: Annotated[float, Lt(0.0)] = -4.0
-    """Log likelihood ratio below which a mover is static [1]."""
-    manoeuvre_gate: Positive = 9.0
-    """Normalised innovation squared above which a mover has changed its velocity [1]."""
-    manoeuvre_sigma: Positive = 0.06
-    """Velocity uncertainty added to a mover in view that changes its velocity [m/s]."""
-    turning_lag: Positive = 4.0
-    """Summed lag behind the prediction that shows a mover in view turning back [1]."""
+    doubted: Annotated[float, Gt(0.0), Lt(1.0)] = 0.5
+    """Probability of moving above which a static track is undecided again [1]."""
+    stopped: Annotated[float, Gt(0.0), Lt(0.5)] = 0.01
+    """Probability of moving below which a mover is static [1]."""
     line_width: Positive = 0.15
     """Distance from where it could be at which a mover may still be found [m]."""
-    reversal_sigma: Positive = 0.03
-    """Standard deviation of the velocity of a mover that reversed [m/s]."""
-    resighting_sigma: Positive = 0.08
-    """Standard deviation of the velocity of a mover found elsewhere [m/s]."""
     lost_time: Positive = 0.35
     """Time unseen after which a track that may move becomes particles [s]."""
     particles: Annotated[int, Ge(2)] = 16
     """Hypotheses per lost track [1]."""
-    reversal_rate: NonNegative = 1.0 / 15.0
-    """Rate of reversals of an unseen mover [1/s]."""
     detection_probability: Annotated[float, Gt(0.0), Lt(1.0)] = 0.8
     """Probability of detecting what is clearly in view, over one `refutation_time` [1]."""
     refutation_time: Positive = 0.1
@@ -103,6 +103,8 @@ class TrackingParameters:
     """Share of effective particles below which they are resampled [1]."""
     forget_time: Positive = 25.0
     """Time unseen after which a track that may move is dropped [s]."""
+    tentative_time: Positive = 2.0
+    """The same for a track with too few detections to move [s]."""
     sure_range: Positive = 2.2
     """Distance up to which an obstacle in clear view is sure to be detected [m]."""
     view_margin: NonNegative = 0.07

@@ -67,7 +67,7 @@ class Estimator:
             cut_inflation=p.tracking.cut_inflation,
         )
         sure = Viewpoint.of(frame.view, pose, p.tracking.sure_range)
-        tracks = self._tracker.update(frame.time, seen, sure)
+        tracks = self._tracker.update(frame.time, seen, sure, self._map.free_at(seen.positions))
         searched = replace(sure, range=p.local_map.range)
         self._map.update(frame.time, searched, centre, seen.positions, seen.radii)
         return Belief(

@@ -89,6 +89,17 @@ class LocalMap:
         probability: Array = 1.0 / (1.0 + np.exp(-log_odds))
         return probability
 
+    def free_at(self, points: ArrayLike) -> Mask:
+        """Whether all the floor around points in W (n, 2) was once seen empty (n,)."""
+        centres = np.asarray(points, float).reshape(-1, 2)
+        free = np.ones(len(centres), np.bool_)
+        for offset in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.0, 0.0)):
+            rows, columns, inside = self._cells_of(centres + self.cell * np.array(offset))
+            known = np.zeros(len(centres), np.bool_)
+            known[inside] = self._log_odds[rows[inside], columns[inside]] < 0.0
+            free &= known
+        return free
+
     def update(
         self,
         time: float,

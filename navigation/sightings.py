@@ -28,6 +28,10 @@ class Sightings:
     covariances: Array
     radii: Array
 
+    def chosen(self, indices: Sequence[int]) -> tuple[Observation, ...]:
+        """The observations at `indices`."""
+        return tuple(self.observations[i] for i in indices)
+
 
 def in_world(
     observations: Sequence[Observation],

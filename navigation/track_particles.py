@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief import Particles
+from navigation.motion_modes import Modes
 from navigation.visibility import Mask
 
 Array = NDArray[np.float64]
@@ -22,30 +23,19 @@ VELOCITY_JITTER = 0.01
 """Spread of their velocities [m/s]."""
 
 
-def spawn(
-    state: Array,
-    covariance: Array,
-    still: tuple[Array, Array] | None,
-    count: int,
-    rng: np.random.Generator,
-) -> Particles:
-    """Draw particles from the filters of a track.
+def spawn(modes: Modes, count: int, rng: np.random.Generator) -> Particles:
+    """Draw particles from the filters of one track.
 
     Args:
-        state: x, y, vx, vy of the constant-velocity filter (4,).
-        covariance: (4, 4).
-        still: position and covariance of the static filter if the track may stand still;
-            half of the particles then do.
+        modes: filters of standing still, going on and having turned back.
         count: number of particles.
         rng: source of all draws.
     """
-    root = np.linalg.cholesky(covariance + 1e-12 * np.eye(4))
-    drawn = state + rng.standard_normal((count, 4)) @ root.T
-    if still is not None:
-        half = count // 2
-        root = np.linalg.cholesky(still[1] + 1e-12 * np.eye(2))
-        drawn[:half, :2] = still[0] + rng.standard_normal((half, 2)) @ root.T
-        drawn[:half, 2:] = 0.0
+    ticks = (np.arange(count) + rng.random()) / count
+    mode = np.minimum(np.searchsorted(np.cumsum(modes.weights), ticks), len(modes.weights) - 1)
+    roots = np.linalg.cholesky(modes.covariances + 1e-12 * np.eye(4))
+    drawn = modes.states[mode]
+    drawn = drawn + (roots[mode] @ rng.standard_normal((count, 4, 1)))[:, :, 0]
     return Particles(drawn[:, :2].copy(), drawn[:, 2:].copy(), np.full(count, 1.0 / count))
 
 
@@ -97,25 +87,30 @@ def resample(cloud: Particles, share: float, rng: np.random.Generator) -> Partic
 
 
 def scatter(
-    centre: Array, radius: float, speed: float, count: int, rng: np.random.Generator
+    centre: Array, radius: float, velocity: Array, count: int, rng: np.random.Generator
 ) -> Particles:
-    """Particles anywhere in the disc a mover could have reached, walking anywhere.
+    """Particles wherever a mover could have got to: half on its old line, half anywhere.
 
     Args:
         centre: where it was last seen (2,) [m].
         radius: reach [m].
-        speed: of the particles [m/s].
+        velocity: with which it was last seen (2,) [m/s].
         count: number of particles.
         rng: source of all draws.
     """
+    half = count // 2
+    speed = float(np.hypot(velocity[0], velocity[1]))
+    ahead = velocity / speed if speed > 0.0 else np.array([1.0, 0.0])
     distance = radius * np.sqrt(rng.random(count))
     place = rng.uniform(-np.pi, np.pi, count)
     way = rng.uniform(-np.pi, np.pi, count)
-    return Particles(
-        centre + distance[:, None] * np.stack([np.cos(place), np.sin(place)], axis=1),
-        speed * np.stack([np.cos(way), np.sin(way)], axis=1),
-        np.full(count, 1.0 / count),
-    )
+    offsets = distance[:, None] * np.stack([np.cos(place), np.sin(place)], axis=1)
+    velocities = speed * np.stack([np.cos(way), np.sin(way)], axis=1)
+    along = rng.uniform(-radius, radius, half)
+    offsets[:half] = along[:, None] * ahead + POSITION_JITTER * rng.standard_normal((half, 2))
+    velocities[:half] = np.where(rng.random(half) < 0.5, 1.0, -1.0)[:, None] * velocity
+    mixed = rng.permutation(count)
+    return Particles(centre + offsets[mixed], velocities[mixed], np.full(count, 1.0 / count))
 
 
 def chosen(cloud: Particles, indices: NDArray[np.intp]) -> Particles:
@@ -136,7 +131,10 @@ def moments(cloud: Particles) -> tuple[Array, Array]:
 
 
 def log_density(cloud: Particles, z: Array, variance: Array) -> Array:
-    """Log density of the cloud, each particle widened, at points, up to log(2 pi).
+    """Log density of the cloud, smoothed, at points, up to log(2 pi).
+
+    Each particle is as wide as Scott's rule for the cloud's spread says, so that the gaps
+    between a few particles far apart are no holes.
 
     Args:
         cloud: n particles.
@@ -146,8 +144,12 @@ def log_density(cloud: Particles, z: Array, variance: Array) -> Array:
     Returns:
         (m,).
     """
+    spread = cloud.positions - cloud.weights @ cloud.positions
+    extent = 0.5 * float(cloud.weights @ np.sum(spread * spread, axis=1))
+    share = float(cloud.weights @ cloud.weights) ** (1.0 / 3.0)
+    wide = variance + extent * share + POSITION_JITTER**2
     difference = cloud.positions[:, None, :] - z
     squared = np.sum(difference * difference, axis=2)
-    density = cloud.weights @ (np.exp(-0.5 * squared / variance) / variance)
+    density = cloud.weights @ (np.exp(-0.5 * squared / wide) / wide)
     log_density: Array = np.log(np.maximum(density, 1e-30))
     return log_density

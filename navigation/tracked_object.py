@@ -5,14 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation import motion_modes, track_particles
 from navigation.belief import Motion, Particles, Track
 from navigation.belief_parameters import TrackingParameters
-from navigation.track_particles import moments
+from navigation.motion_modes import STILL, Modes
 
 Array = NDArray[np.float64]
 
 STANDING_SPEED_SIGMA = 0.005
 """Standard deviation of the velocity of a static track as it is published [m/s]."""
+
+REACH_SIGMAS = 3.0
+"""Standard deviations of a sighting that its worst case allows for [1]."""
 
 
 @dataclass(slots=True)
@@ -22,42 +26,34 @@ class TrackedObject:
     Attributes:
         id: number, unique in a run.
         label: colour class.
-        state, covariance: constant-velocity filter, x, y, vx, vy (4,), (4, 4).
-        still, still_covariance: static filter, x, y (2,), (2, 2).
+        modes: filters of standing still, going on and having turned back.
         radius, radius_sigma: [m].
         first_time, last_time: first and latest detection [s].
         last_seen: where the latest detection put it (2,) [m].
-        evidence: log likelihood ratio of moving against standing still.
+        seen_covariance: of that (2, 2) [m²].
         motion: verdict.
         hits: number of detections.
         misses: detections that failed in a row although expected.
         expected_for: time in clear view since the last detection or miss [s].
         particles: hypotheses while lost, else None.
         presence: probability of what was not seen since, given the particles.
-        lag: how far it lags behind going on, summed [standard deviations].
-        on_course: when that sum was zero last [s].
     """
 
     id: int
     label: str
-    state: Array
-    covariance: Array
-    still: Array
-    still_covariance: Array
+    modes: Modes
     radius: float
     radius_sigma: float
     first_time: float
     last_time: float
     last_seen: Array
-    evidence: float = 0.0
+    seen_covariance: Array
     motion: Motion = Motion.UNKNOWN
     hits: int = 1
     misses: int = 0
     expected_for: float = 0.0
     particles: Particles | None = None
     presence: float = 1.0
-    lag: float = 0.0
-    on_course: float = 0.0
 
     @property
     def position(self) -> Array:
@@ -65,46 +61,53 @@ class TrackedObject:
         if self.particles is not None:
             mean: Array = self.particles.weights @ self.particles.positions
             return mean
-        return self.still if self.motion is Motion.STATIC else self.state[:2]
+        return self.estimate()[0][:2]
 
     @property
     def speed(self) -> float:
-        """Speed of the constant-velocity filter [m/s]."""
-        return float(np.hypot(self.state[2], self.state[3]))
+        """Speed if it moves [m/s]."""
+        velocity = motion_modes.moments(self.modes)[0][2:]
+        return float(np.hypot(velocity[0], velocity[1]))
+
+    def estimate(self) -> tuple[Array, Array]:
+        """Mean (4,) and covariance (4, 4) of x, y, vx, vy under the verdict."""
+        if self.motion is not Motion.STATIC:
+            return motion_modes.moments(self.modes)
+        covariance = self.modes.covariances[STILL].copy()
+        covariance[2, 2] = covariance[3, 3] = STANDING_SPEED_SIGMA**2
+        return self.modes.states[STILL].copy(), covariance
+
+    def reach(self, time: float, p: TrackingParameters) -> float:
+        """Radius of the disc about its last sighting that it cannot have left [m]."""
+        variance = float(np.max(np.diag(self.seen_covariance)))
+        known = REACH_SIGMAS * float(np.sqrt(variance))
+        moving = self.motion is not Motion.STATIC
+        return known + moving * p.top_speed * (time - self.last_time)
 
     def classify(self, p: TrackingParameters) -> None:
         """Revise the verdict after a detection."""
+        moving = float(self.modes.moving)
         if self.motion is Motion.STATIC:
-            if self.evidence > p.doubt_evidence:
+            if moving > p.doubted:
                 self.motion = Motion.UNKNOWN
         elif self.motion is Motion.MOVING:
-            if self.evidence < p.stopped_evidence:
+            if moving < p.stopped:
                 self.motion = Motion.STATIC
-        elif (
-            self.evidence > p.moving_evidence
-            and self.hits >= p.moving_hits
-            and self.speed > p.moving_speed
-        ):
+        elif moving > p.recognised and self.hits >= p.moving_hits and self.speed > p.moving_speed:
             self.motion = Motion.MOVING
         elif (
-            self.evidence < p.static_evidence
+            moving < p.standing
             and self.hits >= p.static_hits
             and self.last_time - self.first_time > p.static_time
-            and self.speed < p.static_speed
         ):
             self.motion = Motion.STATIC
 
-    def track(self, time: float) -> Track:
+    def track(self, time: float, p: TrackingParameters) -> Track:
         """Publish a copy as of `time` [s]."""
         if self.particles is not None:
-            mean, covariance = moments(self.particles)
-        elif self.motion is Motion.STATIC:
-            mean = np.concatenate([self.still, np.zeros(2)])
-            covariance = np.zeros((4, 4))
-            covariance[:2, :2] = self.still_covariance
-            covariance[2, 2] = covariance[3, 3] = STANDING_SPEED_SIGMA**2
+            mean, covariance = track_particles.moments(self.particles)
         else:
-            mean, covariance = self.state, self.covariance.copy()
+            mean, covariance = self.estimate()
         return Track(
             id=self.id,
             label=self.label,
@@ -119,4 +122,5 @@ class TrackedObject:
             last_seen=self.last_seen.copy(),
             visible=self.last_time == time,
             particles=self.particles,
+            reach=self.reach(time, p),
         )

@@ -1,26 +1,25 @@
 """Obstacle tracks: who is who, where, how fast, and whether it moves at all.
 
-Every obstacle carries two Kalman filters, one that lets it move and one that does not;
-the likelihoods of their innovations decide between static and moving. A track that may
-move and is out of sight becomes a cloud of particles. Nothing but colour tells two
-obstacles apart, so identity is decided by position alone.
+Every obstacle carries a Kalman filter for each way in which it may move; how probable they
+are decides between static and moving, and tells a reversal. A track that may move and is out
+of sight becomes a cloud of particles. Nothing but colour tells two obstacles apart, so
+identity is decided by position alone.
 """
 
-from math import exp, inf, log, log1p, pi
+from math import inf, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation import track_filter, track_particles
+from navigation import motion_modes, track_particles
 from navigation.association import assign
 from navigation.belief import Motion, Track
 from navigation.belief_parameters import TrackingParameters
 from navigation.correlated_noise import variance_inflation
+from navigation.motion_modes import Modes
 from navigation.observation import Observation
-from navigation.resighting import found_again, resight_mover
 from navigation.sightings import Sightings
 from navigation.tracked_object import TrackedObject
-from navigation.turning import accumulated_lag, perhaps_turned
 from navigation.visibility import Mask, Viewpoint
 
 Array = NDArray[np.float64]
@@ -32,9 +31,8 @@ SCATTER = 4
 """Places tried per particle of a refuted cloud; it ends if three of four are in view."""
 
 
-def _log_sigmoid(a: float) -> float:
-    """Logarithm of 1/(1 + exp(-a))."""
-    return -log1p(exp(-a)) if a > 0.0 else a - log1p(exp(a))
+REACH = 1.2
+"""How much farther than its speed says a lost mover may have got [1]."""
 
 
 class Tracker:
@@ -50,159 +48,114 @@ class Tracker:
         self._rng = rng
         self._objects: list[TrackedObject] = []
         self._time: float | None = None
+        self._freed: Mask = np.zeros(0, np.bool_)
         self._next_id = 1
 
-    def update(self, time: float, seen: Sightings, viewpoint: Viewpoint) -> tuple[Track, ...]:
+    def update(
+        self, time: float, seen: Sightings, viewpoint: Viewpoint, freed: Mask | None = None
+    ) -> tuple[Track, ...]:
         """Take in one frame and return the tracks, by id.
 
         Args:
             time: of the frame [s].
             seen: its obstacles in W.
             viewpoint: its camera in W, with the range within which detection is sure.
+            freed: which of them stand where the floor was seen empty before (m,); what is new
+                there has moved.
         """
+        self._freed = np.zeros(len(seen.radii), np.bool_) if freed is None else freed
         dt = 0.0 if self._time is None else time - self._time
         self._time = time
         if self._objects and dt > 0.0:
             self._predict(dt)
-        pairs = assign(self._costs(seen))
+        pairs = assign(self._costs(time, seen))
         self._correct(time, [(self._objects[row], column) for row, column in pairs], seen)
         taken = {column for _, column in pairs}
         self._begin(time, [j for j in range(len(seen.radii)) if j not in taken], seen)
         self._doubt(time, dt, seen, viewpoint)
         self._merge(time)
-        return tuple(o.track(time) for o in self._objects if o.hits >= self._parameters.birth_hits)
+        p = self._parameters
+        return tuple(o.track(time, p) for o in self._objects if o.hits >= p.birth_hits)
 
     def clear(self) -> None:
         """Forget all tracks, for instance because the robot was carried away."""
         self._objects.clear()
 
+    def _modes(self) -> Modes:
+        """The filters of all obstacles, stacked."""
+        return _stacked([o.modes for o in self._objects])
+
     def _predict(self, dt: float) -> None:
         p = self._parameters
-        state, covariance = track_filter.predict_moving(
-            np.stack([o.state for o in self._objects]),
-            np.stack([o.covariance for o in self._objects]),
-            dt,
-            p.acceleration_noise,
-        )
-        spread = p.static_diffusion * dt * np.eye(2)
+        modes = motion_modes.predict(self._modes(), dt, p)
         for i, o in enumerate(self._objects):
-            o.state, o.covariance = state[i], covariance[i]
-            o.still_covariance = o.still_covariance + spread
+            o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
             if o.particles is not None:
                 o.particles = track_particles.advance(o.particles, dt, p.reversal_rate, self._rng)
 
-    def _costs(self, seen: Sightings) -> Array:
+    def _costs(self, time: float, seen: Sightings) -> Array:
         """Cost of every track with every sighting against the sighting being new (n, m).
 
-        The better of the two filters counts, each weighted with how probable its model
-        is; a lost track is a cloud of particles.
+        A lost track is also a cloud of particles, and with a small probability anywhere
+        within its reach.
         """
         p = self._parameters
         n, m = len(self._objects), len(seen.radii)
         if n == 0 or m == 0:
             return np.empty((n, m))
-        objects = self._objects
-        z, R = seen.positions[None], seen.covariances[None]
-        moving = track_filter.innovation(
-            np.stack([o.state[:2] for o in objects])[:, None],
-            np.stack([o.covariance[:2, :2] for o in objects])[:, None],
-            z,
-            R,
+        modes = self._modes()
+        repeated = Modes(*(np.repeat(a, m, axis=0) for a in modes))
+        fit = motion_modes.innovation(
+            repeated, np.tile(seen.positions, (n, 1)), np.tile(seen.covariances, (n, 1, 1))
         )
-        still = track_filter.innovation(
-            np.stack([o.still for o in objects])[:, None],
-            np.stack([o.still_covariance for o in objects])[:, None],
-            z,
-            R,
-        )
-        evidence = [o.evidence for o in objects]
-        moves = np.array([_log_sigmoid(e) for e in evidence])[:, None]
-        stands = np.array([_log_sigmoid(-e) for e in evidence])[:, None]
-        costs = np.minimum(
-            np.where(moving.distance < p.gate, moving.distance + moving.log_det - 2 * moves, inf),
-            np.where(still.distance < p.gate, still.distance + still.log_det - 2 * stands, inf),
-        )
+        likelihood = repeated.weights * np.exp(fit.log_likelihood)
+        near = fit.distance.min(axis=1) < p.gate
+        costs = np.where(near, -2.0 * np.log(likelihood.sum(axis=1) + 1e-30), inf).reshape(n, m)
         width = 0.5 * (seen.covariances[:, 0, 0] + seen.covariances[:, 1, 1])
-        width += 4.0 * track_particles.POSITION_JITTER**2
-        for i, o in enumerate(objects):
+        for i, o in enumerate(self._objects):
             if o.particles is not None:
-                cloud = -2.0 * track_particles.log_density(o.particles, seen.positions, width)
+                log_density = track_particles.log_density(o.particles, seen.positions, width)
+                reach = p.line_width + REACH * o.speed * (time - o.last_time)
+                within = np.hypot(*(seen.positions - o.last_seen).T) < reach
+                anywhere = p.anywhere * 2.0 / (reach * reach) * within
+                cloud = -2.0 * np.log((1.0 - p.anywhere) * np.exp(log_density) + anywhere + 1e-30)
                 costs[i] = np.minimum(costs[i], cloud)
-        same = np.array([[o.label == s.label for s in seen.observations] for o in objects])
-        new = -2.0 * log(2.0 * pi * p.birth_density)
-        return np.where(same, costs - new, inf)
+        same = np.array([[o.label == s.label for s in seen.observations] for o in self._objects])
+        density = np.where(self._freed, p.intruder_density, p.birth_density)
+        return np.where(same, costs + 2.0 * np.log(2.0 * pi * density), inf)
 
     def _correct(
         self, time: float, pairs: list[tuple[TrackedObject, int]], seen: Sightings
     ) -> None:
-        """Update the filters, evidence and radius of the tracks that were detected."""
+        """Update the filters, verdict and radius of the tracks that were detected."""
         if not pairs:
             return
         p = self._parameters
-        objects = [o for o, _ in pairs]
         columns = [column for _, column in pairs]
         z, raw = seen.positions[columns], seen.covariances[columns]
-        inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o in objects]
+        inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o, _ in pairs]
         R = raw * np.array(inflation)[:, None, None]
-        x = np.stack([o.state for o in objects])
-        P = np.stack([o.covariance for o in objects])
-        s = np.stack([o.still for o in objects])
-        S = np.stack([o.still_covariance for o in objects])
-        surprise = track_filter.innovation(x[:, :2], P[:, :2, :2], z, raw).distance
-        doubt = track_filter.innovation(s, S, z, raw).distance
-        for i, o in enumerate(objects):
-            gap = time - o.last_time
-            if o.motion is Motion.MOVING and gap > p.lost_time:
-                x[i], P[i] = resight_mover(x[i], P[i], (o.last_seen, gap), (z[i], raw[i]), p)
-            elif surprise[i] > p.manoeuvre_gate and o.motion is not Motion.STATIC:
-                if gap > p.lost_time:
-                    x[i], P[i] = found_again(z[i], raw[i], np.zeros(2), p.resighting_sigma)
-                else:
-                    P[i, 2:, 2:] += p.manoeuvre_sigma**2 * np.eye(2)
-            P[i] = self._turning(o, time, x[i], P[i], (z[i], R[i]))
-        moving = track_filter.innovation(x[:, :2], P[:, :2, :2], z, R)
-        still = track_filter.innovation(s, S, z, R)
-        gain = moving.log_likelihood - still.log_likelihood
-        x, P = track_filter.update(x, P, R, moving)
-        s_new, S_new = track_filter.update(s, S, R, still)
-        for i, o in enumerate(objects):
-            o.state, o.covariance = x[i], P[i]
-            if doubt[i] > p.gate:
-                # It is not there any more: the static hypothesis starts again here.
-                o.still, o.still_covariance = x[i, :2].copy(), P[i, :2, :2].copy()
-            else:
-                o.still, o.still_covariance = s_new[i], S_new[i]
-            observation = seen.observations[columns[i]]
-            if not observation.cut:
-                step = min(max(float(gain[i]), -p.evidence_limit), p.evidence_limit)
-                o.evidence = min(max(o.evidence + step, p.evidence_floor), p.evidence_ceiling)
-            self._widen(o, observation, inflation[i])
+        modes = _stacked([o.modes for o, _ in pairs])
+        surprise = motion_modes.innovation(modes, z, raw).distance.min(axis=1)
+        for i, (o, _) in enumerate(pairs):
+            if surprise[i] > p.gate:
+                # Nothing explains where it is: what was known of its motion is void.
+                moving = max(float(o.modes.moving), 0.5)
+                o.modes = motion_modes.begun(z[i], raw[i], moving, p.velocity_sigma)
+        modes = _stacked([o.modes for o, _ in pairs])
+        limit = np.array([p.cut_evidence if o.cut else p.evidence for o in seen.chosen(columns)])
+        modes = motion_modes.update(modes, R, motion_modes.innovation(modes, z, R), limit)
+        for i, (o, column) in enumerate(pairs):
+            o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
+            self._widen(o, seen.observations[column], inflation[i])
             o.hits += 1
             o.misses = 0
             o.expected_for = 0.0
             o.last_time = time
-            o.last_seen = z[i].copy()
+            o.last_seen, o.seen_covariance = z[i].copy(), raw[i].copy()
             o.particles = None
             o.presence = 1.0
             o.classify(p)
-
-    def _turning(
-        self, o: TrackedObject, time: float, x: Array, P: Array, sighting: tuple[Array, Array]
-    ) -> Array:
-        """Covariance before an update; wider if a mover in view has perhaps turned back."""
-        p = self._parameters
-        z, R = sighting
-        in_view = time - o.last_time <= p.lost_time
-        if in_view and o.motion is Motion.MOVING and o.speed > p.moving_speed:
-            o.lag = accumulated_lag(o.lag, z - x[:2], P[:2, :2] + R, x[2:])
-        else:
-            o.lag = 0.0
-        if o.lag > p.turning_lag:
-            P = perhaps_turned(x, P, time - o.on_course)
-            o.lag = 0.0
-        if o.lag == 0.0:
-            o.on_course = time
-        return P
 
     def _widen(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
         """Fuse the radius, unless only part of the obstacle was seen."""
@@ -227,22 +180,18 @@ class Tracker:
                 for o in self._objects
             ):
                 continue
-            covariance = np.zeros((4, 4))
-            covariance[:2, :2] = R
-            covariance[2, 2] = covariance[3, 3] = p.velocity_sigma**2
+            moving = p.intruder_moving if self._freed[j] else p.birth_moving
             self._objects.append(
                 TrackedObject(
                     id=self._next_id,
                     label=observation.label,
-                    state=np.concatenate([z, np.zeros(2)]),
-                    covariance=covariance,
-                    still=z.copy(),
-                    still_covariance=R.copy(),
+                    modes=motion_modes.begun(z, R, moving, p.velocity_sigma),
                     radius=observation.radius,
                     radius_sigma=max(observation.radius_sigma, p.radius_limit),
                     first_time=time,
                     last_time=time,
                     last_seen=z.copy(),
+                    seen_covariance=R.copy(),
                 )
             )
             self._next_id += 1
@@ -269,7 +218,7 @@ class Tracker:
     def _expected(self, points: Array, seen: Sightings, viewpoint: Viewpoint) -> Mask:
         p = self._parameters
         standing = [o for o in self._objects if o.motion is Motion.STATIC]
-        centres = np.concatenate([seen.positions, *(o.still[None] for o in standing)])
+        centres = np.concatenate([seen.positions, *(o.position[None] for o in standing)])
         radii = np.concatenate([seen.radii, [o.radius for o in standing]])
         return viewpoint.expects(points, centres, radii, margin=p.view_margin, slack=p.hiding_slack)
 
@@ -285,14 +234,11 @@ class Tracker:
                 o.expected_for = 0.0
                 o.misses += 1
             return o.misses < p.misses
-        if age > p.forget_time:
+        if age > (p.forget_time if o.hits >= p.moving_hits else p.tentative_time):
             return False
         if o.particles is None:
             if age > p.lost_time:
-                still = (o.still, o.still_covariance) if o.motion is Motion.UNKNOWN else None
-                o.particles = track_particles.spawn(
-                    o.state, o.covariance, still, p.particles, self._rng
-                )
+                o.particles = track_particles.spawn(o.modes, p.particles, self._rng)
             return True
         survival = (1.0 - p.detection_probability) ** (dt / p.refutation_time)
         cloud, left = track_particles.refute(o.particles, expected, survival)
@@ -304,11 +250,15 @@ class Tracker:
         """Spread refuted clouds over what is out of view of all they could have reached."""
         p = self._parameters
         refuted = [o for o in self._objects if o.particles is not None and o.presence < REFUTED]
-        ended = set()
+        # What was not known to move and is not where it was has never been there.
+        ended = {o.id for o in refuted if o.motion is Motion.UNKNOWN}
         for o in refuted:
-            reach = max(o.speed, p.moving_speed) * (time - o.last_time) + p.line_width
+            if o.id in ended:
+                continue
+            velocity = o.estimate()[0][2:]
+            reach = p.line_width + REACH * o.speed * (time - o.last_time)
             cloud = track_particles.scatter(
-                o.last_seen, reach, o.speed, SCATTER * p.particles, self._rng
+                o.last_seen, reach, velocity, SCATTER * p.particles, self._rng
             )
             places = np.flatnonzero(~self._expected(cloud.positions, seen, viewpoint))
             o.presence = 1.0
@@ -339,3 +289,7 @@ class Tracker:
             ended.add(worse.id)
         if ended:
             self._objects = [o for o in self._objects if o.id not in ended]
+
+
+def _stacked(modes: list[Modes]) -> Modes:
+    return Modes(*(np.stack(parts) for parts in zip(*modes, strict=True)))

@@ -181,8 +181,11 @@ class Score:
         if w.heading is not None and float(w.heading @ v) < 0.0:
             if w.turn_seen is not None and w.turn_in_view >= 1.0:
                 self.unnoticed += 1
-            known = w.recognised and track is not None and track.motion is Motion.MOVING
-            w.turned_at, w.turn_seen, w.turn_in_view = (time if known else None), None, 0.0
+            w.turned_at, w.turn_seen, w.turn_in_view = (
+                (time if w.recognised else None),
+                None,
+                0.0,
+            )
         w.heading = v
         if w.first_seen is None and seen:
             w.first_seen = time

@@ -3,9 +3,19 @@ import pytest
 
 from navigation import track_particles
 from navigation.belief import Particles
+from navigation.motion_modes import Modes
 
 STATE = np.array([1.0, 2.0, 0.1, -0.05])
 COVARIANCE = np.diag([1e-4, 4e-4, 1e-4, 1e-4])
+
+
+def modes(still=0.0):
+    """Goes on for sure, or stands still at (5, 5) with a probability."""
+    states = np.stack([np.array([5.0, 5.0, 0.0, 0.0]), STATE, STATE])
+    standing = np.diag([1e-4, 1e-4, 0.0, 0.0])
+    return Modes(
+        np.array([still, 1.0 - still, 0.0]), states, np.stack([standing, COVARIANCE, COVARIANCE])
+    )
 
 
 @pytest.fixture
@@ -14,23 +24,22 @@ def rng():
 
 
 def test_particles_have_the_moments_of_the_filter(rng):
-    cloud = track_particles.spawn(STATE, COVARIANCE, None, 20000, rng)
+    cloud = track_particles.spawn(modes(), 20000, rng)
     mean, covariance = track_particles.moments(cloud)
     assert np.allclose(mean, STATE, atol=1e-3)
     assert np.allclose(covariance, COVARIANCE, atol=2e-5)
     assert cloud.weights.sum() == pytest.approx(1.0)
 
 
-def test_half_stand_still_if_the_track_may(rng):
-    still = (np.array([5.0, 5.0]), np.eye(2) * 1e-4)
-    cloud = track_particles.spawn(STATE, COVARIANCE, still, 16, rng)
-    standing = np.all(cloud.velocities == 0.0, axis=1)
+def test_as_many_stand_still_as_is_probable(rng):
+    cloud = track_particles.spawn(modes(still=0.5), 16, rng)
+    standing = np.hypot(*cloud.velocities.T) < 1e-4
     assert standing.sum() == 8
     assert np.hypot(*(cloud.positions[standing] - 5.0).T).max() < 0.1
 
 
 def test_reversals_come_at_their_rate(rng):
-    cloud = track_particles.spawn(STATE, COVARIANCE, None, 20000, rng)
+    cloud = track_particles.spawn(modes(), 20000, rng)
     for _ in range(100):
         cloud = track_particles.advance(cloud, 0.05, 1.0 / 15.0, rng)
     # Expected sign after time t of a process that flips at a rate: exp(-2 rate t).
@@ -38,7 +47,7 @@ def test_reversals_come_at_their_rate(rng):
 
 
 def test_without_reversals_particles_go_straight(rng):
-    cloud = track_particles.spawn(STATE, COVARIANCE, None, 10, rng)
+    cloud = track_particles.spawn(modes(), 10, rng)
     later = track_particles.advance(cloud, 2.0, 0.0, rng)
     assert np.allclose(later.positions, cloud.positions + 2.0 * cloud.velocities)
 
@@ -67,26 +76,37 @@ def test_resampling_keeps_the_mean_and_only_happens_when_needed(rng):
     assert np.allclose(after, before, atol=0.05)
 
 
-def test_scattered_particles_fill_the_reach(rng):
-    centre = np.array([1.0, -1.0])
-    cloud = track_particles.scatter(centre, 0.5, 0.1, 4000, rng)
-    distance = np.hypot(*(cloud.positions - centre).T)
-    assert distance.max() <= 0.5
-    assert np.mean(distance < 0.25) == pytest.approx(0.25, abs=0.03)
+def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
+    centre, velocity = np.array([1.0, -1.0]), np.array([0.0, 0.1])
+    cloud = track_particles.scatter(centre, 0.5, velocity, 8000, rng)
+    offsets = cloud.positions - centre
+    assert np.hypot(*offsets.T).max() < 0.5 + 5 * track_particles.POSITION_JITTER
     assert np.allclose(np.hypot(*cloud.velocities.T), 0.1)
+    line = np.abs(cloud.velocities[:, 0]) < 1e-9
+    assert line.sum() == 4000
+    assert np.std(offsets[line, 0]) == pytest.approx(track_particles.POSITION_JITTER, rel=0.1)
+    assert np.std(offsets[line, 1]) == pytest.approx(0.5 / np.sqrt(3), rel=0.1)
+    assert np.mean(np.hypot(*offsets[~line].T) < 0.25) == pytest.approx(0.25, abs=0.03)
 
 
 def test_log_density_of_one_particle_is_a_gaussian():
     cloud = Particles(np.array([[1.0, 0.0]]), np.zeros((1, 2)), np.ones(1))
     z = np.array([[1.0, 0.0], [1.2, 0.1]])
     variance = np.array([0.01, 0.04])
-    squared = np.array([0.0, 0.05])
-    expected = -0.5 * squared / variance - np.log(variance)
+    wide = variance + track_particles.POSITION_JITTER**2
+    expected = -0.5 * np.array([0.0, 0.05]) / wide - np.log(wide)
     assert np.allclose(track_particles.log_density(cloud, z, variance), expected)
 
 
+def test_log_density_has_no_holes_between_few_particles(rng):
+    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), 16, rng)
+    z = rng.uniform(-0.5, 0.5, (50, 2))
+    density = np.exp(track_particles.log_density(cloud, z, np.full(50, 1e-4))) / (2 * np.pi)
+    assert density.min() > 0.02
+
+
 def test_chosen_particles_weigh_the_same(rng):
-    cloud = track_particles.scatter(np.zeros(2), 1.0, 0.1, 8, rng)
+    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), 8, rng)
     few = track_particles.chosen(cloud, np.array([1, 5]))
     assert np.array_equal(few.positions, cloud.positions[[1, 5]])
     assert few.weights.tolist() == [0.5, 0.5]

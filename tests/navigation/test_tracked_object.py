@@ -3,44 +3,46 @@ import pytest
 
 from navigation.belief import Motion, Particles
 from navigation.belief_parameters import TrackingParameters
+from navigation.motion_modes import Modes
 from navigation.tracked_object import TrackedObject
 
 P = TrackingParameters()
 
 
-def make(**changes):
+def make(moving=0.5, velocity=(0.03, 0.0), **changes):
+    """Stands still at (0.9, 2) or goes on from (1, 2)."""
+    states = np.array([[0.9, 2.0, 0.0, 0.0], [1.0, 2.0, *velocity], [1.0, 2.0, *velocity]])
+    covariances = np.stack([np.diag([1e-4, 1e-4, 0.0, 0.0])] + 2 * [np.eye(4) * 1e-3])
     values = {
         "id": 3,
         "label": "red",
-        "state": np.array([1.0, 2.0, 0.03, 0.0]),
-        "covariance": np.eye(4) * 1e-3,
-        "still": np.array([0.9, 2.0]),
-        "still_covariance": np.eye(2) * 1e-4,
+        "modes": Modes(np.array([1.0 - moving, moving, 0.0]), states, covariances),
         "radius": 0.08,
         "radius_sigma": 0.01,
         "first_time": 0.0,
         "last_time": 5.0,
         "last_seen": np.array([1.0, 2.0]),
+        "seen_covariance": np.eye(2) * 1e-4,
         "hits": 50,
     }
     return TrackedObject(**(values | changes))
 
 
 @pytest.mark.parametrize(
-    ("motion", "evidence", "verdict"),
+    ("motion", "moving", "verdict"),
     [
-        (Motion.UNKNOWN, 2.6, Motion.MOVING),
-        (Motion.UNKNOWN, 2.4, Motion.UNKNOWN),
-        (Motion.UNKNOWN, -3.1, Motion.STATIC),
-        (Motion.UNKNOWN, -2.9, Motion.UNKNOWN),
-        (Motion.STATIC, 1.2, Motion.STATIC),
-        (Motion.STATIC, 1.3, Motion.UNKNOWN),
-        (Motion.MOVING, -3.9, Motion.MOVING),
-        (Motion.MOVING, -4.1, Motion.STATIC),
+        (Motion.UNKNOWN, P.recognised + 0.001, Motion.MOVING),
+        (Motion.UNKNOWN, P.recognised - 0.001, Motion.UNKNOWN),
+        (Motion.UNKNOWN, P.standing - 0.001, Motion.STATIC),
+        (Motion.UNKNOWN, P.standing + 0.001, Motion.UNKNOWN),
+        (Motion.STATIC, P.doubted - 0.001, Motion.STATIC),
+        (Motion.STATIC, P.doubted + 0.001, Motion.UNKNOWN),
+        (Motion.MOVING, P.stopped + 0.001, Motion.MOVING),
+        (Motion.MOVING, P.stopped - 0.001, Motion.STATIC),
     ],
 )
-def test_verdicts_have_hysteresis(motion, evidence, verdict):
-    o = make(motion=motion, evidence=evidence)
+def test_verdicts_have_hysteresis(motion, moving, verdict):
+    o = make(motion=motion, moving=moving)
     o.classify(P)
     assert o.motion is verdict
 
@@ -48,24 +50,23 @@ def test_verdicts_have_hysteresis(motion, evidence, verdict):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"evidence": 6.0, "hits": 3},
-        {"evidence": 6.0, "state": np.array([0.0, 0.0, 0.01, 0.0])},
-        {"evidence": -5.0, "hits": 5},
-        {"evidence": -5.0, "first_time": 3.5},
-        {"evidence": -5.0, "state": np.array([0.0, 0.0, 0.0, 0.05])},
+        {"moving": 0.999, "hits": 3},
+        {"moving": 0.999, "velocity": (0.01, 0.0)},
+        {"moving": 0.001, "hits": 5},
+        {"moving": 0.001, "first_time": 3.5},
     ],
 )
-def test_evidence_alone_is_not_enough(changes):
+def test_probability_alone_is_not_enough(changes):
     o = make(**changes)
     o.classify(P)
     assert o.motion is Motion.UNKNOWN
 
 
 def test_each_verdict_publishes_its_own_filter():
-    moving = make(motion=Motion.MOVING).track(5.0)
+    moving = make(motion=Motion.MOVING).track(5.0, P)
     assert moving.position.tolist() == [1.0, 2.0]
     assert moving.velocity.tolist() == [0.03, 0.0]
-    static = make(motion=Motion.STATIC).track(5.5)
+    static = make(motion=Motion.STATIC).track(5.5, P)
     assert static.position.tolist() == [0.9, 2.0]
     assert static.velocity.tolist() == [0.0, 0.0]
     assert static.age == pytest.approx(0.5)
@@ -74,13 +75,20 @@ def test_each_verdict_publishes_its_own_filter():
     assert not static.visible
 
 
+def test_the_worst_case_grows_with_age_unless_it_stands_still():
+    for motion, growth in ((Motion.STATIC, 0.0), (Motion.MOVING, P.top_speed)):
+        o = make(motion=motion)
+        assert o.track(5.0, P).reach == pytest.approx(3 * 0.01)
+        assert o.track(8.0, P).reach == pytest.approx(3 * 0.01 + 3.0 * growth)
+
+
 def test_a_cloud_is_published_by_its_moments():
     cloud = Particles(
         np.array([[0.0, 0.0], [1.0, 0.0]]),
         np.array([[0.1, 0.0], [-0.1, 0.0]]),
         np.array([0.25, 0.75]),
     )
-    track = make(motion=Motion.MOVING, particles=cloud).track(8.0)
+    track = make(motion=Motion.MOVING, particles=cloud).track(8.0, P)
     assert np.allclose(track.position, [0.75, 0.0])
     assert np.allclose(track.velocity, [-0.05, 0.0])
     assert track.covariance[0, 0] == pytest.approx(0.1875)
@@ -89,10 +97,10 @@ def test_a_cloud_is_published_by_its_moments():
 
 def test_what_is_published_does_not_change_later():
     o = make(motion=Motion.MOVING)
-    track = o.track(5.0)
-    o.state[:] = 0.0
-    o.covariance[:] = 0.0
+    track = o.track(5.0, P)
+    o.modes.states[:] = 0.0
+    o.modes.covariances[:] = 0.0
     o.last_seen[:] = 0.0
     assert track.position.tolist() == [1.0, 2.0]
-    assert track.covariance[0, 0] == 1e-3
+    assert track.covariance[0, 0] == pytest.approx(1e-3)
     assert track.last_seen.tolist() == [1.0, 2.0]

@@ -166,7 +166,7 @@ def test_a_lost_mover_becomes_particles_that_go_on_or_turn_back(stage):
     assert track.motion is Motion.MOVING
     assert len(cloud.weights) == stage.parameters.particles
     assert cloud.weights.sum() == pytest.approx(1.0)
-    assert np.median(cloud.positions[:, 1]) > 0.3
+    assert np.median(cloud.positions[:, 1]) > 0.25
     assert np.hypot(*(cloud.positions - track.last_seen).T).max() < 1.5
     stage.look_away(stage.parameters.forget_time)
     assert stage.tracks == ()
@@ -235,7 +235,9 @@ def test_the_order_of_detections_does_not_matter(view, observe):
             stage.show(*(reversed(places) if reverse else places), noise=1e-9)
         return sorted((*t.position.round(6).tolist(), t.motion) for t in stage.tracks)
 
-    assert run(False) == run(True)
+    for a, b in zip(run(False), run(True), strict=True):
+        assert np.allclose(a[:2], b[:2], atol=1e-5)
+        assert a[2] == b[2]
 
 
 def test_a_seed_determines_everything(view, observe):
@@ -260,19 +262,29 @@ def test_cleared_means_forgotten(stage):
     assert stage.show() == ()
 
 
-def time_to_see_the_turn(view, observe, seed, turning_lag):
-    """How long a mover in view has turned back until half of that is believed [s]."""
-    stage = Stage(view, observe, seed, TrackingParameters(turning_lag=turning_lag))
+@pytest.mark.parametrize("seed", range(6))
+def test_a_turn_in_view_is_seen_within_a_second_by_noisy_looks(view, observe, seed):
+    stage = Stage(view, observe, seed)
     stage.watch(4.0, (1.0, -0.4, 0.0, 0.1), noise=0.03)
-    for k in range(1, 60):
-        (track,) = stage.show((1.0, -0.1 * DT * k), noise=0.03)
-        if track.velocity[1] < 0.0:
-            return k * DT
-    return 60 * DT
+    (track,) = stage.watch(1.0, (1.0, 0.0, 0.0, -0.1), noise=0.03)
+    assert track.velocity[1] < 0.0
 
 
-def test_a_turn_in_view_is_seen_sooner_by_the_summed_lag(view, observe):
-    with_sum = [time_to_see_the_turn(view, observe, seed, 4.0) for seed in range(6)]
-    without = [time_to_see_the_turn(view, observe, seed, 1e9) for seed in range(6)]
-    assert max(with_sum) < 1.1
-    assert np.mean(with_sum) < 0.8 * np.mean(without)
+def test_what_appears_where_the_floor_was_empty_is_taken_for_the_lost_mover(view, observe):
+    ids = []
+    for freed in (False, True):
+        stage = Stage(view, observe)
+        stage.watch(3.0, (1.0, -0.4, 0.0, 0.12))
+        stage.look_away(8.0)
+        seen = in_world(
+            [observe(np.zeros(3), (1.6, -0.8))],
+            np.zeros(3),
+            EXACT,
+            pose_sigma_limit=0.1,
+            cut_inflation=2.0,
+        )
+        viewpoint = Viewpoint.of(view(), np.zeros(3), 2.2)
+        for k in range(1, 4):
+            tracks = stage.tracker.update(stage.time + k * DT, seen, viewpoint, np.array([freed]))
+        ids.append([t.id for t in tracks if t.visible])
+    assert ids == [[2], [1]]

@@ -1,0 +1,107 @@
+import numpy as np
+import pytest
+
+from navigation import motion_modes, track_filter
+from navigation.belief_parameters import TrackingParameters
+from navigation.motion_modes import BACK, ON, STILL, Modes
+
+P = TrackingParameters()
+DT = 0.06
+R = np.diag([1e-4, 2e-4])
+
+
+def one(moving=0.5, z=(1.0, 0.0), R=R):
+    modes = motion_modes.begun(np.array(z), R, moving, P.velocity_sigma)
+    return Modes(*(a[None] for a in modes))
+
+
+def watch(modes, places, R=R, rng=None):
+    """Frames with a detection at each place."""
+    for place in places:
+        modes = motion_modes.predict(modes, DT, P)
+        z = np.array([place]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
+        seen = motion_modes.innovation(modes, z, R[None])
+        modes = motion_modes.update(modes, R[None], seen, np.array([P.evidence]))
+    return modes
+
+
+def line(seconds, velocity, start=(1.0, 0.0)):
+    steps = np.arange(1, round(seconds / DT) + 1)[:, None]
+    return np.array(start) + DT * steps * np.array(velocity)
+
+
+def test_without_change_of_mode_it_is_a_plain_filter():
+    p = TrackingParameters(reversal_rate=0.0, start_rate=1e-12, stop_rate=1e-12)
+    modes = one()
+    predicted = motion_modes.predict(modes, 0.5, p)
+    x, covariance = track_filter.predict_moving(
+        modes.states[:, ON], modes.covariances[:, ON], 0.5, p.acceleration_noise
+    )
+    assert np.allclose(predicted.states[:, ON], x)
+    assert np.allclose(predicted.covariances[:, ON], covariance)
+    assert np.allclose(predicted.states[:, STILL], modes.states[:, STILL])
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_tells_what_stands_from_what_moves(seed):
+    rng = np.random.default_rng(seed)
+    still = watch(one(), line(2.0, (0.0, 0.0)), rng=rng)
+    moving = watch(one(), line(1.0, (0.06, 0.05)), rng=rng)
+    assert still.moving[0] < 0.2
+    assert moving.moving[0] > 0.95
+
+
+def test_a_reversal_shows_within_four_frames():
+    before = watch(one(), line(2.0, (0.1, 0.0)))
+    mean, _ = motion_modes.moments(Modes(*(a[0] for a in before)))
+    assert mean[2] == pytest.approx(0.1, abs=0.01)
+    after = watch(before, line(4 * DT, (-0.1, 0.0), mean[:2]))
+    mean, _ = motion_modes.moments(Modes(*(a[0] for a in after)))
+    assert mean[2] < 0.0
+
+
+def test_a_reversal_out_of_sight_is_weighed_against_going_on():
+    modes = watch(one(), line(2.0, (0.1, 0.0)))
+    for _ in range(50):
+        modes = motion_modes.predict(modes, DT, P)
+    on, back = (modes.states[0, m, 0] for m in (ON, BACK))
+    assert back < 1.2 < on
+    assert modes.weights[0, BACK] == pytest.approx(0.5 - 0.5 * np.exp(-2 * 3 / 12), abs=0.03)
+    assert modes.covariances[0, BACK, 0, 0] > 4 * modes.covariances[0, ON, 1, 1]
+    seen = watch(modes, [(1.15, 0.0)])
+    assert seen.weights[0, BACK] > 0.7
+    assert watch(seen, [(1.144, 0.0)]).weights[0, BACK] > 0.95
+
+
+def test_mirrored_worlds_have_mirrored_filters():
+    flip = np.array([1.0, -1.0, 1.0, -1.0])
+    places = np.random.default_rng(3).normal((1.0, 0.2), 0.05, (40, 2))
+    plain = watch(one(z=(1.0, 0.2)), places)
+    mirrored = watch(one(z=(1.0, -0.2)), places * flip[:2])
+    assert np.allclose(mirrored.weights, plain.weights)
+    assert np.allclose(mirrored.states, plain.states * flip)
+    assert np.allclose(mirrored.covariances, plain.covariances * np.outer(flip, flip))
+
+
+def test_covariances_stay_positive_definite_over_100000_updates():
+    """400 obstacles, 250 looks each: precise, coarse and needle-shaped, after any gap."""
+    rng = np.random.default_rng(4)
+    n = 400
+    z = rng.uniform(-2, 2, (n, 2))
+    start = [motion_modes.begun(p, R, 0.4, P.velocity_sigma) for p in z]
+    modes = Modes(*(np.stack(parts) for parts in zip(*start, strict=True)))
+    for _ in range(250):
+        modes = motion_modes.predict(modes, float(rng.choice([DT, DT, 0.5, 20.0])), P)
+        sigma = 10.0 ** rng.uniform(-3.5, -0.5, (n, 2))
+        turn = rng.uniform(-np.pi, np.pi, n)
+        c, s = np.cos(turn), np.sin(turn)
+        Q = np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
+        noise = Q @ (sigma[:, :, None] ** 2 * np.eye(2)) @ np.swapaxes(Q, 1, 2)
+        z = z + rng.normal(0, 0.03, (n, 2))
+        seen = motion_modes.innovation(modes, z, noise)
+        modes = motion_modes.update(modes, noise, seen, np.full(n, P.evidence))
+        C = modes.covariances
+        assert np.array_equal(C, np.swapaxes(C, 2, 3))
+        assert np.linalg.eigvalsh(C[:, ON:]).min() > 0.0
+        assert np.linalg.eigvalsh(C[:, STILL, :2, :2]).min() > 0.0
+        assert np.allclose(modes.weights.sum(axis=1), 1.0)
