@@ -70,7 +70,8 @@ def test_a_reversal_out_of_sight_is_weighed_against_going_on():
     assert modes.covariances[0, BACK, 0, 0] > 4 * modes.covariances[0, ON, 1, 1]
     seen = watch(modes, [(1.15, 0.0)])
     assert seen.weights[0, BACK] > 0.7
-    assert watch(seen, [(1.144, 0.0)]).weights[0, BACK] > 0.95
+    later = watch(seen, line(0.5, (-0.1, 0.0), (1.15, 0.0)))
+    assert later.weights[0, BACK] > 0.95
 
 
 def test_mirrored_worlds_have_mirrored_filters():
