@@ -43,13 +43,70 @@ STEADY = {
 PUSH_TIME = 0.05  # [s], of HSR-VIII
 
 
+def leggy(spec: mujoco.MjSpec) -> None:
+    """Thighs longer by 10 %, shanks by 20 %, hips wider by 20 %, the torso heavier by 20 %."""
+    for side in "lr":
+        hip = spec.body(f"{side}_hip_yaw_link")
+        hip.pos = [hip.pos[0], 1.2 * hip.pos[1], hip.pos[2]]
+        _stretch(spec, side, thigh=1.1, shank=1.2)
+    _load(spec, 1.2)
+
+
+def stocky(spec: mujoco.MjSpec) -> None:
+    """Legs shorter by 15 %, hips and soles wider by 15 %, the torso heavier by 40 %."""
+    for side in "lr":
+        hip, foot = spec.body(f"{side}_hip_yaw_link"), spec.body(f"{side}_foot_link")
+        hip.pos = [hip.pos[0], 1.15 * hip.pos[1], hip.pos[2]]
+        _stretch(spec, side, thigh=0.85, shank=0.85)
+        broad = np.array([1.0, 1.15, 1.0])
+        for part in (*foot.geoms, *foot.sites):
+            part.pos = broad * part.pos
+            part.size = broad * part.size
+    _load(spec, 1.4)
+
+
+def soft(spec: mujoco.MjSpec) -> None:
+    """Leg servos of 60 % of the stiffness."""
+    for actuator in spec.actuators:
+        if actuator.target.removeprefix("l_").removeprefix("r_") in LEG_JOINTS:
+            actuator.gainprm[0] *= 0.6
+            actuator.biasprm[1] *= 0.6
+
+
+def _stretch(spec: mujoco.MjSpec, side: str, *, thigh: float, shank: float) -> None:
+    """Make thigh and shank longer, and heavier by as much."""
+    for part, below, longer in (("hip_pitch", "knee", thigh), ("knee", "ankle_pitch", shank)):
+        link, end = spec.body(f"{side}_{part}_link"), spec.body(f"{side}_{below}_link")
+        stretch = np.array([1.0, 1.0, longer])
+        end.pos = stretch * end.pos
+        link.ipos = stretch * link.ipos
+        link.mass *= longer
+        link.inertia = np.array([longer**3, longer**3, longer]) * link.inertia
+        for geom in link.geoms:
+            if geom.name.endswith("_collision"):
+                geom.fromto = np.tile(stretch, 2) * geom.fromto
+
+
+def _load(spec: mujoco.MjSpec, heavier: float) -> None:
+    torso = spec.body("torso_link")
+    torso.mass *= heavier
+    torso.inertia = heavier * torso.inertia
+
+
+PROPORTIONS: dict[str, Callable[[mujoco.MjSpec], None]] = {
+    "leggy": leggy,
+    "stocky": stocky,
+    "soft": soft,
+}
+
+
 @dataclass
 class Options:
     """What to run."""
 
     seeds: tuple[int, ...] = (0,)
     """Random seeds, each for every walk of every robot."""
-    robots: tuple[str, ...] = ("0.8", "1.0", "1.3", "leggy")
+    robots: tuple[str, ...] = ("1.0", "0.8", "1.3", "0.5", "2.0", *PROPORTIONS)
     """Sizes, or a name of `PROPORTIONS`."""
     walks: tuple[str, ...] = (*STEADY, "random", "push")
     """What to do."""
@@ -59,29 +116,6 @@ class Options:
     """Of a push, divided by mass and √(g leg) [1]."""
     derived: bool = True
     """Whether a robot has parameters of its own, or those of HSR-VIII."""
-
-
-def leggy(spec: mujoco.MjSpec) -> None:
-    """Thighs longer by 10 %, shanks by 20 %, hips wider by 20 %, the torso heavier by 20 %."""
-    for side in "lr":
-        hip = spec.body(f"{side}_hip_yaw_link")
-        hip.pos = [hip.pos[0], 1.2 * hip.pos[1], hip.pos[2]]
-        for part, below, longer in (("hip_pitch", "knee", 1.1), ("knee", "ankle_pitch", 1.2)):
-            link, end = spec.body(f"{side}_{part}_link"), spec.body(f"{side}_{below}_link")
-            stretch = np.array([1.0, 1.0, longer])
-            end.pos = stretch * end.pos
-            link.ipos = stretch * link.ipos
-            link.mass *= longer
-            link.inertia = np.array([longer**3, longer**3, longer]) * link.inertia
-            for geom in link.geoms:
-                if geom.name.endswith("_collision"):
-                    geom.fromto = np.tile(stretch, 2) * geom.fromto
-    torso = spec.body("torso_link")
-    torso.mass *= 1.2
-    torso.inertia = 1.2 * torso.inertia
-
-
-PROPORTIONS: dict[str, Callable[[mujoco.MjSpec], None]] = {"leggy": leggy}
 
 
 class Push(NamedTuple):

@@ -61,7 +61,8 @@ class RobotModel:
         damping: of each servo with its joint (26,) [N m s/rad].
 
     Raises:
-        ValueError: a joint, frame or the ready posture is missing, or a leg has other axes.
+        ValueError: a joint, frame or the ready posture is missing, the soles differ, or a leg
+            has other axes than `walking.leg_kinematics`.
     """
 
     def __init__(self, model: Any, stiffness: Array, servo_damping: Array) -> None:
@@ -78,7 +79,9 @@ class RobotModel:
         self._camera = self._frame("camera")
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
-        self.sole = self._sole()
+        self.sole, right = self._sole("l"), self._sole("r")
+        if self.sole != right:
+            raise ValueError(f"the soles of the robot model differ: {self.sole} and {right}")
         reference = {e.key(): np.array(e.data()) for e in model.referenceConfigurations}
         if READY not in reference:
             raise ValueError(f"the robot model lacks the keyframe {READY!r}")
@@ -92,6 +95,11 @@ class RobotModel:
     @classmethod
     def from_mjcf(cls, path: str | PathLike[str]) -> RobotModel:
         """Read a robot from an MJCF file.
+
+        The file has, by their names, the joints of ``JOINT_NAMES``, each with a position
+        servo; sites ``l_foot`` and ``r_foot`` on the floor below the ankles,
+        ``l_sole_fl`` … ``r_sole_br`` in the middle of each quarter of a sole, and
+        ``camera``; and the keyframe ``walk_ready``. Everything else is its own choice.
 
         Raises:
             ValueError: something the library needs is missing in the file.
@@ -247,10 +255,10 @@ class RobotModel:
             ankle_height=-foot[2],
         )
 
-    def _sole(self) -> Sole:
+    def _sole(self, side: str) -> Sole:
         # The four pads tile the sole, so their centres lie at its quarter points.
         pads = [
-            self._model.frames[self._frame(f"l_sole_{pad}")].placement.translation.tolist()
+            self._model.frames[self._frame(f"{side}_sole_{pad}")].placement.translation.tolist()
             for pad in ("fl", "fr", "bl", "br")
         ]
         return Sole(

@@ -1,6 +1,8 @@
 """The robot's numbers as read from MJCF."""
 
+import re
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import pytest
 from walking.joints import HEAD, JOINT_NAMES
 from walking.robot_model import RobotModel
 
+MODEL = Path(__file__).resolve().parents[2] / "models" / "hsr8" / "hsr8.xml"
 BROKEN = """<mujoco><worldbody><body name="base_link"><freejoint name="root"/>
 <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>"""
 
@@ -91,3 +94,38 @@ def test_a_file_without_the_joints_is_refused(tmp_path):
 def test_an_unknown_frame_is_refused(robot):
     with pytest.raises(ValueError, match="'tail'"):
         robot.frame_pose("tail", robot.ready)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('<body name="l_knee_link" pos="0 0 -0.105">', 'pos="0.02 0 -0.105">', "the leg 'l'"),
+        ('<site name="r_sole_fl" class="pad" pos="0.03625', 'pos="0.05', "soles .* differ"),
+    ],
+)
+def test_a_robot_of_another_build_is_refused(tmp_path, old, new, message):
+    text = MODEL.read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / "other.xml"
+    path.write_text(text.replace(old, old[: old.index("pos=")] + new), encoding="utf-8")
+    with pytest.raises(ValueError, match=message):
+        RobotModel.from_mjcf(path)
+
+
+def test_servos_saved_by_mujoco_are_understood(tmp_path, robot):
+    general = re.sub(
+        r'<position kp="([\d.]+)" kv="([\d.]+)"([^/]*)inheritrange="1"/>',
+        r'<general gainprm="\1" biastype="affine" biasprm="0 -\1 -\2"\3/>',
+        MODEL.read_text(encoding="utf-8"),
+    ).replace("<position ", "<general ")
+    assert "<position" not in general
+    path = tmp_path / "saved.xml"
+    path.write_text(general, encoding="utf-8")
+    saved = RobotModel.from_mjcf(path)
+    np.testing.assert_array_equal(saved.stiffness, robot.stiffness)
+    np.testing.assert_array_equal(saved.damping, robot.damping)
+
+
+def test_the_pendulum_is_lower_than_the_mass_centre_because_the_feet_stay(robot):
+    trunk = robot.com(robot.ready)[2] + 5.0 / 6.0 * robot.legs[0].length
+    assert 0.8 * trunk < robot.pendulum_height() < trunk
