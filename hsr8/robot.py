@@ -167,7 +167,7 @@ class Robot:
             assert sensed.image is not None
             detections = self._vision.detect(sensed.image, camera_pose(then.camera))
         measured = self._frame(sensed.captured, then, detections)
-        belief = self._belief.update(measured)
+        belief = estimate = self._belief.update(measured)
         state = then
         if sensed.time > sensed.captured:
             state = self._walking.state()
@@ -187,6 +187,7 @@ class Robot:
             image=sensed.image,
             detections=detections,
             measured=measured,
+            estimate=estimate,
             belief=belief,
             gaze=gaze,
             motion=motion,

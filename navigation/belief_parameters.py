@@ -56,7 +56,7 @@ class TrackingParameters:
     gate: Positive = 13.8
     """Squared Mahalanobis distance above which no mode explains a detection [1]."""
     anywhere: Annotated[float, Gt(0.0), Lt(1.0)] = 0.2
-    """Probability that a lost track is anywhere in reach rather than where its particles are [1]."""
+    """Probability that a lost track is anywhere in reach, not where its particles are [1]."""
     birth_density: Positive = 0.1
     """Density of new obstacles where the floor was not seen yet [1/m²]."""
     intruder_density: Positive = 0.004

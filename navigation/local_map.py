@@ -138,6 +138,11 @@ class LocalMap:
             self._log_odds[rows, columns] + change, -limit, limit
         )
 
+    def tobytes(self) -> bytes:
+        """All that the map holds, as bits."""
+        place = np.array([*self._corner, self._time])
+        return place.tobytes() + self._seen_at.tobytes() + self._log_odds.tobytes()
+
     def snapshot(self) -> "LocalMap":
         """Copy that later updates of this map leave as it is."""
         copy = object.__new__(LocalMap)

@@ -23,6 +23,7 @@ MODULES: dict[type, str] = {
     options.Run: "hsr8.cli.run",
     options.List: "hsr8.cli.list",
     options.Check: "hsr8.cli.check",
+    options.CheckReplay: "hsr8.cli.check_replay",
     options.Doctor: "hsr8.cli.doctor",
     options.Render: "hsr8.cli.render",
     options.Replay: "hsr8.cli.replay",
@@ -30,11 +31,13 @@ MODULES: dict[type, str] = {
 }
 INTERRUPTED = 130
 READER_LEFT = 141  # as of a program that SIGPIPE ends
+CHECK_REPLAY = "check replay"  # a command of two words beside `check`
 
 Commands = (
     Annotated[options.Run, tyro.conf.subcommand("run")]
     | Annotated[options.List, tyro.conf.subcommand("list")]
     | Annotated[options.Check, tyro.conf.subcommand("check")]
+    | Annotated[options.CheckReplay, tyro.conf.subcommand(CHECK_REPLAY)]
     | Annotated[options.Doctor, tyro.conf.subcommand("doctor")]
     | Annotated[options.Render, tyro.conf.subcommand("render")]
     | Annotated[options.Replay, tyro.conf.subcommand("replay")]
@@ -53,6 +56,8 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         3 diverged or internal error, 130 interrupted.
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
+    if given[:2] == CHECK_REPLAY.split():
+        given[:2] = [CHECK_REPLAY]
     try:
         command = tyro.cli(
             Commands,

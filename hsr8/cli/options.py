@@ -73,6 +73,15 @@ class Check:
 
 
 @dataclass(frozen=True)
+class CheckReplay:
+    """Check a run: does its belief, computed again from its measurements, come out the same?"""
+
+    run: Positional[RunPath]
+    json: bool = False
+    """Print one JSON object."""
+
+
+@dataclass(frozen=True)
 class Doctor:
     """Look whether everything is in place: OpenGL, libraries, models, disk."""
 
@@ -150,4 +159,4 @@ class Plot:
     """Print one JSON object."""
 
 
-Command = Run | List | Check | Doctor | Render | Replay | Plot
+Command = Run | List | Check | CheckReplay | Doctor | Render | Replay | Plot

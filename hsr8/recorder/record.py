@@ -39,6 +39,7 @@ class FrameRecord:
     image: Image | None
     detections: tuple[Detection, ...]
     measured: Frame
+    estimate: Belief
     belief: Belief
     gaze: GazeDecision
     motion: MotionDecision

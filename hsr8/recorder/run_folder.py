@@ -6,6 +6,7 @@
     events.jsonl     what happened, one line each
     trajectory.bin   motion of robot and movers
     walking.bin      how it walked: ZMP, feet, torques, velocities
+    measurements.bin all that reached the belief, exactly, for ``hsr8 check replay``
     frames.jsonl     belief and decisions, one camera frame a line
     log.rrd          everything, for the Rerun viewer
     video.mp4        after ``hsr8 render``
@@ -22,6 +23,7 @@ from typing import Any, TextIO
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic, frame_summary
 from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.measurements import MeasurementWriter
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.trajectory import TrajectoryWriter
 
@@ -31,6 +33,7 @@ METRICS = "metrics.json"
 EVENTS = "events.jsonl"
 TRAJECTORY = "trajectory.bin"
 WALKING = "walking.bin"
+MEASUREMENTS = "measurements.bin"
 FRAMES = "frames.jsonl"
 LOG = "log.rrd"
 VIDEO = "video.mp4"
@@ -58,6 +61,7 @@ class RunFolder:
         manifest.write(path / MANIFEST)
         atomic.write_text(path / SCENARIO, scenario)
         self._events: TextIO = (path / EVENTS).open("w", encoding="utf-8", buffering=1)
+        self._measurements = MeasurementWriter(path / MEASUREMENTS)
         self._frames: TextIO = (path / FRAMES).open("w", encoding="utf-8")
 
     @staticmethod
@@ -92,12 +96,14 @@ class RunFolder:
                 self.path / TRAJECTORY, len(truth.qpos), self._n_movers
             )
         self._trajectory.append(record.time, truth.qpos, movers)
+        self._measurements.on_record(record)
         if record.frame is not None:
             self._frames.write(frame_summary.to_line(record.frame, truth) + "\n")
         if record.time - self._flushed_at >= FLUSH_PERIOD:
             self._flushed_at = record.time
             self._trajectory.flush()
             self._frames.flush()
+            self._measurements.flush()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Write one line."""
@@ -110,6 +116,7 @@ class RunFolder:
         if self._trajectory is not None:
             self._trajectory.close()
         self._frames.close()
+        self._measurements.close()
         self._events.close()
         self._manifest.ended(exit_reason).write(self.path / MANIFEST)
 

@@ -119,6 +119,7 @@ def _frame(layout, time, pose, **change):
             ),
         ),
         measured=Frame(time, np.asarray(pose, float), np.zeros((3, 3)), belief["view"], ()),
+        estimate=Belief(**belief),
         belief=Belief(**belief),
         gaze=GazeDecision(0.3, -0.3, 0.2, 0.4, 0.6, 0.1, gaze_map),
         motion=MotionDecision(

@@ -1,0 +1,124 @@
+import json
+import shutil
+import struct
+import zlib
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder.run_reader import open_run
+
+RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """A run whose frames come late."""
+    out = tmp_path_factory.mktemp("runs")
+    entry([*RUN, "--no-log", "--quiet", "--set", "camera.latency_ms=60", "--out", str(out)])
+    return open_run(out).path
+
+
+@pytest.fixture
+def run(recorded, tmp_path):
+    return shutil.copytree(recorded, tmp_path / "run")
+
+
+def payloads(content):
+    """Offset and payload of every frame of a file of measurements."""
+    place = 8
+    while place < len(content):
+        length, _ = struct.unpack_from("<II", content, place)
+        yield place, content[place + 8 : place + 8 + length]
+        place += 8 + length
+
+
+def rewrite(run, index, change):
+    """Change a frame's payload and make its checksum right again."""
+    file = run / "measurements.bin"
+    content = bytearray(file.read_bytes())
+    place, payload = list(payloads(content))[index]
+    payload = bytes(change(bytearray(payload)))
+    struct.pack_into("<II", content, place, len(payload), zlib.crc32(payload))
+    content[place + 8 : place + 8 + len(payload)] = payload
+    file.write_bytes(content)
+
+
+def flipped(index):
+    def change(payload):
+        payload[index] ^= 1
+        return payload
+
+    return change
+
+
+def test_a_run_is_believed_again_bit_for_bit(run, capsys):
+    assert entry(["check", "replay", str(run)]) == 0
+    assert "bit for bit" in capsys.readouterr().out
+    assert entry(["check", "replay", str(run), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["equal"]
+    assert result["frames"] == 33
+
+
+@pytest.mark.parametrize(("byte", "channel"), [(-40, "pose"), (-24, "tracks"), (-16, "local map")])
+def test_the_first_frame_and_channel_that_differ_are_named(run, capsys, byte, channel):
+    rewrite(run, 20, flipped(byte))
+    assert entry(["check", "replay", str(run)]) == 1
+    assert f": {channel} of frame 20 (1.200 s)" in capsys.readouterr().out
+
+
+def test_a_change_of_a_measurement_shows(run, capsys):
+    rewrite(run, 7, flipped(8 + 4))  # x of the odometry, in its tenth digit
+    assert entry(["check", "replay", str(run), "--json"]) == 1
+    result = json.loads(capsys.readouterr().out)
+    assert (result["frame"], result["channel"]) == (7, "pose")
+
+
+def test_another_scenario_gives_another_belief(run, capsys):
+    scenario = run / "scenario.toml"
+    text = scenario.read_text()
+    assert "drift = 0.0003" in text
+    scenario.write_text(text.replace("drift = 0.0003", "drift = 0.0004"))
+    assert entry(["check", "replay", str(run)]) == 1
+    assert "of frame 1" in capsys.readouterr().out
+
+
+def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
+    file = run / "measurements.bin"
+    content = file.read_bytes()
+    places = [place for place, _ in payloads(content)]
+
+    def refused(text):
+        assert entry(["check", "replay", str(run)]) == 2
+        printed = capsys.readouterr()
+        assert text in printed.err
+        assert printed.err.count("\n") == 1
+        assert not printed.out
+
+    file.write_bytes(content[: places[5] + 100] + b"?" + content[places[5] + 101 :])
+    refused("is damaged in frame 5")
+    file.write_bytes(content[: places[9] + 20])
+    refused("is cut off in frame 9")
+    file.write_bytes(content[: places[9] + 3])
+    refused("is cut off in frame 9")
+    file.write_bytes(content[:8])
+    refused("holds no frame")
+    file.write_bytes(b"something else")
+    refused("is no file of measurements")
+    file.unlink()
+    refused("has no measurements")
+
+
+def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
+    file, manifest = run / "measurements.bin", run / "manifest.json"
+    content = file.read_bytes()
+    file.write_bytes(content[:-5])
+    manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))
+    assert entry(["check", "replay", str(run), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["frames"] == 32
+
+
+def test_a_scenario_is_still_checked_by_its_name(capsys):
+    assert entry(["check", "quick", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["name"] == "quick"

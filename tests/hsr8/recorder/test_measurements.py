@@ -1,0 +1,73 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.recorder.measurements import (
+    CHANNELS,
+    MeasurementWriter,
+    fingerprints,
+    read_measurements,
+)
+from navigation.observation import Observation
+
+finite = st.floats(allow_nan=False, allow_infinity=False, width=64)
+
+
+@given(
+    numbers=st.lists(finite, min_size=8, max_size=8),
+    label=st.text(min_size=1, max_size=12),
+    flags=st.tuples(st.booleans(), st.booleans(), st.booleans()),
+)
+def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
+    beacon, cut, occluded = flags
+    seen = Observation(
+        "beacon" if beacon else "obstacle",
+        label,
+        *numbers[:2],
+        np.array(numbers[2:6]).reshape(2, 2),
+        *numbers[6:],
+        cut,
+        occluded,
+    )
+    file = tmp_path_factory.mktemp("m") / "m"
+    frame = fake.frame(0.06, (0.1, 0.2, 0.3))
+    frame = replace(frame, measured=replace(frame.measured, observations=(seen,)))
+    writer = MeasurementWriter(file)
+    writer.on_record(fake.record(0.06, frame=frame))
+    writer.on_record(fake.record(0.08))
+    writer.close()
+    (back,) = read_measurements(file, whole=True)
+    a, b = back.frame, frame.measured
+    assert a.time == b.time
+    for name in ("odometry", "motion_covariance"):
+        assert np.array_equal(getattr(a, name), getattr(b, name))
+    assert np.array_equal(a.view.rotation, b.view.rotation)
+    assert np.array_equal(a.view.position, b.view.position)
+    assert (a.view.pan, a.view.tilt, a.view.yaw_sigma) == (b.view.pan, b.view.tilt, 0.0)
+    (found,) = a.observations
+    assert np.array_equal(found.covariance, seen.covariance)
+    assert replace(found, covariance=seen.covariance) == seen
+    assert back.fingerprints == fingerprints(frame.estimate)
+
+
+@pytest.mark.parametrize(
+    ("change", "channel"),
+    [
+        ({"pose": np.array([0.0, 0.0, 1e-300])}, "pose"),
+        ({"pose_covariance": np.eye(3)}, "pose covariance"),
+        ({"tracks": ()}, "tracks"),
+        ({"lost": True}, "state"),
+    ],
+)
+def test_a_change_shows_in_its_channel_alone(fake, change, channel):
+    before = fake.frame(0.06).estimate
+    after = replace(before, **change)
+    differ = [
+        name
+        for name, a, b in zip(CHANNELS, fingerprints(before), fingerprints(after), strict=True)
+        if a != b
+    ]
+    assert differ == [channel]
