@@ -4,21 +4,86 @@ import rerun.blueprint as rrb
 
 from hsr8.recorder.channel import TIMELINE
 
+AROUND = rrb.VisibleTimeRange(
+    TIMELINE,
+    start=rrb.TimeRangeBoundary.cursor_relative(seconds=-2.5),
+    end=rrb.TimeRangeBoundary.cursor_relative(seconds=1.5),
+)
+BACKGROUND = [228, 231, 235]
 ABOVE = 7.0  # height of the eye over a field of 5 m [m]
 
 
-def blueprint(field_size: float) -> rrb.Blueprint:
-    """Robot, camera and gaze on the left; belief, states and curves on the right.
+def blueprint(field_size: float, *, walking: bool = False) -> rrb.Blueprint:
+    """Two tabs: the whole robot, and its walking in detail.
 
     Args:
         field_size: longer side of the field [m].
+        walking: whether walking is shown first.
     """
+    return rrb.Blueprint(
+        rrb.Tabs(_overview(field_size), _walking(), active_tab=1 if walking else 0),
+        rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+    )
+
+
+def _walking() -> rrb.Container:
+    """The robot over its footsteps on the left; curves on the right."""
+    robot = rrb.Spatial3DView(
+        name="Walking",
+        origin="/",
+        contents=["+ /world/**", "- /world/camera/**", "- /world/path"],
+        background=BACKGROUND,
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            position=(-0.5, -0.6, 0.42),
+            look_target=(0.0, 0.0, 0.14),
+            eye_up=(0.0, 0.0, 1.0),
+            tracking_entity="/world/robot/ellipsoids",
+        ),
+    )
+    texts = rrb.Tabs(
+        rrb.TextLogView(name="Altered commands", origin="/admission"),
+        rrb.TextLogView(name="Events", origin="/events"),
+    )
+    zmp = [
+        rrb.TimeSeriesView(
+            name=f"ZMP, CoM, DCM and the edges of the soles: {axis} [m]",
+            origin=f"/plots/zmp_{axis}",
+            time_ranges=AROUND,
+        )
+        for axis in ("left", "forward")
+    ]
+    details = rrb.Tabs(
+        *(
+            rrb.TimeSeriesView(name=name, origin=f"/plots/{entity}", time_ranges=ranges)
+            for name, entity, ranges in (
+                ("Forward", "speed_forward", None),
+                ("Left", "speed_left", None),
+                ("Turn", "speed_turn", None),
+                ("Knee", "torque_knee", AROUND),
+                ("Hip", "torque_hip", AROUND),
+                ("Ankle", "torque_ankle", AROUND),
+                ("Tilt", "tilt", None),
+            )
+        ),
+        active_tab=0,
+    )
+    states = rrb.StateTimelineView(name="States", origin="/state")
+    curves = rrb.Vertical(*zmp, details, states, row_shares=[3, 3, 2.5, 2])
+    left = rrb.Vertical(robot, texts, row_shares=[4, 1])
+    return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
+
+
+def _overview(field_size: float) -> rrb.Container:
+    """Robot, camera and gaze on the left; belief, states and curves on the right."""
     height = ABOVE * field_size / 5.0
     robot = rrb.Spatial3DView(
         name="HSR-VIII",
         origin="/",
         contents=["+ /world/**", "+ /belief/**", "- /belief/local_map"],
-        background=[228, 231, 235],
+        background=BACKGROUND,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
             position=(-1.3, -1.0, 0.9),
@@ -40,7 +105,7 @@ def blueprint(field_size: float) -> rrb.Blueprint:
             "+ /world/way_points",
             "+ /world/path",
         ],
-        background=[228, 231, 235],
+        background=BACKGROUND,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
             position=(0.0, -0.01, height), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 1.0, 0.0)
@@ -57,7 +122,7 @@ def blueprint(field_size: float) -> rrb.Blueprint:
                 ("Pose error", "pose_error"),
                 ("ZMP left [m]", "zmp_left"),
                 ("ZMP forward [m]", "zmp_forward"),
-                ("Speed", "speed"),
+                ("Speed forward", "speed_forward"),
                 ("Tilt", "tilt"),
                 ("Clearance", "clearance"),
             )
@@ -67,9 +132,4 @@ def blueprint(field_size: float) -> rrb.Blueprint:
     events = rrb.TextLogView(name="Events", origin="/events")
     left = rrb.Vertical(robot, rrb.Horizontal(camera, gaze), row_shares=[3, 2])
     right = rrb.Vertical(belief, states, curves, events, row_shares=[5, 2.3, 2.5, 1.5])
-    return rrb.Blueprint(
-        rrb.Horizontal(left, right, column_shares=[1, 1]),
-        rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
-        rrb.BlueprintPanel(state="collapsed"),
-        rrb.SelectionPanel(state="collapsed"),
-    )
+    return rrb.Horizontal(left, right, column_shares=[1, 1], name="Robot and belief")

@@ -1,7 +1,6 @@
 """Curves and state lanes: what went on, over time."""
 
 from collections.abc import Sequence
-from math import cos, degrees, sin
 
 import numpy as np
 import rerun as rr
@@ -16,7 +15,6 @@ Array = NDArray[np.float64]
 
 BLUE, ORANGE, GREEN, GREY = (52, 112, 206), (240, 140, 20), (76, 168, 78), (130, 130, 134)
 RED, VIOLET, SAND = (206, 60, 56), (146, 84, 196), (196, 178, 130)
-GAIT = {"standing": GREY, "double": SAND, "left": BLUE, "right": ORANGE}
 SITUATIONS = {
     "free": GREEN,
     "accelerate": BLUE,
@@ -25,7 +23,6 @@ SITUATIONS = {
     "path_change": VIOLET,
 }
 LOCALIZATION = {"localized": GREEN, "lost": RED}
-FORCE_NEEDED = 1.0  # no centre of pressure is shown under feet lighter than this [N]
 
 
 class Curves:
@@ -85,18 +82,9 @@ class Lane:
 
 
 class PlotLayer:
-    """All plots and state lanes."""
+    """Plots and state lanes of the decisions and the belief."""
 
     def __init__(self, stream: rr.RecordingStream) -> None:
-        zmp = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN))
-        self._forward = Curves(stream, "/plots/zmp_forward", zmp)
-        self._lateral = Curves(stream, "/plots/zmp_left", zmp)
-        self._speed = Curves(
-            stream,
-            "/plots/speed",
-            (("forward [m/s]", BLUE), ("left [m/s]", GREEN), ("turn [rad/s]", ORANGE)),
-        )
-        self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
         self._clearance = Curves(stream, "/plots/clearance", (("clearance [m]", BLUE),))
         self._partial = Curves(
             stream,
@@ -108,38 +96,20 @@ class PlotLayer:
             "/plots/pose_error",
             (("position error [m]", BLUE), ("2σ [m]", GREY), ("heading error [rad]", ORANGE)),
         )
-        self._phase = Lane(stream, "/state/gait", GAIT)
         self._situation = Lane(stream, "/state/planner", SITUATIONS)
         self._localization = Lane(stream, "/state/localization", LOCALIZATION)
         self._parts = (
-            self._forward,
-            self._lateral,
-            self._speed,
-            self._tilt,
             self._clearance,
             self._partial,
             self._error,
-            self._phase,
             self._situation,
             self._localization,
         )
 
     def add(self, record: TickRecord) -> None:
         """Take one record."""
-        time, truth, walking = record.time, record.truth, record.walking
-        odometry = walking.odometry
-        here = (odometry.x, odometry.y, odometry.yaw)
-        planned = _seen_from(here, walking.zmp)
-        com = _seen_from(here, walking.com)
-        measured = [float("nan")] * 2
-        if float(truth.foot_force.sum()) > FORCE_NEEDED:
-            measured = _seen_from(tuple(truth.robot.tolist()), truth.zmp)
-        self._forward.add(time, planned[0], measured[0], com[0])
-        self._lateral.add(time, planned[1], measured[1], com[1])
-        self._speed.add(time, *walking.given.tolist())
-        self._tilt.add(time, degrees(walking.roll), degrees(walking.pitch))
+        time, truth = record.time, record.truth
         self._clearance.add(time, truth.clearance if np.isfinite(truth.clearance) else np.nan)
-        self._phase.add(time, str(walking.phase))
 
     def add_frame(self, frame: FrameRecord, truth: Array) -> None:
         """Take a camera frame and the true pose (3,) at that time."""
@@ -155,10 +125,3 @@ class PlotLayer:
         """Send the block."""
         for part in self._parts:
             part.flush()
-
-
-def _seen_from(pose: tuple[float, ...], point: Array) -> list[float]:
-    """A point (2,) in the frame of `pose` x, y, yaw."""
-    dx, dy = (point - pose[:2]).tolist()
-    c, s = cos(pose[2]), sin(pose[2])
-    return [c * dx + s * dy, c * dy - s * dx]

@@ -17,19 +17,21 @@ from hsr8.recorder.channel import TIMELINE, Channel
 from hsr8.recorder.geometry import Scene
 from hsr8.recorder.plot_layer import PlotLayer
 from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.walk_layer import WalkLayer
+from hsr8.recorder.walking_table import OdometryToWorld
 from hsr8.world.layout import Layout
 from walking.state import Footstep
 
 Array = NDArray[np.float64]
 
 APRON = 1.0  # the floor shown is larger than the field by this [m]
-BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one [s]
+BLOCK = 2.0  # rows are sent in blocks of this length; a kill loses the last one [s]
 POSE_PERIOD = 0.04  # [s]
 FRAME_PERIOD = 0.12  # of camera frames [s]
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
 LABELLED = 12  # more way points than this are shown without their numbers
 TRAIL = 60.0  # the path shown behind the robot [s]
-LEVELS = {"fall": "ERROR", "diverged": "ERROR", "collision": "WARN", "lost": "WARN"}
+LEVELS = {"fall": "ERROR", "diverged": "ERROR", "collision": "WARN", "lost": "WARN", "push": "WARN"}
 
 
 class RerunLog:
@@ -53,7 +55,10 @@ class RerunLog:
     ) -> None:
         self._stream = rr.RecordingStream("hsr8", recording_id=path.parent.name)
         self._stream.set_log_time_enabled(False)
-        self._stream.save(path, default_blueprint=blueprint(max(layout.field_size)))
+        self._stream.save(
+            path,
+            default_blueprint=blueprint(max(layout.field_size), walking=len(layout.waypoints) == 0),
+        )
         self._stream.send_recording_name(name)
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._n_movers = len(layout.movers)
@@ -62,6 +67,7 @@ class RerunLog:
         self._camera = CameraLayer(self._stream, model, *image_size)
         self._belief = BeliefLayer(self._stream)
         self._plots = PlotLayer(self._stream)
+        self._walk = WalkLayer(self._stream)
         self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D.columns)
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D.columns)
         self._trail: list[list[float]] = []
@@ -82,6 +88,8 @@ class RerunLog:
             self._scene.add(time, truth.qpos, movers)
             self._camera.add_pose(time, self._scene.data)
             self._plots.add(record)
+            self._walk.add(record)
+        self._walk.watch(record)
         if record.frame is not None and time - self._frame_at >= FRAME_PERIOD - 1e-9:
             self._frame_at = time
             self._add_frame(record, record.frame)
@@ -102,21 +110,13 @@ class RerunLog:
         self._camera.add_frame(frame)
         self._belief.add(frame)
         self._plots.add_frame(frame, record.truth.robot)
-        x, y, yaw = record.truth.robot.tolist()
+        x, y, _ = record.truth.robot.tolist()
         self._trail.append([x, y, 0.003])
-        odometry = record.walking.odometry
         # Planned footholds are known in the odometry frame; they are drawn from the true pose.
-        turn = yaw - odometry.yaw
-        c, s = cos(turn), sin(turn)
-        steps = record.walking.footsteps
+        there = OdometryToWorld(record)
         placed = [
-            Footstep(
-                left=f.left,
-                x=x + c * (f.x - odometry.x) - s * (f.y - odometry.y),
-                y=y + s * (f.x - odometry.x) + c * (f.y - odometry.y),
-                yaw=f.yaw + turn,
-            )
-            for f in steps
+            Footstep(f.left, *there.point((f.x, f.y)), f.yaw + there.turn)
+            for f in record.walking.footsteps
         ]
         self._footsteps.add(
             frame.time,
@@ -134,7 +134,7 @@ class RerunLog:
                 radii=np.array([0.006]),
             )
             del self._trail[: -round(TRAIL / FRAME_PERIOD)]
-        for part in (self._scene, self._camera, self._belief, self._plots):
+        for part in (self._scene, self._camera, self._belief, self._plots, self._walk):
             part.flush()
         self._footsteps.flush()
         self._path.flush()

@@ -1,0 +1,203 @@
+"""Walking in the log: ZMP, CoM, DCM and soles on the floor and over time, torques, pushes."""
+
+from collections import deque
+from math import cos, degrees, sin
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder import palette
+from hsr8.recorder.arc import mean_velocity
+from hsr8.recorder.channel import TIMELINE, Channel
+from hsr8.recorder.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
+from hsr8.recorder.record import TickRecord
+from hsr8.recorder.walking_table import LEG_JOINTS, OdometryToWorld
+from walking.admission import Limit
+
+Array = NDArray[np.float64]
+
+GAIT = {"standing": GREY, "double": SAND, "left": BLUE, "right": ORANGE}
+POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
+FLOOR = 0.006  # height at which things on the floor are drawn [m]
+PIN = 0.16  # points on the floor are shown by pins of this height, seen above the feet [m]
+LIGHT = 1.0  # no centre of pressure is shown under feet that carry less [N]
+ARROW = 0.025  # drawn length of a push per newton [m/N]
+STRIDE = 2  # footsteps over which the achieved velocity is measured
+PATIENCE = 1.0  # a robot that has not stepped for so long is measured over this time [s]
+ROUTINE = Limit.LANDING_FROZEN  # binds at the end of every step: no news
+TORQUES = ("hip", "knee", "ankle")
+SIDES = {"l": (BLUE, SAND, GREEN), "r": (ORANGE, RED, VIOLET)}
+
+
+class WalkLayer:
+    """Logs how the robot walks."""
+
+    def __init__(self, stream: rr.RecordingStream) -> None:
+        self._stream = stream
+        stream.log(
+            "/world/walking/points",
+            rr.Arrows3D.from_fields(
+                colors=[colour for _, colour in POINTS],
+                radii=[0.003],
+                vectors=np.tile([0.0, 0.0, FLOOR - PIN], (len(POINTS), 1)),
+            ),
+            static=True,
+        )
+        stream.log(
+            "/world/walking/support",
+            rr.LineStrips3D.from_fields(colors=[palette.TARGET], radii=[0.0025]),
+            static=True,
+        )
+        stream.log(
+            "/world/pushes", rr.Arrows3D.from_fields(colors=[RED], radii=[0.012]), static=True
+        )
+        self._points = Channel(stream, "/world/walking/points", rr.Arrows3D.columns)
+        self._support = Channel(stream, "/world/walking/support", rr.LineStrips3D.columns)
+        self._pushes = Channel(stream, "/world/pushes", rr.Arrows3D.columns)
+        curves = (*POINTS, ("edge of the soles", GREY), ("edge of the soles", GREY))
+        self._zmp = tuple(
+            Curves(stream, f"/plots/zmp_{axis}", curves) for axis in ("forward", "left")
+        )
+        speeds = ("forward [m/s]", "left [m/s]", "turn [rad/s]")
+        self._commanded = tuple(
+            Curves(
+                stream,
+                f"/plots/speed_{name.split()[0]}/commanded",
+                ((f"asked, {name}", GREY), (f"given, {name}", ORANGE)),
+            )
+            for name in speeds
+        )
+        self._achieved = tuple(
+            Curves(
+                stream, f"/plots/speed_{name.split()[0]}/achieved", ((f"achieved, {name}", BLUE),)
+            )
+            for name in speeds
+        )
+        self._torque = tuple(self._torque_curves(stream, group) for group in TORQUES)
+        self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
+        self._phase = Lane(stream, "/state/gait", GAIT)
+        self._meter = _Speedometer()
+        self._stood: tuple[str, int] | None = None
+        self._told: tuple[Limit, ...] = ()
+        self._pushed = False
+        self._parts: tuple[Channel | Curves | Lane, ...] = (
+            self._points,
+            self._support,
+            self._pushes,
+            *self._zmp,
+            *self._commanded,
+            *self._achieved,
+            *(curves for curves, _ in self._torque),
+            self._tilt,
+            self._phase,
+        )
+
+    def add(self, record: TickRecord) -> None:
+        """Take one record at the rate of the plots."""
+        time, truth, walking = record.time, record.truth, record.walking
+        there = OdometryToWorld(record)
+        pressed = float(truth.foot_force.sum()) > LIGHT
+        known = (walking.zmp, None, walking.balance.com, walking.balance.dcm)
+        points = np.array([truth.zmp if p is None else there.point(p) for p in known])
+        if not pressed:
+            points[1] = np.nan
+        support = np.array([there.point(corner) for corner in walking.balance.support])
+        self._add_curves(time, truth.robot, points, support)
+        shown = np.where(np.isnan(points), points[0], points)
+        self._points.add(time, origins=np.column_stack([shown, np.full(len(shown), PIN)]))
+        standing = (str(walking.phase), walking.step_count)
+        if standing != self._stood:
+            self._stood = standing
+            corners = np.vstack([support, support[:1]])
+            strip = np.column_stack([corners, np.full(len(corners), FLOOR)])
+            self._support.add(time, strips=[strip])
+        asked, given = record.command.velocity, walking.given.tolist()
+        for curves, a, g in zip(self._commanded, asked, given, strict=True):
+            curves.add(time, a, g)
+        for curves, columns in self._torque:
+            curves.add(time, *truth.joint_torque[columns].tolist())
+        self._tilt.add(time, degrees(walking.roll), degrees(walking.pitch))
+        self._phase.add(time, str(walking.phase))
+        self._tell_admission(record)
+
+    def watch(self, record: TickRecord) -> None:
+        """Take every record: what is too short for the rate of the plots."""
+        measured = self._meter.add(record)
+        if measured is not None:
+            time, velocity = measured
+            for curves, value in zip(self._achieved, velocity, strict=True):
+                curves.add(time, value)
+        pushes = record.truth.pushes
+        if pushes or self._pushed:
+            self._pushed = bool(pushes)
+            vectors = ARROW * np.array([p.force for p in pushes]).reshape(-1, 3)
+            origins = np.array([p.point for p in pushes]).reshape(-1, 3) - vectors
+            self._pushes.add(record.time, origins=origins, vectors=vectors)
+
+    def flush(self) -> None:
+        """Send the block."""
+        for part in self._parts:
+            part.flush()
+
+    @staticmethod
+    def _torque_curves(stream: rr.RecordingStream, group: str) -> tuple[Curves, list[int]]:
+        columns = [k for k, name in enumerate(LEG_JOINTS) if f"_{group}" in name]
+        named = []
+        shades = {side: iter(colours) for side, colours in SIDES.items()}
+        for k in columns:
+            side, _, joint = LEG_JOINTS[k].partition("_")
+            named.append((f"{side} {joint.replace('_', ' ')} [N m]", next(shades[side])))
+        return Curves(stream, f"/plots/torque_{group}", named), columns
+
+    def _add_curves(self, time: float, robot: Array, points: Array, support: Array) -> None:
+        x, y, yaw = robot.tolist()
+        c, s = cos(yaw), sin(yaw)
+        turn = np.array([[c, -s], [s, c]])
+        seen, edges = (points - (x, y)) @ turn, (support - (x, y)) @ turn
+        low, high = edges.min(axis=0).tolist(), edges.max(axis=0).tolist()
+        for axis, curves in enumerate(self._zmp):
+            curves.add(time, *seen[:, axis].tolist(), low[axis], high[axis])
+
+    def _tell_admission(self, record: TickRecord) -> None:
+        admission = record.walking.admission
+        limits = () if admission is None else admission.limits
+        news = tuple(dict.fromkeys(limit for limit in limits if limit is not ROUTINE))
+        if news == self._told or admission is None:
+            return
+        self._told = news
+        asked, given = admission.asked.velocity, record.walking.given.tolist()
+        text = "obeyed" if not news else ", ".join(news)
+        said = f"{text}: asked {_words(asked)}, given {_words(given)}"
+        self._stream.set_time(TIMELINE, duration=record.time)
+        self._stream.log("/admission", rr.TextLog(said, level="WARN" if news else "INFO"))
+
+
+class _Speedometer:
+    """Velocity over one stride, each time a footstep ends."""
+
+    def __init__(self) -> None:
+        self._marks: deque[tuple[float, Array]] = deque(maxlen=STRIDE + 1)
+        self._steps = 0
+        self._yaw = 0.0
+
+    def add(self, record: TickRecord) -> tuple[float, list[float]] | None:
+        """Middle of the stride [s] and velocity in it, when there is one."""
+        x, y, yaw = record.truth.robot.tolist()
+        self._yaw += float(np.angle(np.exp(1j * (yaw - self._yaw))))
+        pose = np.array([x, y, self._yaw])
+        waited = not self._marks or record.time - self._marks[-1][0] >= PATIENCE - 1e-9
+        if record.walking.step_count == self._steps and not waited:
+            return None
+        self._steps = record.walking.step_count
+        self._marks.append((record.time, pose))
+        first, start = self._marks[0] if not waited else self._marks[max(0, len(self._marks) - 2)]
+        if record.time - first <= 0.0:
+            return None
+        elapsed = record.time - first
+        return first + 0.5 * elapsed, mean_velocity(start, pose, elapsed).tolist()
+
+
+def _words(velocity: tuple[float, ...] | list[float]) -> str:
+    forward, left, turn = velocity
+    return f"{forward:.2f} {left:.2f} m/s {turn:.2f} rad/s"
