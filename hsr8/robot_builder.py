@@ -44,7 +44,7 @@ def build_robot(
         rng: draws its particles.
         command_rng: draws the commands of a walk.
     """
-    beacons = {b.name: b.position for b in layout.beacons}
+    beacons = {b.name: b.believed for b in layout.beacons}
     limits = scenario.speed_limits()
     navigation = scenario.navigation_parameters()
     body = RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
@@ -75,7 +75,7 @@ def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator
     """The belief of the robot of `scenario`; `rng` draws its particles."""
     return Estimator(
         scenario.belief_parameters(),
-        {b.name: b.position for b in layout.beacons},
+        {b.name: b.believed for b in layout.beacons},
         np.array(layout.start),
         np.diag(np.square(START_SIGMA)),
         rng,

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from annotated_types import Ge
+from annotated_types import Ge, Le
 
 
 @dataclass(frozen=True)
 class SensorNoise:
-    """Standard deviations of the body's sensors."""
+    """Standard deviations and constant errors of the body's sensors."""
 
     encoder: Annotated[float, Ge(0.0)] = 0.0005
     """White noise of each joint encoder [rad]."""
@@ -20,6 +20,12 @@ class SensorNoise:
     """White noise of the accelerometer, per axis [m/s²]."""
     tilt: Annotated[float, Ge(0.0)] = 0.0025
     """White noise of roll and pitch as the IMU reports them [rad]."""
+    pitch_bias: Annotated[float, Ge(-0.5), Le(0.5)] = 0.0
+    """Constant error of the pitch that the IMU reports [rad]."""
+    roll_bias: Annotated[float, Ge(-0.5), Le(0.5)] = 0.0
+    """Constant error of the roll that it reports [rad]."""
+    gyro_bias: Annotated[float, Ge(-1.0), Le(1.0)] = 0.0
+    """Constant error of the gyroscope about each axis; the IMU's yaw turns away with it [rad/s]."""
     yaw_drift: Annotated[float, Ge(0.0)] = 0.001
     """Random walk of the IMU's yaw [rad/√s]."""
     foot_force: Annotated[float, Ge(0.0)] = 0.2

@@ -100,6 +100,8 @@ class World(Section):
     """Shortest and longest lane of a drawn mover; of a circle, its diameter's range [m]."""
     beacons: bool = True
     """Whether the six beacons stand around the field."""
+    moved_beacon: Annotated[float, Interval(ge=-2.0, le=2.0)] = 0.0
+    """Distance along the rim at which the first beacon stands from where it is known to [m]."""
     brightness: Annotated[float, Interval(ge=0.1, le=2.0)] = 1.0
     """Strength of all lights, relative to the usual [1]."""
     obstacle: Annotated[tuple[StaticObstacle, ...], Len(0, 64)] = ()

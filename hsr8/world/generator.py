@@ -21,7 +21,14 @@ from hsr8.scenario.checks import ROBOT_RADIUS
 from hsr8.scenario.mission import Course, Points, Tour
 from hsr8.scenario.schema import Scenario
 from hsr8.world.lane import Lane, distance, motion_law
-from hsr8.world.layout import OBSTACLE_HEIGHT, Layout, Obstacle, standard_beacons
+from hsr8.world.layout import (
+    OBSTACLE_HEIGHT,
+    Beacon,
+    Layout,
+    Obstacle,
+    standard_beacons,
+    with_first_moved,
+)
 from hsr8.world.motion import Circle, MotionLaw, Shuttle
 
 Array = NDArray[np.float64]
@@ -102,12 +109,18 @@ class _Draw:
         return Layout(
             field_size=world.size,
             obstacles=(*self._static, *(lane.obstacle for lane in self._lanes)),
-            beacons=standard_beacons(world.size) if world.beacons else (),
+            beacons=self._beacons(),
             start=(*start, self._start_heading(start, points)),
             waypoints=np.array(points, dtype=float).reshape(-1, 2),
             goal_heading=self._goal_heading(),
             endless=self._is_endless(),
         )
+
+    def _beacons(self) -> tuple[Beacon, ...]:
+        world = self._world
+        if not world.beacons:
+            return ()
+        return with_first_moved(standard_beacons(world.size), world.moved_beacon)
 
     def _given_points(self) -> list[Point] | None:
         mission = self._scenario.mission

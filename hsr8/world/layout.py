@@ -1,6 +1,7 @@
 """What stands and moves in the world of one run."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,7 @@ class Obstacle:
 
 @dataclass(frozen=True, slots=True)
 class Beacon:
-    """A two-coloured post at a place the robot knows.
+    """A two-coloured post at a place the robot knows, unless somebody moved it.
 
     Attributes:
         name: ``top/bottom``.
@@ -46,6 +47,7 @@ class Beacon:
         bottom: colour of the lower half.
         radius: [m].
         height: [m].
+        known: where the robot takes it to be; None if it is there [m].
     """
 
     name: str
@@ -54,6 +56,12 @@ class Beacon:
     bottom: str
     radius: float = BEACON_RADIUS
     height: float = BEACON_HEIGHT
+    known: Point | None = None
+
+    @property
+    def believed(self) -> Point:
+        """Where the robot takes its axis to be in W [m]."""
+        return self.position if self.known is None else self.known
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,3 +117,14 @@ def standard_beacons(field_size: Point) -> tuple[Beacon, ...]:
         x, y_ = (way * np.min(half / np.maximum(np.abs(way), 1e-9))).round(3).tolist()
         beacons.append(Beacon(f"{top}/{bottom}", (x + 0.0, y_ + 0.0), top, bottom))
     return tuple(beacons)
+
+
+def with_first_moved(beacons: tuple[Beacon, ...], distance: float) -> tuple[Beacon, ...]:
+    """Beacons whose first one stands elsewhere than the robot knows, along the rim [m]."""
+    if distance == 0.0:
+        return beacons
+    first = beacons[0]
+    x, y = first.position
+    share = distance / hypot(x, y)
+    moved = replace(first, position=(x - share * y, y + share * x), known=first.position)
+    return (moved, *beacons[1:])

@@ -23,6 +23,7 @@ class SensorSuite:
         self._noise = noise
         self._rng = rng
         self._drift_step = noise.yaw_drift * float(np.sqrt(period))
+        self._bias_step = noise.gyro_bias * period
         self._yaw_drift = 0.0
         self._gain = 1.0 + noise.foot_force_gain * rng.standard_normal((2, 4))
 
@@ -39,16 +40,19 @@ class SensorSuite:
         """Turn true values (units as in ``BodySensors``) into one noisy reading."""
         noise = self._noise
         draw = self._rng.standard_normal(69)
-        self._yaw_drift += self._drift_step * float(draw[68])
+        self._yaw_drift += self._drift_step * float(draw[68]) + self._bias_step
         tilted = quaternion_product(
             orientation,
-            small_rotation(noise.tilt * float(draw[66]), noise.tilt * float(draw[67])),
+            small_rotation(
+                noise.roll_bias + noise.tilt * float(draw[66]),
+                noise.pitch_bias + noise.tilt * float(draw[67]),
+            ),
         )
         force = self._gain * foot_force + noise.foot_force * draw[58:66].reshape(2, 4)
         return BodySensors(
             joint_position=joint_position + noise.encoder * draw[0:26],
             joint_velocity=joint_velocity + noise.encoder_rate * draw[26:52],
-            gyro=gyro + noise.gyro * draw[52:55],
+            gyro=gyro + noise.gyro_bias + noise.gyro * draw[52:55],
             accelerometer=accelerometer + noise.accelerometer * draw[55:58],
             orientation=quaternion_product(quaternion_from_yaw(self._yaw_drift), tilted),
             foot_force=np.maximum(force, 0.0),

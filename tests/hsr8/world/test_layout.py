@@ -3,7 +3,7 @@ import itertools
 import numpy as np
 import pytest
 
-from hsr8.world.layout import BEACON_COLOURS, BEACON_OFFSET, standard_beacons
+from hsr8.world.layout import BEACON_COLOURS, BEACON_OFFSET, standard_beacons, with_first_moved
 
 
 @pytest.mark.parametrize("size", [(5.0, 5.0), (4.0, 2.0), (3.0, 9.0)])
@@ -26,3 +26,13 @@ def test_beacons_of_the_same_two_colours_are_far_apart():
     for beacon in standard_beacons((5.0, 5.0)):
         twin = by_name[f"{beacon.bottom}/{beacon.top}"]
         assert np.linalg.norm(twin - beacon.position) > 5.0
+
+
+def test_a_moved_beacon_is_where_it_is_and_not_where_it_is_known():
+    beacons = standard_beacons((5.0, 5.0))
+    first, *others = with_first_moved(beacons, 0.5)
+    assert first.believed == beacons[0].position
+    assert np.hypot(*np.subtract(first.position, first.believed)) == pytest.approx(0.5)
+    assert np.dot(np.subtract(first.position, first.believed), first.believed) == pytest.approx(0)
+    assert tuple(others) == beacons[1:]
+    assert all(b.believed == b.position for b in others)

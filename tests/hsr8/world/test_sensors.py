@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,3 +70,13 @@ def test_yaw_drifts_as_a_random_walk():
 def test_a_pad_never_pulls():
     suite = SensorSuite(SensorNoise(foot_force=50.0), np.random.default_rng(2), PERIOD)
     assert (reading(suite).foot_force >= 0.0).all()
+
+
+def test_constant_errors_of_the_imu():
+    biased = replace(SILENT, pitch_bias=0.02, roll_bias=-0.01, gyro_bias=0.1)
+    suite = SensorSuite(biased, np.random.default_rng(0), PERIOD)
+    sensed = [reading(suite) for _ in range(100)][-1]
+    assert np.allclose(sensed.gyro, [0.2, 0.3, 0.4])
+    assert heading(sensed.orientation) == pytest.approx(0.1 * 100 * PERIOD, abs=1e-3)
+    w, x, y, _ = reading(SensorSuite(biased, np.random.default_rng(0), PERIOD)).orientation
+    assert (2 * x / w, 2 * y / w) == pytest.approx((-0.01, 0.02), abs=1e-3)
