@@ -19,6 +19,7 @@ from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
 from hsr8.world.camera_feed import CameraFeed, Picture
 from hsr8.world.episodes import Episodes
+from hsr8.world.falls import Falls
 from hsr8.world.generator import draw_layout
 from hsr8.world.index import ModelIndex
 from hsr8.world.kinematic import KinematicBody
@@ -26,9 +27,10 @@ from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
 from hsr8.world.pushes import schedule
 from hsr8.world.truth import Truth
 from vision.camera import PinholeCamera
+from walking.state import Phase
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
-FALL_DWELL = 0.6  # and for so long after a fall, so that it can be seen [s]
+FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,13 +193,18 @@ class Simulation:
 
     def _ending(self, tick: int, truth: Truth) -> tuple[int, str] | None:
         """Tick and reason of an end that is now decided."""
-        if truth.fallen:
-            self._tell("fall", "the robot has fallen")
+        if truth.fallen and self._stays_down():
             return tick + round(FALL_DWELL / CONTROL_PERIOD), "fall"
         frame = self._robot.frame
         if frame is not None and frame.task.done:
             return tick + round(GOAL_DWELL / CONTROL_PERIOD), "goal"
         return None
+
+    def _stays_down(self) -> bool:
+        """Whether a fallen robot does not try to get up, or no longer."""
+        if not self.scenario.walking_parameters().get_up.enabled:
+            return True
+        return self._robot.walking_state().phase is Phase.FALLEN
 
     def _publish(self, tick: int, truth: Truth, frame: FrameRecord | None) -> None:
         self._watch.look(truth, frame)
@@ -226,6 +233,7 @@ class _EventWatch:
         self._tell = tell
         self._pushes = 0
         self._episodes = Episodes()
+        self._falls = Falls()
         self._index = 0
         self._lost = False
         self._done = False
@@ -236,6 +244,8 @@ class _EventWatch:
             if push.number >= self._pushes:
                 self._pushes = push.number + 1
                 self._tell("push", push.text(), push.begin)
+        if self._falls.add(truth.time, fallen=truth.fallen):
+            self._tell("fall", "the robot has fallen")
         for collision in self._episodes.add(truth.time, truth.contacts):
             what = "mover" if collision.moving else "obstacle"
             self._tell("collision", f"{collision.robot_geom} touches {what} {collision.obstacle}")

@@ -16,11 +16,11 @@ from navigation.prediction import predict
 from vision.camera import CameraPose, PinholeCamera
 from vision.detection import Detection
 from walking.command import Command, HeadTarget, VelocityCommand
-from walking.engine import WalkingEngine
 from walking.odometry import increment
 from walking.sensing import BodySensors
 from walking.state import HeadCameraPose, Odometry, WalkingState
 from walking.targets import JointTargets
+from walking.walker import Walker
 
 # How well encoders, IMU and leg kinematics know the camera's pose while walking: twice to
 # four times the errors that scripts/walk_study.py measures, for what no model contains.
@@ -98,7 +98,7 @@ class Robot:
     """Perception, belief, gaze, planning and walking, one after the other.
 
     Args:
-        walking: the walking engine.
+        walking: walks, and gets up after a fall.
         camera: intrinsics of the head camera.
         vision: detector; unused when the frames carry detections.
         belief: estimator.
@@ -112,7 +112,7 @@ class Robot:
     def __init__(
         self,
         *,
-        walking: WalkingEngine,
+        walking: Walker,
         camera: PinholeCamera,
         vision: Sees,
         belief: Believes,
@@ -148,7 +148,8 @@ class Robot:
             self.command = self._script.at(sensed.time)
         started = perf_counter()
         targets = self._walking.step(sensed.body, self.command, self.head)
-        self.tally.add(self._walking, perf_counter() - started)
+        if not self._walking.down:
+            self.tally.add(self._walking, perf_counter() - started)
         if sensed.shutter:
             self._taken.append((sensed.time, self._walking.state()))
         if sensed.image is not None or sensed.detections is not None:
@@ -161,6 +162,9 @@ class Robot:
 
     def _perceive(self, sensed: SensorFrame) -> None:
         then = self._state_at(sensed.captured)
+        if then.phase.down or self._walking.down:
+            self._wait()
+            return
         if sensed.detections is not None:
             detections = sensed.detections
         else:
@@ -194,6 +198,13 @@ class Robot:
             task=task,
         )
         self._frames += 1
+
+    def _wait(self) -> None:
+        """Off its feet the robot does not know where its camera is: neither see nor decide."""
+        self._motion = None
+        self.head = HeadTarget()
+        if self._script is None:
+            self.command = VelocityCommand()
 
     def _state_at(self, captured: float) -> WalkingState:
         """The body when a picture was taken; what was taken earlier never arrives."""

@@ -15,9 +15,9 @@ from navigation.planner import Planner
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.own_body import BodyPart
-from walking.engine import WalkingEngine
 from walking.robot_model import RobotModel
 from walking.similarity import parameters_for
+from walking.walker import Walker
 
 # The arms as the head sees them, with room for their swing: shoulder, elbow, hand in R [m].
 # Measured over 25 s of walking: shoulders move 2 mm, hands 2 cm.
@@ -59,7 +59,7 @@ def build_robot(
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
         planner = Planner(navigation, limits)
     return Robot(
-        walking=WalkingEngine(body, parameters_for(body, scenario.walking_parameters())),
+        walking=Walker(body, parameters_for(body, scenario.walking_parameters())),
         camera=camera,
         vision=Detector(camera, scenario.vision_parameters(), arms()),
         belief=build_estimator(scenario, layout, rng),

@@ -34,6 +34,8 @@ class Plant:
         slope: of the floor, uphill in the direction `uphill` [rad].
         uphill: that direction [rad].
         bump: height of the boxes strewn on the floor [m].
+        self_contact: whether trunk, head and arms touch the rest of the body, too; the model
+            leaves that out.
     """
 
     robot: Path = ROBOT
@@ -46,6 +48,7 @@ class Plant:
     slope: float = 0.0
     uphill: float = 0.0
     bump: float = 0.0
+    self_contact: bool = False
 
     @property
     def floor_quaternion(self) -> np.ndarray:
@@ -70,6 +73,8 @@ def build(plant: Plant, rng: np.random.Generator) -> mujoco.MjModel:
     for geom in spec.geoms:
         if geom.name.endswith("_sole"):
             geom.friction = [plant.friction, 0.01, 0.001]
+    if plant.self_contact:
+        _touch_oneself(spec)
     total = sum(body.mass for body in spec.bodies)
     torso = spec.body("torso_link")
     shift = np.array([plant.com_forward, plant.com_left, 0.0])
@@ -78,6 +83,15 @@ def build(plant: Plant, rng: np.random.Generator) -> mujoco.MjModel:
         body.mass *= plant.mass
         body.inertia = plant.mass * body.inertia
     return spec.compile()
+
+
+def _touch_oneself(spec: mujoco.MjSpec) -> None:
+    """Let all that is solid touch, but for the thighs and the pelvis that they hang on."""
+    for geom in spec.geoms:
+        if geom.contype or geom.conaffinity:
+            geom.contype = geom.conaffinity = 7
+    for side in "lr":
+        spec.add_exclude(bodyname1="base_link", bodyname2=f"{side}_hip_pitch_link")
 
 
 def _bump(spec: mujoco.MjSpec, height: float, rng: np.random.Generator) -> mujoco.MjsGeom:

@@ -42,9 +42,15 @@ class WalkingEngine:
     Args:
         robot: the robot's numbers.
         parameters: of the engine.
+        odometry: dead reckoning to go on with, from the origin if left out.
     """
 
-    def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
+    def __init__(
+        self,
+        robot: RobotModel,
+        parameters: WalkingParameters,
+        odometry: LegOdometry | None = None,
+    ) -> None:
         self._robot = robot
         self._parameters = parameters
         pattern = parameters.pattern
@@ -66,7 +72,7 @@ class WalkingEngine:
         self._posture = Posture(robot, parameters)
         base = pattern.pelvis_height - robot.legs[0].hip_z
         self._feedforward = FeedForward(robot, parameters.stabilizer, base)
-        self._odometry = LegOdometry(parameters.odometry)
+        self._odometry = odometry or LegOdometry(parameters.odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
         self._pelvis = self._posture.pelvis(self._gait, (self._pendulum.x, self._pendulum.y))
@@ -116,6 +122,13 @@ class WalkingEngine:
             set-points of all joints.
         """
         body = self._sense(sensors)
+        left, right = body.feet
+        self._odometry.update(
+            body.heading,
+            ((left.x, left.y), (right.x, right.y)),
+            body.right_load,
+            stepping=self._gait.stepping,
+        )
         error = self._estimate(body)
         self._transition.remember()
         self._command(command, error)
@@ -141,6 +154,10 @@ class WalkingEngine:
         self._footing.feet = gait.support_feet
         gait.advance(moving=moving)
         return self._realize(body, zmp, load, self._head.advance(head))
+
+    def observe(self, sensors: BodySensors) -> None:
+        """A tick in which something else moves the joints: only the attitude is followed."""
+        self._sense(sensors)
 
     def state(self) -> WalkingState:
         """Snapshot after the last tick; it changes nothing.
@@ -168,7 +185,7 @@ class WalkingEngine:
             roll=body.roll,
             pitch=body.pitch,
             step_count=gait.completed,
-            fallen=self._fallen,
+            fallen=self.fallen,
             balance=balance(
                 plan,
                 gait,
@@ -182,7 +199,8 @@ class WalkingEngine:
         )
 
     @property
-    def _fallen(self) -> bool:
+    def fallen(self) -> bool:
+        """Whether the trunk is tilted so far that the robot must have fallen."""
         limit = self._parameters.estimator.fall_tilt
         return hypot(self._tilt.roll, self._tilt.pitch) > limit
 
@@ -191,13 +209,6 @@ class WalkingEngine:
         roll, pitch, heading = roll_pitch_yaw((w, x, y, z))
         self._tilt.update(roll, pitch, sensors.gyro.tolist())
         body = measure(self._robot, sensors, self._tilt.roll, self._tilt.pitch, heading)
-        left, right = body.feet
-        self._odometry.update(
-            heading,
-            ((left.x, left.y), (right.x, right.y)),
-            body.right_load,
-            stepping=self._gait.stepping,
-        )
         self._sensors, self._body = sensors, body
         self._ticks += 1
         return body
@@ -267,7 +278,7 @@ class WalkingEngine:
         gait, foot = self._gait, self._gait.footholds[0]
         share = self._parameters.stabilizer.step_error
         pushed = self._stabilizer.exceeds(foot, error, share)
-        if self._fallen or not (moving or pushed):
+        if self.fallen or not (moving or pushed):
             return
         opening_left = self._planner.opening_left(self._steering.velocity)
         if pushed:

@@ -64,19 +64,27 @@ class ErrorGrowth:
 
     def add(self, x: float, y: float, yaw: float, *, stepping: bool) -> None:
         """One tick at a pose [m, m, rad]."""
-        turn = self._turn
-        self._xx += y * y * turn
-        self._xy -= x * y * turn
-        self._xw += y * turn
-        self._yy += x * x * turn
-        self._yw -= x * turn
-        self._ww += turn
+        self._add_turn(x, y, self._turn)
         if stepping:
             c, s = cos(yaw), sin(yaw)
             along, across = self._forward, self._left
             self._xx += c * c * along + s * s * across
             self._xy += c * s * (along - across)
             self._yy += s * s * along + c * c * across
+
+    def jump(self, x: float, y: float, displacement: float, turn: float) -> None:
+        """An unseen move at x, y: standard deviation of it per axis [m] and of its turn [rad]."""
+        self._add_turn(x, y, turn * turn)
+        self._xx += displacement * displacement
+        self._yy += displacement * displacement
+
+    def _add_turn(self, x: float, y: float, variance: float) -> None:
+        self._xx += y * y * variance
+        self._xy -= x * y * variance
+        self._xw += y * variance
+        self._yy += x * x * variance
+        self._yw -= x * variance
+        self._ww += variance
 
     def covariance(self) -> Array:
         """Error so far as a motion of the odometry frame (3, 3)."""
@@ -144,6 +152,18 @@ class LegOdometry:
             self.y += rest * (left[1] - ply) + load * (right[1] - pry)
             self._growth.add(self.x, self.y, self._yaw, stepping=stepping)
         self._arms = left, right
+
+    def interrupt(self, displacement: float, turn: float) -> None:
+        """The robot has left its feet: what comes next starts from new footholds.
+
+        The IMU goes on to tell the heading; where the robot is now was not seen.
+
+        Args:
+            displacement: standard deviation of the unseen move per axis [m].
+            turn: standard deviation of the turn that the IMU misses [rad].
+        """
+        self._arms = None
+        self._growth.jump(self.x, self.y, displacement, turn)
 
     def pose(self) -> Odometry:
         """Pose of the robot frame in the odometry frame."""

@@ -246,6 +246,28 @@ class ArmParameters:
 
 
 @dataclass(frozen=True)
+class GetUpParameters:
+    """Getting up after a fall."""
+
+    enabled: bool = False
+    """Whether a fallen robot gets up, so that the run goes on."""
+    attempts: Annotated[int, Ge(1)] = 6
+    """Motions that are tried, turning over and rising each for one, before it gives up [1]."""
+    joint_speed: Annotated[float, Gt(0.0), RATE] = 12.0
+    """Fastest turn of a joint on the way from posture to posture [rad/s]."""
+    pace: Annotated[float, Gt(0.0), TIME] = 1.0
+    """Factor on the durations of the motions [1]."""
+    still_rate: Annotated[float, Gt(0.0), RATE] = 0.3
+    """Angular velocity of the trunk below which it is at rest, each axis [rad/s]."""
+    still_time: Annotated[float, Gt(0.0), TIME] = 0.2
+    """Time for which it must be [s]."""
+    displacement: Annotated[float, Ge(0.0), LENGTH] = 0.3
+    """How far a fall and getting up move the robot unseen, standard deviation per axis [m]."""
+    turn: Annotated[float, Ge(0.0), NUMBER] = 0.05
+    """How much of the turn meanwhile the IMU misses, standard deviation [rad]."""
+
+
+@dataclass(frozen=True)
 class WalkingParameters:
     """All parameters of the walking engine."""
 
@@ -265,3 +287,5 @@ class WalkingParameters:
     """Head."""
     arms: ArmParameters = field(default_factory=ArmParameters)
     """Arms."""
+    get_up: GetUpParameters = field(default_factory=GetUpParameters)
+    """Getting up."""

@@ -12,12 +12,19 @@ Array = NDArray[np.float64]
 
 
 class Phase(StrEnum):
-    """Phase of the gait."""
+    """Phase of the gait, or of a fall: getting up, or given up."""
 
     STANDING = "standing"
     DOUBLE_SUPPORT = "double"
     LEFT_SUPPORT = "left"
     RIGHT_SUPPORT = "right"
+    GETTING_UP = "up"
+    FALLEN = "fallen"
+
+    @property
+    def down(self) -> bool:
+        """Whether the robot is off its feet, so that neither odometry nor camera pose hold."""
+        return self in (Phase.GETTING_UP, Phase.FALLEN)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.world.episodes import Episodes
+from hsr8.world.falls import Falls
 from hsr8.world.layout import Layout
 from hsr8.world.truth import Truth
 from navigation.angles import wrap
@@ -54,8 +55,7 @@ class Metrics:
         self._paused = 0.0
         self._anchor: tuple[float, float, float] | None = None
         self._clearance = inf
-        self._fallen = False
-        self._falls = 0
+        self._falls = Falls()
         self._frames = 0
         self._squares = np.zeros(2)
         self._nees = 0.0
@@ -74,10 +74,8 @@ class Metrics:
         self._walk.add(record)
         self._episodes.add(truth.time, truth.contacts)
         self._clearance = min(self._clearance, truth.clearance)
-        if truth.fallen and not self._fallen:
-            self._falls += 1
-        self._fallen = truth.fallen
-        if not self._fallen:
+        self._falls.add(truth.time, fallen=truth.fallen)
+        if not self._falls.lasting(truth.time):
             self._tilt = max(self._tilt, hypot(record.walking.roll, record.walking.pitch))
         if record.frame is not None:
             self._look(record.frame, truth)
@@ -106,7 +104,7 @@ class Metrics:
         return {
             "success": self._success(exit_reason, goal_reached),
             "collisions": len(collisions),
-            "falls": self._falls,
+            "falls": self._falls.count,
             "via_points_total": self._via_total(),
             "via_points_passed": self._via - self._via_missed,
             "goal_reached": goal_reached,
@@ -144,7 +142,7 @@ class Metrics:
         return len(self._points) - (1 if self._has_goal else 0)
 
     def _success(self, exit_reason: str, goal_reached: bool) -> bool:
-        if self._falls or self._episodes.collisions or self._via_missed:
+        if self._falls.count or self._episodes.collisions or self._via_missed:
             return False
         if self._has_goal:
             return goal_reached and exit_reason == "goal"

@@ -134,3 +134,22 @@ def test_standing_the_feet_go_nowhere():
     covariance = increment(readings[0], readings[-1]).covariance
     assert covariance[:2, :2] == pytest.approx(np.zeros((2, 2)), abs=1e-18)
     assert covariance[2, 2] > 0.0
+
+
+def test_an_interruption_keeps_the_place_and_admits_what_it_hides():
+    odometry = LegOdometry(PARAMETERS)
+    feet = ((0.0, 0.04), (0.02, -0.04))
+    for k in range(100):
+        body = (0.002 * k, 0.001 * k, 0.3)
+        odometry.update(body[2] - 0.3, feet_in_body(body, feet), 0.5, stepping=True)
+    before = odometry.pose()
+    odometry.interrupt(0.3, 0.05)
+    # It stands up elsewhere, turned by half a radian.
+    elsewhere = (1.0, -2.0, 0.8)
+    at_feet = feet_in_body(elsewhere, ((1.0, -1.96), (1.02, -2.04)))
+    odometry.update(elsewhere[2] - 0.3, at_feet, 0.5, stepping=False)
+    after = odometry.pose()
+    assert (after.x, after.y) == pytest.approx((before.x, before.y))
+    assert after.yaw - before.yaw == pytest.approx(0.5)
+    unseen = increment(before, after).covariance
+    assert np.diag(unseen) == pytest.approx([0.3**2, 0.3**2, 0.05**2], rel=1e-3)

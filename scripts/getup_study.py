@@ -1,0 +1,245 @@
+"""Push a walking robot over in full physics and see whether it gets up and walks on.
+
+    python scripts/getup_study.py falls --seeds 0 20
+    python scripts/getup_study.py falls --seeds 1000 1100 --write
+    python scripts/getup_study.py search --posture squat --seeds 0 10
+
+A push of 3 to 4 N s in 50 ms comes from a random side in a walk at a random velocity. `search`
+draws the numbers of one key posture anew around the best ones so far. Tune on seeds 0-99, report
+on seeds from 1000.
+"""
+
+import argparse
+import platform
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from walking_body import ROBOT, Body, Plant
+
+from walking.command import HeadTarget, VelocityCommand
+from walking.get_up import GetUp, Outcome
+from walking.get_up_motion import MOTIONS, Motions
+from walking.key_posture import STRAIGHT, KeyPosture
+from walking.lying import lying_on, up_in_trunk
+from walking.parameters import CONTROL_PERIOD, GetUpParameters, WalkingParameters
+from walking.robot_model import RobotModel
+from walking.walker import Walker
+
+RESULT = Path(__file__).resolve().parents[1] / "docs" / "results" / "getup.md"
+LEAD = (2.0, 3.0)  # of walking before the push [s]
+PUSH = 0.05  # duration [s]
+IMPULSE = (3.0, 4.0)  # [N s]
+FALL_TIME = 2.5  # a robot that is not down by then has caught itself [s]
+PATIENCE = 60.0  # for getting up [s]
+AFTER = 5.0  # of walking on, a fall in which is a second one [s]
+BOX = ((-0.2, -0.1, -0.8), (0.4, 0.1, 0.8))  # velocity [m/s, m/s, rad/s]
+
+
+@dataclass(frozen=True)
+class Fall:
+    """What came of one push.
+
+    Attributes:
+        side: first lain on.
+        time: from the fall to standing, none if it never stood [s].
+        attempts: motions it took.
+        again: whether it fell again at once.
+        moved: how far it stands from where it fell [m].
+    """
+
+    side: str
+    time: float | None
+    attempts: int
+    again: bool
+    moved: float
+
+
+class Trial:
+    """A walk with a push.
+
+    Args:
+        robot: the robot's numbers.
+        plant: the body in truth.
+        seed: draws everything.
+    """
+
+    def __init__(self, robot: RobotModel, plant: Plant, seed: int) -> None:
+        rng = np.random.default_rng([seed, 23])
+        self._body = Body(rng, plant)
+        parameters = WalkingParameters(get_up=GetUpParameters(enabled=True))
+        self._walker = Walker(robot, parameters)
+        self._lead, self._impulse = rng.uniform(*LEAD), rng.uniform(*IMPULSE)
+        angle = rng.uniform(0.0, 2.0 * np.pi)
+        self._direction = np.array([np.cos(angle), np.sin(angle)])
+        self._command = VelocityCommand(*rng.uniform(*BOX).tolist())
+
+    def run(self) -> Fall | None:
+        """Walk, fall, get up, walk on; None if the push did not fell the robot."""
+        body, walker = self._body, self._walker
+        self._walk(self._lead)
+        body.data.xfrc_applied[body.torso, :2] = self._impulse / PUSH * self._direction
+        self._walk(PUSH)
+        body.data.xfrc_applied[body.torso, :2] = 0.0
+        self._walk(FALL_TIME, until_down=True)
+        if not walker.down:
+            return None
+        fallen_at, place = body.data.time, body.pose[:2]
+        side, attempts = "", 0
+        while walker.down and body.data.time - fallen_at < PATIENCE:
+            get_up = walker._get_up
+            if get_up.attempts and not side:
+                side = str(lying_on(up_in_trunk(body.data.qpos[3:7].tolist())))
+            attempts = get_up.attempts
+            if get_up.outcome is Outcome.GAVE_UP:
+                break
+            self._tick()
+        moved = float(np.linalg.norm(body.pose[:2] - place))
+        if walker.down:
+            return Fall(side, None, attempts, again=False, moved=moved)
+        time = body.data.time - fallen_at
+        self._walk(AFTER, until_down=True)
+        return Fall(side, time, attempts, again=walker.down, moved=moved)
+
+    def _walk(self, seconds: float, *, until_down: bool = False) -> None:
+        for _ in range(round(seconds / CONTROL_PERIOD)):
+            self._tick()
+            if until_down and self._walker.down:
+                return
+
+    def _tick(self) -> None:
+        targets = self._walker.step(self._body.sense(), self._command, HeadTarget())
+        self._body.apply(targets.position + targets.offset)
+
+
+def table(name: str, falls: list[Fall]) -> list[str]:
+    """Rows by the side first lain on."""
+    rows = []
+    sides = Counter(f.side for f in falls)
+    for side in (*sorted(sides), "all"):
+        these = [f for f in falls if side in ("all", f.side)]
+        times = np.array([f.time for f in these if f.time is not None])
+        first = sum(
+            f.time is not None and f.attempts <= (1 if f.side == "front" else 2) for f in these
+        )
+        spread = "—"
+        if len(times):
+            low, high = np.percentile(times, [50, 95])
+            spread = f"{low:.1f} / {high:.1f} / {times.max():.1f}"
+        moved = float(np.sqrt(np.mean([f.moved**2 for f in these])))
+        rows.append(
+            f"| {name} | {side} | {len(these)} | {len(times)} ({len(times) / len(these):.0%}) "
+            f"| {first} | {spread} | {sum(f.again for f in these)} | {moved:.2f} |"
+        )
+    return rows
+
+
+HEAD = (
+    "| body | first lain on | falls | got up | of them without a repeat "
+    "| time p50 / p95 / max, s | fell again within 5 s | moved, rms, m |\n"
+    "|---|---|---|---|---|---|---|---|"
+)
+
+
+def falls_study(robot: RobotModel, seeds: range, *, write: bool) -> None:
+    """Print, and perhaps write, the table."""
+    lines = [HEAD]
+    for name, plant in (
+        ("as modelled", Plant()),
+        ("touching itself", Plant(self_contact=True)),
+    ):
+        results = [Trial(robot, plant, seed).run() for seed in seeds]
+        falls = [fall for fall in results if fall is not None]
+        for seed, fall in zip(seeds, results, strict=True):
+            if fall is not None and (fall.time is None or fall.again):
+                print(seed, fall)
+        lines += table(name, falls)
+        print("\n".join(lines), flush=True)
+    if write:
+        text = RESULT.read_text(encoding="utf-8")
+        before = text[: text.index("<!-- table -->")]
+        versions = f"Python {platform.python_version()}, MuJoCo {mujoco.__version__}"
+        source = f"`python scripts/getup_study.py falls --seeds {seeds.start} {seeds.stop} --write`"
+        body = "\n".join(lines)
+        RESULT.write_text(f"{before}<!-- table -->\n{source}, {versions}.\n\n{body}\n", "utf-8")
+
+
+def lie(body: Body, rng: np.random.Generator) -> None:
+    """Drop the robot somehow onto its front."""
+    data = body.data
+    pitch, roll, yaw = 0.5 * np.pi, *rng.normal(0.0, (0.2, 1.0)).tolist()
+    half = 0.5 * np.array([roll, pitch, yaw])
+    quaternion = np.array([1.0, 0.0, 0.0, 0.0])
+    for axis in (2, 1, 0):
+        turn = np.array([np.cos(half[axis]), 0.0, 0.0, 0.0])
+        turn[1 + axis] = np.sin(half[axis])
+        before = quaternion.copy()
+        mujoco.mju_mulQuat(quaternion, before, turn)
+    data.qpos[2], data.qpos[3:7] = 0.12, quaternion
+    mujoco.mj_forward(body.model, data)
+
+
+def score(robot: RobotModel, motions: Motions, seeds: Iterable[int]) -> float:
+    """Mean time to get up from the front, failures counting for `PATIENCE` [s]."""
+    parameters = GetUpParameters(attempts=1)
+    times = []
+    for seed in seeds:
+        rng = np.random.default_rng([seed, 29])
+        body = Body(rng, Plant(self_contact=seed % 2 == 1))
+        lie(body, rng)
+        get_up = GetUp(robot, parameters, np.array(STRAIGHT.angles()), motions)
+        while get_up.outcome is Outcome.UNDER_WAY:
+            body.apply(get_up.step(body.sense()).position)
+        times.append(body.data.time if get_up.outcome is Outcome.UP else PATIENCE)
+    return float(np.mean(times))
+
+
+def search(robot: RobotModel, name: str, seeds: range, rounds: int) -> None:
+    """Hill-climb on the numbers of one symmetric posture of the rise."""
+    rise = list(MOTIONS.rise)
+    index = [posture.name for posture in rise].index(name)
+    rng = np.random.default_rng(0)
+    best = score(robot, MOTIONS, seeds)
+    print(f"{best:.2f} s {rise[index]}", flush=True)
+    for _ in range(rounds):
+        posture = varied(rise[index], rng)
+        tried = [*rise[:index], posture, *rise[index + 1 :]]
+        result = score(robot, replace(MOTIONS, rise=tuple(tried)), seeds)
+        if result < best:
+            best, rise = result, tried
+            print(f"{best:.2f} s {posture}", flush=True)
+
+
+def varied(posture: KeyPosture, rng: np.random.Generator) -> KeyPosture:
+    """A posture like it, what is symmetric and in the sagittal plane changed a little."""
+    yaw, roll, pitch, knee, ankle, turn = posture.legs[0]
+    pitch, knee, ankle = (np.array([pitch, knee, ankle]) + rng.normal(0.0, 0.1, 3)).tolist()
+    shoulder = posture.arms[0][0] + rng.normal(0.0, 0.3)
+    both = (yaw, roll, pitch, knee, ankle, turn)
+    arms = (shoulder, *posture.arms[0][1:])
+    until = None if posture.until is None else posture.until + rng.normal(0.0, 0.05)
+    time, hold = posture.time * rng.lognormal(0.0, 0.2), posture.hold * rng.lognormal(0.0, 0.2)
+    return replace(posture, legs=(both, both), arms=(arms, arms), time=time, hold=hold, until=until)
+
+
+def main() -> None:
+    """Run one of the studies."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("study", choices=("falls", "search"))
+    parser.add_argument("--seeds", type=int, nargs=2, default=(0, 10), metavar=("FIRST", "END"))
+    parser.add_argument("--write", action="store_true", help=f"into {RESULT.name}")
+    parser.add_argument("--posture", default="squat", help="to vary, by its name")
+    parser.add_argument("--rounds", type=int, default=30)
+    options = parser.parse_args()
+    robot, seeds = RobotModel.from_mjcf(ROBOT), range(*options.seeds)
+    if options.study == "falls":
+        falls_study(robot, seeds, write=options.write)
+    else:
+        search(robot, options.posture, seeds, options.rounds)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+"""Walking that survives a fall: the engine, and getting up when it has failed."""
+
+from dataclasses import replace
+
+from walking.admission import AdmissionReport, Limit
+from walking.command import Command, HeadTarget
+from walking.engine import WalkingEngine
+from walking.get_up import GetUp, Outcome
+from walking.odometry import LegOdometry
+from walking.parameters import WalkingParameters
+from walking.robot_model import RobotModel
+from walking.sensing import BodySensors
+from walking.state import Phase, WalkingState
+from walking.targets import JointTargets
+
+
+class Walker:
+    """Walks a humanoid and gets it up again: call `step` once per control tick of 5 ms.
+
+    After a fall a new engine begins from standing; it goes on with the odometry of the one
+    before, whose covariance grows by what the fall has hidden.
+
+    Args:
+        robot: the robot's numbers.
+        parameters: of walking and getting up.
+
+    Attributes:
+        get_ups: how often the robot has got up.
+    """
+
+    def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
+        self._robot = robot
+        self._parameters = parameters
+        self._odometry = LegOdometry(parameters.odometry)
+        self._engine = WalkingEngine(robot, parameters, self._odometry)
+        self._get_up: GetUp | None = None
+        self._steps = 0
+        self.get_ups = 0
+
+    @property
+    def parameters(self) -> WalkingParameters:
+        """Parameters of walking and getting up."""
+        return self._parameters
+
+    @property
+    def admission(self) -> AdmissionReport:
+        """What became of the last command of a robot on its feet."""
+        return self._engine.admission
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """Constraints that altered that command, none if it is obeyed."""
+        return self._engine.limits
+
+    @property
+    def zmp_depth(self) -> float:
+        """How far its planned ZMP lay inside the soles that carry it [m]."""
+        return self._engine.zmp_depth
+
+    @property
+    def down(self) -> bool:
+        """Whether the robot lies or gets up, and obeys no command."""
+        return self._get_up is not None
+
+    def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
+        """One control tick.
+
+        Args:
+            sensors: read at the start of the tick.
+            command: velocity or footsteps wanted; not obeyed while the robot is down.
+            head: direction to look; straight ahead while the robot is down.
+
+        Returns:
+            set-points of all joints.
+        """
+        get_up = self._get_up
+        if get_up is None:
+            targets = self._engine.step(sensors, command, head)
+            if self._parameters.get_up.enabled and self._engine.fallen:
+                angles = targets.position + targets.offset
+                self._get_up = GetUp(self._robot, self._parameters.get_up, angles)
+            return targets
+        self._engine.observe(sensors)
+        targets = get_up.step(sensors)
+        if get_up.outcome is not Outcome.UP:
+            return targets
+        self._stand()
+        return self._engine.step(sensors, command, head)
+
+    def state(self) -> WalkingState:
+        """Snapshot after the last tick; it changes nothing.
+
+        Raises:
+            RuntimeError: no tick has been made yet.
+        """
+        state = self._engine.state()
+        steps = self._steps + state.step_count
+        if self._get_up is None:
+            return replace(state, step_count=steps) if self._steps else state
+        gave_up = self._get_up.outcome is Outcome.GAVE_UP
+        phase = Phase.FALLEN if gave_up else Phase.GETTING_UP
+        return replace(state, step_count=steps, phase=phase, fallen=True)
+
+    def _stand(self) -> None:
+        """Back to walking, from the ready posture where the robot now stands."""
+        p = self._parameters
+        self._steps = self.state().step_count
+        self._odometry.interrupt(p.get_up.displacement, p.get_up.turn)
+        self._engine = WalkingEngine(self._robot, p, self._odometry)
+        self._get_up = None
+        self.get_ups += 1
