@@ -13,19 +13,18 @@ from walking.gait import Gait
 from walking.generator import make_generator
 from walking.head import Head
 from walking.joints import HEAD
-from walking.leg_kinematics import foot_pose
 from walking.lipm import Lipm
 from walking.measurement import BodyMeasurement, measure
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import PendulumState, ZmpRamp
-from walking.posture import Posture
+from walking.posture import Posture, ready_stance
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
 from walking.sensing import BodySensors
 from walking.snapshot import PlanToOdometry, balance, camera_pose
 from walking.stabilizer import Stabilizer
-from walking.state import Footstep, WalkingState
+from walking.state import WalkingState
 from walking.steering import Steering
 from walking.stride import Strides
 from walking.support import Footing, SupportRegion, depth, support_region
@@ -57,7 +56,7 @@ class WalkingEngine:
         self._lipm = Lipm(pattern.lipm_height)
         self._generator = make_generator(self._lipm, pattern, robot.sole)
         self._planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
-        stance = _stance(robot)
+        stance = ready_stance(robot)
         self._gait = Gait(parameters, self._planner, stance)
         zmp = self._gait.plan(stance[1], self._planner.still, moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
@@ -389,15 +388,3 @@ class WalkingEngine:
             offset[6 * index + 4] += ankle.pitch
             offset[6 * index + 5] += ankle.roll
         return JointTargets(position=position, offset=offset)
-
-
-def _stance(robot: RobotModel) -> tuple[Footstep, Footstep]:
-    """Feet of the ready posture; the plan frame has its origin under the hips."""
-    a, b, c, d, e, f = robot.ready[:6].tolist()
-    left = foot_pose(robot.legs[0], (a, b, c, d, e, f))
-    a, b, c, d, e, f = robot.ready[6:12].tolist()
-    right = foot_pose(robot.legs[1], (a, b, c, d, e, f))
-    return (
-        Footstep(left=True, x=left.x, y=left.y, yaw=left.yaw),
-        Footstep(left=False, x=right.x, y=right.y, yaw=right.yaw),
-    )

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from walking.arms import arm_swing
 from walking.gait import FootReference, Gait
 from walking.joints import HEAD
-from walking.leg_kinematics import FootPose, LegAngles, leg_angles
+from walking.leg_kinematics import FootPose, LegAngles, foot_pose, leg_angles
 from walking.parameters import WalkingParameters
 from walking.robot_model import RobotModel
 from walking.saturation import beyond
+from walking.state import Footstep
 
 Array = NDArray[np.float64]
 
@@ -127,3 +128,15 @@ class Posture:
                 own[axis] *= p.tilt_decay
                 if abs(own[axis]) < 1e-6:
                     own[axis] = 0.0
+
+
+def ready_stance(robot: RobotModel) -> tuple[Footstep, Footstep]:
+    """Feet of the ready posture; the plan frame has its origin under the hips."""
+    a, b, c, d, e, f = robot.ready[:6].tolist()
+    left = foot_pose(robot.legs[0], (a, b, c, d, e, f))
+    a, b, c, d, e, f = robot.ready[6:12].tolist()
+    right = foot_pose(robot.legs[1], (a, b, c, d, e, f))
+    return (
+        Footstep(left=True, x=left.x, y=left.y, yaw=left.yaw),
+        Footstep(left=False, x=right.x, y=right.y, yaw=right.yaw),
+    )
