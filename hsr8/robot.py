@@ -15,6 +15,7 @@ from navigation.observation import CameraView, Frame, Observation
 from navigation.prediction import predict
 from vision.camera import CameraPose, PinholeCamera
 from vision.detection import Detection
+from vision.parameters import PoseParameters
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.odometry import increment
 from walking.sensing import BodySensors
@@ -22,12 +23,6 @@ from walking.state import HeadCameraPose, Odometry, WalkingState
 from walking.targets import JointTargets
 from walking.walker import Walker
 
-# How well encoders, IMU and leg kinematics know the camera's pose while walking: twice to
-# four times the errors that scripts/walk_study.py measures, for what no model contains.
-TILT_SIGMA = 0.003  # [rad]
-ROLL_SIGMA = 0.003  # [rad]
-YAW_SIGMA = 0.002  # [rad]
-HEIGHT_SIGMA = 0.001  # [m]
 UNDER_WAY = 128  # pictures that may be under way at a time
 
 
@@ -101,6 +96,7 @@ class Robot:
         walking: walks, and gets up after a fall.
         camera: intrinsics of the head camera.
         vision: detector; unused when the frames carry detections.
+        pose: how well the body knows the pose of the camera.
         belief: estimator.
         mission: sequence of destinations.
         gaze: gaze planner.
@@ -115,6 +111,7 @@ class Robot:
         walking: Walker,
         camera: PinholeCamera,
         vision: Sees,
+        pose: PoseParameters,
         belief: Believes,
         mission: Goes,
         gaze: Looks,
@@ -125,6 +122,7 @@ class Robot:
         self._walking = walking
         self._camera = camera
         self._vision = vision
+        self._pose = pose
         self._belief = belief
         self._mission = mission
         self._gaze = gaze
@@ -169,7 +167,7 @@ class Robot:
             detections = sensed.detections
         else:
             assert sensed.image is not None
-            detections = self._vision.detect(sensed.image, camera_pose(then.camera))
+            detections = self._vision.detect(sensed.image, camera_pose(then.camera, self._pose))
         measured = self._frame(sensed.captured, then, detections)
         belief = estimate = self._belief.update(measured)
         state = then
@@ -233,7 +231,7 @@ class Robot:
             tilt=head.tilt,
             horizontal_fov=self._camera.horizontal_fov,
             vertical_fov=self._camera.vertical_fov,
-            yaw_sigma=YAW_SIGMA,
+            yaw_sigma=self._pose.yaw_sigma,
         )
 
     def _frame(self, time: float, state: WalkingState, detections: tuple[Detection, ...]) -> Frame:
@@ -267,13 +265,13 @@ def _odometry(state: WalkingState) -> np.ndarray:
     return np.array([odometry.x, odometry.y, odometry.yaw])
 
 
-def camera_pose(head: HeadCameraPose) -> CameraPose:
+def camera_pose(head: HeadCameraPose, sigma: PoseParameters) -> CameraPose:
     """The head camera's pose with its uncertainty, as vision wants it."""
     return CameraPose(
         rotation=head.rotation,
         position=head.position,
-        tilt_sigma=TILT_SIGMA,
-        roll_sigma=ROLL_SIGMA,
-        yaw_sigma=YAW_SIGMA,
-        height_sigma=HEIGHT_SIGMA,
+        tilt_sigma=sigma.tilt_sigma,
+        roll_sigma=sigma.roll_sigma,
+        yaw_sigma=sigma.yaw_sigma,
+        height_sigma=sigma.height_sigma,
     )

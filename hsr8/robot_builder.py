@@ -62,6 +62,7 @@ def build_robot(
         walking=Walker(body, parameters_for(body, scenario.walking_parameters())),
         camera=camera,
         vision=Detector(camera, scenario.vision_parameters(), arms()),
+        pose=scenario.vision_parameters().pose,
         belief=build_estimator(scenario, layout, rng),
         mission=mission,
         gaze=GazePlanner(navigation, limits, beacons, camera.horizontal_fov, camera.vertical_fov),

@@ -1,7 +1,7 @@
 """Beacons: posts with one reserved colour above another."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from vision.blob import Blob
 from vision.cylinder import Candidate, RimCue
@@ -84,13 +84,13 @@ def _merge(a: Side, b: Side) -> Side | None:
     low, high = min(a.low, b.low), max(a.high, b.high)
     if not (a.trusted and b.trusted):
         best = a if a.trusted else b
-        return Side(best.azimuth, best.sigma, best.low, best.high, best.trusted, hidden)
+        return replace(best, hidden=hidden)
     if abs(a.azimuth - b.azimuth) > SIDE_TOLERANCE * (a.sigma + b.sigma) / 2.0:
         return None
     # The longer part averages more pixels.
     wa, wb = a.high - a.low + 1e-3, b.high - b.low + 1e-3
     azimuth = (wa * a.azimuth + wb * b.azimuth) / (wa + wb)
-    return Side(azimuth, max(a.sigma, b.sigma), low, high, True, hidden)
+    return Side(azimuth, max(a.sigma, b.sigma), a.count + b.count, low, high, True, hidden)
 
 
 def _rims(

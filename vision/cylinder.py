@@ -16,7 +16,7 @@ from math import asin, atan2, cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.outline import Rim, Side
+from vision.outline import Rim, Side, independent
 from vision.view import View
 
 Array = NDArray[np.float64]
@@ -33,6 +33,7 @@ MIN_DISTANCE, MAX_DISTANCE = 0.10, 12.0  # [m]
 MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
 FAR_SLOPE = -0.5  # a thing whose foot is seen less steeply is far
 MIN_SLOPE = 1e-6
+UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
 SHARED = 0.85  # axes nearer than this share of the radii's sum: the same place
 MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
 
@@ -127,6 +128,7 @@ def locate(
     candidates: Sequence[Candidate],
     view: View,
     roundness_sigma: float = 0.01,
+    edge_correlation: float = 0.1,
     stray: float = 3.5,
 ) -> list[Cylinder]:
     """Cylinders that explain the edges of each candidate best.
@@ -135,17 +137,24 @@ def locate(
         candidates: edges of one cylinder each; at least one rim, or both sides trusted.
         view: camera and pose.
         roundness_sigma: standard deviation of the outline relative to the radius [1].
+        edge_correlation: correlation of the errors of two points of one edge [1].
         stray: deviation from a rim that makes a point stray [standard deviations].
     """
     if not candidates:
         return []
-    return _Problem(candidates, view, roundness_sigma).solve(stray)
+    return _Problem(candidates, view, roundness_sigma, edge_correlation).solve(stray)
 
 
 class _Problem:
     """All candidates of one image, solved together: arrays over candidates (n, ...)."""
 
-    def __init__(self, candidates: Sequence[Candidate], view: View, roundness_sigma: float):
+    def __init__(
+        self,
+        candidates: Sequence[Candidate],
+        view: View,
+        roundness_sigma: float,
+        edge_correlation: float,
+    ) -> None:
         n = len(candidates)
         self.n = n
         self.h: float = view.height
@@ -155,7 +164,10 @@ class _Problem:
         )
         sides = [side for c in candidates for side in (c.left, c.right)]
         self.side = np.array([s.azimuth for s in sides]).reshape(n, SIDES)
+        self.common = edge_correlation
+        side_count = np.array([s.count for s in sides]).reshape(n, SIDES)
         self.side_sigma = np.array([s.sigma for s in sides]).reshape(n, SIDES)
+        self.side_sigma *= self._of_mean(side_count)
         self.side_low = np.array([s.low for s in sides]).reshape(n, SIDES)
         self.side_high = np.array([s.high for s in sides]).reshape(n, SIDES)
         self.trusted = np.array([s.trusted for s in sides]).reshape(n, SIDES)
@@ -234,9 +246,26 @@ class _Problem:
         size = self.n * MAX_RIMS
         self.count = np.bincount(self.rim, minlength=size)
         self.share = 1.0 / np.maximum(self.count, 1)
-        self.seen = self.count.reshape(self.n, MAX_RIMS) > 0
+        count = self.count.reshape(self.n, MAX_RIMS)
+        self.seen = count > 0
+        span = self._span(size).reshape(self.n, MAX_RIMS)
+        own = independent(np.maximum(count, 1), span / (UNIFORM * self.rim_sigma))
+        self.rim_mean_sigma = self.rim_sigma * self._of_mean(own)
         self.drop = self.rim_height.ravel()[self.rim] - self.h
         self.sign = self.rim_sign.ravel()[self.rim]
+
+    def _span(self, size: int) -> Array:
+        """Difference of the greatest and the smallest slope of each rim (3 n,)."""
+        low, high = np.full(size, np.inf), np.full(size, -np.inf)
+        np.minimum.at(low, self.rim, self.slope)
+        np.maximum.at(high, self.rim, self.slope)
+        span: Array = np.maximum(high - low, 0.0)
+        return span
+
+    def _of_mean(self, count: Array) -> Array:
+        """Standard deviation of the mean of so many points, relative to that of one."""
+        sigma: Array = np.sqrt(self.common + (1.0 - self.common) / count)
+        return sigma
 
     def _mean(self, values: Array) -> Array:
         """Mean over the points of each rim (n, 3), 0 where there are none."""
@@ -329,7 +358,7 @@ class _Problem:
         sigma[:, :SIDES] = np.where(self.trusted, np.hypot(self.side_sigma, round_sigma), hidden)
         slope = (self.rim_height - self.h) / d[:, None]
         sigma[:, SIDES:5] = np.where(
-            self.seen, np.hypot(self.rim_sigma, slope * round_sigma), NO_INFORMATION
+            self.seen, np.hypot(self.rim_mean_sigma, slope * round_sigma), NO_INFORMATION
         )
         sigma[:, 5] = self.prior_sigma
         # Small rotations of the camera: tilt about its left, roll about its heading,

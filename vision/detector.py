@@ -235,6 +235,7 @@ class Detector:
             [sighting.candidate for sighting in sightings],
             view,
             parameters.roundness_sigma,
+            parameters.edge_correlation,
             0.5 * parameters.step / parameters.edge_sigma,
         )
 

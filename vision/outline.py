@@ -26,6 +26,8 @@ END_PIXELS = 0.8  # and at least so much of it [pixel]
 NOWHERE = -9.0  # an azimuth that no point has [rad]
 ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [pixel]
 MAX_OVERHANG = 2.5  # a side does not lie farther inside what is seen than this [pixel]
+CUT = 4  # an edge has at least one point for so many at the border; fewer are noise there
+TURNS = 3.0  # an edge that crosses a pixel errs so many times less, and one time less
 OUTLIERS = 8  # one pixel in so many may stick out of a side
 
 
@@ -35,7 +37,8 @@ class Side:
 
     Attributes:
         azimuth: from the heading of the camera [rad].
-        sigma: its standard deviation [rad].
+        sigma: standard deviation of one point of it [rad].
+        count: of points with errors of their own that it was averaged over.
         low, high: slopes between which the edge is seen [1].
         trusted: it is an edge of the thing and not of what hides it or of the image.
         hidden: a nearer thing covers part of it.
@@ -43,6 +46,7 @@ class Side:
 
     azimuth: float
     sigma: float
+    count: float
     low: float
     high: float
     trusted: bool
@@ -108,7 +112,7 @@ def trace(
         blobs: of one image.
         padded: its labels with a frame of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: camera and pose.
-        edge_sigma: standard deviation of an edge [pixel].
+        edge_sigma: standard deviation of one point of an edge [pixel].
     """
     if not blobs:
         return []
@@ -119,6 +123,22 @@ def trace(
         Outline(sides[edges.left[k]], sides[edges.right[k]], rims[edges.bottom[k]], rims[top])
         for k, top in enumerate(edges.top)
     ]
+
+
+def independent(count: NDArray[np.intp], crossed: Array) -> Array:
+    """How many of an edge's points have errors of their own.
+
+    A pixel tells only that the edge passes through it, with an error that is uniform over
+    the pixel. An edge that runs along the pixels passes through all of them at the same
+    place and errs everywhere alike; one that crosses from pixel to pixel errs by turns.
+
+    Args:
+        count: points of each edge (n,).
+        crossed: how many pixels it crosses, at right angles to itself (n,).
+    """
+    alike = 1.0 / (1.0 + TURNS * crossed)
+    result: Array = 1.0 / np.maximum(1.0 / count, alike * alike)
+    return result
 
 
 class _Edges:
@@ -161,6 +181,7 @@ class _Edges:
         self.stops = np.cumsum(size)
         self.starts = self.stops - size
         self.edge = np.repeat(np.arange(len(sizes)), size)
+        self.across = np.where(self.edge % 4 < 2, u, v)
         middle = self.starts + size // 2
         au, av, su, sv = view.resolution(u[middle], v[middle])
         # Ends of rows are known along u, ends of columns along v.
@@ -205,11 +226,16 @@ class _Edges:
         trusted = furthest <= outermost + MAX_OVERHANG * self.azimuth_pixel
         chosen = candidate >= (outermost - ENVELOPE * self.azimuth_pixel)[edge]
         n = self._count(chosen)
+        trusted &= CUT * n >= self._count(self.outer == OUTSIDE)
         median = 0.5 * (ranked[last - (n - 1) // 2] + ranked[last - n // 2])
         azimuth = sign * np.where(trusted, median, furthest)
         bottom = np.minimum.reduceat(np.where(chosen, self.slope, np.inf), starts)
         top = np.maximum.reduceat(np.where(chosen, self.slope, -np.inf), starts)
-        columns = (azimuth, edge_sigma * self.azimuth_pixel, bottom, top, trusted, hidden)
+        sigma = edge_sigma * self.azimuth_pixel
+        lowest = np.minimum.reduceat(np.where(chosen, self.across, np.inf), starts)
+        highest = np.maximum.reduceat(np.where(chosen, self.across, -np.inf), starts)
+        count = independent(np.maximum(n, 1), np.maximum(highest - lowest, 0.0))
+        columns = (azimuth, sigma, count, bottom, top, trusted, hidden)
         return [Side(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]
 
     def rims(self, sides: Sequence[Side], edge_sigma: float) -> list[Rim]:
@@ -224,6 +250,7 @@ class _Edges:
             & (self.azimuth < (left - margin)[blob])
             & (self.outer != OUTSIDE)
         )
+        inner &= (CUT * self._count(inner) >= self._count(self.outer == OUTSIDE))[self.edge]
         stops = np.cumsum(self._count(inner)).tolist()
         azimuth, slope, outer = self.azimuth[inner], self.slope[inner], self.outer[inner]
         sigma = (edge_sigma * self.slope_pixel).tolist()

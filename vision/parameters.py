@@ -1,9 +1,23 @@
 """Settings of the detector."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
-from annotated_types import Ge, Gt
+from annotated_types import Ge, Gt, Interval
+
+
+@dataclass(frozen=True)
+class PoseParameters:
+    """How well the body knows where its camera is: measured while walking, noise and all."""
+
+    tilt_sigma: Annotated[float, Ge(0.0)] = 0.0009
+    """Standard deviation of the camera's pitch [rad]."""
+    roll_sigma: Annotated[float, Ge(0.0)] = 0.0008
+    """Standard deviation of its roll [rad]."""
+    yaw_sigma: Annotated[float, Ge(0.0)] = 0.0005
+    """Standard deviation of its direction from the robot's heading [rad]."""
+    height_sigma: Annotated[float, Ge(0.0)] = 0.0003
+    """Standard deviation of its height [m]."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +42,17 @@ class VisionParameters:
     """Smallest blob taken for an obstacle [pixel]."""
     min_beacon_area: Annotated[int, Ge(1)] = 5
     """Smallest blob taken for one colour of a beacon [pixel]."""
-    edge_sigma: Annotated[float, Gt(0.0)] = 0.35
-    """Standard deviation of one edge of a blob [pixel]."""
-    roundness_sigma: Annotated[float, Ge(0.0)] = 0.01
+    edge_sigma: Annotated[float, Gt(0.0)] = 0.30
+    """Standard deviation of one point of an edge of a blob [pixel]."""
+    edge_correlation: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.02
+    """Correlation of the errors of two points of one edge [1]."""
+    roundness_sigma: Annotated[float, Ge(0.0)] = 0.008
     """Standard deviation of a cylinder's outline, relative to its radius [1]."""
     step: Annotated[float, Gt(0.0)] = 2.5
     """An outline that leaves one cylinder's by so much shows another cylinder [pixel]."""
-    max_misfit: Annotated[float, Gt(0.0)] = 8.0
+    max_misfit: Annotated[float, Gt(0.0)] = 16.0
     """Sum of squared normalised residuals above which a blob is not one cylinder [1]."""
     max_relative_sigma: Annotated[float, Gt(0.0)] = 0.35
     """Detections whose distance is less certain, relative to itself, are dropped [1]."""
+    pose: PoseParameters = field(default_factory=PoseParameters)
+    """Uncertainty of the camera's pose."""

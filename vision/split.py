@@ -24,7 +24,7 @@ Labels = NDArray[np.uint8]
 MAX_CELLS = 128  # of the grid in each direction
 MIN_COLUMNS = 3  # a piece of an outline needs so many columns
 EXTRA_RADIUS = 0.04  # a cylinder may seem thicker or thinner by so much when matched [m]
-SIDE_SIGMA = 0.5  # standard deviation of an end of a piece [column]
+SIDE_SIGMA = 1.0  # standard deviation of an end of a piece [column]
 SIDE_MATCH = 2.5  # columns by which the sides of matching pieces may differ
 
 
@@ -308,6 +308,7 @@ def _part(
         Side(
             azimuth=sum(true) / len(true) if true else outermost,
             sigma=SIDE_SIGMA * grid.azimuth_step,
+            count=1.0,
             low=span[0],
             high=span[1],
             trusted=bool(true),

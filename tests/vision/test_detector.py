@@ -49,7 +49,8 @@ def test_a_lone_obstacle_is_located_wherever_the_head_looks(
     (detection,) = found
     assert detection.label == "green"
     assert not detection.occluded
-    assert_located(detection, thing)
+    # Six: hypothesis looks for edges that run along the pixels, which err everywhere alike.
+    assert_located(detection, thing, sigmas=6.0)
     assert abs(detection.distance - distance) < 0.02 + 0.03 * distance
     assert abs(detection.bearing - np.arctan2(thing.y, thing.x)) < radians(0.6)
 

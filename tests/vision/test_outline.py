@@ -2,12 +2,14 @@ from math import asin, degrees, hypot
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, Cylinder, at, paint, pose
 from vision.blob import find_blobs
 from vision.camera import CameraPose
 from vision.colour import COLOUR_CLASSES, OUTSIDE, ColourTable
-from vision.outline import Outline, trace
+from vision.outline import Outline, independent, trace
 from vision.view import View
 
 NAMES = ("", *COLOUR_CLASSES)
@@ -15,7 +17,11 @@ PIXEL = 1.0 / CAMERA.focal
 
 
 def outlines(things: list[Cylinder], gaze: CameraPose) -> dict[str, Outline]:
-    labels = ColourTable().classify(paint(things, gaze))
+    return outlines_in(paint(things, gaze), gaze)
+
+
+def outlines_in(image: np.ndarray, gaze: CameraPose) -> dict[str, Outline]:
+    labels = ColourTable().classify(image)
     blobs = find_blobs(labels, (20,) * 7)
     padded = np.pad(labels, 1, constant_values=OUTSIDE)
     traced = trace(blobs, padded, View(CAMERA, gaze), 0.35)
@@ -72,3 +78,26 @@ def test_a_side_beyond_the_border_is_not_trusted() -> None:
     seen = outlines([at(1.0, edge + 2.0, "green", 0.1)], pose(tilt=-0.3))["green"]
     assert not seen.left.trusted
     assert seen.right.trusted
+
+
+@given(count=st.integers(1, 80), crossed=st.floats(0.0, 20.0))
+def test_points_with_errors_of_their_own_are_one_at_least_and_all_at_most(count, crossed) -> None:
+    (own,) = independent(np.array([count]), np.array([crossed])).tolist()
+    (straight,) = independent(np.array([count]), np.array([0.0])).tolist()
+    (slanting,) = independent(np.array([count]), np.array([1e3])).tolist()
+    assert 1.0 <= own <= count * (1 + 1e-12)
+    assert straight == pytest.approx(1.0)
+    assert slanting == pytest.approx(count)
+
+
+def test_noise_at_the_border_of_the_image_makes_no_edge() -> None:
+    """One unrecognised pixel in the last column is not the side of what the border cuts."""
+    thing, view = at(0.8, -43.0, "green", 0.10), pose(tilt=-0.4)
+    image = paint([thing], view)
+    clean = outlines_in(image, view)["green"]
+    assert not clean.right.trusted
+    rows = np.flatnonzero(ColourTable().classify(image)[:, -1])
+    image[rows[len(rows) // 2], -1] = 128
+    spoiled = outlines_in(image, view)["green"]
+    assert not spoiled.right.trusted
+    assert spoiled.left == clean.left
