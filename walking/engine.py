@@ -23,8 +23,8 @@ from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
 from walking.sensing import BodySensors
 from walking.snapshot import PlanToOdometry, balance, camera_pose
-from walking.stabilizer import Stabilizer
-from walking.state import WalkingState
+from walking.stabilizer import Capture, Stabilizer
+from walking.state import Footstep, WalkingState
 from walking.steering import Steering
 from walking.stride import Strides
 from walking.support import Footing, SupportRegion, depth, support_region
@@ -299,9 +299,9 @@ class WalkingEngine:
         """Decide on the landing of the swing foot.
 
         Returns:
-            the ZMP reference, and whether the landing is the nominal one.
+            the ZMP reference, and whether landing and time are the nominal ones.
         """
-        gait, lipm = self._gait, self._lipm
+        gait = self._gait
         if gait.stepping and not gait.double and not gait.held:
             force = body.feet[gait.swing].force
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
@@ -312,20 +312,33 @@ class WalkingEngine:
             self._binding.append(Limit.LANDING_FROZEN)
         ramps = gait.plan(nominal, wish, moving=moving)
         caught = nominal
-        if gait.adjustable and not gait.double:
-            # What the nominal footholds do not catch of the measured DCM.
-            p, w = self._pendulum, lipm.omega
-            x, y = self._generator.planned_dcm(p, ramps)
-            off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
-            support = gait.footholds[gait.support]
-            caught = self._stabilizer.capture(self._planner, support, nominal, off, gait.ticks_left)
+        if gait.adjustable:
+            capture = self._catch(nominal, ramps, error)
+            if capture.ticks < gait.ticks_left and gait.hasten(capture.ticks, capture.landing):
+                ramps = gait.plan(nominal, wish, moving=moving)
+                capture = self._catch(nominal, ramps, error)
+            if not gait.double:
+                caught = capture.landing
         self._capture = (caught.x - nominal.x, caught.y - nominal.y)
-        if caught != nominal:
+        if caught != nominal or gait.hurried:
             self._binding.append(Limit.BALANCE)
         gait.aim(caught)
         if gait.landing != nominal:
             ramps = gait.plan(gait.landing, wish, moving=moving)
-        return ramps, caught == nominal
+        return ramps, caught == nominal and not gait.hurried
+
+    def _catch(
+        self, nominal: Footstep, ramps: list[ZmpRamp], error: tuple[float, float]
+    ) -> Capture:
+        """What the nominal footholds do not catch of the measured DCM."""
+        gait, p, w = self._gait, self._pendulum, self._lipm.omega
+        support = gait.footholds[gait.support]
+        x, y = self._generator.planned_dcm(p, ramps)
+        off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
+        ahead = (x - ramps[0].bx, y - ramps[0].by)
+        return self._stabilizer.capture(
+            self._planner, support, nominal, off, ahead, ticks_left=gait.ticks_left
+        )
 
     def _admit(
         self,

@@ -1,6 +1,6 @@
 """The gait: which foot carries, where the other lands, and what that asks of the ZMP."""
 
-from math import cos, sin
+from math import ceil, cos, hypot, sin
 
 from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -11,6 +11,8 @@ from walking.swing import MinimumJerk, lift_profile
 
 Point = tuple[float, float]
 Clock = tuple[Timing, tuple[int, int, Point, float], tuple[int, int, int, float]]
+
+PEAK = 1.875  # of the speed of a minimum-jerk motion over its mean [1]
 
 
 class FootReference:
@@ -62,6 +64,7 @@ class Gait:
         landing: where the swing foot is about to land.
         completed: number of completed footsteps.
         held: whether the swing foot has met the floor before its time.
+        hurried: whether this footstep is shorter than its timing to catch a fall.
         timing: of the footsteps to come.
     """
 
@@ -83,6 +86,9 @@ class Gait:
         self._single = self._swing_first = self._swing_last = 0
         self._swing_origin = 0.0
         self._freeze = gait.landing_freeze
+        self._shortest_single = round(gait.catch_single / CONTROL_PERIOD)
+        self._shortest_double = round(gait.catch_double / CONTROL_PERIOD)
+        self._speed = gait.swing_speed * CONTROL_PERIOD
         self._move = gait.landing_speed * CONTROL_PERIOD
         self._lift_change = gait.lift_speed * CONTROL_PERIOD
         self._shortest_swing = round(gait.shortest_swing / CONTROL_PERIOD)
@@ -92,7 +98,7 @@ class Gait:
         self.feet = (FootReference(stance[0]), FootReference(stance[1]))
         self.landing = stance[1]
         self.completed = 0
-        self.held = False
+        self.held = self.hurried = False
         self._tick = self._stop
         self._ramp_start, self._ramp_ticks = 0, self._stop
         self._ramp_fixed = True
@@ -182,6 +188,8 @@ class Gait:
         self.timing = timing
         if not self.stepping:
             return True
+        if self.hurried:
+            return False
         if self.double:
             if not self._ramp_fixed and timing.double != self._ramp_ticks:
                 self._retime_ramp(max(timing.double, self._tick + 1))
@@ -190,6 +198,43 @@ class Gait:
         if timing.single != self._single and self.adjustable:
             self._retime_swing(timing.single)
         return self._single == timing.single
+
+    def hasten(self, ticks: int, landing: Footstep) -> bool:
+        """End single support `ticks` from now, or as soon after as the foot can be down.
+
+        Args:
+            ticks: wanted.
+            landing: that the swing foot has to reach.
+
+        Returns:
+            whether that is any sooner.
+        """
+        if self._ramp_fixed or not self.adjustable:
+            return False
+        before, foot = self.ticks_left, self.feet[self.swing]
+        way = hypot(landing.x - foot.x.position, landing.y - foot.y.position)
+        least = ceil(PEAK * way / self._speed)
+        elapsed = self._tick - self._ramp_ticks
+        if self.double:
+            least = max(least, self._shortest_single)
+            ramp = min(-elapsed, max(self._shortest_double, ticks - least))
+            single = max(least, ticks - ramp)
+            if ramp + single >= before:
+                return False
+            self._retime_ramp(self._tick + ramp)
+            self._set_single(single)
+        else:
+            least = max(
+                least,
+                self._shortest_swing,
+                round((1.0 - self.swing_phase) * self._shortest_single),
+            )
+            single = elapsed + max(least, ticks)
+            if single >= self._single:
+                return False
+            self._retime_swing(single)
+        self.hurried = True
+        return self.ticks_left < before
 
     def clock(self) -> Clock:
         """The times of now, for `set_clock`."""
@@ -328,7 +373,7 @@ class Gait:
     def _begin(self, support: int, ticks: int, origin: Point, weight: float) -> None:
         self.stepping = True
         self.support = support
-        self.held = False
+        self.held = self.hurried = False
         self._tick, self._ramp_start, self._ramp_ticks = 0, 0, ticks
         self._ramp_fixed = False
         self._set_single(self.timing.single)

@@ -67,6 +67,12 @@ class GaitParameters:
     """Fastest move of the landing while the foot is in the air [m/s]."""
     shortest_swing: Annotated[float, Gt(0.0), TIME] = 0.05
     """Time that a foot in the air keeps to come down when a footstep is cut short [s]."""
+    swing_speed: Annotated[float, Gt(0.0), SPEED] = 3.0
+    """Fastest swing of a foot that hurries to catch a fall [m/s]."""
+    catch_single: Annotated[float, Gt(0.0), TIME] = 0.12
+    """Shortest single support to catch a fall [s]."""
+    catch_double: Annotated[float, Gt(0.0), TIME] = 0.015
+    """Shortest double support to catch a fall [s]."""
     foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.012
     """Distance of every corner of a landing sole from the strip of the support foot [m]."""
     preview_steps: Annotated[int, Gt(0)] = 4

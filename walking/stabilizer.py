@@ -8,7 +8,10 @@ from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
 from walking.robot_model import RobotModel
 from walking.saturation import beyond
 from walking.state import Footstep
+from walking.step_timing import catching_time
 from walking.support import SupportRegion
+
+ROUNDING = 1e-6  # ticks that a time divided into them may lack
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +24,19 @@ class AnkleOffsets:
 
     pitch: float
     roll: float
+
+
+@dataclass(frozen=True, slots=True)
+class Capture:
+    """The foothold that catches the body, and when it is needed.
+
+    Attributes:
+        landing: of the swing foot.
+        ticks: after which it has to carry [1].
+    """
+
+    landing: Footstep
+    ticks: int
 
 
 class Stabilizer:
@@ -77,24 +93,45 @@ class Stabilizer:
         support: Footstep,
         landing: Footstep,
         error: tuple[float, float],
+        reference: tuple[float, float],
+        *,
         ticks_left: int,
-    ) -> Footstep:
-        """Landing that catches what the ankles cannot hold of a DCM error.
+    ) -> Capture:
+        """Landing and its time that catch what the ankles cannot hold of a DCM error.
 
         Left alone, the error grows by e^{ωt} until touch-down; moving the foothold by that
-        much puts the foot under it (Pratt et al., Humanoids 2006).
+        much puts the foot under it (Pratt et al., Humanoids 2006). Where that is out of reach
+        the foot has to be down sooner, see `catching_time`.
+
+        Args:
+            planner: knows what is in reach.
+            support: the foot on the floor.
+            landing: the nominal one.
+            error: of the measured DCM [m].
+            reference: DCM of the plan less the ZMP of the support foot [m].
+            ticks_left: until the end of single support.
         """
         p = self._parameters
         x, y = self._in_foot(support, error)
         x = beyond(x, p.capture_dead_zone * self._room[0])
         y = beyond(y, p.capture_dead_zone * self._room[1])
         if x == 0.0 and y == 0.0:
-            return landing
+            return Capture(landing, ticks_left)
         growth = exp(self._omega * ticks_left * CONTROL_PERIOD)
-        x = min(p.capture_forward, max(-p.capture_forward, growth * x))
-        y = min(p.capture_side, max(-p.capture_side, growth * y))
+        dx = min(p.capture_forward, max(-p.capture_forward, growth * x))
+        dy = min(p.capture_side, max(-p.capture_side, growth * y))
         c, s = cos(support.yaw), sin(support.yaw)
-        return planner.reachable(support, landing, c * x - s * y, s * x + c * y)
+        caught = planner.reachable(support, landing, c * dx - s * dy, s * dx + c * dy)
+        planned = time = ticks_left * CONTROL_PERIOD
+        for off, room, ahead, reach in zip(
+            self._in_foot(support, error),
+            self._room,
+            self._in_foot(support, reference),
+            self._in_foot(support, (caught.x - landing.x, caught.y - landing.y)),
+            strict=True,
+        ):
+            time = min(time, catching_time(self._omega, planned, beyond(off, room), ahead, reach))
+        return Capture(caught, int(time / CONTROL_PERIOD + ROUNDING))
 
     @staticmethod
     def _in_foot(foot: Footstep, vector: tuple[float, float]) -> tuple[float, float]:

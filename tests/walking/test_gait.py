@@ -126,3 +126,46 @@ def test_early_contact_leaves_the_foot_where_it_is(gait):
         tick(gait, FORWARD)
     assert gait.footholds[1].x == pytest.approx(x)
     assert 0.0 < gait.feet[1].height < height
+
+
+@pytest.mark.parametrize("lead", [2, 20, 40])
+def test_a_hurried_footstep_is_down_in_time_and_the_next_takes_its_own(gait, lead):
+    gait.start(0)
+    for _ in range(START + STEP - round(GAIT.double_support * STEP) + lead):
+        tick(gait, FORWARD)
+    completed, foot, lift = gait.completed, gait.feet[gait.swing], []
+    assert gait.hasten(5, gait.landing)
+    assert gait.hurried
+    left = gait.ticks_left
+    assert left <= STEP - lead - 10
+    while gait.completed == completed:
+        swing, landing = gait.swing, gait.landing
+        tick(gait, FORWARD)
+        lift.append(foot.height)
+        gait.retime(gait.timing)
+    assert len(lift) == left
+    assert lift[-1] == pytest.approx(0.0, abs=1e-9)
+    assert gait.footholds[swing] == landing
+    assert np.abs(np.diff(lift)).max() < 0.01
+    assert not gait.hurried
+    assert gait.ticks_left == STEP
+
+
+def test_a_footstep_never_hurries_into_a_later_end(gait):
+    gait.start(0)
+    for _ in range(START + STEP):
+        tick(gait, FORWARD)
+    before = gait.ticks_left
+    assert not gait.hasten(before + 5, gait.landing)
+    assert gait.ticks_left == before
+
+
+def test_a_hurried_footstep_leaves_the_foot_time_for_its_way(gait):
+    gait.start(0)
+    for _ in range(START + STEP):
+        tick(gait, FORWARD)
+    landing = gait.landing
+    far = Footstep(landing.left, landing.x + 0.2, landing.y, landing.yaw)
+    assert gait.hasten(0, far)
+    way = far.x - gait.feet[gait.swing].x.position
+    assert gait.ticks_left * CONTROL_PERIOD >= 1.875 * way / GAIT.swing_speed

@@ -1,5 +1,6 @@
 """Ankles and capture step."""
 
+from itertools import pairwise
 from math import exp
 
 import pytest
@@ -15,6 +16,7 @@ PARAMETERS = StabilizerParameters()
 OMEGA = Lipm(0.19).omega
 LEFT = Footstep(True, 0.0, 0.042, 0.0)
 STILL = [0.0, 0.0, 0.0]
+AHEAD = (0.005, -0.02)  # of the planned DCM from the ZMP [m]
 
 
 @pytest.fixture
@@ -49,21 +51,55 @@ def test_a_foot_in_the_air_is_left_alone(stabilizer):
 
 def test_small_errors_move_no_foothold(stabilizer, planner):
     landing = planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34))
-    assert stabilizer.capture(planner, LEFT, landing, (0.005, 0.002), 40) is landing
+    capture = stabilizer.capture(planner, LEFT, landing, (0.005, 0.002), AHEAD, ticks_left=40)
+    assert capture.landing is landing
+    assert capture.ticks == 40
 
 
 def test_the_capture_step_goes_where_the_error_will_be(stabilizer, planner, robot):
     landing = planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34))
     room = PARAMETERS.capture_dead_zone * (robot.sole.half_length - PARAMETERS.sole_margin)
-    caught = stabilizer.capture(planner, LEFT, landing, (room + 0.01, 0.0), 30)
+    capture = stabilizer.capture(planner, LEFT, landing, (room + 0.01, 0.0), AHEAD, ticks_left=30)
     growth = exp(OMEGA * 30 * CONTROL_PERIOD)
-    assert caught.x - landing.x == pytest.approx(0.01 * growth)
-    assert caught.y == pytest.approx(landing.y)
+    assert capture.landing.x - landing.x == pytest.approx(0.01 * growth)
+    assert capture.landing.y == pytest.approx(landing.y)
+    assert capture.ticks == 30
 
 
-def test_a_hopeless_error_still_gives_a_reachable_landing(stabilizer, planner):
+def test_a_hopeless_error_still_gives_a_reachable_landing_at_once(stabilizer, planner):
     landing = planner.landing(LEFT, planner.strides((0.0, 0.0, 0.0), 0.34))
     limits = LimitParameters()
-    caught = stabilizer.capture(planner, LEFT, landing, (1.0, -1.0), 40)
+    capture = stabilizer.capture(planner, LEFT, landing, (1.0, -1.0), AHEAD, ticks_left=40)
+    caught = capture.landing
     assert abs(caught.x - LEFT.x) <= limits.reach_forward + 1e-9
     assert LEFT.y - caught.y <= 2 * GaitParameters().half_stance + limits.reach_side + 1e-9
+    assert capture.ticks < 10
+
+
+def test_a_footstep_is_shortened_only_when_its_landing_is_out_of_reach(stabilizer, planner):
+    landing = planner.landing(LEFT, planner.strides((0.0, 0.0, 0.0), 0.34))
+    ticks = [
+        stabilizer.capture(planner, LEFT, landing, (0.001 * e, 0.0), AHEAD, ticks_left=40).ticks
+        for e in range(150)
+    ]
+    assert ticks[0] == ticks[60] == 40
+    assert ticks[-1] < 20
+    assert all(later <= sooner for sooner, later in pairwise(ticks))
+
+
+def test_mirrored_errors_are_caught_by_mirrored_footsteps(stabilizer, planner):
+    right = Footstep(False, LEFT.x, -LEFT.y, 0.0)
+    for off in ((0.06, 0.02), (0.02, -0.04), (-0.07, 0.05)):
+        one = stabilizer.capture(
+            planner, LEFT, planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34)), off, (0.01, -0.02), ticks_left=40
+        )
+        other = stabilizer.capture(
+            planner,
+            right,
+            planner.landing(right, planner.strides((0.1, 0.0, 0.0), 0.34)),
+            (off[0], -off[1]),
+            (0.01, 0.02),
+            ticks_left=40,
+        )
+        assert other.ticks == one.ticks
+        assert (other.landing.x, other.landing.y) == pytest.approx((one.landing.x, -one.landing.y))
