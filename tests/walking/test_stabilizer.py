@@ -91,7 +91,12 @@ def test_mirrored_errors_are_caught_by_mirrored_footsteps(stabilizer, planner):
     right = Footstep(False, LEFT.x, -LEFT.y, 0.0)
     for off in ((0.06, 0.02), (0.02, -0.04), (-0.07, 0.05)):
         one = stabilizer.capture(
-            planner, LEFT, planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34)), off, (0.01, -0.02), ticks_left=40
+            planner,
+            LEFT,
+            planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34)),
+            off,
+            (0.01, -0.02),
+            ticks_left=40,
         )
         other = stabilizer.capture(
             planner,
