@@ -23,6 +23,7 @@ FLOOR = 0.006  # height at which things on the floor are drawn [m]
 PIN = 0.16  # points on the floor are shown by pins of this height, seen above the feet [m]
 LIGHT = 1.0  # no centre of pressure is shown under feet that carry less [N]
 ARROW = 0.025  # drawn length of a push per newton [m/N]
+GAP = 0.07  # from the point of an arrow to where the push acts [m]
 STRIDE = 2  # footsteps over which the achieved velocity is measured
 PATIENCE = 1.0  # a robot that has not stepped for so long is measured over this time [s]
 ROUTINE = Limit.LANDING_FROZEN  # binds at the end of every step: no news
@@ -132,7 +133,9 @@ class WalkLayer:
         if pushes or self._pushed:
             self._pushed = bool(pushes)
             vectors = ARROW * np.array([p.force for p in pushes]).reshape(-1, 3)
-            origins = np.array([p.point for p in pushes]).reshape(-1, 3) - vectors
+            # The arrow ends at the skin, not inside the body.
+            reach = 1.0 + GAP / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+            origins = np.array([p.point for p in pushes]).reshape(-1, 3) - reach * vectors
             self._pushes.add(record.time, origins=origins, vectors=vectors)
 
     def flush(self) -> None:

@@ -51,7 +51,7 @@ COLUMNS = (
     "roll",
     "pitch",
     "limits",
-    *(f"push_{c}" for c in ("x", "y", "z", "fx", "fy", "fz")),
+    *(f"push_{c}" for c in ("x", "y", "z", "fx", "fy", "fz", "begin", "impulse")),
     *(f"torque_{name}" for name in LEG_JOINTS),
 )
 LIGHT = 1.0  # no centre of pressure is told under feet that carry less [N]
@@ -217,8 +217,9 @@ def _row(record: TickRecord) -> list[float]:
     limits = walking.admission.limits if walking.admission is not None else ()
     row.append(sum({1 << LIMITS.index(limit) for limit in limits}))
     if truth.pushes:
-        row += (*truth.pushes[0].point.tolist(), *truth.pushes[0].force.tolist())
+        push = truth.pushes[0]
+        row += (*push.point.tolist(), *push.force.tolist(), push.begin, push.impulse)
     else:
-        row += [0.0] * 6
+        row += [0.0] * 8
     row += truth.joint_torque[: len(LEG_JOINTS)].tolist()
     return row

@@ -15,7 +15,9 @@ from hsr8.recorder.frame_summary import FrameSummary
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.trajectory import Trajectory, rows_at
 from hsr8.render.follow import FollowCamera
+from hsr8.render.push_arrows import SHOWN, Arrow, SeenPush, arrows_at, pushes_of
 from hsr8.render.stage import Image, Stage
+from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL, TopDown
 from hsr8.scenario.schema import Scenario
 from hsr8.world.assembly import Optics, Quality
@@ -62,7 +64,9 @@ class Pictures:
         self._rows = rows_at(self._trajectory.time, times)
         self._frames = run.frames()
         self._frame_times = [frame.time for frame in self._frames]
-        self._collisions = [e["time"] for e in run.events() if e["kind"] == "collision"]
+        self._events = run.events()
+        self._collisions = [e["time"] for e in self._events if e["kind"] == "collision"]
+        self._pushes = self._read_pushes(run)
         self._follow = FollowCamera(self._trajectory.qpos[self._rows], fps, speed)
         camera = scenario.camera
         self._optics = Optics(
@@ -90,13 +94,13 @@ class Pictures:
             return self._dashboard()
         if name in ("dashboard", "follow"):
             stage = self._stage("show", self._size)
-            return lambda i: self._placed(stage, i).draw(self._follow.at(i))
+            return lambda i: self._placed(stage, i).draw(self._follow.at(i), self._arrows(i))
         if name == "head":
             stage = self._stage("vision", self._size)
             return lambda i: self._placed(stage, i).draw(HEAD_CAMERA)
         stage = self._stage("show", self._size)
         stage.require_camera(name)
-        return lambda i: self._placed(stage, i).draw(name)
+        return lambda i: self._placed(stage, i).draw(name, self._arrows(i))
 
     def _stage(self, quality: Quality, size: tuple[int, int]) -> Stage:
         stage = self._stack.enter_context(
@@ -122,20 +126,36 @@ class Pictures:
         main = self._stage("show", (width - side, height))
         eye = self._stage("vision", (side, eye_height))
         above = TopDown(self._layout, (side, height - eye_height))
+        first, last = float(self._times[0]), float(self._times[-1])
+        timeline = Timeline(self._events, first, last, width - side)
 
         def draw(index: int) -> Image:
             frame = self._frame(index)
             picture = np.empty((height, width, 3), np.uint8)
-            picture[:, : width - side] = self._placed(main, index).draw(self._follow.at(index))
+            picture[:, : width - side] = self._placed(main, index).draw(
+                self._follow.at(index), self._arrows(index)
+            )
             picture[:eye_height, width - side :] = self._placed(eye, index).draw(HEAD_CAMERA)
             row = int(self._rows[index])
             picture[eye_height:, width - side :] = above.draw(
                 frame, self._trajectory.movers[row], self._trail(row)
             )
             self._write_numbers(picture, index, frame, width - side)
+            timeline.draw(picture[:, : width - side], float(self._times[index]))
             return picture
 
         return draw
+
+    @staticmethod
+    def _read_pushes(run: Run) -> tuple[SeenPush, ...]:
+        """Runs of older versions did not tell how they walked, and had no pushes."""
+        if not any(event["kind"] == "push" for event in run.events()):
+            return ()
+        return pushes_of(run.walking(), run.trajectory())
+
+    def _arrows(self, index: int) -> list[Arrow]:
+        base = self._trajectory.qpos[int(self._rows[index]), :3]
+        return arrows_at(self._pushes, float(self._times[index]), base, self._speed)
 
     def _frame(self, index: int) -> FrameSummary:
         """The latest camera frame at a picture."""
@@ -154,11 +174,15 @@ class Pictures:
         time = float(self._times[index])
         error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
         collisions = bisect_right(self._collisions, time)
+        pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
+        doing = "lost" if frame.lost else frame.situation.replace("_", " ")
+        if pushed:
+            doing = f"push {pushed[-1].impulse:.2f} N s"
         speed = f"  x{self._speed:g}" if self._speed != 1.0 else ""
         words = (
             f"{time:6.1f} s{speed}   via points {frame.passed}   collisions {collisions}   "
             f"{hypot(*frame.velocity[:2]):.2f} m/s   pose error {100 * error:4.1f} cm   "
-            f"{'lost' if frame.lost else frame.situation.replace('_', ' ')}"
+            f"{doing}"
         )
         bar = picture[-BAR:, :width]
         bar[:] = (0.35 * bar + 0.65 * np.array(PANEL)).astype(np.uint8)

@@ -1,11 +1,14 @@
 """A recorded world set up again, to be drawn from any camera."""
 
+from collections.abc import Sequence
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.gl import require_gl
+from hsr8.render.push_arrows import Arrow
 from hsr8.world.assembly import Optics, Quality, assemble
 from hsr8.world.layout import Layout
 
@@ -13,6 +16,8 @@ Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 
+ARROW = np.array([0.90, 0.20, 0.45, 1.0], dtype=np.float32)  # colour of arrows
+ARROW_RADIUS = 0.012  # [m]
 SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick pictures [pixel]
 SAMPLES = {True: 4, False: 0}  # per pixel against jagged edges; four take thrice the time
 
@@ -67,9 +72,23 @@ class Stage:
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
-    def draw(self, view: str | mujoco.MjvCamera) -> Image:
-        """Picture (height, width, 3) from a camera of the model or a free one."""
+    def draw(self, view: str | mujoco.MjvCamera, arrows: Sequence[Arrow] = ()) -> Image:
+        """Picture (height, width, 3) from a camera of the model or a free one.
+
+        Args:
+            view: camera.
+            arrows: tail and tip of each in W (3,) [m].
+        """
         self._renderer.update_scene(self.data, camera=view)
+        scene = self._renderer.scene
+        for tail, tip in arrows:
+            if scene.ngeom >= scene.maxgeom:
+                break
+            geom = scene.geoms[scene.ngeom]
+            kind = mujoco.mjtGeom.mjGEOM_ARROW
+            mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).ravel(), ARROW)
+            mujoco.mjv_connector(geom, kind, ARROW_RADIUS, tail, tip)
+            scene.ngeom += 1
         image: Image = self._renderer.render()
         return image
 

@@ -1,0 +1,54 @@
+"""A strip under the dashboard: how far the video is, and when something happened."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.uint8]
+Colour = tuple[int, int, int]
+
+HEIGHT = 5  # [pixel]
+MARK = 3  # width of an event [pixel]
+AHEAD, DONE = (62, 65, 71), (138, 142, 150)
+MARKS: dict[str, Colour] = {
+    "via_point": (240, 180, 60),
+    "goal": (76, 200, 110),
+    "push": (230, 70, 130),
+    "lost": (150, 110, 220),
+    "collision": (240, 120, 30),
+    "fall": (230, 40, 40),
+}
+"""Colour of each kind of event that is marked; later ones cover earlier ones."""
+
+
+class Timeline:
+    """The strip of one video.
+
+    Args:
+        events: of the run, each with ``time`` and ``kind``.
+        start, stop: simulated time of the first and the last picture [s].
+        width: [pixel].
+    """
+
+    def __init__(
+        self, events: Sequence[Mapping[str, Any]], start: float, stop: float, width: int
+    ) -> None:
+        self._start, self._scale = start, width / max(stop - start, 1e-9)
+        self._marks: list[tuple[int, Colour]] = []
+        for kind, colour in MARKS.items():
+            for event in events:
+                if event["kind"] == kind and start <= event["time"] <= stop:
+                    self._marks.append((self._column(event["time"]), colour))
+
+    def draw(self, picture: Image, time: float) -> None:
+        """Draw over the lowest rows of `picture` (height, width, 3) what holds at `time` [s]."""
+        strip = picture[-HEIGHT:]
+        strip[:] = AHEAD
+        strip[:, : self._column(time)] = DONE
+        for column, colour in self._marks:
+            strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = colour
+
+    def _column(self, time: float) -> int:
+        return round((time - self._start) * self._scale)

@@ -1,0 +1,40 @@
+import numpy as np
+import pytest
+
+from hsr8.recorder.trajectory import Trajectory
+from hsr8.recorder.walking_table import COLUMNS, WalkingTable
+from hsr8.render.push_arrows import GAP, SHOWN, arrows_at, pushes_of
+
+
+@pytest.fixture
+def run():
+    """Two pushes that follow at once, the robot being 1 m up along x."""
+    time = 0.02 * np.arange(100)
+    columns = {name: np.zeros(100) for name in COLUMNS}
+    columns["push_fx"][10:13], columns["push_fy"][13:15] = 10.0, -5.0
+    columns["push_begin"][10:13], columns["push_impulse"][10:13] = 0.19, 0.5
+    columns["push_begin"][13:15], columns["push_impulse"][13:15] = 0.245, 0.2
+    columns["push_x"][10:15], columns["push_z"][10:15] = 1.0, 0.3
+    qpos = np.zeros((100, 33))
+    qpos[:, 0] = 1.0
+    table = WalkingTable(time, columns, (0.01, 0.05, 0.03), {})
+    return table, Trajectory(time, qpos, np.zeros((100, 0, 2)))
+
+
+def test_pushes_are_told_apart_and_have_their_impulse(run):
+    first, second = pushes_of(*run)
+    assert (first.begin, second.begin) == pytest.approx((0.19, 0.245))
+    assert (first.impulse, second.impulse) == pytest.approx((0.5, 0.2))
+    assert first.tip == pytest.approx([-GAP, 0.0, 0.3])
+    assert second.tip == pytest.approx([0.0, GAP, 0.3])
+
+
+def test_an_arrow_goes_with_the_robot_and_is_seen_for_a_while(run):
+    pushes = pushes_of(*run)[:1]
+    base = np.array([1.5, 0.2, 0.0])
+    ((tail, tip),) = arrows_at(pushes, 0.3, base, 1.0)
+    assert tip == pytest.approx(base + np.array([-GAP, 0.0, 0.3]))
+    assert tip - tail == pytest.approx([0.2, 0.0, 0.0])
+    assert arrows_at(pushes, 0.17, base, 1.0) == []
+    assert arrows_at(pushes, 0.195 + SHOWN, base, 1.0) == []
+    assert len(arrows_at(pushes, 0.19 + SHOWN, base, 2.0)) == 1

@@ -1,0 +1,31 @@
+import numpy as np
+
+from hsr8.render.timeline import AHEAD, DONE, HEIGHT, MARKS, Timeline
+
+
+def strip_at(time, events=()):
+    picture = np.zeros((40, 101, 3), np.uint8)
+    Timeline(events, 10.0, 20.0, 101).draw(picture, time)
+    assert not picture[:-HEIGHT].any()
+    return [tuple(pixel) for pixel in picture[-1].tolist()]
+
+
+def test_what_is_over_is_bright():
+    strip = strip_at(15.0)
+    assert strip[:50] == [DONE] * 50
+    assert strip[51:] == [AHEAD] * 50
+
+
+def test_events_are_marked_where_they_happen_and_falls_cover_the_rest():
+    events = [
+        {"time": 12.0, "kind": "push"},
+        {"time": 12.0, "kind": "fall"},
+        {"time": 18.0, "kind": "push"},
+        {"time": 19.0, "kind": "unheard of"},
+        {"time": 25.0, "kind": "push"},
+    ]
+    strip = strip_at(10.0, events)
+    assert strip[20] == MARKS["fall"]
+    assert strip[82] == MARKS["push"]
+    assert MARKS["push"] not in strip[:70]
+    assert set(strip) == {AHEAD, MARKS["fall"], MARKS["push"]}
