@@ -75,6 +75,10 @@ class StrideMeter:
             self._finish(time, pose)
             self._start(time, pose, steps)
 
+    def interrupt(self) -> None:
+        """What lies between the last record and the next one is no walk."""
+        self._begin = self._last = None
+
     def _start(self, time: float, pose: Array, steps: int) -> None:
         self._begin, self._steps = (time, pose), steps
         self._asked, self._given = np.zeros(3), np.zeros(3)
@@ -98,7 +102,6 @@ class WalkMetrics:
 
     def __init__(self) -> None:
         self._meter = StrideMeter()
-        self._fallen = False
         self._steps = 0
         self._tally: WalkTally | None = None
         self._saturation: Saturation | None = None
@@ -106,8 +109,9 @@ class WalkMetrics:
 
     def add(self, record: TickRecord) -> None:
         """Take one record."""
-        self._fallen = self._fallen or record.truth.fallen
-        if not self._fallen:
+        if record.truth.fallen or record.walking.phase.down:
+            self._meter.interrupt()
+        else:
             self._meter.add(record)
         self._steps = record.walking.step_count
         self._tally = record.tally

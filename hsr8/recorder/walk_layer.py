@@ -17,7 +17,14 @@ from walking.admission import Limit
 
 Array = NDArray[np.float64]
 
-GAIT = {"standing": GREY, "double": SAND, "left": BLUE, "right": ORANGE}
+GAIT = {
+    "standing": GREY,
+    "double": SAND,
+    "left": BLUE,
+    "right": ORANGE,
+    "up": VIOLET,
+    "fallen": RED,
+}
 POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
 FLOOR = 0.006  # height at which things on the floor are drawn [m]
 PIN = 0.16  # points on the floor are shown by pins of this height, seen above the feet [m]

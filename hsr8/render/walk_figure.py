@@ -128,7 +128,7 @@ def _draw_over_time(axes: list[Axes], rows: list[Panel], table: WalkingTable) ->
             handles = [*one.get_legend_handles_labels()[0], *panel.patches()]
             one.legend(handles=handles, loc="center left", bbox_to_anchor=(1.0, 0.5))
     panels.lanes(axes[-1], table)
-    axes[-1].legend(handles=panels.lane_legend(), loc="upper left", bbox_to_anchor=(1.0, 1.15))
+    axes[-1].legend(handles=panels.lane_legend(table), loc="upper left", bbox_to_anchor=(1.0, 1.15))
     panels.mark_pushes(axes, table)
     axes[-1].set_xlim(float(table.time[0]), float(table.time[-1]))
     axes[-1].set_xlabel("time [s]")

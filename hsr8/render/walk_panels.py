@@ -32,6 +32,16 @@ LANES = {
     Phase.DOUBLE_SUPPORT: "#DDCC77",
     Phase.LEFT_SUPPORT: LEFT,
     Phase.RIGHT_SUPPORT: RIGHT,
+    Phase.GETTING_UP: PURPLE,
+    Phase.FALLEN: PUSH,
+}
+PHASE_NAMES = {
+    Phase.STANDING: "standing",
+    Phase.DOUBLE_SUPPORT: "double support",
+    Phase.LEFT_SUPPORT: "on the left foot",
+    Phase.RIGHT_SUPPORT: "on the right foot",
+    Phase.GETTING_UP: "getting up",
+    Phase.FALLEN: "fallen",
 }
 FOOTHOLD = 0.0005  # a foot lower than this is on the floor [m]
 SPANS = (0.1, 0.1, 0.4)  # least shown range of vx, vy [m/s] and wz [rad/s]
@@ -49,8 +59,9 @@ DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)))
 def contacts(table: WalkingTable, foot: str) -> list[tuple[int, int]]:
     """Rows, first and last, of every time in which a foot is meant to stand still on the floor."""
     swings = Phase.RIGHT_SUPPORT if foot == "left" else Phase.LEFT_SUPPORT
-    swinging = table["phase"] == PHASES.index(swings)
-    down = ~swinging | (table[f"{foot}_z"] < FOOTHOLD)
+    phase, lying = table["phase"], [k for k, p in enumerate(PHASES) if p.down]
+    swinging = (phase == PHASES.index(swings)) & (table[f"{foot}_z"] >= FOOTHOLD)
+    down = ~swinging & ~np.isin(phase, lying)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], down.astype(int), [0]])))
     return [(a, b - 1) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
 
@@ -274,15 +285,14 @@ def lanes(axes: Axes, table: WalkingTable) -> None:
     axes.grid(visible=False)
 
 
-def lane_legend() -> list[Patch]:
-    """What the colours of the gait's lane are."""
-    said = {
-        Phase.STANDING: "standing",
-        Phase.DOUBLE_SUPPORT: "double support",
-        Phase.LEFT_SUPPORT: "on the left foot",
-        Phase.RIGHT_SUPPORT: "on the right foot",
-    }
-    return [Patch(color=LANES[p], alpha=0.75, lw=0, label=text) for p, text in said.items()]
+def lane_legend(table: WalkingTable) -> list[Patch]:
+    """What the colours of the gait's lane are, falls only where there are any."""
+    seen = {PHASES[int(index)] for index in np.unique(table["phase"])}
+    return [
+        Patch(color=LANES[p], alpha=0.75, lw=0, label=text)
+        for p, text in PHASE_NAMES.items()
+        if p in seen or not p.down
+    ]
 
 
 def mark_pushes(panels: Sequence[Axes], table: WalkingTable) -> None:

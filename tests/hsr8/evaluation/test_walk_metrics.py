@@ -74,6 +74,19 @@ def test_what_happens_in_the_first_seconds_does_not_count(fake):
     assert error["vx"] == pytest.approx(0.0, abs=0.003)
 
 
+def test_a_fall_is_no_walk(fake):
+    def thrown(stream):
+        for record in stream:
+            down = 4.0 <= record.time < 5.0
+            x, y, yaw = record.truth.robot
+            robot = np.array([x, y + (0.5 if record.time >= 4.0 else 0.0), yaw])
+            truth = replace(record.truth, fallen=down, robot=robot)
+            yield replace(record, truth=truth)
+
+    results = results_of(thrown(records(fake, (0.2, 0.0, 0.0), 9.0)))
+    assert list(results["mean_velocity"].values()) == pytest.approx((0.2, 0.0, 0.0), abs=0.004)
+
+
 def test_a_robot_that_stands_has_no_velocity(fake):
     results = results_of(records(fake, (0.0, 0.0, 0.0), 6.0, steps=False))
     assert results["mean_velocity"]["wz"] == pytest.approx(0.0, abs=1e-9)

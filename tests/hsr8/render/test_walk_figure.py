@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from hsr8.errors import UsageError
+from hsr8.recorder.walk_layer import GAIT
 from hsr8.recorder.walking_table import COLUMNS, LEG_JOINTS, LIMITS, WalkingTable
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
 from walking.admission import Limit
+from walking.state import Phase
 
 STEP, SPEED, TURN = 0.34, 0.2, 0.5
 
@@ -36,6 +38,11 @@ def table():
     columns["limits"][50:60] = 1 << LIMITS.index(Limit.BALANCE)
     columns["push_fx"][100:103] = 5.0
     return WalkingTable(time, columns, (0.01, 0.0525, 0.03), dict.fromkeys(LEG_JOINTS, 6.0))
+
+
+def test_every_phase_has_a_colour_and_a_name():
+    assert set(walk_panels.LANES) == set(walk_panels.PHASE_NAMES) == set(Phase)
+    assert set(GAIT) == {str(phase) for phase in Phase}
 
 
 def test_a_foot_stands_between_its_swings(table):
