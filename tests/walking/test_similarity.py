@@ -49,6 +49,7 @@ def test_every_number_says_what_it_goes_with(section):
 
 
 def test_the_parameters_of_the_reference_are_the_defaults(robot):
+    # After a change of the model: choose the defaults for it, then give HSR_VIII its measures.
     assert robot.yardsticks() == HSR_VIII
     assert parameters_for(robot) == WalkingParameters()
 
