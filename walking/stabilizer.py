@@ -52,7 +52,8 @@ class Stabilizer:
         self._parameters = parameters
         self._omega = omega
         self._weight = robot.mass * GRAVITY
-        self._stiffness = float(robot.stiffness[4])
+        pitch, roll = robot.stiffness[4:6].tolist()
+        self._stiffness: tuple[float, float] = pitch, roll
         sole = robot.sole
         self._room = (
             sole.half_length - parameters.sole_margin,
@@ -76,10 +77,11 @@ class Stabilizer:
         c, s = cos(foot.yaw), sin(foot.yaw)
         x = c * shift[0] + s * shift[1]
         y = c * shift[1] - s * shift[0]
-        lever = self._weight * load / self._stiffness
+        weight, (pitch, roll) = self._weight * load, self._stiffness
         damping = self._parameters.gyro_gain * load
         return AnkleOffsets(
-            pitch=lever * x + damping * gyro[1], roll=-lever * y + damping * gyro[0]
+            pitch=weight / pitch * x + damping * gyro[1],
+            roll=-weight / roll * y + damping * gyro[0],
         )
 
     def exceeds(self, foot: Footstep, error: tuple[float, float], share: float) -> bool:

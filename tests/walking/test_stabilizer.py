@@ -1,8 +1,10 @@
 """Ankles and capture step."""
 
+from copy import copy
 from itertools import pairwise
 from math import exp
 
+import numpy as np
 import pytest
 
 from walking.footsteps import FootstepPlanner
@@ -42,6 +44,16 @@ def test_ankle_torque_matches_the_shift(stabilizer, robot):
     weight = robot.mass * 9.81
     assert ankle.pitch * robot.stiffness[4] == pytest.approx(weight * 0.02)
     assert ankle.roll * robot.stiffness[5] == pytest.approx(weight * 0.01)
+
+
+def test_a_softer_servo_is_asked_for_more(stabilizer, robot):
+    soft = copy(robot)
+    soft.stiffness = robot.stiffness * np.where(np.arange(26) % 6 == 5, 0.5, 1.0)
+    shift = (0.02, -0.01)
+    ankle = stabilizer.ankles(LEFT, 1.0, shift, STILL)
+    softer = Stabilizer(soft, PARAMETERS, OMEGA).ankles(LEFT, 1.0, shift, STILL)
+    assert softer.roll == pytest.approx(2.0 * ankle.roll)
+    assert softer.pitch == ankle.pitch
 
 
 def test_a_foot_in_the_air_is_left_alone(stabilizer):
