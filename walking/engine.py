@@ -28,6 +28,7 @@ from walking.state import Footstep, WalkingState
 from walking.steering import Steering
 from walking.stride import Strides
 from walking.support import Footing, SupportRegion, depth, support_region
+from walking.swing_reaction import SwingCompensation, leg_reaction
 from walking.targets import JointTargets
 from walking.transition import Transition
 
@@ -71,6 +72,8 @@ class WalkingEngine:
         self._posture = Posture(robot, parameters)
         base = pattern.pelvis_height - robot.legs[0].hip_z
         self._feedforward = FeedForward(robot, parameters.stabilizer, base)
+        reaction = leg_reaction(robot, base, parameters.gait.lift)
+        self._compensation = SwingCompensation(self._lipm, reaction)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
@@ -382,19 +385,25 @@ class WalkingEngine:
     ) -> JointTargets:
         gait, pendulum = self._gait, self._pendulum
         before = self._pelvis.yaw
-        pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
+        compensation = self._compensation
+        compensation.advance(gait.swings())
+        (ox, oy), (ex, ey) = compensation.offset, compensation.acceleration
+        pelvis = self._posture.pelvis(gait, (pendulum.x + ox, pendulum.y + oy))
         self._turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
         self._pelvis = pelvis
         angles, legs = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
         position = np.array(angles)
         self._planned_com = self._robot.com(position)
         c, s = cos(pelvis.yaw), sin(pelvis.yaw)
-        dx, dy = zmp[0] - pelvis.x, zmp[1] - pelvis.y
-        point = (c * dx + s * dy, c * dy - s * dx)
+        soles = []
+        for foot in gait.footholds:
+            x, y = gait.zmp_point(foot)
+            dx, dy = x - pelvis.x, y - pelvis.y
+            soles.append((c * dx + s * dy, c * dy - s * dx))
         w2 = self._lipm.omega**2
-        ax, ay = w2 * (pendulum.x - zmp[0]), w2 * (pendulum.y - zmp[1])
+        ax, ay = w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey
         offset = self._feedforward.offsets(
-            position, legs, point, right_load, (c * ax + s * ay, c * ay - s * ax)
+            position, legs, (soles[0], soles[1]), right_load, (c * ax + s * ay, c * ay - s * ax)
         )
         for index, load in ((0, 1.0 - right_load), (1, right_load)):
             ankle = self._stabilizer.ankles(gait.footholds[index], load, self._zmp_shift, body.gyro)

@@ -5,10 +5,11 @@ from numpy.typing import NDArray
 
 from walking.joints import LEFT_LEG, RIGHT_LEG
 from walking.leg_kinematics import LegAngles, support_torques
-from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
+from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.robot_model import RobotModel
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
 
 class FeedForward:
@@ -22,9 +23,7 @@ class FeedForward:
 
     def __init__(self, robot: RobotModel, parameters: StabilizerParameters, height: float) -> None:
         self._robot = robot
-        self._weight = robot.mass * GRAVITY
         self._height = height
-        self._horizontal = parameters.horizontal_gain
         share = np.full(robot.damping.size, parameters.upper_velocity_gain)
         share[LEFT_LEG] = share[RIGHT_LEG] = parameters.velocity_gain
         self._lag = share * robot.damping / robot.stiffness
@@ -38,16 +37,19 @@ class FeedForward:
         self,
         position: Array,
         legs: tuple[LegAngles, LegAngles],
-        zmp: tuple[float, float],
+        soles: tuple[Point, Point],
         right_load: float,
-        acceleration: tuple[float, float],
+        acceleration: Point,
     ) -> Array:
         """Offsets of all set-points (26,) [rad].
+
+        The floor gives all that the motion of the whole body takes, by inverse dynamics; the
+        legs share it, and each foot has it under its own sole as far as the ZMP allows.
 
         Args:
             position: joint angles of this tick (26,) [rad].
             legs: those of the legs.
-            zmp: planned ZMP in the base frame [m].
+            soles: where the ZMP is meant to be under either foot, in the base frame [m].
             right_load: planned share of the weight on the right foot [1].
             acceleration: planned, of the base, forward and left [m/s²].
         """
@@ -55,21 +57,25 @@ class FeedForward:
         velocity = (position - before) / CONTROL_PERIOD
         change = self._inertia * (velocity - self._velocity) / CONTROL_PERIOD
         self._position, self._velocity = position, velocity
-        torque = self._robot.joint_torque(
+        torque, wrench = self._robot.inverse_dynamics(
             position, velocity, change.clip(-self._limit, self._limit), acceleration
         )
-        point = (zmp[0], zmp[1], -self._height)
-        share = self._horizontal / GRAVITY
-        push = (share * acceleration[0], share * acceleration[1], 1.0)
-        for leg, angles, part, load in zip(
+        fx, fy, fz, nx, ny, _ = wrench.tolist()
+        h = self._height
+        (lx, ly), (rx, ry) = soles
+        left_load = 1.0 - right_load
+        # The ZMP of the whole body, from where the feet alone would have it.
+        dx = -(ny + h * fx) / fz - left_load * lx - right_load * rx
+        dy = (nx - h * fy) / fz - left_load * ly - right_load * ry
+        for leg, angles, part, load, (x, y) in zip(
             self._robot.legs,
             legs,
             (LEFT_LEG, RIGHT_LEG),
-            (1.0 - right_load, right_load),
+            (left_load, right_load),
+            soles,
             strict=True,
         ):
             if load > 0.0:
-                weight = self._weight * load
-                force = (weight * push[0], weight * push[1], weight)
+                point, force = (x + dx, y + dy, -h), (load * fx, load * fy, load * fz)
                 torque[part] += support_torques(leg, angles, point, force)
         return torque * self._compliance + velocity * self._lag

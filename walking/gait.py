@@ -8,6 +8,7 @@ from walking.pattern import ZmpRamp
 from walking.state import Footstep, Phase
 from walking.stride import Strides, Timing
 from walking.swing import MinimumJerk, lift_profile
+from walking.swing_reaction import Swing
 
 Point = tuple[float, float]
 Clock = tuple[Timing, tuple[int, int, Point, float], tuple[int, int, int, float]]
@@ -296,7 +297,7 @@ class Gait:
         support = self.footholds[self.support]
         steps, ends = self._planner.sequence(support, landing, wish, moving=moving)
         self._future, self._ends = steps, ends
-        last = self._zmp_point(support)
+        last = self.zmp_point(support)
         ramps = []
         if self._tick < self._ramp_ticks:
             here = self._zmp_reference()
@@ -307,7 +308,7 @@ class Gait:
             ramps.append(ZmpRamp(self.ticks_left, *last, *last, (support, support)))
         before = support
         for step in steps[:-1] if ends else steps:
-            point = self._zmp_point(step)
+            point = self.zmp_point(step)
             ramps.append(ZmpRamp(self.timing.double, *last, *point, (before, step)))
             ramps.append(ZmpRamp(self.timing.single, *point, *point, (step, step)))
             before, last = step, point
@@ -315,6 +316,33 @@ class Gait:
             centre = self._centre(before, steps[-1])
             ramps.append(ZmpRamp(self._stop, *last, *centre, (before, steps[-1])))
         return ramps
+
+    def swings(self) -> list[Swing]:
+        """Swings under way and to come."""
+        if not self.stepping or not self._future:
+            return []
+        begin = self._ramp_ticks + self._swing_first - self._tick
+        ticks = self._swing_last - self._swing_first
+        if begin <= 0 and self._swing_origin > 0.0:
+            # Retimed in the air: as if it had been so quick from the start.
+            ticks = round(ticks / (1.0 - self._swing_origin))
+            begin = -round(self.swing_phase * ticks)
+        support, origin = self.footholds[self.support], self.footholds[self.swing]
+        swings = []
+        if not self.held:
+            zmp = self.zmp_point(support)
+            swings.append(Swing(begin, ticks, self._lift, origin, self.landing, zmp))
+        first, last = self._swing_share
+        single, double = self.timing.single, self.timing.double
+        ticks = round(last * single) - round(first * single)
+        begin = self.ticks_left + double + round(first * single)
+        landing = self.landing
+        for following in self._future[1:]:
+            zmp = self.zmp_point(landing)
+            swings.append(Swing(begin, ticks, self.timing.lift, support, following, zmp))
+            support, landing = landing, following
+            begin += double + single
+        return swings
 
     def footsteps(self) -> tuple[Footstep, ...]:
         """Planned footholds in the plan frame, the support foot first."""
@@ -359,7 +387,7 @@ class Gait:
         self.footholds[swing] = self.landing
         self.feet[swing].stand(self.landing)
         self.completed += 1
-        here = self._zmp_point(self.footholds[support])
+        here = self.zmp_point(self.footholds[support])
         following = self._future[1] if len(self._future) > 1 else None
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
@@ -389,7 +417,7 @@ class Gait:
     def _zmp_reference(self) -> Point:
         """ZMP reference at this tick."""
         goal = (
-            self._zmp_point(self.footholds[self.support])
+            self.zmp_point(self.footholds[self.support])
             if self.stepping
             else self._centre(*self.footholds)
         )
@@ -397,7 +425,8 @@ class Gait:
         (ox, oy), (gx, gy) = self._origin, goal
         return ox + share * (gx - ox), oy + share * (gy - oy)
 
-    def _zmp_point(self, foot: Footstep) -> Point:
+    def zmp_point(self, foot: Footstep) -> Point:
+        """Where the ZMP is meant to be under a foot that carries alone [m]."""
         inward = -self._zmp_inward if foot.left else self._zmp_inward
         c, s = cos(foot.yaw), sin(foot.yaw)
         return (
@@ -406,5 +435,5 @@ class Gait:
         )
 
     def _centre(self, one: Footstep, other: Footstep) -> Point:
-        (ax, ay), (bx, by) = self._zmp_point(one), self._zmp_point(other)
+        (ax, ay), (bx, by) = self.zmp_point(one), self.zmp_point(other)
         return 0.5 * (ax + bx), 0.5 * (ay + by)

@@ -43,7 +43,7 @@ class GaitParameters:
     """Duration of a footstep, double support included, while that keeps it short enough [s]."""
     shortest_time: Annotated[float, Gt(0.0), TIME] = 0.26
     """Duration of a footstep at the quickest [s]."""
-    double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.2
+    double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.15
     """Share of the footstep in double support [1]."""
     start_time: Annotated[float, Gt(0.0), TIME] = 0.3
     """Double support before the first footstep [s]."""
@@ -59,7 +59,7 @@ class GaitParameters:
     """Fastest change of that height while the foot is in the air [m/s]."""
     swing_start: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.05
     """Share of single support after which the foot lifts [1]."""
-    swing_end: Annotated[float, Interval(gt=0.0, le=1.0), NUMBER] = 0.9
+    swing_end: Annotated[float, Interval(gt=0.0, le=1.0), NUMBER] = 0.97
     """Share of single support after which the foot is down [1]."""
     landing_freeze: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.8
     """Share of the swing after which the landing no longer moves [1]."""
@@ -94,7 +94,7 @@ class PatternParameters:
     of mass because half of the mass is in the legs [m]."""
     zmp_forward: Annotated[float, LENGTH] = 0.0
     """Where the ZMP is meant to be ahead of the middle of the sole [m]."""
-    zmp_inward: Annotated[float, STANCE] = 0.0
+    zmp_inward: Annotated[float, STANCE] = 0.003
     """Where the ZMP is meant to be inward of the ankle [m]."""
     sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.005
     """Distance that the planned ZMP keeps from the edge of the sole [m]."""
@@ -152,14 +152,11 @@ class StabilizerParameters:
     """Ankle set-point per angular velocity of the trunk [s]."""
     load_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the planned joint torques fed forward [1]."""
-    horizontal_gain: Annotated[float, Ge(0.0), NUMBER] = 0.5
-    """Share of the floor's planned horizontal force in those torques; the pendulum has it
-    act on the whole mass, the legs in truth take part in less of it [1]."""
     inertia_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the joints' planned acceleration in those torques [1]."""
     inertia_limit: Annotated[float, Ge(0.0), RATE_CHANGE] = 300.0
     """Largest acceleration of a joint in those torques [rad/s²]."""
-    velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 0.3
+    velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 0.6
     """Share of the servos' velocity lag fed forward, legs [1]."""
     upper_velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the servos' velocity lag fed forward, head and arms [1]."""

@@ -119,14 +119,14 @@ class RobotModel:
         x, y, z = pin.centerOfMass(self._model, self._data, q, False).tolist()
         return x, y, z
 
-    def joint_torque(
+    def inverse_dynamics(
         self,
         position: Array,
         velocity: Array,
         acceleration: Array,
         base_acceleration: tuple[float, float],
-    ) -> Array:
-        """Torque that a motion of the joints asks of them, nothing touching the feet.
+    ) -> tuple[Array, Array]:
+        """What a motion of the joints asks of joints and base, nothing touching the feet.
 
         Args:
             position: joint angles (26,) [rad].
@@ -135,15 +135,17 @@ class RobotModel:
             base_acceleration: of the level base, forward and left [m/s²].
 
         Returns:
-            torque of each joint, gravity included (26,) [N m].
+            torque of each joint, gravity included (26,) [N m]; force [N] and moment [N m] at the
+            base, in its frame and about its origin (6,).
         """
         self._q[self._q_index] = position
         self._v[self._v_index] = velocity
         self._a[self._v_index] = acceleration
         self._a[0], self._a[1] = base_acceleration
         torque = pin.rnea(self._model, self._data, self._q, self._v, self._a)
-        asked: Array = torque[self._v_index]
-        return asked
+        joints: Array = torque[self._v_index]
+        base: Array = torque[:6].copy()
+        return joints, base
 
     def pendulum_height(self) -> float:
         """Height of the pendulum that the robot is for its base [m].
@@ -161,10 +163,9 @@ class RobotModel:
             ahead = leg_angles(leg, replace(foot, x=foot.x - SMALL))[0]
             behind = leg_angles(leg, replace(foot, x=foot.x + SMALL))[0]
             motion[part] = (np.array(ahead) - behind) / (2.0 * SMALL)
-        self.joint_torque(q, rest, rest, (0.0, 0.0))
-        still = self._data.tau[:6].copy()
-        self.joint_torque(q, rest, motion, (1.0, 0.0))
-        force, moment = (self._data.tau[:6] - still)[[0, 4]].tolist()
+        _, still = self.inverse_dynamics(q, rest, rest, (0.0, 0.0))
+        _, moved = self.inverse_dynamics(q, rest, motion, (1.0, 0.0))
+        force, moment = (moved - still)[[0, 4]].tolist()
         return float((moment + height * force) / self.mass)
 
     def yardsticks(self) -> Yardsticks:

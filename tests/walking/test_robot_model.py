@@ -54,7 +54,8 @@ def test_servo_gains_come_from_the_file(robot):
 
 def test_torque_at_rest_is_the_gradient_of_the_potential_energy(robot):
     q, rest = robot.ready, np.zeros(len(JOINT_NAMES))
-    torque = robot.joint_torque(q, rest, rest, (0.0, 0.0))
+    torque, wrench = robot.inverse_dynamics(q, rest, rest, (0.0, 0.0))
+    assert wrench[2] == pytest.approx(robot.mass * 9.81)
     for joint in range(len(JOINT_NAMES)):
         step = np.zeros_like(q)
         step[joint] = 1e-6
@@ -66,8 +67,8 @@ def test_an_accelerating_joint_asks_for_more_than_its_armature(robot):
     rest = np.zeros(len(JOINT_NAMES))
     push = rest.copy()
     push[2] = 10.0
-    still = robot.joint_torque(robot.ready, rest, rest, (0.0, 0.0))
-    moved = robot.joint_torque(robot.ready, rest, push, (0.0, 0.0))
+    still, _ = robot.inverse_dynamics(robot.ready, rest, rest, (0.0, 0.0))
+    moved, _ = robot.inverse_dynamics(robot.ready, rest, push, (0.0, 0.0))
     assert moved[2] - still[2] > 10.0 * 0.005
     assert moved[8] == pytest.approx(still[8])
 

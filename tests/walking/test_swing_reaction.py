@@ -1,0 +1,150 @@
+"""The pelvis makes up for what the swinging legs do to the ZMP."""
+
+import numpy as np
+import pytest
+
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.lipm import Lipm
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.state import Footstep
+from walking.swing_reaction import LegReaction, Swing, SwingCompensation, leg_reaction
+
+LIPM = Lipm(0.19)
+REACTION = LegReaction(thrust=7e-4, weight=0.012, knee=3e-4)
+STEP, TICKS = 60, 44  # control ticks of a footstep and of its swing
+
+
+def foot(side, x, y, yaw=0.0):
+    return Footstep(side > 0, x, y, yaw)
+
+
+def swings(k, stride, *, side=1.0, steps=6):
+    """Swings seen from tick `k` of a walk that goes on for ever."""
+    first, planned = k // STEP, []
+    for n in range(first, first + steps):
+        flank = side * (-1.0) ** n
+        begin = n * STEP + STEP - TICKS - k
+        if begin + TICKS < 0:
+            continue
+        planned.append(
+            Swing(
+                begin,
+                TICKS,
+                0.025,
+                foot(flank, (n - 1) * stride, 0.042 * flank),
+                foot(flank, (n + 1) * stride, 0.042 * flank),
+                (n * stride + 0.01, -0.042 * flank),
+            )
+        )
+    return planned
+
+
+def track(stride, count=600, **options):
+    compensation = SwingCompensation(LIPM, REACTION)
+    rows = []
+    for k in range(count):
+        compensation.advance(swings(k, stride, **options))
+        rows.append((*compensation.offset, *compensation.acceleration))
+    return np.array(rows)
+
+
+def reaction_of(k, stride):
+    """Move of the ZMP by the swing under way at tick `k`, by the formula."""
+    swing = swings(k, stride)[0]
+    u = -swing.begin / TICKS
+    if not 0.0 <= u <= 1.0:
+        return np.zeros(2)
+    T = TICKS * CONTROL_PERIOD
+    moved = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])
+    height = 0.025 * np.polynomial.Polynomial([0, 4, -4]) ** 3
+    a, b = (np.array([f.x, f.y]) for f in (swing.origin, swing.landing))
+    place = a + (b - a) * moved(u)
+    up = height.deriv(2)(u) / T**2
+    return (
+        -REACTION.thrust * (b - a) * moved.deriv(2)(u) / T**2
+        + REACTION.weight * up * (place - swing.zmp)
+        - REACTION.knee * up * np.array([1.0, 0.0])
+    )
+
+
+@pytest.mark.parametrize("stride", [0.0, 0.07, -0.05])
+def test_the_offset_cancels_the_reaction(stride):
+    rows = track(stride)
+    w2 = LIPM.omega**2
+    for k in range(300, 600):
+        undone = rows[k, :2] - rows[k, 2:] / w2
+        assert undone == pytest.approx(-reaction_of(k, stride), abs=1e-9)
+
+
+def test_the_acceleration_is_that_of_the_offset():
+    rows = track(0.07)
+    found = np.diff(rows[:, :2], n=2, axis=0) / CONTROL_PERIOD**2
+    expected = rows[1:-1, 2:]
+    error = (found - expected)[300:]
+    assert np.sqrt((error**2).mean()) < 0.05 * np.sqrt((expected**2).mean())
+
+
+def test_offsets_stay_small_and_mirror():
+    right, left = track(0.07), track(0.07, side=-1.0)
+    assert np.abs(right[:, :2]).max() < 0.02
+    assert left[:, 0] == pytest.approx(right[:, 0], abs=1e-12)
+    assert left[:, 1] == pytest.approx(-right[:, 1], abs=1e-12)
+
+
+def test_standing_the_pelvis_comes_back():
+    compensation = SwingCompensation(LIPM, REACTION)
+    for k in range(200):
+        compensation.advance(swings(k, 0.07))
+    for _ in range(400):
+        compensation.advance([])
+    assert np.abs(compensation.offset).max() < 1e-6
+
+
+def test_the_reaction_is_read_off_the_model(robot):
+    parameters = WalkingParameters()
+    height, lift = parameters.pattern.pelvis_height, parameters.gait.lift
+    reaction = leg_reaction(robot, height, lift)
+    # A leg is a quarter of the robot; about half of it goes with the foot.
+    assert 0.08 < reaction.weight * 9.81 < 0.2
+    assert 0.0 < reaction.thrust * 9.81 < 0.1 * height
+    assert 0.0 < reaction.knee < reaction.thrust
+
+
+def zmp_errors(robot, body, reaction):
+    """Multibody ZMP of the planned motion less the planned one, forward at 0.2 m/s [m]."""
+    parameters = WalkingParameters()
+    engine = WalkingEngine(robot, parameters)
+    engine._compensation = SwingCompensation(engine._lipm, reaction)
+    rows = []
+    for _ in range(900):
+        targets = engine.step(body.sense(), VelocityCommand(0.2), HeadTarget())
+        body.apply(targets)
+        pelvis, pendulum = engine._pelvis, engine._pendulum
+        rows.append([*targets.position, pelvis.x, pelvis.y, pendulum.zmp_x, pendulum.zmp_y])
+    table = np.array(rows)
+    rate = np.diff(table[:, :28], axis=0) / CONTROL_PERIOD
+    change = np.diff(rate, axis=0) / CONTROL_PERIOD
+    height, errors = parameters.pattern.pelvis_height, []
+    for k in range(500, 890):
+        acceleration = change[k - 1]
+        _, wrench = robot.inverse_dynamics(
+            table[k, :26], rate[k, :26], acceleration[:26], tuple(acceleration[26:])
+        )
+        fx, fy, fz, nx, ny, _ = wrench
+        zmp = table[k, 26:28] + [-(ny + height * fx) / fz, (nx - height * fy) / fz]
+        errors.append(zmp - table[k, 28:])
+    return np.array(errors)
+
+
+def test_the_multibody_zmp_comes_near_the_planned_one(robot, ideal_body):
+    parameters = WalkingParameters()
+    reaction = leg_reaction(robot, parameters.pattern.pelvis_height, parameters.gait.lift)
+    errors = zmp_errors(robot, ideal_body, reaction)
+    # Without the compensation 10 mm and 6 mm.
+    assert np.sqrt((errors**2).mean(axis=0)) == pytest.approx([0.0, 0.0], abs=0.005)
+
+
+def test_a_pendulum_alone_lets_the_legs_move_the_zmp(robot, ideal_body):
+    errors = zmp_errors(robot, ideal_body, LegReaction(0.0, 0.0, 0.0))
+    assert np.sqrt((errors[:, 0] ** 2).mean()) > 0.008
