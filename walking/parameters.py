@@ -207,7 +207,7 @@ class LimitParameters:
     turn_acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 3.3
     """Change of the turn rate [rad/s²]."""
     braking_time: Annotated[float, Gt(0.0), TIME] = 0.3
-    """Time to come to rest from the fastest walk [s]."""
+    """Longest time to come to rest [s]."""
     step_forward: Annotated[float, Gt(0.0), LENGTH] = 0.145
     """Longest footstep forward or backward [m]."""
     step_side: Annotated[float, Gt(0.0), LENGTH] = 0.12

@@ -1,6 +1,5 @@
 """What the legs make of a velocity command: limits and slew."""
 
-from dataclasses import dataclass
 from math import sqrt
 
 from walking.admission import Limit
@@ -39,19 +38,29 @@ def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limi
     return bound
 
 
-@dataclass(frozen=True, slots=True)
 class _Axis:
-    """Largest change of one component per tick, away from rest and towards it."""
+    """Bounded change of one component: away from rest by so much a tick, to rest in a time.
 
-    speeding: float
-    braking: float
+    Args:
+        speeding: largest change per tick.
+        braking: share of the speed, when it last rose, that a tick may take away.
+    """
+
+    __slots__ = ("_braking", "_fastest", "_speeding")
+
+    def __init__(self, speeding: float, braking: float) -> None:
+        self._speeding, self._braking = speeding, braking
+        self._fastest = 0.0
 
     def towards(self, now: float, wanted: float) -> float:
         """The component a tick later."""
         change = wanted - now
-        slowing = now * change < 0.0
-        most = self.braking if slowing else self.speeding
-        if slowing and abs(now) < min(most, abs(change)):
+        if now * change >= 0.0:
+            self._fastest = abs(now)
+            return now + min(self._speeding, max(-self._speeding, change))
+        self._fastest = max(self._fastest, abs(now))
+        most = max(self._speeding, self._braking * self._fastest)
+        if abs(now) < min(most, abs(change)):
             return 0.0  # a reversal passes through rest
         return now + min(most, max(-most, change))
 
@@ -69,9 +78,9 @@ class VelocitySlew:
     def __init__(self, limits: LimitParameters) -> None:
         self._limits = limits
         tick, braking = CONTROL_PERIOD, CONTROL_PERIOD / limits.braking_time
-        self._forward = _Axis(limits.forward_acceleration * tick, limits.forward * braking)
-        self._left = _Axis(limits.lateral_acceleration * tick, limits.lateral * braking)
-        self._turn = _Axis(limits.turn_acceleration * tick, limits.turn * braking)
+        self._forward = _Axis(limits.forward_acceleration * tick, braking)
+        self._left = _Axis(limits.lateral_acceleration * tick, braking)
+        self._turn = _Axis(limits.turn_acceleration * tick, braking)
         self.forward = self.left = self.turn = 0.0
 
     @property
