@@ -10,7 +10,9 @@ from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.options import Check
 from hsr8.errors import UsageError
 from hsr8.render.png import write_png
+from hsr8.scenario.command import Command
 from hsr8.scenario.loader import load
+from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.world.certificate import Certificate, certify, straight_length
 from hsr8.world.generator import draw_layout
@@ -101,6 +103,10 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     facts.add_row("robot", f"{scenario.robot.body} body")
     facts.add_row("start", f"({x:.2f}, {y:.2f}) m, {degrees(heading):.0f} deg")
     facts.add_row("mission", f"{mission.kind}, {_points(layout)}")
+    if isinstance(mission, Walk):
+        facts.add_row("command", _command(scenario.command))
+    if not scenario.disturbance.empty:
+        facts.add_row("pushes", _pushes(scenario))
     facts.add_row("certificate", _certificate(summary, layout))
     facts.add_row(
         "camera",
@@ -117,6 +123,28 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     console.print(facts)
     if layout.obstacles:
         console.print(_obstacles(layout))
+
+
+def _command(command: Command) -> str:
+    if command.constant:
+        vx, vy, wz = command.vx or 0.0, command.vy or 0.0, command.wz or 0.0
+        return f"{vx:g} m/s forward, {vy:g} m/s left, {wz:g} rad/s"
+    if command.footstep is not None:
+        return f"footsteps of {command.footstep.forward:g} m"
+    if command.random is not None:
+        least, most = command.random.interval
+        return f"drawn every {least:g} to {most:g} s, {command.random.stops:.0%} stops"
+    total = sum(stretch.duration for stretch in command.stretch)
+    return f"{len(command.stretch)} stretches, {total:g} s"
+
+
+def _pushes(scenario: Scenario) -> str:
+    disturbance = scenario.disturbance
+    said = [f"{len(disturbance.push)} given"] if disturbance.push else []
+    if disturbance.random is not None:
+        least, most = disturbance.random.impulse
+        said.append(f"drawn, {least:g} to {most:g} N s on {disturbance.random.body}")
+    return ", ".join(said)
 
 
 def _points(layout: Layout) -> str:

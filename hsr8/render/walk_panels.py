@@ -299,15 +299,14 @@ def mark_pushes(panels: Sequence[Axes], table: WalkingTable) -> None:
     """A line in every panel of time for every push."""
     for row in _push_rows(table):
         for axes in panels:
-            axes.axvline(table.time[row], color=PUSH, lw=0.8, alpha=0.8, zorder=0)
+            axes.axvline(table["push_begin"][row], color=PUSH, lw=0.8, alpha=0.8, zorder=0)
 
 
 def _push_rows(table: WalkingTable) -> list[int]:
     """First row of every push."""
-    pushed = np.hypot(table["push_fx"], table["push_fy"]) > 0.0
-    rows: list[int] = np.flatnonzero(
-        np.diff(np.concatenate([[0], pushed.astype(int)])) > 0
-    ).tolist()
+    begins = np.where(table["push_impulse"] > 0.0, table["push_begin"], np.nan)
+    new = ~np.isnan(begins) & (begins != np.concatenate([[np.nan], begins[:-1]]))
+    rows: list[int] = np.flatnonzero(new).tolist()
     return rows
 
 

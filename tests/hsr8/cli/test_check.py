@@ -50,3 +50,19 @@ def test_the_run_it_leads_to_is_the_one_that_was_checked(capsys):
     main(Check("quick", set=(("world.n_static=3",),)))
     told = capsys.readouterr().out.splitlines()[-1]
     assert told == "run it: hsr8 run quick --seed 2 --set world.n_static=3"
+
+
+@pytest.mark.parametrize(
+    ("settings", "wanted"),
+    [
+        (["command.vx=0.3"], "0.3 m/s forward"),
+        (["command.footstep={forward=0.05}"], "footsteps of 0.05 m"),
+        (["command.random={stops=0.2}"], "drawn every 0.5 to 2 s, 20% stops"),
+        (["disturbance.push=[{time=1, impulse=1}]"], "5 stretches, 32 s"),
+        (["disturbance.push=[{time=1, impulse=1}]"], "1 given"),
+        (["disturbance.random={}"], "drawn, 0.2 to 0.8 N s on torso_link"),
+    ],
+)
+def test_commands_and_pushes_are_told(settings, wanted, capsys):
+    assert main(Check("walk", set=(tuple(settings),))) == 0
+    assert wanted in capsys.readouterr().out

@@ -37,6 +37,7 @@ def table():
         columns[f"{foot}_z"] = np.where((step % 2 != parity) & ~double, 0.02, 0.0)
     columns["limits"][50:60] = 1 << LIMITS.index(Limit.BALANCE)
     columns["push_fx"][100:103] = 5.0
+    columns["push_impulse"][100:103], columns["push_begin"][100:103] = 0.25, 1.985
     return WalkingTable(time, columns, (0.01, 0.0525, 0.03), dict.fromkeys(LEG_JOINTS, 6.0))
 
 
