@@ -44,7 +44,7 @@ def build_robot(
         rng: draws its particles.
         command_rng: draws the commands of a walk.
     """
-    beacons = {b.name: b.believed for b in layout.beacons}
+    beacons = known_beacons(scenario, layout)
     limits = scenario.speed_limits()
     navigation = scenario.navigation_parameters()
     body = RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
@@ -72,11 +72,18 @@ def build_robot(
     )
 
 
+def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, float]]:
+    """Where the robot takes the beacons to be, by name [m]; empty if it has no map of them."""
+    if scenario.belief_parameters().localization.map == "none":
+        return {}
+    return {b.name: b.believed for b in layout.beacons}
+
+
 def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator) -> Estimator:
     """The belief of the robot of `scenario`; `rng` draws its particles."""
     return Estimator(
         scenario.belief_parameters(),
-        {b.name: b.believed for b in layout.beacons},
+        known_beacons(scenario, layout),
         np.array(layout.start),
         np.diag(np.square(START_SIGMA)),
         rng,

@@ -1,7 +1,7 @@
 """Parameters of the belief: localization, tracks and local map."""
 
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
 
@@ -11,8 +11,10 @@ NonNegative = Annotated[float, Ge(0.0)]
 
 @dataclass(frozen=True)
 class LocalizationParameters:
-    """Unscented Kalman filter of the robot's pose from odometry and beacons."""
+    """Filter of the robot's pose from odometry and beacons, or what it maps itself."""
 
+    map: Literal["beacons", "none"] = "beacons"
+    """beacons: their known places; none: the static obstacles it meets, as if there were none."""
     drift: NonNegative = 0.0003
     """Random walk of position and heading that the odometry's covariance lacks [m/s^0.5]."""
     gate: Positive = 13.8

@@ -11,6 +11,7 @@ from navigation.belief_parameters import BeliefParameters
 from navigation.local_map import LocalMap
 from navigation.localization import Localizer
 from navigation.observation import Frame
+from navigation.self_mapping import SelfMapping
 from navigation.sightings import in_world
 from navigation.tracker import Tracker
 from navigation.visibility import Viewpoint
@@ -25,7 +26,8 @@ class Estimator:
         parameters: of localization, tracks and map.
         beacons: position in W by name [m].
         start_pose: x, y, heading of R in W (3,) [m, m, rad].
-        start_covariance: of the start pose (3, 3).
+        start_covariance: of the start pose (3, 3); without beacons that pose is exact, for it
+            defines the frame.
         rng: source of the particles of lost tracks.
     """
 
@@ -38,7 +40,13 @@ class Estimator:
         rng: np.random.Generator,
     ) -> None:
         self._parameters = parameters
-        self._localizer = Localizer(parameters.localization, beacons, start_pose, start_covariance)
+        self._localizer: Localizer | SelfMapping
+        if beacons:
+            self._localizer = Localizer(
+                parameters.localization, beacons, start_pose, start_covariance
+            )
+        else:
+            self._localizer = SelfMapping(parameters, start_pose)
         self._tracker = Tracker(parameters.tracking, rng)
         self._map: LocalMap | None = None
         self._recoveries = 0
@@ -68,6 +76,8 @@ class Estimator:
         )
         sure = Viewpoint.of(frame.view, pose, p.tracking.sure_range)
         tracks = self._tracker.update(frame.time, seen, sure, self._map.free_at(seen.positions))
+        if isinstance(localizer, SelfMapping):
+            localizer.learn(frame, tracks)
         searched = replace(sure, range=p.local_map.range)
         self._map.update(frame.time, searched, centre, seen.positions, seen.radii)
         return Belief(
