@@ -48,14 +48,16 @@ class Fall:
         time: from the fall to standing, none if it never stood [s].
         attempts: motions it took.
         again: whether it fell again at once.
-        moved: how far it stands from where it fell [m].
+        drift: error of the odometry from the push to standing [m].
+        turn: error of its heading meanwhile [rad].
     """
 
     side: str
     time: float | None
     attempts: int
     again: bool
-    moved: float
+    drift: float = np.nan
+    turn: float = np.nan
 
 
 class Trial:
@@ -81,28 +83,33 @@ class Trial:
         """Walk, fall, get up, walk on; None if the push did not fell the robot."""
         body, walker = self._body, self._walker
         self._walk(self._lead)
+        before = self._poses()
         body.data.xfrc_applied[body.torso, :2] = self._impulse / PUSH * self._direction
         self._walk(PUSH)
         body.data.xfrc_applied[body.torso, :2] = 0.0
         self._walk(FALL_TIME, until_down=True)
         if not walker.down:
             return None
-        fallen_at, place = body.data.time, body.pose[:2]
+        fallen_at = body.data.time
         side, attempts = "", 0
         while walker.down and body.data.time - fallen_at < PATIENCE:
-            get_up = walker._get_up
+            get_up = walker.get_up
             if get_up.attempts and not side:
                 side = str(lying_on(up_in_trunk(body.data.qpos[3:7].tolist())))
             attempts = get_up.attempts
             if get_up.outcome is Outcome.GAVE_UP:
                 break
             self._tick()
-        moved = float(np.linalg.norm(body.pose[:2] - place))
         if walker.down:
-            return Fall(side, None, attempts, again=False, moved=moved)
+            return Fall(side, None, attempts, again=False)
         time = body.data.time - fallen_at
+        drift, turn = missed(before, self._poses())
         self._walk(AFTER, until_down=True)
-        return Fall(side, time, attempts, again=walker.down, moved=moved)
+        return Fall(side, time, attempts, again=walker.down, drift=drift, turn=turn)
+
+    def _poses(self) -> tuple[np.ndarray, np.ndarray]:
+        odometry = self._walker.state().odometry
+        return self._body.pose, np.array([odometry.x, odometry.y, odometry.yaw])
 
     def _walk(self, seconds: float, *, until_down: bool = False) -> None:
         for _ in range(round(seconds / CONTROL_PERIOD)):
@@ -113,6 +120,18 @@ class Trial:
     def _tick(self) -> None:
         targets = self._walker.step(self._body.sense(), self._command, HeadTarget())
         self._body.apply(targets.position + targets.offset)
+
+
+def missed(
+    before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]
+) -> tuple[float, float]:
+    """Error of the odometry between two pairs of true and believed pose [m, rad]."""
+    moves = []
+    for old, new in zip(before, after, strict=True):
+        c, s = np.cos(old[2]), np.sin(old[2])
+        moves.append(np.array([[c, s], [-s, c]]) @ (new - old)[:2])
+    turn = (after[1] - before[1] - after[0] + before[0])[2]
+    return float(np.linalg.norm(moves[1] - moves[0])), float(np.angle(np.exp(1j * turn)))
 
 
 def table(name: str, falls: list[Fall]) -> list[str]:
@@ -129,17 +148,17 @@ def table(name: str, falls: list[Fall]) -> list[str]:
         if len(times):
             low, high = np.percentile(times, [50, 95])
             spread = f"{low:.1f} / {high:.1f} / {times.max():.1f}"
-        moved = float(np.sqrt(np.mean([f.moved**2 for f in these])))
+        drift, turn = np.sqrt(np.nanmean([(f.drift**2, f.turn**2) for f in these], axis=0))
         rows.append(
             f"| {name} | {side} | {len(these)} | {len(times)} ({len(times) / len(these):.0%}) "
-            f"| {first} | {spread} | {sum(f.again for f in these)} | {moved:.2f} |"
+            f"| {first} | {spread} | {sum(f.again for f in these)} | {drift:.2f}, {turn:.3f} |"
         )
     return rows
 
 
 HEAD = (
     "| body | first lain on | falls | got up | of them without a repeat "
-    "| time p50 / p95 / max, s | fell again within 5 s | moved, rms, m |\n"
+    "| time p50 / p95 / max, s | fell again within 5 s | odometry off by, rms, m, rad |\n"
     "|---|---|---|---|---|---|---|---|"
 )
 

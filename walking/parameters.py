@@ -264,9 +264,9 @@ class GetUpParameters:
     """Angular velocity of the trunk below which it is at rest, each axis [rad/s]."""
     still_time: Annotated[float, Gt(0.0), TIME] = 0.2
     """Time for which it must be [s]."""
-    displacement: Annotated[float, Ge(0.0), LENGTH] = 0.3
+    displacement: Annotated[float, Ge(0.0), LENGTH] = 0.2
     """How far a fall and getting up move the robot unseen, standard deviation per axis [m]."""
-    turn: Annotated[float, Ge(0.0), NUMBER] = 0.05
+    turn: Annotated[float, Ge(0.0), NUMBER] = 0.02
     """How much of the turn meanwhile the IMU misses, standard deviation [rad]."""
 
 

@@ -25,6 +25,7 @@ class Walker:
         parameters: of walking and getting up.
 
     Attributes:
+        get_up: the fall that is under way, if one is.
         get_ups: how often the robot has got up.
     """
 
@@ -33,7 +34,7 @@ class Walker:
         self._parameters = parameters
         self._odometry = LegOdometry(parameters.odometry)
         self._engine = WalkingEngine(robot, parameters, self._odometry)
-        self._get_up: GetUp | None = None
+        self.get_up: GetUp | None = None
         self._steps = 0
         self.get_ups = 0
 
@@ -60,7 +61,7 @@ class Walker:
     @property
     def down(self) -> bool:
         """Whether the robot lies or gets up, and obeys no command."""
-        return self._get_up is not None
+        return self.get_up is not None
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """One control tick.
@@ -73,12 +74,12 @@ class Walker:
         Returns:
             set-points of all joints.
         """
-        get_up = self._get_up
+        get_up = self.get_up
         if get_up is None:
             targets = self._engine.step(sensors, command, head)
             if self._parameters.get_up.enabled and self._engine.fallen:
                 angles = targets.position + targets.offset
-                self._get_up = GetUp(self._robot, self._parameters.get_up, angles)
+                self.get_up = GetUp(self._robot, self._parameters.get_up, angles)
             return targets
         self._engine.observe(sensors)
         targets = get_up.step(sensors)
@@ -95,9 +96,9 @@ class Walker:
         """
         state = self._engine.state()
         steps = self._steps + state.step_count
-        if self._get_up is None:
+        if self.get_up is None:
             return replace(state, step_count=steps) if self._steps else state
-        gave_up = self._get_up.outcome is Outcome.GAVE_UP
+        gave_up = self.get_up.outcome is Outcome.GAVE_UP
         phase = Phase.FALLEN if gave_up else Phase.GETTING_UP
         return replace(state, step_count=steps, phase=phase, fallen=True)
 
@@ -107,5 +108,5 @@ class Walker:
         self._steps = self.state().step_count
         self._odometry.interrupt(p.get_up.displacement, p.get_up.turn)
         self._engine = WalkingEngine(self._robot, p, self._odometry)
-        self._get_up = None
+        self.get_up = None
         self.get_ups += 1

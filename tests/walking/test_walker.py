@@ -67,7 +67,7 @@ def test_once_up_it_goes_on_with_the_odometry_and_the_count_of_steps(robot, idea
     walk(walker, ideal_body, 500)
     before = walker.state()
     fall(walker, ideal_body, 100)
-    walker._get_up.outcome = Outcome.UP
+    walker.get_up.outcome = Outcome.UP
     standing = type(ideal_body)(robot)
     walker.step(standing.sense(), FORWARD, AHEAD)
     after = walker.state()
@@ -78,6 +78,6 @@ def test_once_up_it_goes_on_with_the_odometry_and_the_count_of_steps(robot, idea
     moved = np.hypot(after.odometry.x - before.odometry.x, after.odometry.y - before.odometry.y)
     assert moved < 0.2  # what the tipping trunk makes of the legs
     hidden = after.odometry.covariance - before.odometry.covariance
-    assert hidden[0, 0] == pytest.approx(0.3**2, rel=0.1)
+    assert hidden[0, 0] == pytest.approx(RISING.get_up.displacement**2, rel=0.1)
     walk(walker, standing, 400)
     assert walker.state().step_count > after.step_count
