@@ -25,7 +25,7 @@ from walking.gait import Gait
 from walking.generator import make_generator
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference
+from walking.pattern import PendulumState, dcm_reference
 from walking.robot_model import RobotModel, Sole
 from walking.state import Footstep
 from walking.steering import Steering
@@ -123,14 +123,15 @@ class Walker:
         if not gait.stepping and self.steering.moving:
             gait.start(0)
         begin = time.process_time()
-        ramps = self._plan()
         region = CountingRegion(support_region(self.sole, *gait.support_feet, self._margin))
-        moving = self.steering.moving
+        wish, moving = self.steering.wish(0.0), self.steering.moving
         if self.generator.selective:
-            ramps = self.transition.admit(
-                self.state, ramps, region, self.steering.wish(0.0), moving=moving, forced=False
-            )
-            moving = self.transition.moving
+            ramps = self.transition.admit(self.state, region, wish, moving=moving)
+            moving, gait.landing = self.transition.moving, self.transition.landing
+        else:
+            if gait.adjustable:
+                gait.aim(gait.nominal(wish))
+            ramps = gait.plan(gait.landing, wish, moving=moving)
         x, y = dcm_reference(self.lipm, ramps)
         p, w = self.state, self.lipm.omega
         own = (p.x + p.vx / w, p.y + p.vy / w)
@@ -176,12 +177,6 @@ class Walker:
     @property
     def _margin(self) -> float:
         return self.parameters.pattern.sole_margin
-
-    def _plan(self) -> list[ZmpRamp]:
-        gait, wish = self.gait, self.steering.wish(0.0)
-        if gait.adjustable:
-            gait.aim(gait.nominal(wish))
-        return gait.plan(gait.landing, wish, moving=self.steering.moving)
 
 
 @dataclass

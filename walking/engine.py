@@ -1,5 +1,6 @@
 """The walking engine: one control tick from sensors and commands to joint targets."""
 
+from dataclasses import replace
 from math import cos, hypot, sin
 
 import numpy as np
@@ -17,7 +18,7 @@ from walking.lipm import Lipm
 from walking.measurement import BodyMeasurement, measure
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import PendulumState, ZmpRamp
+from walking.pattern import DcmTracker, PendulumState, ZmpRamp, dcm_reference
 from walking.posture import Posture, ready_stance
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
@@ -62,6 +63,9 @@ class WalkingEngine:
         zmp = self._gait.plan(stance[1], self._planner.still, moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
         self._steering = Steering(self._planner, parameters.limits)
+        # The pendulum of the plan, another one only while a footstep catches the body.
+        self._planned = self._pendulum
+        self._tracker = DcmTracker(self._lipm, pattern.dcm_gain)
         self._transition = Transition(self._gait, self._generator)
         self._binding: list[Limit] = []
         self._given = self._steering.velocity
@@ -139,22 +143,21 @@ class WalkingEngine:
         gait = self._gait
         if not gait.stepping:
             self._maybe_start(error, moving=moving)
-        ramps, nominal = self._plan(body, wish, error, moving=moving)
-        pattern = self._parameters.pattern
-        pendulum = self._pendulum
-        region = self._region(pattern.sole_margin)
-        if self._generator.selective:
-            ramps = self._admit(ramps, region, wish, moving=moving, forced=not nominal)
+        region = self._region(self._parameters.pattern.sole_margin)
+        ramps = self._plan(body, wish, error, region)
+        if self._selects:
             moving = self._transition.moving
-        else:
-            self._given = self._steering.velocity
-        self._generator.advance(pendulum, ramps, region, forced=not nominal)
+        self._move_pendulum(ramps, region)
+        pendulum = self._pendulum
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
         reachable = self._region(self._parameters.stabilizer.sole_margin)
         self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
         self._footing.feet = gait.support_feet
         gait.advance(moving=moving)
+        if self._planned is not pendulum and (gait.double or not gait.stepping):
+            self._planned = pendulum
+            self._generator.forget()
         return self._realize(body, zmp, load, self._head.advance(head))
 
     def observe(self, sensors: BodySensors) -> None:
@@ -296,75 +299,107 @@ class WalkingEngine:
         body: BodyMeasurement,
         wish: Strides,
         error: tuple[float, float],
-        *,
-        moving: bool,
-    ) -> tuple[list[ZmpRamp], bool]:
-        """Decide on the landing of the swing foot.
-
-        Returns:
-            the ZMP reference, and whether landing and time are the nominal ones.
-        """
+        region: SupportRegion,
+    ) -> list[ZmpRamp]:
+        """The ZMP reference; decides on the landing of the swing foot and its time, too."""
         gait = self._gait
         if gait.stepping and not gait.double and not gait.held:
             force = body.feet[gait.swing].force
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touch_down()
-        nominal = gait.nominal(wish) if gait.adjustable else gait.landing
-        frozen = gait.stepping and not gait.adjustable
-        if frozen and not self._planner.same(gait.nominal(wish), nominal):
-            self._binding.append(Limit.LANDING_FROZEN)
-        ramps = gait.plan(nominal, wish, moving=moving)
-        caught = nominal
-        if gait.adjustable:
-            capture = self._catch(nominal, ramps, error)
-            if capture.ticks < gait.ticks_left and gait.hasten(capture.ticks, capture.landing):
-                ramps = gait.plan(nominal, wish, moving=moving)
-                capture = self._catch(nominal, ramps, error)
-            if not gait.double:
-                caught = capture.landing
-        self._capture = (caught.x - nominal.x, caught.y - nominal.y)
-        if caught != nominal or gait.hurried:
+        adjustable = gait.adjustable
+        ramps, landing = self._reference(wish, region)
+        self._capture = (0.0, 0.0)
+        if not adjustable:
+            if gait.stepping and not self._planner.same(gait.nominal(wish), landing):
+                self._binding.append(Limit.LANDING_FROZEN)
+            return ramps
+        moving, caught = self._steering.moving, landing
+        capture = self._catch(landing, ramps, error)
+        if capture.ticks < gait.ticks_left and gait.hasten(capture.ticks, capture.landing):
+            # The plan was made for other times.
+            self._planned = self._pendulum
+            self._generator.forget()
+            ramps = gait.plan(landing, wish, moving=moving)
+            capture = self._catch(landing, ramps, error)
+        if not gait.double:
+            caught = capture.landing
+        self._capture = (caught.x - landing.x, caught.y - landing.y)
+        if caught != landing or gait.hurried:
             self._binding.append(Limit.BALANCE)
         gait.aim(caught)
-        if gait.landing != nominal:
+        if gait.landing != landing and not self._selects:
             ramps = gait.plan(gait.landing, wish, moving=moving)
-        return ramps, caught == nominal and not gait.hurried
+        return ramps
+
+    @property
+    def _selects(self) -> bool:
+        """Whether the generator has a say in the footsteps; not if they have to be hurried."""
+        return self._generator.selective and not self._gait.hurried
 
     def _catch(
-        self, nominal: Footstep, ramps: list[ZmpRamp], error: tuple[float, float]
+        self, landing: Footstep, ramps: list[ZmpRamp], error: tuple[float, float]
     ) -> Capture:
-        """What the nominal footholds do not catch of the measured DCM."""
+        """What the footholds of the plan do not catch of the measured DCM."""
         gait, p, w = self._gait, self._pendulum, self._lipm.omega
         support = gait.footholds[gait.support]
-        x, y = self._generator.planned_dcm(p, ramps)
+        if gait.hurried:
+            x, y = dcm_reference(self._lipm, ramps)
+        else:
+            x, y = self._generator.planned_dcm(self._planned, ramps)
         off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
         ahead = (x - ramps[0].bx, y - ramps[0].by)
         return self._stabilizer.capture(
-            self._planner, support, nominal, off, ahead, ticks_left=gait.ticks_left
+            self._planner, support, landing, off, ahead, ticks_left=gait.ticks_left
         )
 
-    def _admit(
-        self,
-        ramps: list[ZmpRamp],
-        region: SupportRegion,
-        wish: Strides,
-        *,
-        moving: bool,
-        forced: bool,
-    ) -> list[ZmpRamp]:
-        """Reference of the plan that the generator admits."""
-        transition = self._transition
-        admitted = transition.admit(
-            self._pendulum, ramps, region, wish, moving=moving, forced=forced
+    def _reference(self, wish: Strides, region: SupportRegion) -> tuple[list[ZmpRamp], Footstep]:
+        """Reference of the plan that the generator admits, and the landing in it."""
+        gait, transition, moving = self._gait, self._transition, self._steering.moving
+        wanted = self._steering.velocity
+        if not self._selects:
+            self._given = wanted
+            transition.skip(wish, moving=moving)
+            landing = gait.nominal(wish) if gait.adjustable else gait.landing
+            return gait.plan(landing, wish, moving=moving), landing
+        ramps = transition.admit(
+            self._planned,
+            region,
+            wish,
+            moving=moving,
+            caught=self._planned is not self._pendulum,
         )
-        share, wanted = transition.share, self._steering.velocity
+        share = transition.share
         if share < 1.0:
             self._binding.append(Limit.ZMP_REGION)
             a, b, c = (g + share * (w - g) for g, w in zip(self._given, wanted, strict=True))
             self._given = (a, b, c)
         else:
             self._given = wanted
-        return admitted
+        return ramps, transition.landing
+
+    def _move_pendulum(self, ramps: list[ZmpRamp], region: SupportRegion) -> None:
+        """One tick of the plan, and of the body's pendulum where it has left the plan."""
+        gait, pendulum = self._gait, self._pendulum
+        landing, w = self._transition.landing, self._lipm.omega
+        if gait.hurried:
+            self._tracker.follow(pendulum, ramps, region)
+            return
+        catching = self._generator.selective and gait.landing != landing
+        if catching and not gait.double and self._planned is pendulum:
+            self._planned = replace(pendulum)
+        planned = self._planned
+        if planned is pendulum:
+            self._generator.advance(pendulum, ramps, region)
+            return
+        # The DCM that leads to the foothold which is really aimed at; the ZMP goes over to it
+        # from the old one, which does not move.
+        c = self._lipm.ramp(gait.timing.double)
+        share = (1.0 + c.last) / c.growth / self._lipm.ramp(gait.ticks_left).growth
+        x = planned.x + planned.vx / w + share * (gait.landing.x - landing.x)
+        y = planned.y + planned.vy / w + share * (gait.landing.y - landing.y)
+        self._generator.advance(planned, ramps, region)
+        self._tracker.advance(pendulum, (x, y), (planned.zmp_x, planned.zmp_y), region)
 
     def _region(self, margin: float) -> SupportRegion:
         first, second = self._gait.support_feet

@@ -14,6 +14,7 @@ Point = tuple[float, float]
 Clock = tuple[Timing, tuple[int, int, Point, float], tuple[int, int, int, float]]
 
 PEAK = 1.875  # of the speed of a minimum-jerk motion over its mean [1]
+ROUNDING = 1e-9  # of a landing that another one is one move away from [m]
 
 
 class FootReference:
@@ -274,16 +275,21 @@ class Gait:
 
     def aim(self, wanted: Footstep) -> None:
         """Move the landing towards `wanted`, in the air no faster than allowed."""
+        self.landing = self.aimed(self.landing, wanted)
+
+    def aimed(self, landing: Footstep, wanted: Footstep) -> Footstep:
+        """A landing moved towards `wanted` by as much as one tick allows."""
         if self.swing_phase == 0.0:
-            self.landing = wanted
-            return
-        dx, dy = wanted.x - self.landing.x, wanted.y - self.landing.y
+            return wanted
+        dx, dy = wanted.x - landing.x, wanted.y - landing.y
         largest = max(abs(dx), abs(dy))
-        share = min(1.0, self._move / largest) if largest > 0.0 else 1.0
-        self.landing = Footstep(
+        if largest <= self._move + ROUNDING:
+            return wanted
+        share = self._move / largest
+        return Footstep(
             left=wanted.left,
-            x=self.landing.x + share * dx,
-            y=self.landing.y + share * dy,
+            x=landing.x + share * dx,
+            y=landing.y + share * dy,
             yaw=wanted.yaw,
         )
 

@@ -126,8 +126,6 @@ class PaperGenerator:
         state: PendulumState,
         ramps: list[ZmpRamp],
         region: SupportRegion,
-        *,
-        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
@@ -135,7 +133,6 @@ class PaperGenerator:
             state: of the pendulum.
             ramps: ZMP reference from now on.
             region: where the ZMP may be.
-            forced: whether the footholds of the reference are moved to catch the body.
         """
         ramp = ramps[0]
         if ramp.feet[0] is not ramp.feet[1]:
@@ -152,6 +149,14 @@ class PaperGenerator:
         w = self._lipm.omega
         rx, ry = self._residual
         return state.x + state.vx / w - rx, state.y + state.vy / w - ry
+
+    def holds(self, ramps: list[ZmpRamp]) -> bool:
+        """Whether the ZMP functions under way lead to a walking state."""
+        return self._residual == (0.0, 0.0)
+
+    def forget(self) -> None:
+        """Give up the ZMP functions under way."""
+        self._target, self._residual = None, (0.0, 0.0)
 
     def _walking_target(self, ramps: list[ZmpRamp]) -> WalkingTarget:
         """DCM that walks the footholds to come, and ζ of the periodic walk they lead to."""

@@ -98,6 +98,9 @@ class PatternParameters:
     """Where the ZMP is meant to be inward of the ankle [m]."""
     sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.005
     """Distance that the planned ZMP keeps from the edge of the sole [m]."""
+    plan_margin: Annotated[float, Ge(0.0), LENGTH] = 0.018
+    """Distance that the robust plan's ZMP keeps from the edge of the sole, so that the ankles
+    have room beside it; undisturbed it is never less, else the sole's margin counts [m]."""
     zmp_rate: Annotated[float, Gt(0.0), SOLE_SPEED] = 4.0
     """Fastest move of the robust plan's ZMP in single support [m/s]."""
     dcm_gain: Annotated[float, Gt(1.0), NUMBER] = 3.0

@@ -65,6 +65,50 @@ class PendulumState:
     zmp_y: float = 0.0
 
 
+class DcmTracker:
+    """Makes a pendulum track a DCM by its ZMP.
+
+    Args:
+        lipm: pendulum.
+        gain: ZMP moved per error of the DCM, more than one [1].
+    """
+
+    def __init__(self, lipm: Lipm, gain: float) -> None:
+        self._lipm = lipm
+        self._gain = gain
+
+    def follow(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> None:
+        """Advance `state` along a reference, as near to it as the region lets the ZMP go."""
+        first = ramps[0]
+        middle = 0.5 / first.ticks
+        x = first.ax + (first.bx - first.ax) * middle
+        y = first.ay + (first.by - first.ay) * middle
+        self.advance(state, dcm_reference(self._lipm, ramps), (x, y), region)
+
+    def advance(
+        self,
+        state: PendulumState,
+        dcm: tuple[float, float],
+        zmp: tuple[float, float],
+        region: SupportRegion,
+    ) -> None:
+        """Advance `state` in place; its ZMP never leaves `region`.
+
+        Args:
+            state: of the pendulum.
+            dcm: to track [m].
+            zmp: that goes with it [m].
+            region: where the ZMP may be.
+        """
+        lipm, gain = self._lipm, self._gain
+        px = zmp[0] + gain * (state.x + state.vx / lipm.omega - dcm[0])
+        py = zmp[1] + gain * (state.y + state.vy / lipm.omega - dcm[1])
+        px, py = region.clip(px, py)
+        state.x, state.vx = lipm.step(state.x, state.vx, px)
+        state.y, state.vy = lipm.step(state.y, state.vy, py)
+        state.zmp_x, state.zmp_y = px, py
+
+
 class PatternGenerator(Protocol):
     """Moves the pendulum one tick along the reference.
 
@@ -88,8 +132,6 @@ class PatternGenerator(Protocol):
         state: PendulumState,
         ramps: list[ZmpRamp],
         region: SupportRegion,
-        *,
-        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
@@ -97,19 +139,36 @@ class PatternGenerator(Protocol):
             state: of the pendulum.
             ramps: ZMP reference from now on.
             region: where the ZMP may be.
-            forced: whether the footholds of the reference are moved to catch the body.
         """
 
     def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
-        """DCM [m] that the generator holds for right.
+        """DCM [m] that the generator holds for right in the tick of a reference."""
 
-        Args:
-            state: of the pendulum.
-            ramps: reference that no body has to be caught by.
-        """
+    def holds(self, ramps: list[ZmpRamp]) -> bool:
+        """Whether the plan under way can be carried on under a reference."""
+
+    def forget(self) -> None:
+        """Give up the plan under way: the pendulum has been moved."""
 
 
-class DcmGenerator:
+class TrackingGenerator:
+    """What generators have in common that take any reference and are late where they must."""
+
+    selective = False
+
+    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+        """Always: a reference that asks too much is tracked late."""
+        return True
+
+    def holds(self, ramps: list[ZmpRamp]) -> bool:
+        """Always: there is no plan but the reference."""
+        return True
+
+    def forget(self) -> None:
+        """Nothing is remembered."""
+
+
+class DcmGenerator(TrackingGenerator):
     """Tracks the DCM of the reference by the ZMP.
 
     Args:
@@ -117,23 +176,15 @@ class DcmGenerator:
         parameters: gain of the DCM error.
     """
 
-    selective = False
-
     def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
         self._lipm = lipm
-        self._gain = parameters.dcm_gain
-
-    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
-        """Always: a reference that asks too much is tracked late."""
-        return True
+        self._tracker = DcmTracker(lipm, parameters.dcm_gain)
 
     def advance(
         self,
         state: PendulumState,
         ramps: list[ZmpRamp],
         region: SupportRegion,
-        *,
-        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
@@ -141,26 +192,15 @@ class DcmGenerator:
             state: of the pendulum.
             ramps: ZMP reference from now on.
             region: where the ZMP may be.
-            forced: whether the footholds of the reference are moved to catch the body.
         """
-        lipm, first = self._lipm, ramps[0]
-        ref_x, ref_y = dcm_reference(lipm, ramps)
-        middle = 0.5 / first.ticks
-        px = first.ax + (first.bx - first.ax) * middle
-        py = first.ay + (first.by - first.ay) * middle
-        px += self._gain * (state.x + state.vx / lipm.omega - ref_x)
-        py += self._gain * (state.y + state.vy / lipm.omega - ref_y)
-        px, py = region.clip(px, py)
-        state.x, state.vx = lipm.step(state.x, state.vx, px)
-        state.y, state.vy = lipm.step(state.y, state.vy, py)
-        state.zmp_x, state.zmp_y = px, py
+        self._tracker.follow(state, ramps, region)
 
     def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
         """The DCM of the footholds: the pendulum is late only after a disturbance."""
         return dcm_reference(self._lipm, ramps)
 
 
-class PreviewGenerator:
+class PreviewGenerator(TrackingGenerator):
     """Kajita's preview regulator on the same reference.
 
     The preview sum over a piecewise-linear reference is closed form in running sums of the
@@ -171,23 +211,15 @@ class PreviewGenerator:
         parameters: horizon and weight.
     """
 
-    selective = False
-
     def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
         self._lipm = lipm
         self._gains = preview_gains(lipm, parameters)
-
-    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
-        """Always: a reference that asks too much is tracked late."""
-        return True
 
     def advance(
         self,
         state: PendulumState,
         ramps: list[ZmpRamp],
         region: SupportRegion,
-        *,
-        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
@@ -195,7 +227,6 @@ class PreviewGenerator:
             state: of the pendulum.
             ramps: ZMP reference from now on.
             region: where the ZMP may be.
-            forced: whether the footholds of the reference are moved to catch the body.
         """
         lipm, gains = self._lipm, self._gains
         ahead_x, ahead_y = self._preview(ramps)

@@ -1,7 +1,7 @@
 """A pattern whose ZMP is inside the soles at all times, between the ticks too.
 
 The planned ZMP is linear between knots at absolute times. Every knot of a single support
-lies in the sole, every knot of a double support in a rectangle between the two soles; a
+lies in the sole, every knot of a double support in a parallelogram between the two; a
 segment within one convex set stays in it, so nothing has to be sampled. Along such a ZMP
 the pendulum is exact and its DCM now is a weighted sum of the knots,
 
@@ -16,15 +16,15 @@ equations and bounds. Its dual has two unknowns, found by Newton's method; witho
 bounds that is one division.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from walking.lipm import Lipm
 from walking.parameters import PatternParameters
-from walking.pattern import PendulumState, ZmpRamp
+from walking.pattern import DcmTracker, PendulumState, ZmpRamp, dcm_reference
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.support import SupportRegion
-from walking.zmp_program import DOUBLE_SPACING, Knot, Lean, ZmpProgram
+from walking.zmp_program import Knot, ZmpProgram
 
 Feet = tuple[Footstep, Footstep]
 
@@ -36,34 +36,12 @@ class ZmpPlan:
     Attributes:
         knots: ticks since the one before, x, y [m].
         supports: end of the first ramps in ticks from now, and their feet.
-        missed: DCM that the plan does not lead back to the reference, zero if feasible [m].
         dual: of its program, see `ZmpFit` [1/m].
     """
 
     knots: list[Knot]
     supports: list[tuple[int, Feet]]
-    missed: tuple[float, float]
     dual: tuple[float, float]
-
-    @property
-    def feasible(self) -> bool:
-        """Whether the plan leads to its end."""
-        return self.missed == (0.0, 0.0)
-
-
-@dataclass(slots=True)
-class Undisturbed:
-    """What the pendulum would do had it not to catch the body.
-
-    Attributes:
-        state: of the pendulum.
-        knots: that it follows.
-        missed: DCM that they do not lead back to the reference [m].
-    """
-
-    state: PendulumState
-    knots: list[Knot]
-    missed: tuple[float, float]
 
 
 class RobustGenerator:
@@ -81,14 +59,14 @@ class RobustGenerator:
         self._lipm = lipm
         self._parameters = parameters
         self._sole = sole
-        self._plan = ZmpPlan([], [], (0.0, 0.0), (0.0, 0.0))
+        self._tracker = DcmTracker(lipm, parameters.dcm_gain)
+        self._plan: ZmpPlan | None = None
         self._age = 0
         self._candidate: tuple[list[ZmpRamp], ZmpPlan] | None = None
-        self._undisturbed: Undisturbed | None = None
 
     def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
         """Whether a plan with all knots in place leads into a reference."""
-        plan = self._solve(state, ramps)
+        plan = self._solve(state, ramps, self._parameters.plan_margin)
         if plan is not None:
             self._candidate = (ramps, plan)
         return plan is not None
@@ -98,8 +76,6 @@ class RobustGenerator:
         state: PendulumState,
         ramps: list[ZmpRamp],
         region: SupportRegion,
-        *,
-        forced: bool = False,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
 
@@ -107,45 +83,35 @@ class RobustGenerator:
             state: of the pendulum.
             ramps: ZMP reference from now on.
             region: where the ZMP may be.
-            forced: whether the footholds of the reference catch the body.
         """
-        self._set_aside(state, forced=forced)
         candidate, self._candidate = self._candidate, None
-        plan = candidate[1] if candidate and candidate[0] is ramps else self._solve(state, ramps)
-        if plan is not None:
-            self._plan, self._age = plan, 0
-        elif not self._still_holds(ramps):
-            self._plan, self._age = self._nearest(state, ramps), 0
+        if candidate and candidate[0] is ramps:
+            self._plan, self._age = candidate[1], 0
+        else:
+            self._replan(state, ramps)
+        if self._plan is None:
+            self._tracker.follow(state, ramps, region)
+            return
         self._follow(state, self._plan.knots)
         self._age += 1
 
     def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
-        """DCM of a pendulum that had no body to catch, if it can be led back to its reference.
+        """The pendulum's own DCM under a plan, that of the footholds without one."""
+        if self._plan is None:
+            return dcm_reference(self._lipm, ramps)
+        w = self._lipm.omega
+        return state.x + state.vx / w, state.y + state.vy / w
 
-        While footholds are moved to catch the body the pendulum goes with it; the body's
-        distance from this DCM is what has to be caught.
-        """
-        aside, w, growth = self._undisturbed, self._lipm.omega, self._lipm.ramp(self._age).growth
-        if aside is not None:
-            state, missed, growth = aside.state, aside.missed, 1.0
-        else:
-            missed = self._plan.missed
-        mx, my = missed
-        return state.x + state.vx / w - growth * mx, state.y + state.vy / w - growth * my
+    def forget(self) -> None:
+        """Give up the plan under way: the pendulum has been moved."""
+        self._plan, self._age = None, 0
 
-    def _set_aside(self, state: PendulumState, *, forced: bool) -> None:
-        """Begin, carry on or end the motion that catches nothing."""
-        aside, growth = self._undisturbed, self._lipm.ramp(1).growth
-        if not forced:
-            self._undisturbed = None
-            return
-        if aside is None:
-            plan, elapsed = self._plan, self._lipm.ramp(self._age).growth
-            mx, my = plan.missed
-            aside = Undisturbed(replace(state), list(plan.knots), (elapsed * mx, elapsed * my))
-            self._undisturbed = aside
-        self._follow(aside.state, aside.knots)
-        aside.missed = (growth * aside.missed[0], growth * aside.missed[1])
+    def holds(self, ramps: list[ZmpRamp]) -> bool:
+        """Whether there is a plan under way, and for the supports of a reference."""
+        plan, age = self._plan, self._age
+        if plan is None or not plan.knots:
+            return False
+        return all((end + age, feet) in plan.supports for end, feet in _supports(ramps)[:2])
 
     def _follow(self, state: PendulumState, knots: list[Knot]) -> None:
         """One tick along a plan, which loses its first segment when that is over."""
@@ -163,44 +129,24 @@ class RobustGenerator:
         state.y, state.vy = lipm.slide(state.y, state.vy, state.zmp_y, py)
         state.zmp_x, state.zmp_y = px, py
 
-    def _still_holds(self, ramps: list[ZmpRamp]) -> bool:
-        """Whether the plan under way is feasible and was made for the same supports."""
-        plan, age = self._plan, self._age
-        if not plan.feasible or not plan.knots:
-            return False
-        return all((end + age, feet) in plan.supports for end, feet in _supports(ramps)[:2])
+    def _replan(self, state: PendulumState, ramps: list[ZmpRamp]) -> None:
+        """A plan for what nobody has asked about, or the one under way, or none."""
+        p = self._parameters
+        plan = self._solve(state, ramps, p.plan_margin)
+        if plan is None and not self.holds(ramps):
+            plan = self._solve(state, ramps, p.sole_margin)
+            self._plan = None
+        if plan is not None or self._plan is None:
+            self._plan, self._age = plan, 0
 
-    def _solve(self, state: PendulumState, ramps: list[ZmpRamp]) -> ZmpPlan | None:
+    def _solve(self, state: PendulumState, ramps: list[ZmpRamp], margin: float) -> ZmpPlan | None:
         """The plan nearest to a reference, or None if none leads into it."""
-        program = self._program(state, ramps, None)
+        program = ZmpProgram(self._lipm, self._parameters, self._sole, state, ramps, margin=margin)
         growth = self._lipm.ramp(self._age).growth
-        lx, ly = self._plan.dual
+        lx, ly = self._plan.dual if self._plan is not None else (0.0, 0.0)
         if not program.fit.solve((lx / growth, ly / growth)):
-            if not _long_double(ramps):
-                return None
-            # Two soles have more room than the slices about the reference.
-            program = self._program(state, ramps, program.fit.approach())
-            if not program.fit.solve((0.0, 0.0)):
-                return None
-        return ZmpPlan(program.knots(), _supports(ramps), (0.0, 0.0), program.fit.dual)
-
-    def _nearest(self, state: PendulumState, ramps: list[ZmpRamp]) -> ZmpPlan:
-        """The plan that misses the DCM of a reference by as little as may be."""
-        program = self._program(state, ramps, None)
-        missed = program.fit.approach()
-        if _long_double(ramps):
-            program = self._program(state, ramps, missed)
-            missed = program.fit.approach()
-        return ZmpPlan(program.knots(), _supports(ramps), missed, (0.0, 0.0))
-
-    def _program(self, state: PendulumState, ramps: list[ZmpRamp], lean: Lean | None) -> ZmpProgram:
-        return ZmpProgram(self._lipm, self._parameters, self._sole, state, ramps, lean=lean)
-
-
-def _long_double(ramps: list[ZmpRamp]) -> bool:
-    """Whether the reference begins with a double support that has knots within."""
-    first = ramps[0]
-    return first.feet[0] is not first.feet[1] and first.ticks > DOUBLE_SPACING
+            return None
+        return ZmpPlan(program.knots(), _supports(ramps), program.fit.dual)
 
 
 def _supports(ramps: list[ZmpRamp]) -> list[tuple[int, Feet]]:

@@ -1,6 +1,8 @@
 """From the plan of the last tick to the one now wanted, as far as the ZMP allows."""
 
-from walking.gait import Gait
+from dataclasses import dataclass
+
+from walking.gait import Clock, Gait
 from walking.pattern import PatternGenerator, PendulumState, ZmpRamp
 from walking.state import Footstep
 from walking.stride import Strides
@@ -9,19 +11,39 @@ from walking.support import SupportRegion
 BISECTIONS = 4  # an admitted change is at least 1/16 short of the largest possible
 
 
+@dataclass(frozen=True, slots=True)
+class Course:
+    """All that a plan is made of.
+
+    Attributes:
+        landing: of the swing foot.
+        strides: after it.
+        clock: of the gait.
+        moving: whether it goes on walking.
+    """
+
+    landing: Footstep
+    strides: Strides
+    clock: Clock
+    moving: bool
+
+
 class Transition:
     """Replaces a change that the generator does not admit by the largest share that it does.
 
     The share is found by bisection between the plan of the last tick, which the generator
     can always carry on, and the wanted one: landing, later strides and times change together
-    (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014).
+    (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a disturbance the generator may have
+    no plan to carry on; then the wanted one is taken for the generator to come as near to it as
+    it can.
 
     Args:
-        gait: holds landing and times.
+        gait: holds the times.
         generator: judges the plans.
 
     Attributes:
         share: of the wanted change made in this tick, 0 … 1 [1].
+        landing: of the admitted plan.
         moving: whether the admitted plan goes on walking.
         strides: of the admitted plan.
     """
@@ -29,75 +51,94 @@ class Transition:
     def __init__(self, gait: Gait, generator: PatternGenerator) -> None:
         self._gait = gait
         self._generator = generator
-        self._stepping, self._held = gait.stepping, gait.held
-        self._landing = gait.landing
+        self._stepping = gait.stepping
+        self._footstep = gait.completed
         self._clock = gait.clock()
         self.share = 1.0
+        self.landing = gait.landing
         self.moving = False
         self.strides: Strides | None = None
 
     def remember(self) -> None:
-        """Keep the plan of the last tick, before anything about it changes."""
-        gait = self._gait
-        self._stepping, self._held = gait.stepping, gait.held
-        self._landing = gait.landing
-        self._clock = gait.clock()
+        """Keep the times of the last tick, before anything about them changes."""
+        self._stepping, self._clock = self._gait.stepping, self._gait.clock()
+
+    def skip(self, strides: Strides, *, moving: bool) -> None:
+        """Strides of a plan that nobody has to admit."""
+        self.share, self.strides, self.moving = 1.0, strides, moving
 
     def admit(
         self,
         state: PendulumState,
-        ramps: list[ZmpRamp],
         region: SupportRegion,
         wish: Strides,
         *,
         moving: bool,
-        forced: bool,
+        caught: bool = False,
     ) -> list[ZmpRamp]:
-        """Reference of the admitted plan; the gait has its landing and times.
+        """Reference of the admitted plan; the gait has its times.
 
         Args:
             state: of the pendulum.
-            ramps: reference of the wanted plan.
             region: where the ZMP may be in this tick.
             wish: strides of the wanted plan.
             moving: whether the wanted plan goes on walking.
-            forced: whether the landing has to change, because the body has left the old plan.
+            caught: whether the swing foot is on its way to catch the body, beside this plan.
         """
+        gait = self._gait
+        continues = self._stepping and gait.stepping and gait.completed == self._footstep
+        self._footstep = gait.completed
+        if not continues or (gait.held and not caught):
+            self.landing = gait.landing
+        aimed = gait.aimed(self.landing, gait.nominal(wish)) if gait.adjustable else self.landing
+        wanted = Course(aimed, wish, gait.clock(), moving)
+        ramps = gait.plan(aimed, wish, moving=moving)
         before = self.strides
-        free = before is None or not self._stepping or not self._gait.stepping
-        if before is None or free or self._generator.admits(state, ramps, region):
-            self.share, self.moving, self.strides = 1.0, moving, wish
-            return ramps
-        landing, clock = self._gait.landing, self._gait.clock()
-        if forced or (self._gait.held and not self._held):
-            # The landing is as it is; at least nothing else adds to it.
-            self.share, self.strides = 0.0, before
-            self._gait.set_clock(self._clock)
-            return self._plan(landing, before, 1.0)
-        low, high, best = 0.0, 1.0, ramps
+        if before is None or not (self._stepping and gait.stepping):
+            return self._take(wanted, ramps, 1.0)
+        if self._generator.admits(state, ramps, region):
+            return self._take(wanted, ramps, 1.0)
+        old = Course(self.landing, before, self._clock, self.moving)
+        kept = self._plan(old)
+        if self._generator.holds(kept):
+            return self._bisect(state, region, old, wanted)
+        return self._take(wanted, self._plan(wanted), 1.0)
+
+    def _bisect(
+        self, state: PendulumState, region: SupportRegion, old: Course, wanted: Course
+    ) -> list[ZmpRamp]:
+        low, high = 0.0, 1.0
+        best = None
         for _ in range(BISECTIONS):
             share = 0.5 * (low + high)
-            self._gait.set_clock(self._clock)
-            self._gait.retime(self._clock[0].towards(clock[0], share))
-            trial = self._plan(landing, before.towards(wish, share), share)
+            course = self._between(old, wanted, share)
+            trial = self._plan(course)
             if self._generator.admits(state, trial, region):
-                low, best = share, trial
+                low, best = share, (course, trial)
             else:
                 high = share
-        self.share, self.strides = low, before.towards(wish, low)
-        self._gait.set_clock(self._clock)
-        if low == 0.0:
-            return self._plan(landing, before, 0.0)
-        self._gait.retime(self._clock[0].towards(clock[0], low))
-        self._plan(landing, self.strides, low)
-        return best
+        if best is None:
+            return self._take(old, self._plan(old), 0.0)
+        self._plan(best[0])
+        return self._take(*best, low)
 
-    def _plan(self, landing: Footstep, strides: Strides, share: float) -> list[ZmpRamp]:
-        old = self._landing
-        self._gait.landing = Footstep(
-            left=landing.left,
-            x=old.x + share * (landing.x - old.x),
-            y=old.y + share * (landing.y - old.y),
-            yaw=old.yaw + share * (landing.yaw - old.yaw),
+    def _between(self, old: Course, wanted: Course, share: float) -> Course:
+        gait, a, b = self._gait, old.landing, wanted.landing
+        gait.set_clock(old.clock)
+        gait.retime(old.clock[0].towards(wanted.clock[0], share))
+        landing = Footstep(
+            left=b.left,
+            x=a.x + share * (b.x - a.x),
+            y=a.y + share * (b.y - a.y),
+            yaw=a.yaw + share * (b.yaw - a.yaw),
         )
-        return self._gait.plan(self._gait.landing, strides, moving=self.moving)
+        return Course(landing, old.strides.towards(wanted.strides, share), gait.clock(), old.moving)
+
+    def _plan(self, course: Course) -> list[ZmpRamp]:
+        self._gait.set_clock(course.clock)
+        return self._gait.plan(course.landing, course.strides, moving=course.moving)
+
+    def _take(self, course: Course, ramps: list[ZmpRamp], share: float) -> list[ZmpRamp]:
+        self.share, self.landing = share, course.landing
+        self.moving, self.strides = course.moving, course.strides
+        return ramps

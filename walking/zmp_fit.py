@@ -1,11 +1,10 @@
 """Knots of the ZMP as near to a reference as one equation for the DCM allows."""
 
-from walking.support import SupportRegion
-
 SOLVED = 1e-10  # DCM not accounted for that is rounding [m]
 ITERATIONS = 20
 HALVINGS = 6
-SLACK = 1e-6  # weight of the DCM's miss where it has to be missed [1]
+
+Vector = tuple[float, float]
 
 Box = tuple[float, float, float, float, float, float]
 """Nominal u, v, then low u, high u, low v, high v [m]."""
@@ -15,12 +14,12 @@ Gradient = tuple[float, float, float, float, float]
 
 
 class Cell:
-    """Knots whose ZMP is in one rectangle: centre + M u with u in a box, M = [[c, -s], [s, c]].
+    """Knots whose ZMP is in one parallelogram: centre + M u with u in a box.
 
     Args:
-        centre: of the rectangle [m].
-        direction: c, s; shorter than one between soles of different directions [1].
-        box: nominal point and bounds in the rectangle's frame [m].
+        centre: of the parallelogram [m].
+        axes: columns of M: directions of its sides [1].
+        box: nominal point and bounds along the sides [m].
         knots: how many.
 
     Attributes:
@@ -28,16 +27,16 @@ class Cell:
         weights: of the knots in the DCM of now, all positive [1]; see `weigh`.
     """
 
-    __slots__ = ("box", "centre", "direction", "knots", "largest", "squares", "total", "weights")
+    __slots__ = ("axes", "box", "centre", "knots", "largest", "squares", "total", "weights")
 
     def __init__(
         self,
-        centre: tuple[float, float],
-        direction: tuple[float, float],
+        centre: Vector,
+        axes: tuple[Vector, Vector],
         box: Box,
         knots: int = 1,
     ) -> None:
-        self.centre, self.direction, self.box, self.knots = centre, direction, box, knots
+        self.centre, self.axes, self.box, self.knots = centre, axes, box, knots
         self.weights: list[float] = []
         self.total = self.squares = self.largest = 0.0
 
@@ -81,44 +80,38 @@ class ZmpFit:
         Returns:
             whether the program is feasible.
         """
-        solved = self._newton(start, 0.0)
+        solved = self._newton(start)
         if solved is None and start != (0.0, 0.0):
             # Where all knots are at their bounds Newton's method has nothing to go by.
-            solved = self._newton((0.0, 0.0), 0.0)
+            solved = self._newton((0.0, 0.0))
         return solved is True
-
-    def approach(self) -> tuple[float, float]:
-        """Miss the DCM by as little as possible; the miss [m]."""
-        self._newton((0.0, 0.0), SLACK)
-        x, y, *_ = self._gradient(*self.dual, 0.0)
-        return -x, -y
 
     def points(self) -> list[tuple[float, float]]:
         """The knots of the solution [m]."""
         lx, ly = self.dual
         points = []
         for cell in self._cells:
-            (cx, cy), (c, s) = cell.centre, cell.direction
-            p, q = c * lx + s * ly, c * ly - s * lx
+            (cx, cy), ((ax, ay), (bx, by)) = cell.centre, cell.axes
+            p, q = ax * lx + ay * ly, bx * lx + by * ly
             u0, v0, low_u, high_u, low_v, high_v = cell.box
             for w in cell.weights:
                 u, v = u0 + w * p, v0 + w * q
                 u = low_u if u < low_u else high_u if u > high_u else u
                 v = low_v if v < low_v else high_v if v > high_v else v
-                points.append((cx + c * u - s * v, cy + s * u + c * v))
+                points.append((cx + ax * u + bx * v, cy + ay * u + by * v))
         return points
 
-    def _newton(self, start: tuple[float, float], slack: float) -> bool | None:
+    def _newton(self, start: tuple[float, float]) -> bool | None:
         """Solved, certainly infeasible, or given up (None)."""
         lx, ly = start
-        x, y, xx, xy, yy = self._gradient(lx, ly, slack)
+        x, y, xx, xy, yy = self._gradient(lx, ly)
         outcome = None
         for _ in range(ITERATIONS):
             size = x * x + y * y
             if size < SOLVED * SOLVED:
                 outcome = True
                 break
-            if slack == 0.0 and self._beyond(-x, -y):
+            if self._beyond(-x, -y):
                 outcome = False
                 break
             # Directions in which all knots are at their bounds stay where they are.
@@ -127,7 +120,7 @@ class ZmpFit:
             det = xx * yy - xy * xy
             sx, sy = (xy * y - yy * x) / det, (xy * x - xx * y) / det
             for _ in range(HALVINGS):
-                new = self._gradient(lx + sx, ly + sy, slack)
+                new = self._gradient(lx + sx, ly + sy)
                 if new[0] * new[0] + new[1] * new[1] < size:
                     break
                 sx, sy = 0.5 * sx, 0.5 * sy
@@ -142,28 +135,28 @@ class ZmpFit:
         """Whether the DCM is out of reach of the boxes in a direction."""
         reach = 0.0
         for cell in self._cells:
-            c, s = cell.direction
-            p, q = c * dx + s * dy, c * dy - s * dx
+            (ax, ay), (bx, by) = cell.axes
+            p, q = ax * dx + ay * dy, bx * dx + by * dy
             _, _, low_u, high_u, low_v, high_v = cell.box
             reach += cell.total * (p * (high_u if p > 0.0 else low_u))
             reach += cell.total * (q * (high_v if q > 0.0 else low_v))
         return reach < dx * self._x + dy * self._y
 
-    def _gradient(self, lx: float, ly: float, slack: float) -> Gradient:
+    def _gradient(self, lx: float, ly: float) -> Gradient:
         self.evaluations += 1
-        gx, gy = slack * lx - self._x, slack * ly - self._y
-        a, b, d = slack, 0.0, slack
+        gx, gy = -self._x, -self._y
+        xx = xy = yy = 0.0
         for cell in self._cells:
-            c, s = cell.direction
+            (ax, ay), (bx, by) = cell.axes
             u0, v0, low_u, high_u, low_v, high_v = cell.box
-            u, uu = _along(cell, u0, c * lx + s * ly, low_u, high_u)
-            v, vv = _along(cell, v0, c * ly - s * lx, low_v, high_v)
-            gx += c * u - s * v
-            gy += s * u + c * v
-            a += c * c * uu + s * s * vv
-            b += c * s * (uu - vv)
-            d += s * s * uu + c * c * vv
-        return gx, gy, a, b, d
+            u, uu = _along(cell, u0, ax * lx + ay * ly, low_u, high_u)
+            v, vv = _along(cell, v0, bx * lx + by * ly, low_v, high_v)
+            gx += ax * u + bx * v
+            gy += ay * u + by * v
+            xx += ax * ax * uu + bx * bx * vv
+            xy += ax * ay * uu + bx * by * vv
+            yy += ay * ay * uu + by * by * vv
+        return gx, gy, xx, xy, yy
 
 
 def _along(
@@ -185,27 +178,19 @@ def _along(
     return moved, change
 
 
-def cell_at(region: SupportRegion, share: float, x: float, y: float) -> Cell:
-    """The slice of a region at a share of the second sole, with its nominal point at x, y [m]."""
-    rest = 1.0 - share
-    cx, cy = rest * region.ax + share * region.bx, rest * region.ay + share * region.by
-    c, s = rest * region.ac + share * region.bc, rest * region.as_ + share * region.bs
-    u, v = _inside(c, s, x - cx, y - cy)
-    length, width = region.half_length, region.half_width
-    return Cell((cx, cy), (c, s), (u, v, -length, length, -width, width))
+def sides(axes: tuple[Vector, Vector], x: float, y: float) -> Vector:
+    """Coordinates of a vector along two directions."""
+    (ax, ay), (bx, by) = axes
+    scale = ax * by - ay * bx
+    return (x * by - y * bx) / scale, (y * ax - x * ay) / scale
 
 
 def limited(cell: Cell, x: float, y: float, reach: float) -> Cell:
     """One knot of a cell, within `reach` [m] of a point in it along both of its sides."""
-    (cx, cy), (c, s) = cell.centre, cell.direction
+    cx, cy = cell.centre
     u0, v0, low_u, high_u, low_v, high_v = cell.box
-    u, v = _inside(c, s, x - cx, y - cy)
+    u, v = sides(cell.axes, x - cx, y - cy)
     u, v = min(high_u, max(low_u, u)), min(high_v, max(low_v, v))
     low_u, high_u = max(low_u, u - reach), min(high_u, u + reach)
     low_v, high_v = max(low_v, v - reach), min(high_v, v + reach)
-    return Cell(cell.centre, cell.direction, (u0, v0, low_u, high_u, low_v, high_v))
-
-
-def _inside(c: float, s: float, dx: float, dy: float) -> tuple[float, float]:
-    scale = c * c + s * s
-    return (c * dx + s * dy) / scale, (c * dy - s * dx) / scale
+    return Cell(cell.centre, cell.axes, (u0, v0, low_u, high_u, low_v, high_v))

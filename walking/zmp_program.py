@@ -1,14 +1,13 @@
 """From a reference to the program of its ZMP: where the knots are and what they weigh."""
 
-from math import cos, sin
+from math import cos, hypot, sin
 
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern import PendulumState, ZmpRamp, dcm_reference
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.support import support_region
-from walking.zmp_fit import Cell, ZmpFit, cell_at, limited
+from walking.zmp_fit import Cell, ZmpFit, limited, sides
 
 SINGLE_SPACING = 9  # ticks between knots in single support
 LATER_SPACING = 27  # ticks between knots in the single support after that
@@ -18,24 +17,21 @@ REST = 72  # ticks that a plan that ends goes on standing
 Knot = tuple[int, float, float]
 """Ticks since the knot before, x, y [m]."""
 
-Lean = tuple[float, float]
-"""Direction to which the knots of a double support keep, whatever the reference does there."""
-
 
 class ZmpProgram:
     """The program of a reference.
 
     The ZMP is linear between knots at absolute times, so that they stay where they are as
     time goes by. A knot of a single support lies in the sole, one of a double support in a
-    rectangle between the two soles, its last one on the sole that carries next.
+    parallelogram within the hull of the two, its last one on the sole that carries next.
 
     Args:
         lipm: pendulum.
-        parameters: margin and largest rate of the ZMP.
+        parameters: largest rate of the ZMP.
         sole: rectangle of the soles.
         state: of the pendulum.
         ramps: reference.
-        lean: where the knots of a long double support keep; near the reference if None.
+        margin: distance of the knots from the edge of the sole [m].
 
     Attributes:
         fit: the quadratic program.
@@ -49,9 +45,9 @@ class ZmpProgram:
         state: PendulumState,
         ramps: list[ZmpRamp],
         *,
-        lean: Lean | None = None,
+        margin: float,
     ) -> None:
-        self._sole, self._margin = sole, parameters.sole_margin
+        self._sole, self._margin = sole, margin
         self._half = (sole.half_length - self._margin, sole.half_width - self._margin)
         near, far = _split(ramps)
         last = near[-1]
@@ -59,7 +55,7 @@ class ZmpProgram:
         rest = dcm_reference(lipm, far) if far else self._end
         self._cells: list[Cell] = []
         self._spans: list[int] = []
-        self._lay_out(near, lean)
+        self._lay_out(near)
         if self._cells and near[0].feet[0] is near[0].feet[1]:
             self._limit_rate(state, parameters.zmp_rate * CONTROL_PERIOD)
         self._left = sum(ramp.ticks for ramp in near) - sum(self._spans)
@@ -70,7 +66,7 @@ class ZmpProgram:
         points = zip(self._spans, self.fit.points(), strict=True)
         return [*((ticks, x, y) for ticks, (x, y) in points), (self._left, *self._end)]
 
-    def _lay_out(self, near: list[ZmpRamp], lean: Lean | None) -> None:
+    def _lay_out(self, near: list[ZmpRamp]) -> None:
         cells, spans = self._cells, self._spans
         every, since, carried = SINGLE_SPACING, 0, 0
         for index, ramp in enumerate(near):
@@ -91,7 +87,7 @@ class ZmpProgram:
                 ]
                 lefts += [] if final or lands else [0]
                 for left in lefts:
-                    cells.append(self._between(ramp, 1.0 - left / ramp.ticks, lean))
+                    cells.append(self._between(ramp, 1.0 - left / ramp.ticks))
                 if lands:
                     # On the next sole, with the knots of the single support on it.
                     carried = 1
@@ -107,17 +103,34 @@ class ZmpProgram:
         dx, dy = ramp.ax - cx, ramp.ay - cy
         length, width = self._half
         box = (c * dx + s * dy, c * dy - s * dx, -length, length, -width, width)
-        return Cell((cx, cy), (c, s), box, knots)
+        return Cell((cx, cy), ((c, s), (-s, c)), box, knots)
 
-    def _between(self, ramp: ZmpRamp, elapsed: float, lean: Lean | None) -> Cell:
-        region = support_region(self._sole, *ramp.feet, self._margin)
+    def _between(self, ramp: ZmpRamp, elapsed: float) -> Cell:
+        """A parallelogram between the outer edges of two soles."""
+        first, second = ramp.feet
+        middle = 0.5 * (first.yaw + second.yaw)
+        # Turned by as much as the soles are apart, an edge as long as they stays in them.
+        slant = abs(sin(0.5 * (first.yaw - second.yaw)))
+        length, width = self._half
+        length = min(length, width / slant) if slant > 0.0 else length
+        ax, ay = self._edge(first, width - length * slant)
+        bx, by = self._edge(second, width - length * slant)
+        span = hypot(bx - ax, by - ay)
+        axes = ((cos(middle), sin(middle)), ((bx - ax) / span, (by - ay) / span))
+        cx, cy = 0.5 * (ax + bx), 0.5 * (ay + by)
         x = ramp.ax + elapsed * (ramp.bx - ramp.ax)
         y = ramp.ay + elapsed * (ramp.by - ramp.ay)
-        share = region.share(x, y)
-        if lean is not None:
-            towards = lean[0] * (region.bx - region.ax) + lean[1] * (region.by - region.ay)
-            share = 1.0 if towards > 0.0 else 0.0
-        return cell_at(region, share, x, y)
+        u, v = sides(axes, x - cx, y - cy)
+        return Cell((cx, cy), axes, (u, v, -length, length, -0.5 * span, 0.5 * span))
+
+    def _edge(self, foot: Footstep, outward: float) -> tuple[float, float]:
+        """A point of the sole on the side away from the other one [m]."""
+        c, s = cos(foot.yaw), sin(foot.yaw)
+        across = outward if foot.left else -outward
+        return (
+            foot.x + self._sole.centre * c - s * across,
+            foot.y + self._sole.centre * s + c * across,
+        )
 
     def _limit_rate(self, state: PendulumState, reach: float) -> None:
         first = self._cells[0]

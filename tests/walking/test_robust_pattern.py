@@ -139,7 +139,7 @@ def test_the_zmp_is_in_the_support_polygon_between_ticks_with_a_new_command_in_e
     """Both ends of a tick's segment are in the polygon of that tick, so all of it is."""
     engine = WalkingEngine(robot, WalkingParameters(pattern=PARAMETERS))
     rng = np.random.default_rng(17)
-    before, missed, changed = None, 0.0, 0
+    before, lost, changed = None, 0, 0
     for k in range(2400):
         gait = engine._gait
         command = VelocityCommand(*rng.uniform((-0.2, -0.1, -1.0), (0.3, 0.1, 1.0)).tolist())
@@ -157,10 +157,10 @@ def test_the_zmp_is_in_the_support_polygon_between_ticks_with_a_new_command_in_e
             for point in (start, end):
                 assert (equations[:, :2] @ point + equations[:, 2]).max() < 1e-9
         before = gait._ramp_ticks
-        missed = max(missed, float(np.hypot(*engine._generator._plan.missed)))
+        lost += engine._generator._plan is None
         changed += engine.admission.altered
     assert engine.state().step_count > 20
-    assert missed < 2e-3
+    assert lost == 0
     assert changed > 1000
 
 
@@ -169,7 +169,7 @@ def test_it_starts_walks_and_stops(robot, ideal_body):
     for k in range(1000):
         command = VelocityCommand(0.2, 0.0, 0.3) if k < 500 else VelocityCommand()
         ideal_body.apply(engine.step(ideal_body.sense(), command, HeadTarget()))
-        assert engine._generator._plan.feasible
+        assert engine._generator._plan is not None
     assert engine.state().phase is Phase.STANDING
     p = engine._pendulum
     assert np.hypot(p.vx, p.vy) < 2e-3
