@@ -96,12 +96,8 @@ def test_if_nothing_is_admitted_the_old_plan_goes_on(setting):
 def test_times_change_by_the_same_share(setting):
     gait, generator, transition, _ = setting
     tick(setting, SLOW)
-<<<<<<< HEAD
-    generator.reach = 0.5 * (gait.landing.x + 3.0 * gait.landing.x) + 1e-9
-    usual = gait.timing
-=======
     generator.reach = 0.5 * (transition.landing.x + 3.0 * transition.landing.x) + 1e-9
->>>>>>> c8ed6d5 (Robust pattern: the plan keeps a reserve of ZMP, goes on beside a footstep that catches the body, and tracks the footholds when there is none)
+    usual = gait.timing
     tick(setting, FAST, timing=Timing(14, 74, 0.025))
     assert transition.share == 0.5
     assert gait.timing.single == round(0.5 * (usual.single + 74))
