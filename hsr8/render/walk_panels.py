@@ -5,7 +5,8 @@ from math import cos, degrees, sin
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Patch, Polygon
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from hsr8.recorder.arc import mean_velocity
@@ -107,10 +108,16 @@ class WalkingFrame:
         self._origin = mean[:, :2]
         self._c, self._s = np.cos(mean[:, 2]), np.sin(mean[:, 2])
 
-    def seen(self, points: Array) -> Array:
-        """Points in W at every row (n, 2) as seen from the frame of their row (n, 2) [m]."""
-        dx, dy = (points - self._origin).T
-        return np.column_stack([self._c * dx + self._s * dy, self._c * dy - self._s * dx])
+    def seen(self, points: Array, rows: slice = slice(None)) -> Array:
+        """Points in W as seen from the frames of some rows [m].
+
+        Args:
+            points: one a row (n, 2), or one for all of them (2,).
+            rows: all by default.
+        """
+        dx, dy = (points - self._origin[rows]).T
+        c, s = self._c[rows], self._s[rows]
+        return np.column_stack([c * dx + s * dy, c * dy - s * dx])
 
 
 def along(axes: Axes, table: WalkingTable, axis: int) -> None:
@@ -123,20 +130,15 @@ def along(axes: Axes, table: WalkingTable, axis: int) -> None:
     """
     frame = WalkingFrame(table)
     for foot, colour in (("left", LEFT), ("right", RIGHT)):
+        bands = []
         for first, last in contacts(table, foot):
             sole = outline(table, foot, (first, last))
             rows = slice(first, last + 1)
-            corners = np.array(
-                [frame.seen(np.broadcast_to(c, (len(table), 2)))[rows, axis] for c in sole]
-            )
-            axes.fill_between(
-                table.time[rows],
-                corners.min(axis=0),
-                corners.max(axis=0),
-                color=colour,
-                alpha=0.16,
-                lw=0,
-            )
+            corners = np.array([frame.seen(corner, rows)[:, axis] for corner in sole])
+            upper = np.column_stack([table.time[rows], corners.max(axis=0)])
+            lower = np.column_stack([table.time[rows], corners.min(axis=0)])
+            bands.append(np.vstack([upper, lower[::-1]]))
+        axes.add_collection(PolyCollection(bands, color=colour, alpha=0.16, lw=0))
     for name, label, colour, width, dash in CURVES:
         axes.plot(
             table.time,
@@ -163,10 +165,10 @@ def footsteps(axes: Axes, table: WalkingTable) -> None:
     """Where the feet stood, seen from above, with the ways of ZMP and CoM."""
     origin, yaw = table.points("robot")[0], float(table["robot_yaw"][0])
     for foot, colour in (("left", LEFT), ("right", RIGHT)):
-        for rows in contacts(table, foot):
-            sole = turned(outline(table, foot, rows), origin, yaw)
-            axes.add_patch(Polygon(sole, fc=colour, ec=colour, alpha=0.25, lw=0))
-            axes.add_patch(Polygon(sole, fill=False, ec=colour, lw=0.7))
+        stands = contacts(table, foot)
+        soles = [turned(outline(table, foot, rows), origin, yaw) for rows in stands]
+        axes.add_collection(PolyCollection(soles, fc=colour, alpha=0.25, lw=0))
+        axes.add_collection(PolyCollection(soles, fc="none", ec=colour, lw=0.7))
     for name, label, colour, width, dash in CURVES:
         if name in ("zmp", "cop", "com"):
             x, y = turned(table.points(name), origin, yaw).T
