@@ -6,6 +6,7 @@ from math import cos, hypot, sin
 import numpy as np
 
 from walking.admission import AdmissionReport, Limit
+from walking.caution import Caution
 from walking.command import Command, CommandState, HeadTarget
 from walking.estimator import ErrorFilter, TiltFilter, TouchDown
 from walking.feedforward import FeedForward
@@ -72,6 +73,7 @@ class WalkingEngine:
         self._tilt = TiltFilter(parameters.estimator)
         self._error = ErrorFilter(self._lipm.omega, parameters.estimator)
         self._touch = TouchDown(parameters.estimator)
+        self._caution = Caution(parameters.stabilizer)
         self._stabilizer = Stabilizer(robot, parameters.stabilizer, self._lipm.omega)
         self._posture = Posture(robot, parameters)
         base = pattern.pelvis_height - robot.legs[0].hip_z
@@ -259,8 +261,10 @@ class WalkingEngine:
 
     def _command(self, command: Command, error: tuple[float, float]) -> None:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
-        balanced = hypot(*error) < self._parameters.stabilizer.slew_error
-        self._steering.follow(command, settled=settled, balanced=balanced)
+        off = hypot(*error)
+        balanced = off < self._parameters.stabilizer.slew_error
+        share = self._caution.update(off)
+        self._steering.follow(command, share, settled=settled, balanced=balanced)
         retimed = self._gait.retime(self._steering.timing)
         late = isinstance(command, CommandState) and not retimed
         self._binding = [Limit.TIMING] if late else []

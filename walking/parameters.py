@@ -181,6 +181,14 @@ class StabilizerParameters:
     """What is left per tick of the height at which a foot touched down early [1]."""
     slew_error: Annotated[float, Gt(0.0), LENGTH] = 0.03
     """DCM error beyond which the velocity no longer changes [m]."""
+    calm_error: Annotated[float, Gt(0.0), LENGTH] = 0.015
+    """DCM error up to which the robot walks as fast as it is told [m]."""
+    shaken_error: Annotated[float, Gt(0.0), LENGTH] = 0.04
+    """DCM error at which it walks slowest [m]."""
+    caution_share: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.3
+    """Share of the commanded velocity that is left then [1]."""
+    caution_time: Annotated[float, Gt(0.0), TIME] = 1.5
+    """Time constant with which a DCM error is forgotten [s]."""
     step_error: Annotated[float, Gt(0.0), NUMBER] = 1.0
     """DCM error, as a share of the ZMP room, at which a standing robot steps [1]."""
     heading_gain: Annotated[float, Ge(0.0), RATE] = 2.0

@@ -2,10 +2,10 @@
 
 from walking.admission import AdmissionReport, Limit
 from walking.command import Command, CommandState, VelocityCommand
-from walking.footsteps import FootstepPlanner
+from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import LimitParameters
 from walking.stride import Strides, Timing, Velocity
-from walking.velocity import VelocitySlew, speed_limits
+from walking.velocity import VelocitySlew, limited, speed_limits
 
 SAME_SPEED = 1e-9  # difference of velocities that is rounding
 
@@ -46,11 +46,12 @@ class Steering:
         slew = self._slew
         return slew.forward, slew.left, slew.turn
 
-    def follow(self, command: Command, *, settled: bool, balanced: bool) -> None:
+    def follow(self, command: Command, share: float, *, settled: bool, balanced: bool) -> None:
         """Take in a command.
 
         Args:
             command: of this tick.
+            share: of a velocity command to walk at [1].
             settled: whether the robot may move at all yet.
             balanced: whether the motion may change.
         """
@@ -63,7 +64,7 @@ class Steering:
         elif isinstance(command, CommandState):
             self._follow_state(command)
         else:
-            self._follow_velocity(command)
+            self._follow_velocity(command, share)
 
     def wish(self, turn_rate: float) -> Strides:
         """What the footsteps obey, turning by `turn_rate` [rad/s] more to hold the heading."""
@@ -92,10 +93,14 @@ class Steering:
         obeyed = strides or self._planner.explicit(self._state, 0.0)[0]
         return AdmissionReport(asked, self._planner.command_state(obeyed, timing), bound)
 
-    def _follow_velocity(self, command: VelocityCommand) -> None:
+    def _follow_velocity(self, command: VelocityCommand, share: float) -> None:
         self._state = None
-        wanted = self._slew.follow(command)
-        bound = self._bound
+        bound, dared = self._bound, command
+        if share < 1.0 and command.velocity != STILL:
+            forward, left, turn = limited(command, self._limits)
+            dared = VelocityCommand(share * forward, share * left, share * turn)
+            bound.append(Limit.BALANCE)
+        wanted = self._slew.follow(dared)
         bound.extend(speed_limits(command, self._limits))
         given = self.velocity
         self.timing = self._planner.cadence(given)

@@ -1,0 +1,26 @@
+"""How much of a commanded velocity is dared on ground that shakes the robot."""
+
+from math import exp
+
+from walking.parameters import CONTROL_PERIOD, StabilizerParameters
+
+
+class Caution:
+    """Slows the walk while DCM errors beyond those of an even floor keep coming.
+
+    Args:
+        parameters: errors and time constant.
+    """
+
+    def __init__(self, parameters: StabilizerParameters) -> None:
+        self._calm = parameters.calm_error
+        self._range = parameters.shaken_error - parameters.calm_error
+        self._least = parameters.caution_share
+        self._decay = exp(-CONTROL_PERIOD / parameters.caution_time)
+        self._error = 0.0
+
+    def update(self, error: float) -> float:
+        """Share of the commanded velocity to walk at, given this tick's DCM error [m]."""
+        self._error = max(error, self._decay * self._error)
+        excess = (self._error - self._calm) / self._range
+        return 1.0 - (1.0 - self._least) * min(1.0, max(0.0, excess))
