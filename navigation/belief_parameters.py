@@ -15,7 +15,7 @@ class LocalizationParameters:
 
     map: Literal["beacons", "none"] = "beacons"
     """beacons: their known places; none: the static obstacles it meets, as if there were none."""
-    drift: NonNegative = 0.0003
+    drift: NonNegative = 0.0001
     """Random walk of position and heading that the odometry's covariance lacks [m/s^0.5]."""
     gate: Positive = 13.8
     """Normalised innovation squared above which a beacon sighting is rejected [1]."""
@@ -39,7 +39,7 @@ class TrackingParameters:
 
     acceleration_noise: Positive = 0.01
     """White acceleration of a mover [m/s^1.5]."""
-    static_diffusion: Positive = 2e-5
+    static_diffusion: Positive = 3e-6
     """Random walk of what stands still [m²/s]."""
     velocity_sigma: Positive = 0.07
     """Standard deviation of each component of the velocity of what begins to move [m/s]."""
@@ -53,8 +53,6 @@ class TrackingParameters:
     """Rate at which a mover stops for good [1/s]."""
     correlation_time: NonNegative = 0.03
     """Correlation time of the error of successive detections of one obstacle [s]."""
-    cut_inflation: Annotated[float, Ge(1.0)] = 2.0
-    """Factor on the standard deviations of a detection that is both cut and occluded [1]."""
     gate: Positive = 13.8
     """Squared Mahalanobis distance above which no mode explains a detection [1]."""
     anywhere: Annotated[float, Gt(0.0), Lt(1.0)] = 0.2
@@ -137,10 +135,12 @@ class LocalMapParameters:
     """Rate xi_lm at which confidence decays out of sight [1/s]."""
     range: Positive = 2.5
     """Distance up to which the floor is searched for obstacles [m]."""
-    free_evidence: Annotated[float, Lt(0.0)] = -0.4
-    """Change of the log odds of occupancy of a cell seen empty, per frame [1]."""
-    occupied_evidence: Positive = 0.9
-    """Change of the log odds of a cell under a detection, per frame [1]."""
+    free_rate: Annotated[float, Lt(0.0)] = -6.0
+    """Rate at which the log odds of occupancy of a cell change that is seen empty [1/s]."""
+    occupied_rate: Positive = 15.0
+    """Rate at which those of a cell under a detection change [1/s]."""
+    look: Positive = 0.2
+    """Time for which a single look counts at most, after a gap between frames [s]."""
     evidence_limit: Positive = 4.0
     """Largest absolute log odds [1]."""
 

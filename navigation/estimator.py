@@ -72,7 +72,6 @@ class Estimator:
             pose,
             covariance,
             pose_sigma_limit=p.tracking.pose_sigma_limit,
-            cut_inflation=p.tracking.cut_inflation,
         )
         sure = Viewpoint.of(frame.view, pose, p.tracking.sure_range)
         tracks = self._tracker.update(frame.time, seen, sure, self._map.free_at(seen.positions))

@@ -117,13 +117,14 @@ class LocalMap:
             obstacles: centres of the obstacles in the frame, in W (n, 2) [m].
             radii: their radii (n,) [m].
         """
+        p = self._parameters
+        dt = min(time - self._time, p.look)
         self._time = time
         self._roll(centre)
         x: Array = (self._corner[0] + np.arange(self._count, dtype=np.float64) + 0.5) * self.cell
         y: Array = (self._corner[1] + np.arange(self._count, dtype=np.float64) + 0.5) * self.cell
         rows, columns = np.nonzero(viewpoint.contains_grid(x[None, :], y[:, None]))
         points = np.stack([x[columns], y[rows]], axis=1)
-        p = self._parameters
         reach = (radii + 0.5 * self.cell) ** 2
         dx = points[:, 0, None] - obstacles[:, 0]
         dy = points[:, 1, None] - obstacles[:, 1]
@@ -132,7 +133,7 @@ class LocalMap:
         seen = np.logical_or(occupied, ~viewpoint.hidden(points, obstacles, radii))
         rows, columns = rows[seen], columns[seen]
         self._seen_at[rows, columns] = time
-        change = np.where(occupied[seen], p.occupied_evidence, p.free_evidence)
+        change = dt * np.where(occupied[seen], p.occupied_rate, p.free_rate)
         limit = p.evidence_limit
         self._log_odds[rows, columns] = np.clip(
             self._log_odds[rows, columns] + change, -limit, limit

@@ -39,7 +39,6 @@ def in_world(
     pose_covariance: Array,
     *,
     pose_sigma_limit: float,
-    cut_inflation: float,
 ) -> Sightings:
     """Convert the obstacles among `observations` to W.
 
@@ -50,7 +49,6 @@ def in_world(
         pose: x, y, heading of R in W (3,) [m, m, rad].
         pose_covariance: (3, 3); scaled down as a whole to `pose_sigma_limit`.
         pose_sigma_limit: [m].
-        cut_inflation: factor on the standard deviations of a detection both cut and occluded.
     """
     seen = tuple(o for o in observations if o.kind == "obstacle")
     x, y, heading = pose.tolist()
@@ -61,8 +59,7 @@ def in_world(
         direction = heading + o.bearing
         c, s, d = cos(direction), sin(direction), o.distance
         (rr, rb), (_, bb) = o.covariance.tolist()
-        scale = cut_inflation**2 if o.cut and o.occluded else 1.0
-        rr, rb, bb = scale * rr, scale * rb * d, scale * bb * d * d
+        rb, bb = rb * d, bb * d * d
         hx, hy = -d * s, d * c
         xx = c * c * rr - 2.0 * c * s * rb + s * s * bb
         yy = s * s * rr + 2.0 * c * s * rb + c * c * bb

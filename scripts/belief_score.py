@@ -212,9 +212,9 @@ class Score:
         self.velocity.append(float(np.hypot(*e[2:])))
         if not turning:
             self.steady_velocity.append(self.velocity[-1])
-            P = track.covariance
-            self.mover_nees.append(float(e[:2] @ np.linalg.solve(P[:2, :2], e[:2])) / 2.0)
-            self.velocity_nees.append(float(e[2:] @ np.linalg.solve(P[2:, 2:], e[2:])) / 2.0)
+        P = track.covariance
+        self.mover_nees.append(float(e[:2] @ np.linalg.solve(P[:2, :2], e[:2])) / 2.0)
+        self.velocity_nees.append(float(e[2:] @ np.linalg.solve(P[2:, 2:], e[2:])) / 2.0)
 
     def rows(self) -> list[tuple[str, str]]:
         """Name and value of every result."""
@@ -250,7 +250,7 @@ class Score:
             ),
             ("  the same, no reversal pending", _centimetres(self.steady_velocity)),
             (
-                "  NEES per dof of position, of velocity",
+                "  NEES per dof of position, of velocity, reversals and all",
                 f"{_mean(self.mover_nees):.2f}, {_mean(self.velocity_nees):.2f}",
             ),
             ("movers in view are", shares(True)),

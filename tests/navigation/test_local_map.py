@@ -106,3 +106,36 @@ def test_a_snapshot_stays_as_it_is(view):
     assert np.array_equal(snapshot.confidence, confidence)
     assert np.array_equal(snapshot.occupancy, occupancy)
     assert not np.array_equal(grid.confidence, confidence)
+
+
+def test_a_shifted_map_equals_one_computed_anew(view):
+    """The map that rolls with the robot, against a large one that never moves."""
+    rng = np.random.default_rng(5)
+    rolling = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
+    fixed = LocalMap(LocalMapParameters(size=20.0), (0.0, 0.0), 0.0)
+    obstacles, radii = rng.uniform(0, 4, (12, 2)), rng.uniform(0.05, 0.12, 12)
+    for k in range(1, 60):
+        pose = np.array([0.06 * k, 0.04 * k, 0.6 + 0.5 * np.sin(0.3 * k)])
+        viewpoint = Viewpoint.of(view(pan=np.sin(0.7 * k)), pose, 2.5)
+        near = np.hypot(*(obstacles - pose[:2]).T) < 2.0
+        rolling.update(0.06 * k, viewpoint, tuple(pose[:2]), obstacles[near], radii[near])
+        fixed.update(0.06 * k, viewpoint, (0.0, 0.0), obstacles[near], radii[near])
+    x, y = rolling.origin
+    steps = (np.arange(len(rolling.age)) + 0.5) * rolling.cell
+    points = np.stack(np.meshgrid(x + steps, y + steps), axis=-1).reshape(-1, 2)
+    assert np.array_equal(rolling.age_at(points), fixed.age_at(points))
+    assert np.array_equal(rolling.occupancy_at(points), fixed.occupancy_at(points))
+    assert rolling.origin != LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0).origin
+    assert np.isfinite(rolling.age).mean() > 0.1
+
+
+@pytest.mark.parametrize("rate", [10, 30])
+def test_occupancy_does_not_depend_on_the_frame_rate(view, rate):
+    viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
+    place = np.array([[1.0, 0.0]])
+    local_map = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
+    for k in range(1, rate // 10 + 1):
+        local_map.update(k / rate, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+    odds = 15.0 * 0.1
+    assert local_map.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-odds)))
+    assert local_map.occupancy_at([[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))

@@ -7,7 +7,7 @@ from navigation.sightings import in_world
 
 
 def convert(observations, pose, P, **changes):
-    options = {"pose_sigma_limit": 10.0, "cut_inflation": 2.0} | changes
+    options = {"pose_sigma_limit": 10.0} | changes
     return in_world(observations, np.array(pose), P, **options)
 
 
@@ -30,14 +30,6 @@ def test_covariance_is_the_first_order_propagation(observe):
         whole = np.zeros((5, 5))
         whole[:3, :3], whole[3:, 3:] = P, o.covariance
         assert np.allclose(seen.covariances[0], J @ whole @ J.T, atol=1e-8)
-
-
-def test_only_what_is_both_cut_and_occluded_is_trusted_less(observe):
-    pose, P = (0.0, 0.0, 0.0), np.zeros((3, 3))
-    plain = convert([observe(pose, (1.0, 0.2))], pose, P)
-    for cut, occluded, factor in ((True, False, 1.0), (False, True, 1.0), (True, True, 4.0)):
-        seen = convert([observe(pose, (1.0, 0.2), cut=cut, occluded=occluded)], pose, P)
-        assert np.allclose(seen.covariances, factor * plain.covariances)
 
 
 def test_a_lost_pose_does_not_drown_the_tracks(observe):

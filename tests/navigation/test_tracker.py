@@ -37,7 +37,7 @@ class Stage:
             seen.append(
                 self.observe(pose, place[:2], label=label, noise=error, sigma=sigma, **details)
             )
-        sightings = in_world(seen, pose, EXACT, pose_sigma_limit=0.1, cut_inflation=2.0)
+        sightings = in_world(seen, pose, EXACT, pose_sigma_limit=0.1)
         viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.sure_range)
         self.tracks = self.tracker.update(self.time, sightings, viewpoint)
         return self.tracks
@@ -281,7 +281,6 @@ def test_what_appears_where_the_floor_was_empty_is_taken_for_the_lost_mover(view
             np.zeros(3),
             EXACT,
             pose_sigma_limit=0.1,
-            cut_inflation=2.0,
         )
         viewpoint = Viewpoint.of(view(), np.zeros(3), 2.2)
         for k in range(1, 4):
