@@ -3,8 +3,8 @@
 From the front. The arms reach out overhead and push the chest up while the legs fold; the hip
 flexes by no more than 97°, so that folded legs alone hold the trunk up: the robot sits on its
 heels with the mass centre 60 mm behind the knees, steady without the arms. Leaning back it tucks
-the toes under, rolls back over them onto its soles and catches itself in a squat. Only the push asks all of the
-arms, 1.5 N·m in the shoulders.
+the toes under, rolls back over them onto its soles and catches itself in a squat. Only the push
+asks all of the arms, 1.5 N·m in the shoulders.
 
 From the back. A leg swings across and takes the trunk over to the front.
 
