@@ -11,6 +11,7 @@ from walking.rotation import wrap
 from walking.state import Odometry
 
 Array = NDArray[np.float64]
+RELEASED = 0.2  # share of the weight under which a foot no longer counts
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,8 +102,9 @@ class LegOdometry:
     """Dead reckoning of the robot frame.
 
     A foot on the floor stays where it is, so the body moves by the change of the vector
-    from that foot to the body; both feet count by the load they carry. Encoder noise does
-    not add up within a support because the changes telescope.
+    from that foot to the body. The foot that has carried counts until the other one has taken
+    over: a foot that has just landed slides while it is loaded, the one behind it does not.
+    Encoder noise does not add up within a support because the changes telescope.
 
     Args:
         parameters: how much of the motion goes unseen.
@@ -113,6 +115,7 @@ class LegOdometry:
         self._yaw: float | None = None
         self._raw_yaw = 0.0
         self._arms: tuple[tuple[float, float], tuple[float, float]] | None = None
+        self._anchor = 0
         self.x = self.y = 0.0
 
     @property
@@ -146,10 +149,11 @@ class LegOdometry:
         left = (s * ly - c * lx, -s * lx - c * ly)
         right = (s * ry - c * rx, -s * rx - c * ry)
         if self._arms is not None:
-            (plx, ply), (prx, pry) = self._arms
-            rest = 1.0 - load
-            self.x += rest * (left[0] - plx) + load * (right[0] - prx)
-            self.y += rest * (left[1] - ply) + load * (right[1] - pry)
+            if (load if self._anchor else 1.0 - load) < RELEASED:
+                self._anchor = 1 - self._anchor
+            now, before = (left, right)[self._anchor], self._arms[self._anchor]
+            self.x += now[0] - before[0]
+            self.y += now[1] - before[1]
             self._growth.add(self.x, self.y, self._yaw, stepping=stepping)
         self._arms = left, right
 

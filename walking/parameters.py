@@ -135,11 +135,11 @@ class EstimatorParameters:
 class OdometryParameters:
     """How much of the robot's motion its dead reckoning does not see."""
 
-    forward_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0022
+    forward_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0014
     """Random walk along the heading while stepping [m/√s]."""
-    left_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0018
+    left_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0014
     """Random walk across the heading while stepping [m/√s]."""
-    yaw_drift: Annotated[float, Ge(0.0), NUMBER] = 0.0011
+    yaw_drift: Annotated[float, Ge(0.0), NUMBER] = 0.001
     """Random walk of the IMU's yaw [rad/√s]."""
 
 

@@ -153,3 +153,13 @@ def test_an_interruption_keeps_the_place_and_admits_what_it_hides():
     assert after.yaw - before.yaw == pytest.approx(0.5)
     unseen = increment(before, after).covariance
     assert np.diag(unseen) == pytest.approx([0.3**2, 0.3**2, 0.05**2], rel=1e-3)
+
+
+def test_a_foot_that_slides_while_it_is_loaded_does_not_count():
+    odometry = LegOdometry(PARAMETERS)
+    for k in range(101):
+        body, load = 0.001 * k, 0.007 * k
+        slid = 0.1 + 0.0002 * k
+        feet = feet_in_body((body, 0.0, 0.0), ((0.0, 0.04), (slid, -0.04)))
+        odometry.update(0.0, feet, load, stepping=True)
+    assert odometry.x == pytest.approx(0.1)
