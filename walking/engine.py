@@ -7,13 +7,15 @@ import numpy as np
 
 from walking.admission import AdmissionReport, Limit
 from walking.caution import Caution
+from walking.com_error import ComError
 from walking.command import Command, CommandState, HeadTarget
-from walking.estimator import ErrorFilter, TiltFilter, TouchDown
+from walking.estimator import TiltFilter, TouchDown
 from walking.feedforward import FeedForward
 from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.head import Head
+from walking.heading_hold import HeadingHold
 from walking.joints import HEAD
 from walking.lipm import Lipm
 from walking.measurement import BodyMeasurement, measure
@@ -71,7 +73,7 @@ class WalkingEngine:
         self._binding: list[Limit] = []
         self._given = self._steering.velocity
         self._tilt = TiltFilter(parameters.estimator)
-        self._error = ErrorFilter(self._lipm.omega, parameters.estimator)
+        self._error = ComError(self._lipm.omega, parameters.estimator)
         self._touch = TouchDown(parameters.estimator)
         self._caution = Caution(parameters.stabilizer)
         self._stabilizer = Stabilizer(robot, parameters.stabilizer, self._lipm.omega)
@@ -87,8 +89,7 @@ class WalkingEngine:
         self._planned_com = robot.com(robot.ready)
         self._turn_rate = 0.0
         self._zmp_shift = (0.0, 0.0)
-        self._weight = self._gait.right_weight
-        self._held_turn = 0.0
+        self._heading = HeadingHold(parameters.stabilizer)
         self._last_opening_left = False
         self._footing = Footing(robot.sole, self._gait.support_feet)
         self._capture = (0.0, 0.0)
@@ -197,7 +198,7 @@ class WalkingEngine:
                 plan,
                 gait,
                 pendulum,
-                error=self._error,
+                error=self._error.filter,
                 omega=w,
                 footing=self._footing,
                 capture=self._capture,
@@ -222,42 +223,12 @@ class WalkingEngine:
 
     def _estimate(self, body: BodyMeasurement) -> tuple[float, float]:
         """DCM error of the body against the pendulum, in the plan frame [m]."""
-        pelvis, gait = self._pelvis, self._gait
+        pelvis = self._pelvis
         c, s = cos(pelvis.yaw), sin(pelvis.yaw)
         px, py, _ = self._planned_com
         planned = (pelvis.x + c * px - s * py, pelvis.y + s * px + c * py)
-        errors, arms = [], []
-        for foot, reference in zip(body.feet, gait.feet, strict=True):
-            # Measured arm from the foot to the mass centre, the foot taken as planned.
-            turned = reference.yaw.position - foot.yaw
-            ct, st = cos(turned), sin(turned)
-            dx, dy = body.com[0] - foot.x, body.com[1] - foot.y
-            arm = (ct * dx - st * dy, st * dx + ct * dy)
-            arms.append(arm)
-            errors.append(
-                (
-                    arm[0] + reference.x.position - planned[0],
-                    arm[1] + reference.y.position - planned[1],
-                )
-            )
-        weight = gait.right_weight
-        (lx, ly), (rx, ry) = errors
-        moved = weight - self._weight
-        self._weight = weight
-        if moved != 0.0:
-            self._error.shift(moved * (rx - lx), moved * (ry - ly))
-        rest = 1.0 - weight
-        arm_x = rest * arms[0][0] + weight * arms[1][0]
-        arm_y = rest * arms[0][1] + weight * arms[1][1]
         slip = body.gyro[2] - self._turn_rate
-        self._error.update(
-            (rest * lx + weight * rx, rest * ly + weight * ry),
-            self._zmp_shift,
-            (-slip * arm_y, slip * arm_x),
-        )
-        w = self._lipm.omega
-        e = self._error
-        return e.x + e.vx / w, e.y + e.vy / w
+        return self._error.update(body, self._gait, planned, slip, self._zmp_shift)
 
     def _command(self, command: Command, error: tuple[float, float]) -> None:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
@@ -271,17 +242,13 @@ class WalkingEngine:
 
     def _wish(self) -> Strides:
         """What the footsteps obey, with the heading hold."""
-        p = self._parameters.stabilizer
+        ahead = self._pelvis.yaw - self._odometry.yaw
         if not self._gait.stepping:
             # Standing, the plan takes the heading as it is.
-            self._held_turn = self._pelvis.yaw - self._odometry.yaw
-            return self._steering.wish(0.0)
-        if not self._steering.moving:
-            return self._steering.wish(0.0)  # the last footsteps only close the stance
-        missing = self._pelvis.yaw - self._odometry.yaw - self._held_turn
-        rate = min(p.heading_rate, max(-p.heading_rate, p.heading_gain * missing))
-        self._held_turn += rate * CONTROL_PERIOD
-        return self._steering.wish(rate)
+            self._heading.rest(ahead)
+        # The last footsteps only close the stance.
+        turning = self._gait.stepping and self._steering.moving
+        return self._steering.wish(self._heading.rate(ahead) if turning else 0.0)
 
     def _maybe_start(self, error: tuple[float, float], *, moving: bool) -> None:
         gait, foot = self._gait, self._gait.footholds[0]

@@ -1,49 +1,19 @@
 """The gait: which foot carries, where the other lands, and what that asks of the ZMP."""
 
-from math import ceil, cos, hypot, sin
+from math import cos, sin
 
 from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import ZmpRamp
 from walking.state import Footstep, Phase
 from walking.stride import Strides, Timing
-from walking.swing import MinimumJerk, lift_profile
+from walking.swing import FootReference, least_ticks, lift_profile
 from walking.swing_reaction import Swing
 
 Point = tuple[float, float]
 Clock = tuple[Timing, tuple[int, int, Point, float], tuple[int, int, int, float]]
 
-PEAK = 1.875  # of the speed of a minimum-jerk motion over its mean [1]
 ROUNDING = 1e-9  # of a landing that another one is one move away from [m]
-
-
-class FootReference:
-    """Reference of one foot in the plan frame: on the floor, or on its way.
-
-    Attributes:
-        x, y, yaw: horizontal coordinates, each with its rate [m, m, rad].
-        height: of the sole above the floor [m].
-    """
-
-    __slots__ = ("height", "x", "y", "yaw")
-
-    def __init__(self, foothold: Footstep) -> None:
-        self.x = MinimumJerk(foothold.x)
-        self.y = MinimumJerk(foothold.y)
-        self.yaw = MinimumJerk(foothold.yaw)
-        self.height = 0.0
-
-    def stand(self, foothold: Footstep) -> None:
-        """Rest on a foothold."""
-        self.x.rest(foothold.x)
-        self.y.rest(foothold.y)
-        self.yaw.rest(foothold.yaw)
-
-    def advance(self, landing: Footstep, ticks_left: int) -> None:
-        """Move one tick towards the landing."""
-        self.x.advance(landing.x, ticks_left)
-        self.y.advance(landing.y, ticks_left)
-        self.yaw.advance(landing.yaw, ticks_left)
 
 
 class Gait:
@@ -90,7 +60,7 @@ class Gait:
         self._freeze = gait.landing_freeze
         self._shortest_single = round(gait.catch_single / CONTROL_PERIOD)
         self._shortest_double = round(gait.catch_double / CONTROL_PERIOD)
-        self._speed = gait.swing_speed * CONTROL_PERIOD
+        self._speed = gait.swing_speed
         self._move = gait.landing_speed * CONTROL_PERIOD
         self._lift_change = gait.lift_speed * CONTROL_PERIOD
         self._shortest_swing = round(gait.shortest_swing / CONTROL_PERIOD)
@@ -214,8 +184,7 @@ class Gait:
         if self._ramp_fixed or not self.adjustable:
             return False
         before, foot = self.ticks_left, self.feet[self.swing]
-        way = hypot(landing.x - foot.x.position, landing.y - foot.y.position)
-        least = ceil(PEAK * way / self._speed)
+        least = least_ticks(foot, landing, self._speed)
         elapsed = self._tick - self._ramp_ticks
         if self.double:
             least = max(least, self._shortest_single)

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from walking.arms import arm_swing
-from walking.gait import FootReference, Gait
+from walking.gait import Gait
 from walking.joints import HEAD
 from walking.leg_kinematics import FootPose, LegAngles, foot_pose, leg_angles
 from walking.parameters import WalkingParameters
 from walking.robot_model import RobotModel
 from walking.saturation import beyond
 from walking.state import Footstep
+from walking.swing import FootReference
 
 Array = NDArray[np.float64]
 

@@ -1,6 +1,11 @@
 """Swing foot: minimum jerk to a landing that may move, a smooth bump upwards."""
 
+from math import ceil, hypot
+
 from walking.parameters import CONTROL_PERIOD
+from walking.state import Footstep
+
+PEAK = 1.875  # of the speed of a minimum-jerk motion over its mean [1]
 
 
 class MinimumJerk:
@@ -41,6 +46,41 @@ class MinimumJerk:
         self.position += s * (v + s * (0.5 * a + s * (c3 + s * (c4 + s * c5))))
         self.velocity = (v + s * (a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / time
         self.acceleration = (a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (time * time)
+
+
+class FootReference:
+    """Reference of one foot in the plan frame: on the floor, or on its way.
+
+    Attributes:
+        x, y, yaw: horizontal coordinates, each with its rate [m, m, rad].
+        height: of the sole above the floor [m].
+    """
+
+    __slots__ = ("height", "x", "y", "yaw")
+
+    def __init__(self, foothold: Footstep) -> None:
+        self.x = MinimumJerk(foothold.x)
+        self.y = MinimumJerk(foothold.y)
+        self.yaw = MinimumJerk(foothold.yaw)
+        self.height = 0.0
+
+    def stand(self, foothold: Footstep) -> None:
+        """Rest on a foothold."""
+        self.x.rest(foothold.x)
+        self.y.rest(foothold.y)
+        self.yaw.rest(foothold.yaw)
+
+    def advance(self, landing: Footstep, ticks_left: int) -> None:
+        """Move one tick towards the landing."""
+        self.x.advance(landing.x, ticks_left)
+        self.y.advance(landing.y, ticks_left)
+        self.yaw.advance(landing.yaw, ticks_left)
+
+
+def least_ticks(foot: FootReference, landing: Footstep, speed: float) -> int:
+    """Control ticks of a swing from rest to `landing` that peaks at `speed` [m/s]."""
+    way = hypot(landing.x - foot.x.position, landing.y - foot.y.position)
+    return ceil(PEAK * way / (speed * CONTROL_PERIOD))
 
 
 def lift_profile(phase: float) -> float:
