@@ -1,6 +1,6 @@
 """Colour classes: what colours mean, how things are painted, and a table to recognise them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -66,29 +66,30 @@ class ColourTable:
 
     Args:
         classes: colours to recognise; label k is the k-th of them, counted from 1.
+        labels: label of every RGB555 colour (32768,); made from the hues that the classes
+            declare if left out.
 
     Raises:
-        VisionError: two classes claim the same colour.
+        VisionError: two classes claim the same colour, or `labels` do not fit the classes.
     """
 
-    def __init__(self, classes: Mapping[str, ColourClass] = COLOUR_CLASSES) -> None:
+    def __init__(
+        self, classes: Mapping[str, ColourClass] = COLOUR_CLASSES, labels: Labels | None = None
+    ) -> None:
         self.classes = tuple(classes.values())
-        self._table = np.zeros(TABLE_SIZE, dtype=np.uint8)
-        hue, saturation, value = _hsv_of_table()
-        for label, colour in enumerate(self.classes, start=1):
-            claimed = (
-                colour.contains(hue)
-                & (saturation >= colour.min_saturation)
-                & (value >= colour.min_value)
+        if labels is None:
+            labels = _declared(self.classes)
+        elif labels.shape != (TABLE_SIZE,) or labels.dtype != np.uint8:
+            raise VisionError(
+                f"a colour table has {TABLE_SIZE} labels of uint8, "
+                f"got {labels.dtype} of shape {labels.shape}"
             )
-            rivals = np.unique(self._table[claimed & (self._table > 0)]).tolist()
-            if rivals:
-                other = self.classes[rivals[0] - 1]
-                raise VisionError(
-                    f"colour classes {other.name!r} and {colour.name!r} overlap: "
-                    f"hues {other.hue} and {colour.hue}"
-                )
-            self._table[claimed] = label
+        elif int(labels.max()) > len(self.classes):
+            raise VisionError(
+                f"the colour table has a label {int(labels.max())}, but there are "
+                f"{len(self.classes)} colour classes"
+            )
+        self.labels = labels
 
     def classify(self, image: NDArray[np.uint8]) -> Labels:
         """Label of every pixel of an RGB image (h, w, 3): (h, w), 0 for no class.
@@ -101,16 +102,47 @@ class ColourTable:
                 "an image must be an RGB array of uint8 of shape (height, width, 3), "
                 f"got {image.dtype} of shape {image.shape}"
             )
-        packed = cv2.cvtColor(np.ascontiguousarray(image), cv2.COLOR_RGB2BGR555)
-        codes = packed.view(np.uint16).reshape(image.shape[:2])
-        labels: Labels = np.take(self._table, codes)
+        labels: Labels = np.take(self.labels, pack(image))
         return labels
+
+
+def pack(image: NDArray[np.uint8]) -> NDArray[np.uint16]:
+    """RGB555 code of every pixel (h, w) of an RGB image (h, w, 3)."""
+    packed = cv2.cvtColor(np.ascontiguousarray(image), cv2.COLOR_RGB2BGR555)
+    codes: NDArray[np.uint16] = packed.view(np.uint16).reshape(image.shape[:2])
+    return codes
+
+
+def table_colours() -> NDArray[np.uint8]:
+    """RGB in the middle of each bin of a table (32768, 3), in the order of the codes."""
+    code = np.arange(TABLE_SIZE)
+    rgb = np.stack([(code >> 10) & 31, (code >> 5) & 31, code & 31], axis=-1) * 8 + 4
+    return rgb.astype(np.uint8)
+
+
+def _declared(classes: Sequence[ColourClass]) -> Labels:
+    """Labels from the hues, the saturation and the value that the classes declare."""
+    labels = np.zeros(TABLE_SIZE, dtype=np.uint8)
+    hue, saturation, value = _hsv_of_table()
+    for label, colour in enumerate(classes, start=1):
+        claimed = (
+            colour.contains(hue)
+            & (saturation >= colour.min_saturation)
+            & (value >= colour.min_value)
+        )
+        rivals = np.unique(labels[claimed & (labels > 0)]).tolist()
+        if rivals:
+            other = classes[rivals[0] - 1]
+            raise VisionError(
+                f"colour classes {other.name!r} and {colour.name!r} overlap: "
+                f"hues {other.hue} and {colour.hue}"
+            )
+        labels[claimed] = label
+    return labels
 
 
 def _hsv_of_table() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Hue [half degree], saturation and value 0..255 in the middle of each RGB555 bin."""
-    code = np.arange(TABLE_SIZE)
-    rgb = np.stack([(code >> 10) & 31, (code >> 5) & 31, code & 31], axis=-1) * 8 + 4
-    hsv = cv2.cvtColor((rgb[None] / 255.0).astype(np.float32), cv2.COLOR_RGB2HSV)[0]
-    hsv = hsv.astype(np.float64)
+    rgb = (table_colours()[None] / 255.0).astype(np.float32)
+    hsv = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV)[0].astype(np.float64)
     return 0.5 * hsv[:, 0], 255.0 * hsv[:, 1], 255.0 * hsv[:, 2]

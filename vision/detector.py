@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from vision.beacon import find_posts
 from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
 from vision.colour import OUTSIDE, ColourTable
+from vision.colour_file import load_table
 from vision.cylinder import (
     Candidate,
     Cylinder,
@@ -62,7 +64,8 @@ class Detector:
         own_body: parts of the robot that the camera may see.
 
     Raises:
-        VisionError: the smallest radius is not below the largest.
+        VisionError: the smallest radius is not below the largest, or the file of the
+            colour table is wrong.
     """
 
     def __init__(
@@ -79,7 +82,8 @@ class Detector:
         self._camera = camera
         self._parameters = parameters
         self._own_body = tuple(own_body)
-        self._table = ColourTable()
+        path = parameters.colour_table
+        self._table = load_table(Path(path)) if path else ColourTable()
         self._min_area = tuple(
             parameters.min_area if c.kind == "obstacle" else parameters.min_beacon_area
             for c in self._table.classes

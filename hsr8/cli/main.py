@@ -28,6 +28,7 @@ MODULES: dict[type, str] = {
     options.Render: "hsr8.cli.render",
     options.Replay: "hsr8.cli.replay",
     options.Plot: "hsr8.cli.plot",
+    options.Colours: "hsr8.cli.colours",
 }
 INTERRUPTED = 130
 READER_LEFT = 141  # as of a program that SIGPIPE ends
@@ -42,6 +43,7 @@ Commands = (
     | Annotated[options.Render, tyro.conf.subcommand("render")]
     | Annotated[options.Replay, tyro.conf.subcommand("replay")]
     | Annotated[options.Plot, tyro.conf.subcommand("plot")]
+    | Annotated[options.Colours, tyro.conf.subcommand("colours")]
 )
 
 

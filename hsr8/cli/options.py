@@ -159,4 +159,20 @@ class Plot:
     """Print one JSON object."""
 
 
-Command = Run | List | Check | CheckReplay | Doctor | Render | Replay | Plot
+@dataclass(frozen=True)
+class Colours:
+    """Build a colour table for vision from labelled images.
+
+    Beside each image, NAME.png or NAME.jpg, lies its mask, NAME.mask.png: black where there
+    is nothing to recognise, white where nobody has judged, else the colour that marks the
+    class. A wrong mask is refused with the list of these colours.
+    """
+
+    images: Positional[Annotated[tuple[Path, ...], _arg("IMAGE", "images with masks beside them")]]
+    out: Path = Path("colours.npz")
+    """File of the table; name it in a scenario as vision.colour_table."""
+    json: bool = False
+    """Print one JSON object."""
+
+
+Command = Run | List | Check | CheckReplay | Doctor | Render | Replay | Plot | Colours

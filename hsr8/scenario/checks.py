@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from math import cos, hypot, radians, sin
+from pathlib import Path as FilePath
 
 from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
@@ -9,6 +10,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.toml_lines import Path
 from hsr8.scenario.world import CircleMover, Mover, ShuttleMover
+from vision.errors import VisionError
 
 ROBOT_RADIUS = 0.12
 """Radius of the circle in which the walking robot fits, S_robot [m]."""
@@ -18,6 +20,7 @@ def check(scenario: Scenario) -> list[Problem]:
     """Everything that does not fit together, empty when all does."""
     return [
         *_speeds(scenario),
+        *_colours(scenario),
         *_mission(scenario),
         *_command(scenario),
         *_disturbance(scenario),
@@ -35,6 +38,19 @@ def _speeds(scenario: Scenario) -> Iterator[Problem]:
                 ("robot", "speed", name),
                 f"{asked:g} is more than walking can: walking.limits.{name} = {possible:g}",
             )
+
+
+def _colours(scenario: Scenario) -> Iterator[Problem]:
+    """The file of the colour table is one."""
+    path = scenario.vision.colour_table
+    if not path:
+        return
+    from vision.colour_file import load_table  # noqa: PLC0415 (OpenCV takes its time)
+
+    try:
+        load_table(FilePath(path))
+    except VisionError as error:
+        yield Problem(("vision", "colour_table"), str(error))
 
 
 def _mission(scenario: Scenario) -> Iterator[Problem]:

@@ -1,0 +1,61 @@
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from hsr8.cli.colours import main, mask_colours
+from hsr8.cli.options import Colours
+from hsr8.errors import ScenarioError, UsageError
+from hsr8.scenario.loader import load
+from vision.colour_file import load_table
+
+
+@pytest.fixture
+def picture(tmp_path):
+    """A red square on grey with its mask; returns the path of the image."""
+    rng = np.random.default_rng(0)
+    image = rng.normal(140.0, 3.0, (40, 50, 3))
+    mask = np.zeros((40, 50, 3), np.uint8)
+    image[10:20, 10:30] = rng.normal((150.0, 25.0, 22.0), 3.0, (10, 20, 3))
+    mask[10:20, 10:30] = mask_colours()["red"]
+    cv2.imwrite(str(tmp_path / "a.png"), image[:, :, ::-1].astype(np.uint8))
+    cv2.imwrite(str(tmp_path / "a.mask.png"), mask[:, :, ::-1])
+    return tmp_path / "a.png"
+
+
+def test_a_table_is_learnt_written_and_named_in_a_scenario(picture, tmp_path, capsys):
+    out = tmp_path / "colours.npz"
+    assert main(Colours((picture,), out, json=True)) == 0
+    rows = {r["class"]: r for r in json.loads(capsys.readouterr().out)["classes"]}
+    assert rows["red"]["pixels"] == 200
+    assert rows["red"]["recognised"] > 0.99
+    assert rows["background"]["recognised"] > 0.99
+    assert load_table(out).labels.max() == 1
+    assert load("quick", [f"vision.colour_table={out}"]).vision.colour_table == str(out)
+    assert main(Colours((picture,), out)) == 0
+    assert "red" in capsys.readouterr().out
+
+
+def test_a_mask_colour_that_marks_nothing_is_told_with_its_place(picture):
+    path = picture.with_name("a.mask.png")
+    mask = cv2.imread(str(path))
+    mask[3, 7] = (0, 0, 250)
+    cv2.imwrite(str(path), mask)
+    with pytest.raises(UsageError, match=r"\(7, 3\).*\(250, 0, 0\).*red"):
+        main(Colours((picture,)))
+
+
+def test_what_is_missing_or_no_image_is_told(picture, tmp_path):
+    with pytest.raises(UsageError, match=r"b\.png: cannot be read"):
+        main(Colours((tmp_path / "b.png",)))
+    picture.with_name("a.mask.png").write_bytes(b"no image")
+    with pytest.raises(UsageError, match="no image"):
+        main(Colours((picture,)))
+    with pytest.raises(UsageError, match="npz"):
+        main(Colours((picture,), tmp_path / "table.txt"))
+
+
+def test_a_wrong_table_in_a_scenario_is_a_mistake_of_the_scenario(tmp_path):
+    with pytest.raises(ScenarioError, match=r"vision\.colour_table.*nowhere\.npz"):
+        load("quick", ["vision.colour_table=nowhere.npz"])

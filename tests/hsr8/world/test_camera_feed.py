@@ -1,0 +1,44 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hsr8.scenario.camera import Camera, CameraNoise
+from hsr8.world.camera_feed import CameraFeed, Picture
+
+
+def deliveries(ticks=400, seed=0, **settings):
+    """Tick and capture time [s] of every picture that arrives."""
+    feed = CameraFeed(
+        Camera(**settings), lambda body: Picture(body.time), np.random.default_rng(seed)
+    )
+    arrived = []
+    for tick in range(ticks):
+        picture = feed.arrived(tick, SimpleNamespace(time=0.005 * tick))
+        if picture is not None:
+            arrived.append((tick, picture.captured))
+    return arrived
+
+
+@settings(max_examples=25)
+@given(
+    latency=st.integers(0, 100).map(lambda k: 5 * k), period=st.integers(1, 30).map(lambda k: 5 * k)
+)
+def test_pictures_arrive_in_order_each_after_the_latency(latency, period):
+    arrived = deliveries(latency_ms=latency, period_ms=period)
+    captured = [time for _, time in arrived]
+    assert captured == sorted(captured)
+    assert captured[0] == 0.0
+    assert np.allclose(np.diff(captured), period / 1000)
+    for tick, time in arrived:
+        assert 0.005 * tick == pytest.approx(time + latency / 1000)
+
+
+def test_dropped_pictures_never_arrive_and_the_others_are_not_moved():
+    every = set(deliveries(4000, latency_ms=60))
+    some = set(deliveries(4000, latency_ms=60, noise=CameraNoise(dropped=0.3)))
+    assert some < every
+    assert len(some) == pytest.approx(0.7 * len(every), rel=0.1)
+    assert deliveries(noise=CameraNoise(dropped=1.0)) == []
