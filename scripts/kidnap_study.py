@@ -7,9 +7,11 @@ had been carried from there to where it stands. Body, camera, gaze and walking r
     python scripts/kidnap_study.py paper --seeds 1000-1009 --kidnaps 10 --interval 11
 """
 
+import pickle
 import sys
 from dataclasses import dataclass, field, replace
 from math import cos, degrees, hypot, pi, sin
+from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
@@ -17,9 +19,10 @@ import tyro
 from tyro.conf import Positional, UseAppendAction
 
 from hsr8 import robot_builder
-from hsr8.loop import Simulation
+from hsr8.loop import Simulation, named_rng
 from hsr8.recorder.record import TickRecord
 from hsr8.scenario.loader import load
+from hsr8.world.generator import draw_layout
 from navigation.angles import wrap
 from navigation.belief import Belief
 from navigation.estimator import Estimator
@@ -79,16 +82,21 @@ class Watcher:
     wrong: int = 0
 
     def on_record(self, record: TickRecord) -> None:
-        """Compare a belief with the truth."""
+        """Compare a belief with the truth; frames come without delay here."""
+        if record.frame is not None:
+            self.note(record.frame.estimate, record.truth.robot)
+
+    def note(self, belief: Belief, robot: np.ndarray) -> None:
+        """Compare a belief with the true pose."""
         times = self.carried[0].times
-        if record.frame is None or not times:
+        if not times:
             return
-        belief, kidnap = record.frame.estimate, times[-1]
+        kidnap = times[-1]
         age = belief.time - kidnap
         if belief.lost:
             self.noticed.setdefault(kidnap, age)
             return
-        e = belief.pose - record.truth.robot
+        e = belief.pose - robot
         e[2] = wrap(float(e[2]))
         if hypot(e[0], e[1]) < FOUND and abs(float(e[2])) < FOUND_TURN:
             self.found.setdefault(kidnap, age)
@@ -109,6 +117,7 @@ def main(
     kidnaps: int = 5,
     interval: float = 15.0,
     set: UseAppendAction[tuple[str, ...]] = (),
+    kept: Path | None = None,
 ) -> None:
     """Run the study and print its table.
 
@@ -118,6 +127,8 @@ def main(
         kidnaps: per run.
         interval: between two of them [s].
         set: settings of the scenario.
+        kept: folder of frames that `belief_study.py --keep` left; the walks of then are
+            believed anew, and neither gaze nor walking take notice of the kidnaps.
     """
     first, last = (int(part) for part in seeds.split("-"))
     noticed: list[float] = []
@@ -134,8 +145,13 @@ def main(
 
         settings = load(scenario, [f"duration={interval * (kidnaps + 1)}", *set], seed)
         watcher = Watcher(carried)
-        with patch.object(robot_builder, "build_estimator", built):
-            Simulation(settings, seed, [watcher]).run()
+        if kept is not None:
+            built(settings, draw_layout(settings, seed), named_rng(seed, "belief"))
+            for moment in pickle.loads((kept / f"{seed}.pkl").read_bytes()):
+                watcher.note(carried[0].update(moment.frame), moment.robot)
+        else:
+            with patch.object(robot_builder, "build_estimator", built):
+                Simulation(settings, seed, [watcher]).run()
         times = carried[0].times
         total += len(times)
         noticed += [watcher.noticed[t] for t in times if t in watcher.noticed]
