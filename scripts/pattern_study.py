@@ -19,7 +19,8 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from walking.command import Command, CommandState
+from walking import zmp_program
+from walking.command import Command, CommandState, VelocityCommand
 from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
@@ -41,6 +42,8 @@ CLIPPED = 0.001  # more clipping than in the steady walk [m]
 LOST = 0.1  # distance of the DCM from that of the footholds at which a walk is given up [m]
 LOW = (0.18, 0.03, -0.08, 0.07, -0.3, 0.015)
 HIGH = (0.45, 0.15, 0.12, 0.14, 0.3, 0.035)
+
+BOX = (0.4, 0.15, 2.0)
 
 Point = tuple[float, float]
 
@@ -74,6 +77,18 @@ class TracedLipm(Lipm):
         for x, y in zip(calls[::2], calls[1::2], strict=True):
             points += [(x[0], y[0]), (x[1], y[1])]
         return points
+
+
+class CountingFit(zmp_program.ZmpFit):
+    """A program that adds up how often gradients are evaluated."""
+
+    total = 0
+
+    def solve(self, start: Point) -> bool:
+        """As the program."""
+        solved = super().solve(start)
+        CountingFit.total += self.evaluations
+        return solved
 
 
 class CountingRegion:
@@ -194,18 +209,31 @@ class Tally:
     missed: float = 0.0
     late: list[float] = field(default_factory=list)
     cost: list[float] = field(default_factory=list)
+    evaluations: list[int] = field(default_factory=list)
+
+
+def commands_of(seed: int, duration: float) -> list[Command]:
+    """A velocity or a command state for every tick."""
+    rng = np.random.default_rng([seed, 23])
+    ticks = round(duration / CONTROL_PERIOD)
+    states = rng.uniform(LOW, HIGH, (ticks, 6)).tolist()
+    velocities = (rng.uniform(-1.0, 1.0, (ticks, 3)) * BOX).tolist()
+    explicit = rng.uniform(size=ticks) < 0.5
+    return [
+        CommandState(*state) if choice else VelocityCommand(*velocity)
+        for state, velocity, choice in zip(states, velocities, explicit, strict=True)
+    ]
 
 
 def every_tick(name: str, sole: Sole, seeds: list[int], duration: float) -> Tally:
-    """A new command state in every tick."""
+    """A new command in every tick, checked between the ticks, too."""
     tally = Tally()
     for seed in seeds:
-        rng = np.random.default_rng([seed, 23])
-        commands = rng.uniform(LOW, HIGH, (round(duration / CONTROL_PERIOD), 6)).tolist()
         walker = Walker(name, sole)
-        for values in commands:
-            before = walker.gait.completed
-            points = walker.tick(CommandState(*values))
+        for command in commands_of(seed, duration):
+            before, CountingFit.total = walker.gait.completed, 0
+            points = walker.tick(command)
+            tally.evaluations.append(CountingFit.total)
             distance = walker.outside(points)
             tally.ticks += 1
             tally.outside += distance > OUTSIDE
@@ -253,16 +281,19 @@ def largest_change(name: str, sole: Sole, left: float, axis: str) -> tuple[float
     return found[0], found[1]
 
 
-def every_tick_table(sole: Sole, seeds: list[int], duration: float) -> list[str]:
+def every_tick_table(
+    sole: Sole, seeds: list[int], duration: float, generators: list[str]
+) -> list[str]:
     lines = [
         "| generator | ticks | steps | ZMP outside, ticks (worst) | wanted outside, clipped | "
         "command altered / refused | DCM off the footholds' at landing p50 / p99 / max | "
         "off its plan, max | lost | "
-        "replan mean / p99 / max |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        "replan mean / p99 / p99.9 / max | gradients of a tick mean / p99 / max |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
-    for name in GENERATORS:
+    for name in generators:
         t = every_tick(name, sole, seeds, duration)
+        effort = np.array(t.evaluations)
         late, cost = 1e3 * np.array(t.late), 1e6 * np.array(t.cost)
         lines.append(
             f"| {name} | {t.ticks} | {t.steps} | {t.outside} ({1e3 * max(0.0, t.worst):.1f} mm) | "
@@ -270,7 +301,9 @@ def every_tick_table(sole: Sole, seeds: list[int], duration: float) -> list[str]
             f"{100.0 * t.altered / t.ticks:.1f} / {100.0 * t.refused / t.ticks:.1f} % | "
             f"{np.median(late):.1f} / {np.percentile(late, 99):.1f} / {late.max():.1f} mm | "
             f"{1e3 * t.missed:.2f} mm | {t.lost} | "
-            f"{cost.mean():.0f} / {np.percentile(cost, 99):.0f} / {cost.max():.0f} us |"
+            f"{cost.mean():.0f} / {np.percentile(cost, 99):.0f} / "
+            f"{np.percentile(cost, 99.9):.0f} / {cost.max():.0f} us | "
+            f"{effort.mean():.1f} / {np.percentile(effort, 99):.0f} / {effort.max()} |"
         )
         print(lines[-1], flush=True)
     return lines
@@ -302,11 +335,13 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, nargs="+", default=list(range(1000, 1005)))
     parser.add_argument("--duration", type=float, default=60.0)
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.relative_to(ROOT)}")
+    parser.add_argument("--generators", nargs="+", choices=GENERATORS, default=GENERATORS)
     options = parser.parse_args()
+    zmp_program.ZmpFit = CountingFit
     sole = RobotModel.from_mjcf(ROBOT).sole
     first = second = [""]
     if options.study in ("every-tick", "all"):
-        first = every_tick_table(sole, options.seeds, options.duration)
+        first = every_tick_table(sole, options.seeds, options.duration, options.generators)
     if options.study in ("landing", "all"):
         second = landing_table(sole)
     if options.write:
@@ -325,10 +360,11 @@ def page(options: argparse.Namespace, first: list[str], second: list[str]) -> st
             f"{' '.join(map(str, options.seeds))} --duration {options.duration:g} --write`, "
             f"Python {platform.python_version()}, NumPy {np.__version__}.",
             "",
-            f"## A new command state in every tick (seeds {seeds}, {options.duration:g} s each)",
+            f"## A new command in every tick (seeds {seeds}, {options.duration:g} s each)",
             "",
-            "Single and double support times, forward and side length, direction and swing "
-            "height are all drawn anew every 5 ms. The ZMP is checked against the polygon of the "
+            "Every 5 ms a new command is drawn: with even chances a velocity (±0.4 m/s, ±0.15 m/s, "
+            "±2 rad/s) or a command state with single and double support times, forward and side "
+            "length, direction and swing height all random. The ZMP is checked against the polygon of the "
             "feet less the margin at both ends of every stretch of constant or linear ZMP, so "
             "between the ticks too. `dcm` and `preview` clip: they keep the ZMP inside and the "
             "footholds, and are late; `paper` and `robust` alter the command instead. A walk is "

@@ -92,6 +92,16 @@ class RobotModel:
         self.damping: Array = servo_damping + np.array(model.damping)[self._v_index]
         self._check_legs()
 
+    def __getstate__(self) -> dict[str, Any]:
+        """All but Pinocchio's work space, which holds nothing from one call to the next."""
+        state = self.__dict__.copy()
+        del state["_data"]
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._data = self._model.createData()
+
     @classmethod
     def from_mjcf(cls, path: str | PathLike[str]) -> RobotModel:
         """Read a robot from an MJCF file.
