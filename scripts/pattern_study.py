@@ -364,9 +364,9 @@ def page(options: argparse.Namespace, first: list[str], second: list[str]) -> st
             "",
             "Every 5 ms a new command is drawn: with even chances a velocity (±0.4 m/s, ±0.15 m/s, "
             "±2 rad/s) or a command state with single and double support times, forward and side "
-            "length, direction and swing height all random. The ZMP is checked against the polygon of the "
-            "feet less the margin at both ends of every stretch of constant or linear ZMP, so "
-            "between the ticks too. `dcm` and `preview` clip: they keep the ZMP inside and the "
+            "length, direction and swing height all random. The ZMP is checked against the polygon "
+            "of the feet less the margin at both ends of every stretch of constant or linear ZMP, "
+            "so between the ticks too. `dcm` and `preview` clip: they keep the ZMP inside and the "
             "footholds, and are late; `paper` and `robust` alter the command instead. A walk is "
             f"lost when the DCM is {1e3 * LOST:g} mm off that of its footholds at a landing. In "
             "`paper` the ZMP may be clipped in double support, which its ZMP functions leave "

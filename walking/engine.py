@@ -1,11 +1,11 @@
 """The walking engine: one control tick from sensors and commands to joint targets."""
 
-from dataclasses import replace
 from math import cos, hypot, sin
 
 import numpy as np
 
 from walking.admission import AdmissionReport, Limit
+from walking.catching import CatchingPendulum
 from walking.caution import Caution
 from walking.com_error import ComError
 from walking.command import Command, CommandState, HeadTarget
@@ -21,7 +21,7 @@ from walking.lipm import Lipm
 from walking.measurement import BodyMeasurement, measure
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import DcmTracker, PendulumState, ZmpRamp, dcm_reference
+from walking.pattern import PendulumState, ZmpRamp, dcm_reference
 from walking.posture import Posture, ready_stance
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
@@ -66,9 +66,9 @@ class WalkingEngine:
         zmp = self._gait.plan(stance[1], self._planner.still, moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
         self._steering = Steering(self._planner, parameters.limits)
-        # The pendulum of the plan, another one only while a footstep catches the body.
-        self._planned = self._pendulum
-        self._tracker = DcmTracker(self._lipm, pattern.dcm_gain)
+        self._catching = CatchingPendulum(
+            self._lipm, self._generator, self._gait, pattern.dcm_gain, self._pendulum
+        )
         self._transition = Transition(self._gait, self._generator)
         self._binding: list[Limit] = []
         self._given = self._steering.velocity
@@ -150,7 +150,7 @@ class WalkingEngine:
         ramps = self._plan(body, wish, error, region)
         if self._selects:
             moving = self._transition.moving
-        self._move_pendulum(ramps, region)
+        self._catching.advance(ramps, self._transition.landing, region)
         pendulum = self._pendulum
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
@@ -158,9 +158,7 @@ class WalkingEngine:
         self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
         self._footing.feet = gait.support_feet
         gait.advance(moving=moving)
-        if self._planned is not pendulum and (gait.double or not gait.stepping):
-            self._planned = pendulum
-            self._generator.forget()
+        self._catching.touch_down()
         return self._realize(body, zmp, load, self._head.advance(head))
 
     def observe(self, sensors: BodySensors) -> None:
@@ -289,8 +287,7 @@ class WalkingEngine:
         capture = self._catch(landing, ramps, error)
         if capture.ticks < gait.ticks_left and gait.hasten(capture.ticks, capture.landing):
             # The plan was made for other times.
-            self._planned = self._pendulum
-            self._generator.forget()
+            self._catching.give_up()
             ramps = gait.plan(landing, wish, moving=moving)
             capture = self._catch(landing, ramps, error)
         if not gait.double:
@@ -317,7 +314,7 @@ class WalkingEngine:
         if gait.hurried:
             x, y = dcm_reference(self._lipm, ramps)
         else:
-            x, y = self._generator.planned_dcm(self._planned, ramps)
+            x, y = self._generator.planned_dcm(self._catching.planned, ramps)
         off = (p.x + p.vx / w + error[0] - x, p.y + p.vy / w + error[1] - y)
         ahead = (x - ramps[0].bx, y - ramps[0].by)
         return self._stabilizer.capture(
@@ -334,11 +331,11 @@ class WalkingEngine:
             landing = gait.nominal(wish) if gait.adjustable else gait.landing
             return gait.plan(landing, wish, moving=moving), landing
         ramps = transition.admit(
-            self._planned,
+            self._catching.planned,
             region,
             wish,
             moving=moving,
-            caught=self._planned is not self._pendulum,
+            caught=self._catching.caught,
         )
         share = transition.share
         if share < 1.0:
@@ -348,29 +345,6 @@ class WalkingEngine:
         else:
             self._given = wanted
         return ramps, transition.landing
-
-    def _move_pendulum(self, ramps: list[ZmpRamp], region: SupportRegion) -> None:
-        """One tick of the plan, and of the body's pendulum where it has left the plan."""
-        gait, pendulum = self._gait, self._pendulum
-        landing, w = self._transition.landing, self._lipm.omega
-        if gait.hurried:
-            self._tracker.follow(pendulum, ramps, region)
-            return
-        catching = self._generator.selective and gait.landing != landing
-        if catching and not gait.double and self._planned is pendulum:
-            self._planned = replace(pendulum)
-        planned = self._planned
-        if planned is pendulum:
-            self._generator.advance(pendulum, ramps, region)
-            return
-        # The DCM that leads to the foothold which is really aimed at; the ZMP goes over to it
-        # from the old one, which does not move.
-        c = self._lipm.ramp(gait.timing.double)
-        share = (1.0 + c.last) / c.growth / self._lipm.ramp(gait.ticks_left).growth
-        x = planned.x + planned.vx / w + share * (gait.landing.x - landing.x)
-        y = planned.y + planned.vy / w + share * (gait.landing.y - landing.y)
-        self._generator.advance(planned, ramps, region)
-        self._tracker.advance(pendulum, (x, y), (planned.zmp_x, planned.zmp_y), region)
 
     def _region(self, margin: float) -> SupportRegion:
         first, second = self._gait.support_feet
