@@ -1,0 +1,57 @@
+"""From full speed to standing: at most two footsteps begin after the command."""
+
+import pytest
+
+from walking.command import VelocityCommand
+from walking.footsteps import FootstepPlanner
+from walking.gait import Gait
+from walking.parameters import WalkingParameters
+from walking.robot_model import Sole
+from walking.state import Footstep
+from walking.steering import Steering
+
+PARAMETERS = WalkingParameters()
+LIMITS = PARAMETERS.limits
+PLANNER = FootstepPlanner(
+    PARAMETERS.gait, LIMITS, Sole(centre=0.01, half_length=0.0525, half_width=0.03)
+)
+FASTEST = [
+    (LIMITS.forward, 0.0, 0.0),
+    (-LIMITS.backward, 0.0, 0.0),
+    (0.0, LIMITS.lateral, 0.0),
+    (0.0, 0.0, -LIMITS.turn),
+    (0.4, -0.1, 0.8),
+]
+
+
+def walk(velocity, stop_at):
+    """Footsteps completed by the command to stop and by the time of standing."""
+    h = PARAMETERS.gait.half_stance
+    gait = Gait(PARAMETERS, PLANNER, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
+    steering = Steering(PLANNER, LIMITS)
+    gait.start(0)
+    at_stop = 0
+    for tick in range(stop_at + 400):
+        command = VelocityCommand(*velocity) if tick < stop_at else VelocityCommand()
+        if tick == stop_at:
+            at_stop = gait.completed
+        steering.follow(command, settled=True, balanced=True)
+        gait.retime(steering.timing)
+        wish = steering.wish(0.0)
+        if gait.adjustable:
+            gait.aim(gait.nominal(wish))
+        gait.plan(gait.landing, wish, moving=steering.moving)
+        gait.advance(moving=steering.moving)
+        if tick >= stop_at and not gait.stepping:
+            break
+    assert not gait.stepping
+    assert PLANNER.parallel(*gait.footholds)
+    return at_stop, gait.completed
+
+
+@pytest.mark.parametrize("velocity", FASTEST)
+def test_two_footsteps_stop_the_fastest_walk_from_any_phase(velocity):
+    for stop_at in range(600, 740, 9):
+        before, after = walk(velocity, stop_at)
+        # The footstep under way when the command comes is finished first.
+        assert after - before <= 3
