@@ -142,10 +142,10 @@ def update(modes: Modes, R: Array, seen: Innovation, limit: Array) -> Modes:
 
 def moments(modes: Modes) -> tuple[Array, Array]:
     """Mean (4,) and covariance (4, 4) of one obstacle, given that it moves."""
-    share = modes.weights[ON:] / modes.weights[ON:].sum()
-    mean = share @ modes.states[ON:]
-    spread = modes.states[ON:] - mean
-    covariance: Array = np.tensordot(
-        share, modes.covariances[ON:] + spread[:, :, None] * spread[:, None, :], 1
-    )
-    return mean, 0.5 * (covariance + covariance.T)
+    on, back = modes.weights[ON:].tolist()
+    on, back = on / (on + back), back / (on + back)
+    mean: Array = on * modes.states[ON] + back * modes.states[BACK]
+    apart = modes.states[ON] - modes.states[BACK]
+    covariance: Array = on * modes.covariances[ON] + back * modes.covariances[BACK]
+    covariance += (on * back) * (apart[:, None] * apart)
+    return mean, covariance

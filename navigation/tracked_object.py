@@ -61,7 +61,9 @@ class TrackedObject:
         if self.particles is not None:
             mean: Array = self.particles.weights @ self.particles.positions
             return mean
-        return self.estimate()[0][:2]
+        if self.motion is Motion.STATIC:
+            return self.modes.states[STILL, :2]
+        return motion_modes.moments(self.modes)[0][:2]
 
     @property
     def speed(self) -> float:
@@ -79,8 +81,8 @@ class TrackedObject:
 
     def reach(self, time: float, p: TrackingParameters) -> float:
         """Radius of the disc about its last sighting that it cannot have left [m]."""
-        variance = float(np.max(np.diag(self.seen_covariance)))
-        known = REACH_SIGMAS * float(np.sqrt(variance))
+        (xx, _), (_, yy) = self.seen_covariance.tolist()
+        known: float = REACH_SIGMAS * max(xx, yy) ** 0.5
         moving = self.motion is not Motion.STATIC
         return known + moving * p.top_speed * (time - self.last_time)
 
