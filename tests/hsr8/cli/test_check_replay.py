@@ -78,8 +78,8 @@ def test_a_change_of_a_measurement_shows(run, capsys):
 def test_another_scenario_gives_another_belief(run, capsys):
     scenario = run / "scenario.toml"
     text = scenario.read_text()
-    assert "drift = 0.0003" in text
-    scenario.write_text(text.replace("drift = 0.0003", "drift = 0.0004"))
+    assert "drift = 0.0001" in text
+    scenario.write_text(text.replace("drift = 0.0001", "drift = 0.0004"))
     assert entry(["check", "replay", str(run)]) == 1
     assert "of frame 1" in capsys.readouterr().out
 
