@@ -133,7 +133,7 @@ class Walker:
         """One control tick; the ZMP walked in it."""
         gait = self.gait
         self.transition.remember()
-        self.steering.follow(command, settled=True, balanced=True)
+        self.steering.follow(command, 1.0, settled=True, balanced=True)
         gait.retime(self.steering.timing)
         if not gait.stepping and self.steering.moving:
             gait.start(0)
