@@ -243,3 +243,30 @@ def test_walk_ready_stands(standing: tuple[mujoco.MjModel, mujoco.MjData]) -> No
         for pad in ("fl", "fr", "bl", "br")
     ]
     assert sum(pads) == pytest.approx(weight, rel=0.05)
+
+
+@pytest.mark.parametrize("yaw", [0.3, 1.1, 2.0, -2.7])
+def test_pads_feel_the_whole_load_wherever_the_feet_point(
+    standing: tuple[mujoco.MjModel, mujoco.MjData], yaw: float
+) -> None:
+    """The floor pushes at the very corners of the soles, where rounding decides on in or out."""
+    scene, data = standing
+    data.qpos[:2] = 1.7 * np.sin(yaw), 0.9 * np.cos(yaw)
+    data.qpos[3:7] = np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)
+    soles = [scene.geom(f"{foot}_sole").id for foot in "lr"]
+    force, ratios = np.zeros(6), []
+    for _ in range(200):
+        mujoco.mj_step(scene, data)
+        mujoco.mj_forward(scene, data)
+        pushed = 0.0
+        for index in range(data.ncon):
+            if np.isin(data.contact[index].geom, soles).any():
+                mujoco.mj_contactForce(scene, data, index, force)
+                pushed += force[0]
+        felt = sum(
+            data.sensor(f"{foot}_sole_{pad}_force").data[0]
+            for foot in "lr"
+            for pad in ("fl", "fr", "bl", "br")
+        )
+        ratios.append(felt / pushed)
+    assert ratios == pytest.approx([1.0] * len(ratios), rel=1e-6)
