@@ -1,19 +1,16 @@
 """The gait: which foot carries, where the other lands, and what that asks of the ZMP."""
 
-from math import cos, sin
-
+from walking.footstep_clock import Clock, SwingWindow, WeightShift
 from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import ZmpRamp
 from walking.state import Footstep, Phase
 from walking.stride import Strides, Timing
-from walking.swing import FootReference, least_ticks, lift_profile
+from walking.swing import FootReference, least_ticks, lift_profile, moved
 from walking.swing_reaction import Swing
+from walking.zmp_reference import ZmpReference
 
 Point = tuple[float, float]
-Clock = tuple[Timing, tuple[int, int, Point, float], tuple[int, int, int, float]]
-
-ROUNDING = 1e-9  # of a landing that another one is one move away from [m]
 
 
 class Gait:
@@ -48,22 +45,17 @@ class Gait:
     ) -> None:
         gait = parameters.gait
         self._planner = planner
-        self._zmp_forward = planner.sole.centre + parameters.pattern.zmp_forward
-        self._zmp_inward = parameters.pattern.zmp_inward
+        self._reference = ZmpReference(parameters, planner.sole)
         self._contact_decay = parameters.stabilizer.contact_decay
-        self.timing = planner.cadence(STILL)
         self._start = round(gait.start_time / CONTROL_PERIOD)
-        self._stop = round(gait.stop_time / CONTROL_PERIOD)
-        self._swing_share = (gait.swing_start, gait.swing_end)
-        self._single = self._swing_first = self._swing_last = 0
-        self._swing_origin = 0.0
         self._freeze = gait.landing_freeze
         self._shortest_single = round(gait.catch_single / CONTROL_PERIOD)
         self._shortest_double = round(gait.catch_double / CONTROL_PERIOD)
+        shortest_swing = round(gait.shortest_swing / CONTROL_PERIOD)
+        self._window = SwingWindow(gait.swing_start, gait.swing_end, shortest_swing)
         self._speed = gait.swing_speed
         self._move = gait.landing_speed * CONTROL_PERIOD
         self._lift_change = gait.lift_speed * CONTROL_PERIOD
-        self._shortest_swing = round(gait.shortest_swing / CONTROL_PERIOD)
         self.stepping = False
         self.support = 0
         self.footholds = list(stance)
@@ -71,14 +63,12 @@ class Gait:
         self.landing = stance[1]
         self.completed = 0
         self.held = self.hurried = False
-        self._tick = self._stop
-        self._ramp_start, self._ramp_ticks = 0, self._stop
-        self._ramp_fixed = True
-        self._set_single(self.timing.single)
+        self.timing = planner.cadence(STILL)
+        self._tick = self._reference.stop
+        self._shift = WeightShift(0, self._tick, self._reference.between(*stance), 0.5)
+        self._shift_fixed = True
+        self._single = self._window.single_support(self.timing.single)
         self._lift = self.timing.lift
-        self._origin = self._centre(*stance)
-        self._weight_origin = 0.5
-        self._ends = True
         self._future: list[Footstep] = []
 
     @property
@@ -89,7 +79,7 @@ class Gait:
     @property
     def double(self) -> bool:
         """Whether both feet are meant to carry."""
-        return not self.stepping or self._tick < self._ramp_ticks
+        return not self.stepping or self._tick < self._shift.end
 
     @property
     def phase(self) -> Phase:
@@ -104,21 +94,27 @@ class Gait:
     def right_weight(self) -> float:
         """Scheduled share of the weight on the right foot [1]."""
         goal = float(self.support) if self.stepping else 0.5
-        return self._weight_origin + self._ramp_share * (goal - self._weight_origin)
+        return self._shift.right_weight_at(self._tick, goal)
+
+    @property
+    def zmp(self) -> Point:
+        """Scheduled ZMP [m]."""
+        goal = (
+            self.zmp_point(self.footholds[self.support])
+            if self.stepping
+            else self._reference.between(*self.footholds)
+        )
+        return self._shift.zmp_at(self._tick, goal)
 
     @property
     def swing_phase(self) -> float:
         """Progress of the swing, 0 before and 1 after it [1]."""
-        if not self.stepping:
-            return 1.0
-        elapsed = self._tick - self._ramp_ticks - self._swing_first
-        share = elapsed / (self._swing_last - self._swing_first)
-        return min(1.0, max(0.0, self._swing_origin + (1.0 - self._swing_origin) * share))
+        return self._single.phase(self._elapsed) if self.stepping else 1.0
 
     @property
     def ticks_left(self) -> int:
         """Control ticks until the end of single support."""
-        return self._ramp_ticks + self._single - self._tick
+        return self._shift.end + self._single.ticks - self._tick
 
     @property
     def adjustable(self) -> bool:
@@ -140,8 +136,8 @@ class Gait:
                 first double support.
         """
         ticks = self.timing.double if at_once else self._start
-        self._begin(support, ticks, self._zmp_reference(), self.right_weight)
-        self._ramp_fixed = not at_once
+        self._begin(support, ticks, self.zmp, self.right_weight)
+        self._shift_fixed = not at_once
 
     def nominal(self, wish: Strides) -> Footstep:
         """Landing that the wish asks for."""
@@ -163,13 +159,13 @@ class Gait:
         if self.hurried:
             return False
         if self.double:
-            if not self._ramp_fixed and timing.double != self._ramp_ticks:
-                self._retime_ramp(max(timing.double, self._tick + 1))
-            self._set_single(timing.single)
-            return self._ramp_fixed or self._ramp_ticks == timing.double
-        if timing.single != self._single and self.adjustable:
-            self._retime_swing(timing.single)
-        return self._single == timing.single
+            if not self._shift_fixed and timing.double != self._shift.end:
+                self._retime_shift(max(timing.double, self._tick + 1))
+            self._single = self._window.single_support(timing.single)
+            return self._shift_fixed or self._shift.end == timing.double
+        if timing.single != self._single.ticks and self.adjustable:
+            self._single = self._window.retimed(self._single, self._elapsed, timing.single)
+        return self._single.ticks == timing.single
 
     def hasten(self, ticks: int, landing: Footstep) -> bool:
         """End single support `ticks` from now, or as soon after as the foot can be down.
@@ -181,66 +177,47 @@ class Gait:
         Returns:
             whether that is any sooner.
         """
-        if self._ramp_fixed or not self.adjustable:
+        if self._shift_fixed or not self.adjustable:
             return False
         before, foot = self.ticks_left, self.feet[self.swing]
         least = least_ticks(foot, landing, self._speed)
-        elapsed = self._tick - self._ramp_ticks
+        elapsed = self._elapsed
         if self.double:
             least = max(least, self._shortest_single)
-            ramp = min(-elapsed, max(self._shortest_double, ticks - least))
-            single = max(least, ticks - ramp)
-            if ramp + single >= before:
+            double = min(-elapsed, max(self._shortest_double, ticks - least))
+            single = max(least, ticks - double)
+            if double + single >= before:
                 return False
-            self._retime_ramp(self._tick + ramp)
-            self._set_single(single)
+            self._retime_shift(self._tick + double)
+            self._single = self._window.single_support(single)
         else:
             least = max(
                 least,
-                self._shortest_swing,
+                self._window.shortest,
                 round((1.0 - self.swing_phase) * self._shortest_single),
             )
             single = elapsed + max(least, ticks)
-            if single >= self._single:
+            if single >= self._single.ticks:
                 return False
-            self._retime_swing(single)
+            self._single = self._window.retimed(self._single, elapsed, single)
         self.hurried = True
         return self.ticks_left < before
 
     def clock(self) -> Clock:
         """The times of now, for `set_clock`."""
-        return (
-            self.timing,
-            (self._ramp_start, self._ramp_ticks, self._origin, self._weight_origin),
-            (self._single, self._swing_first, self._swing_last, self._swing_origin),
-        )
+        return Clock(self.timing, self._shift, self._single)
 
     def set_clock(self, clock: Clock) -> None:
         """Take back a change of timing made in this tick."""
-        self.timing, ramp, swing = clock
-        self._ramp_start, self._ramp_ticks, self._origin, self._weight_origin = ramp
-        self._single, self._swing_first, self._swing_last, self._swing_origin = swing
+        self.timing, self._shift, self._single = clock
 
-    def _retime_ramp(self, ticks: int) -> None:
-        origin, weight = self._zmp_reference(), self.right_weight
-        self._origin, self._weight_origin = origin, weight
-        self._ramp_start, self._ramp_ticks = self._tick, ticks
+    @property
+    def _elapsed(self) -> int:
+        """Control ticks since the begin of single support, negative before it."""
+        return self._tick - self._shift.end
 
-    def _retime_swing(self, single: int) -> None:
-        phase, elapsed = self.swing_phase, self._tick - self._ramp_ticks
-        soonest = elapsed + self._shortest_swing
-        while round(self._swing_share[1] * single) < soonest:
-            single += 1
-        self._set_single(single)
-        if phase > 0.0 or elapsed > self._swing_first:
-            self._swing_origin, self._swing_first = phase, elapsed
-
-    def _set_single(self, single: int) -> None:
-        first, last = self._swing_share
-        self._single = single
-        self._swing_first = round(first * single)
-        self._swing_last = round(last * single)
-        self._swing_origin = 0.0
+    def _retime_shift(self, end: int) -> None:
+        self._shift = WeightShift(self._tick, end, self.zmp, self.right_weight)
 
     def aim(self, wanted: Footstep) -> None:
         """Move the landing towards `wanted`, in the air no faster than allowed."""
@@ -250,73 +227,54 @@ class Gait:
         """A landing moved towards `wanted` by as much as one tick allows."""
         if self.swing_phase == 0.0:
             return wanted
-        dx, dy = wanted.x - landing.x, wanted.y - landing.y
-        largest = max(abs(dx), abs(dy))
-        if largest <= self._move + ROUNDING:
-            return wanted
-        share = self._move / largest
-        return Footstep(
-            left=wanted.left,
-            x=landing.x + share * dx,
-            y=landing.y + share * dy,
-            yaw=wanted.yaw,
-        )
+        return moved(landing, wanted, self._move)
 
     def plan(self, landing: Footstep, wish: Strides, *, moving: bool) -> list[ZmpRamp]:
         """ZMP reference from now on if the swing foot lands at `landing`."""
         if not self.stepping:
-            here, centre = self._zmp_reference(), self._centre(*self.footholds)
-            self._future, self._ends = [], True
+            self._future = []
+            centre = self._reference.between(*self.footholds)
             feet = (self.footholds[self.support], self.footholds[self.swing])
-            return [ZmpRamp(max(1, self._ramp_ticks - self._tick), *here, *centre, feet)]
+            return [ZmpRamp(max(1, -self._elapsed), *self.zmp, *centre, feet)]
         support = self.footholds[self.support]
-        steps, ends = self._planner.sequence(support, landing, wish, moving=moving)
-        self._future, self._ends = steps, ends
+        self._future, ends = self._planner.sequence(support, landing, wish, moving=moving)
         last = self.zmp_point(support)
-        ramps = []
-        if self._tick < self._ramp_ticks:
-            here = self._zmp_reference()
+        carries = (support, support)
+        if self.double:
             feet = (self.footholds[self.swing], support)
-            ramps.append(ZmpRamp(self._ramp_ticks - self._tick, *here, *last, feet))
-            ramps.append(ZmpRamp(self._single, *last, *last, (support, support)))
+            ramps = [
+                ZmpRamp(-self._elapsed, *self.zmp, *last, feet),
+                ZmpRamp(self._single.ticks, *last, *last, carries),
+            ]
         else:
-            ramps.append(ZmpRamp(self.ticks_left, *last, *last, (support, support)))
-        before = support
-        for step in steps[:-1] if ends else steps:
-            point = self.zmp_point(step)
-            ramps.append(ZmpRamp(self.timing.double, *last, *point, (before, step)))
-            ramps.append(ZmpRamp(self.timing.single, *point, *point, (step, step)))
-            before, last = step, point
-        if ends:
-            centre = self._centre(before, steps[-1])
-            ramps.append(ZmpRamp(self._stop, *last, *centre, (before, steps[-1])))
-        return ramps
+            ramps = [ZmpRamp(self.ticks_left, *last, *last, carries)]
+        return ramps + self._reference.onwards(support, self._future, self.timing, ends=ends)
 
     def swings(self) -> list[Swing]:
         """Swings under way and to come."""
         if not self.stepping or not self._future:
             return []
-        begin = self._ramp_ticks + self._swing_first - self._tick
-        ticks = self._swing_last - self._swing_first
-        if begin <= 0 and self._swing_origin > 0.0:
+        single = self._single
+        begin = single.first - self._elapsed
+        ticks = single.last - single.first
+        if begin <= 0 and single.origin > 0.0:
             # Retimed in the air: as if it had been so quick from the start.
-            ticks = round(ticks / (1.0 - self._swing_origin))
+            ticks = round(ticks / (1.0 - single.origin))
             begin = -round(self.swing_phase * ticks)
         support, origin = self.footholds[self.support], self.footholds[self.swing]
         swings = []
         if not self.held:
             zmp = self.zmp_point(support)
             swings.append(Swing(begin, ticks, self._lift, origin, self.landing, zmp))
-        first, last = self._swing_share
-        single, double = self.timing.single, self.timing.double
-        ticks = round(last * single) - round(first * single)
-        begin = self.ticks_left + double + round(first * single)
+        usual = self._window.single_support(self.timing.single)
+        ticks = usual.last - usual.first
+        begin = self.ticks_left + self.timing.double + usual.first
         landing = self.landing
         for following in self._future[1:]:
             zmp = self.zmp_point(landing)
             swings.append(Swing(begin, ticks, self.timing.lift, support, following, zmp))
             support, landing = landing, following
-            begin += double + single
+            begin += self.timing.double + self.timing.single
         return swings
 
     def footsteps(self) -> tuple[Footstep, ...]:
@@ -346,11 +304,11 @@ class Gait:
             self._land(moving=moving)
 
     def _move_swing(self) -> None:
-        elapsed = self._tick - self._ramp_ticks
-        if self.held or elapsed <= self._swing_first:
+        elapsed = self._elapsed
+        if self.held or elapsed <= self._single.first:
             return
         foot = self.feet[self.swing]
-        left = self._swing_last - elapsed
+        left = self._single.last - elapsed
         if left >= 0:
             foot.advance(self.landing, left + 1)
             change = self.timing.lift - self._lift
@@ -366,49 +324,24 @@ class Gait:
         following = self._future[1] if len(self._future) > 1 else None
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
-            self._tick, self._ramp_start, self._ramp_ticks = 0, 0, self._stop
-            self._origin, self._weight_origin = here, float(support)
+            self._tick = 0
+            self._shift = WeightShift(0, self._reference.stop, here, float(support))
             return
         self._begin(swing, self.timing.double, here, float(support))
         if following is not None:
             self.landing = following
 
-    def _begin(self, support: int, ticks: int, origin: Point, weight: float) -> None:
+    def _begin(self, support: int, double: int, zmp: Point, right_weight: float) -> None:
         self.stepping = True
         self.support = support
         self.held = self.hurried = False
-        self._tick, self._ramp_start, self._ramp_ticks = 0, 0, ticks
-        self._ramp_fixed = False
-        self._set_single(self.timing.single)
+        self._tick = 0
+        self._shift = WeightShift(0, double, zmp, right_weight)
+        self._shift_fixed = False
+        self._single = self._window.single_support(self.timing.single)
         self._lift = self.timing.lift
-        self._origin, self._weight_origin = origin, weight
         self.landing = self.nominal(self._planner.still)
-
-    @property
-    def _ramp_share(self) -> float:
-        elapsed = self._tick - self._ramp_start
-        return min(1.0, elapsed / (self._ramp_ticks - self._ramp_start))
-
-    def _zmp_reference(self) -> Point:
-        """ZMP reference at this tick."""
-        goal = (
-            self.zmp_point(self.footholds[self.support])
-            if self.stepping
-            else self._centre(*self.footholds)
-        )
-        share = self._ramp_share
-        (ox, oy), (gx, gy) = self._origin, goal
-        return ox + share * (gx - ox), oy + share * (gy - oy)
 
     def zmp_point(self, foot: Footstep) -> Point:
         """Where the ZMP is meant to be under a foot that carries alone [m]."""
-        inward = -self._zmp_inward if foot.left else self._zmp_inward
-        c, s = cos(foot.yaw), sin(foot.yaw)
-        return (
-            foot.x + c * self._zmp_forward - s * inward,
-            foot.y + s * self._zmp_forward + c * inward,
-        )
-
-    def _centre(self, one: Footstep, other: Footstep) -> Point:
-        (ax, ay), (bx, by) = self.zmp_point(one), self.zmp_point(other)
-        return 0.5 * (ax + bx), 0.5 * (ay + by)
+        return self._reference.under(foot)

@@ -6,6 +6,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.state import Footstep
 
 PEAK = 1.875  # of the speed of a minimum-jerk motion over its mean [1]
+ROUNDING = 1e-9  # of a landing that another one is one move away from [m]
 
 
 class MinimumJerk:
@@ -87,3 +88,18 @@ def lift_profile(phase: float) -> float:
     """Height of the swing foot as a share of the lift, at rest at both ends [1]."""
     bump = 4.0 * phase * (1.0 - phase)
     return bump * bump * bump
+
+
+def moved(landing: Footstep, wanted: Footstep, most: float) -> Footstep:
+    """A landing moved towards another one by no more than `most` along x and y [m]."""
+    dx, dy = wanted.x - landing.x, wanted.y - landing.y
+    largest = max(abs(dx), abs(dy))
+    if largest <= most + ROUNDING:
+        return wanted
+    share = most / largest
+    return Footstep(
+        left=wanted.left,
+        x=landing.x + share * dx,
+        y=landing.y + share * dy,
+        yaw=wanted.yaw,
+    )

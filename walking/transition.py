@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from walking.gait import Clock, Gait
+from walking.footstep_clock import Clock
+from walking.gait import Gait
 from walking.pattern import PatternGenerator, PendulumState, ZmpRamp
 from walking.state import Footstep
 from walking.stride import Strides
@@ -125,7 +126,7 @@ class Transition:
     def _between(self, old: Course, wanted: Course, share: float) -> Course:
         gait, a, b = self._gait, old.landing, wanted.landing
         gait.set_clock(old.clock)
-        gait.retime(old.clock[0].towards(wanted.clock[0], share))
+        gait.retime(old.clock.timing.towards(wanted.clock.timing, share))
         landing = Footstep(
             left=b.left,
             x=a.x + share * (b.x - a.x),

@@ -140,10 +140,10 @@ def test_a_double_support_under_way_changes_its_length(gait):
         tick(gait)
     for _ in range(5):
         tick(gait)
-    weight, origin = gait.right_weight, gait._zmp_reference()
+    weight, origin = gait.right_weight, gait.zmp
     assert gait.retime(Timing(30, 54, 0.025))
     assert gait.right_weight == pytest.approx(weight)
-    assert gait._zmp_reference() == pytest.approx(origin)
+    assert gait.zmp == pytest.approx(origin)
     for _ in range(25):
         assert gait.double
         tick(gait)

@@ -152,11 +152,11 @@ def test_the_zmp_is_in_the_support_polygon_between_ticks_with_a_new_command_in_e
         end = (engine._pendulum.zmp_x, engine._pendulum.zmp_y)
         if was[0] and before is not None:
             support = was[2][was[1]]
-            double = was[3] < gait._ramp_ticks if gait._tick else was[3] < before
+            double = was[3] < gait._shift.end if gait._tick else was[3] < before
             equations = hull(robot, was[2] if double else (support,), PARAMETERS.sole_margin)
             for point in (start, end):
                 assert (equations[:, :2] @ point + equations[:, 2]).max() < 1e-9
-        before = gait._ramp_ticks
+        before = gait._shift.end
         lost += engine._generator._plan is None
         changed += engine.admission.altered
     assert engine.state().step_count > 20

@@ -1,0 +1,39 @@
+"""The ZMP that footholds ask for: under the foot that carries, never jumping."""
+
+from itertools import pairwise
+
+import pytest
+
+from walking.parameters import WalkingParameters
+from walking.robot_model import Sole
+from walking.state import Footstep
+from walking.stride import Timing
+from walking.zmp_reference import ZmpReference
+
+REFERENCE = ZmpReference(WalkingParameters(), Sole(centre=0.01, half_length=0.05, half_width=0.03))
+LEFT, RIGHT = Footstep(True, 0.0, 0.042, 0.1), Footstep(False, 0.05, -0.042, -0.1)
+TIMING = Timing(14, 54, 0.025)
+
+
+def test_it_mirrors():
+    x, y = REFERENCE.under(LEFT)
+    assert REFERENCE.under(Footstep(False, 0.0, -0.042, -0.1)) == pytest.approx((x, -y))
+
+
+def test_it_turns_with_the_foot():
+    x, y = REFERENCE.under(Footstep(True, 0.0, 0.0, 0.0))
+    assert REFERENCE.under(Footstep(True, 1.0, 2.0, 1.5707963267948966)) == pytest.approx(
+        (1.0 - y, 2.0 + x)
+    )
+
+
+@pytest.mark.parametrize("ends", [False, True])
+def test_it_goes_from_foot_to_foot_without_jumps(ends):
+    steps = [RIGHT, Footstep(True, 0.1, 0.042, 0.0), Footstep(False, 0.1, -0.042, 0.0)]
+    ramps = REFERENCE.onwards(LEFT, steps, TIMING, ends=ends)
+    assert (ramps[0].ax, ramps[0].ay) == REFERENCE.under(LEFT)
+    assert all((a.bx, a.by) == (b.ax, b.ay) for a, b in pairwise(ramps))
+    end = REFERENCE.between(*steps[1:]) if ends else REFERENCE.under(steps[-1])
+    assert (ramps[-1].bx, ramps[-1].by) == end
+    assert sum(r.ticks for r in ramps) == (2 if ends else 3) * 68 + (REFERENCE.stop if ends else 0)
+    assert all(r.feet[0] is r.feet[1] for r in ramps if (r.ax, r.ay) == (r.bx, r.by))
