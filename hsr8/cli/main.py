@@ -4,7 +4,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, TextIO
 
 import tyro
 
@@ -57,11 +57,46 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         0 done or passed, 1 ran but failed its criteria, 2 usage or scenario error,
         3 diverged or internal error, 130 interrupted.
     """
-    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = _answer(list(sys.argv[1:] if arguments is None else arguments))
+        for stream in (sys.stdout, sys.stderr):
+            print(end="", file=stream, flush=True)
+    except OSError as error:
+        for stream in (sys.stdout, sys.stderr):
+            _drop_unread(stream)
+        if isinstance(error, BrokenPipeError):
+            return READER_LEFT
+        print(f"hsr8: cannot write to standard output: {error.strerror}", file=sys.stderr)
+        return Hsr8Error.exit_code
+    return code
+
+
+def _answer(given: list[str]) -> int:
+    """Do what the command line says; its exit code."""
     if given[:2] == CHECK_REPLAY.split():
         given[:2] = [CHECK_REPLAY]
     try:
-        command = tyro.cli(
+        with CrashReport():
+            command = _parsed(given)
+            if isinstance(command, int):
+                return command
+            module = importlib.import_module(MODULES[type(command)])
+            code: int = module.main(command)
+    except Hsr8Error as error:
+        print(f"hsr8: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print("hsr8: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except SystemExit as stop:  # rich's word for a reader that has left
+        raise BrokenPipeError from stop
+    return code
+
+
+def _parsed(given: list[str]) -> options.Command | int:
+    """The command, or the exit code where help or a mistake has been told instead."""
+    try:
+        return tyro.cli(
             Commands,
             prog="hsr8",
             description=DESCRIPTION,
@@ -70,25 +105,11 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         )
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else 2
-    except KeyboardInterrupt:
-        return _interrupted()
+
+
+def _drop_unread(stream: TextIO) -> None:
+    """What is still to be written, at the latest when Python ends, may have no place."""
     try:
-        with CrashReport():
-            module = importlib.import_module(MODULES[type(command)])
-            code: int = module.main(command)
-            print(end="", flush=True)
-    except Hsr8Error as error:
-        print(f"hsr8: {error}", file=sys.stderr)
-        return error.exit_code
-    except KeyboardInterrupt:
-        return _interrupted()
-    except (BrokenPipeError, SystemExit):  # rich turns the former into the latter
-        # What is still to be written, at the latest when Python ends, has no reader.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return READER_LEFT
-    return code
-
-
-def _interrupted() -> int:
-    print("hsr8: interrupted", file=sys.stderr)
-    return INTERRUPTED
+        stream.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -86,11 +86,15 @@ def open_run(path: Path) -> Run:
     Raises:
         UsageError: there is no run there.
     """
-    if (path / run_folder.MANIFEST).is_file():
-        return _run(path)
-    if not path.exists():
-        raise UsageError(f"there is no run folder {path}{_known(path.parent)}")
-    runs = sorted(path.glob(f"**/{run_folder.MANIFEST}"), key=lambda file: file.stat().st_mtime_ns)
+    try:
+        if (path / run_folder.MANIFEST).is_file():
+            return _run(path)
+        if not path.exists():
+            raise UsageError(f"there is no run folder {path}{_known(path.parent)}")
+        files = [file for file in path.glob(f"**/{run_folder.MANIFEST}") if file.is_file()]
+        runs = sorted(files, key=lambda file: file.stat().st_mtime_ns)
+    except OSError as error:
+        raise UsageError(f"cannot read the run folder {path}: {error.strerror}") from error
     if not runs:
         raise UsageError(
             f"{path} holds no run: a run folder has a {run_folder.MANIFEST}; "
@@ -120,7 +124,7 @@ def _known(parent: Path) -> str:
 def _json(path: Path) -> dict[str, Any]:
     try:
         value = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {path}: {error}") from error
     if not isinstance(value, dict):
         raise UsageError(f"cannot read {path}: it is no JSON object")

@@ -90,6 +90,8 @@ def read_trajectory(path: Path) -> Trajectory:
         raise UsageError(f"{path} has no whole header") from error
     width = 1 + nq + 2 * movers
     first = start + length
+    if first > len(content) or nq < 0 or movers < 0:
+        raise UsageError(f"{path} has no whole header")
     rows = (len(content) - first) // (8 * width)
     table = np.frombuffer(content, dtype="<f8", count=rows * width, offset=first)
     table = table.reshape(rows, width).astype(np.float64)

@@ -160,6 +160,14 @@ def read_walking_table(path: Path) -> WalkingTable:
         limits = dict(zip(LEG_JOINTS, map(float, header["torque_limit"]), strict=True))
     except (ValueError, TypeError, KeyError) as error:
         raise UsageError(f"{path} has no whole header") from error
+    if start + length > len(content):
+        raise UsageError(f"{path} has no whole header")
+    missing = [name for name in COLUMNS if name not in names]
+    if missing:
+        raise UsageError(
+            f"{path} is of another version of hsr8: it has no column {', '.join(missing)}; "
+            "run it again"
+        )
     row = np.dtype([("time", "<f8"), ("values", "<f4", (len(names),))])
     rows = (len(content) - start - length) // row.itemsize
     table = np.frombuffer(content, dtype=row, count=rows, offset=start + length)

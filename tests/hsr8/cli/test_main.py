@@ -128,7 +128,7 @@ def test_ctrl_c_while_the_command_line_is_read(monkeypatch, capsys):
     assert capsys.readouterr().err == "hsr8: interrupted\n"
 
 
-@pytest.mark.parametrize("arguments", [["list"], ["list", "--json"]])
+@pytest.mark.parametrize("arguments", [["list"], ["list", "--json"], ["--help"]])
 def test_a_reader_that_leaves_is_no_mistake_of_ours(arguments):
     with subprocess.Popen(
         [sys.executable, "-m", "hsr8", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -137,6 +137,15 @@ def test_a_reader_that_leaves_is_no_mistake_of_ours(arguments):
         said = process.stderr.read()
         assert process.wait(60) == 141
     assert said == b""
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--wrong"]])
+def test_nobody_reads_anything(arguments):
+    with subprocess.Popen(
+        [sys.executable, "-m", "hsr8", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    ) as process:
+        process.stdout.close()
+        assert process.wait(60) == 141
 
 
 def test_the_module_can_be_run():

@@ -1,5 +1,6 @@
 import json
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,6 +84,17 @@ def test_no_run_is_a_usage_error_that_names_the_runs_there_are(tmp_path):
         open_run(path)
     with pytest.raises(UsageError, match=path.name):
         open_run(tmp_path / "quick" / "1-abc")
+
+
+def test_a_name_that_no_folder_can_have_is_a_usage_error():
+    with pytest.raises(UsageError, match="too long"):
+        open_run(Path("a" * 5000))
+
+
+def test_a_manifest_that_is_gone_is_no_run(tmp_path):
+    (tmp_path / run_folder.MANIFEST).symlink_to(tmp_path / "gone")
+    with pytest.raises(UsageError, match="holds no run"):
+        open_run(tmp_path)
 
 
 def test_a_broken_manifest_is_a_usage_error(tmp_path):

@@ -98,3 +98,18 @@ def test_no_table_is_told(tmp_path, content, wanted):
         path.write_bytes(content)
     with pytest.raises(UsageError, match=wanted):
         read_walking_table(path)
+
+
+def test_a_table_cut_in_its_header_is_refused(tmp_path, model):
+    path = tmp_path / "walking.bin"
+    WalkingTableWriter(path, model, ModelIndex.of(model, 2, 1)).close("killed")
+    path.write_bytes(path.read_bytes()[:-1])
+    with pytest.raises(UsageError, match="no whole header"):
+        read_walking_table(path)
+
+
+def test_a_table_of_other_columns_is_told(written):
+    path, _ = written
+    path.write_bytes(path.read_bytes().replace(b'"zmp_depth"', b'"zmp_deepn"'))
+    with pytest.raises(UsageError, match="no column zmp_depth"):
+        read_walking_table(path)
