@@ -157,7 +157,7 @@ def test_the_zmp_is_in_the_support_polygon_between_ticks_with_a_new_command_in_e
             for point in (start, end):
                 assert (equations[:, :2] @ point + equations[:, 2]).max() < 1e-9
         before = gait._shift.end
-        lost += engine._generator._plan is None
+        lost += engine._placement._generator._plan is None
         changed += engine.admission.altered
     assert engine.state().step_count > 20
     assert lost == 0
@@ -169,7 +169,7 @@ def test_it_starts_walks_and_stops(robot, ideal_body):
     for k in range(1000):
         command = VelocityCommand(0.2, 0.0, 0.3) if k < 500 else VelocityCommand()
         ideal_body.apply(engine.step(ideal_body.sense(), command, HeadTarget()))
-        assert engine._generator._plan is not None
+        assert engine._placement._generator._plan is not None
     assert engine.state().phase is Phase.STANDING
     p = engine._pendulum
     assert np.hypot(p.vx, p.vy) < 2e-3

@@ -115,12 +115,12 @@ def zmp_errors(robot, body, reaction):
     """Multibody ZMP of the planned motion less the planned one, forward at 0.2 m/s [m]."""
     parameters = WalkingParameters()
     engine = WalkingEngine(robot, parameters)
-    engine._compensation = SwingCompensation(engine._lipm, reaction)
+    engine._whole_body.compensation = SwingCompensation(engine._lipm, reaction)
     rows = []
     for _ in range(900):
         targets = engine.step(body.sense(), VelocityCommand(0.2), HeadTarget())
         body.apply(targets)
-        pelvis, pendulum = engine._pelvis, engine._pendulum
+        pelvis, pendulum = engine._whole_body.pelvis, engine._pendulum
         rows.append([*targets.position, pelvis.x, pelvis.y, pendulum.zmp_x, pendulum.zmp_y])
     table = np.array(rows)
     rate = np.diff(table[:, :28], axis=0) / CONTROL_PERIOD

@@ -1,0 +1,171 @@
+"""Foot placement: where the swing foot lands and when, by plan or to catch the body."""
+
+from walking.admission import Limit
+from walking.catching import CatchingPendulum
+from walking.footsteps import STILL, FootstepPlanner
+from walking.gait import Gait
+from walking.lipm import Lipm
+from walking.pattern import PatternGenerator, ZmpRamp, dcm_reference
+from walking.stabilizer import Capture, Stabilizer
+from walking.state import Footstep
+from walking.stride import Strides, Velocity
+from walking.support import SupportRegion
+from walking.transition import Transition
+
+Point = tuple[float, float]
+
+
+class FootPlacement:
+    """Decides in every tick on the landing of the swing foot and its time.
+
+    Args:
+        lipm: pendulum.
+        generator: of the plan.
+        planner: knows what is in reach.
+        gait: holds footholds and times.
+        stabilizer: knows what the ankles cannot hold.
+        catching: the pendulum, and that of the plan while the body is being caught.
+
+    Attributes:
+        given: velocity that the footsteps really walk (forward, left, turn)
+            [m/s, m/s, rad/s].
+        bound: constraints that altered the last tick's wish.
+        moved: by how much balance moves the landing [m].
+        moving: whether the plan goes on walking.
+    """
+
+    def __init__(
+        self,
+        lipm: Lipm,
+        generator: PatternGenerator,
+        planner: FootstepPlanner,
+        gait: Gait,
+        *,
+        stabilizer: Stabilizer,
+        catching: CatchingPendulum,
+    ) -> None:
+        self._lipm = lipm
+        self._generator = generator
+        self._planner = planner
+        self._gait = gait
+        self._stabilizer = stabilizer
+        self._catching = catching
+        self._transition = Transition(gait, generator)
+        self.given: Velocity = STILL
+        self.bound: list[Limit] = []
+        self.moved: Point = (0.0, 0.0)
+        self.moving = False
+
+    @property
+    def landing(self) -> Footstep:
+        """Landing of the plan, without what balance adds."""
+        return self._transition.landing
+
+    @property
+    def admitted(self) -> Strides | None:
+        """Strides of the plan if the generator did not admit the wanted ones in full."""
+        return self._transition.strides if self._transition.share < 1.0 else None
+
+    def remember(self) -> None:
+        """Keep the times of the last tick, before anything about them changes."""
+        self._transition.remember()
+
+    def decide(
+        self,
+        wish: Strides,
+        velocity: Velocity,
+        error: Point,
+        region: SupportRegion,
+        *,
+        moving: bool,
+    ) -> list[ZmpRamp]:
+        """One tick; the gait has the landing and the times decided on.
+
+        Args:
+            wish: strides wanted.
+            velocity: that goes with them (forward, left, turn) [m/s, m/s, rad/s].
+            error: of the DCM [m].
+            region: where the ZMP may be in this tick.
+            moving: whether to go on walking.
+
+        Returns:
+            ZMP reference from now on.
+        """
+        gait, adjustable = self._gait, self._gait.adjustable
+        self.bound, self.moved, self.moving = [], (0.0, 0.0), moving
+        ramps, landing = self._reference(wish, velocity, region)
+        if not adjustable:
+            if gait.stepping and not self._planner.same(gait.nominal(wish), landing):
+                self.bound.append(Limit.LANDING_FROZEN)
+        else:
+            ramps = self._catch(landing, ramps, wish, error)
+        if self._selects:
+            self.moving = self._transition.moving
+        return ramps
+
+    @property
+    def _selects(self) -> bool:
+        """Whether the generator has a say in the footsteps; not if they have to be hurried."""
+        return self._generator.selective and not self._gait.hurried
+
+    def _reference(
+        self, wish: Strides, velocity: Velocity, region: SupportRegion
+    ) -> tuple[list[ZmpRamp], Footstep]:
+        """Reference of the plan that the generator admits, and the landing in it."""
+        gait, transition = self._gait, self._transition
+        if not self._selects:
+            self.given = velocity
+            transition.skip(wish, moving=self.moving)
+            landing = gait.nominal(wish) if gait.adjustable else gait.landing
+            return gait.plan(landing, wish, moving=self.moving), landing
+        catching = self._catching
+        ramps = transition.admit(
+            catching.planned, region, wish, moving=self.moving, caught=catching.caught
+        )
+        share = transition.share
+        if share < 1.0:
+            self.bound.append(Limit.ZMP_REGION)
+            a, b, c = (g + share * (v - g) for g, v in zip(self.given, velocity, strict=True))
+            self.given = (a, b, c)
+        else:
+            self.given = velocity
+        return ramps, transition.landing
+
+    def _catch(
+        self, landing: Footstep, ramps: list[ZmpRamp], wish: Strides, error: Point
+    ) -> list[ZmpRamp]:
+        """Aim at the landing that catches the body; the reference that goes with it."""
+        gait, caught = self._gait, landing
+        capture = self._capture(landing, ramps, error)
+        if capture.ticks < gait.ticks_left and gait.hasten(capture.ticks, capture.landing):
+            # The plan was made for other times.
+            self._catching.give_up()
+            ramps = gait.plan(landing, wish, moving=self.moving)
+            capture = self._capture(landing, ramps, error)
+        if not gait.double:
+            caught = capture.landing
+        self.moved = (caught.x - landing.x, caught.y - landing.y)
+        if caught != landing or gait.hurried:
+            self.bound.append(Limit.BALANCE)
+        gait.aim(caught)
+        if gait.landing != landing and not self._selects:
+            ramps = gait.plan(gait.landing, wish, moving=self.moving)
+        return ramps
+
+    def _capture(self, landing: Footstep, ramps: list[ZmpRamp], error: Point) -> Capture:
+        """What the footholds of the plan do not catch of the measured DCM."""
+        gait, w = self._gait, self._lipm.omega
+        pendulum = self._catching.state
+        support = gait.footholds[gait.support]
+        if gait.hurried:
+            x, y = dcm_reference(self._lipm, ramps)
+        else:
+            x, y = self._generator.planned_dcm(self._catching.planned, ramps)
+        off = (
+            pendulum.x + pendulum.vx / w + error[0] - x,
+            pendulum.y + pendulum.vy / w + error[1] - y,
+        )
+        ahead = (x - ramps[0].bx, y - ramps[0].by)
+        return self._stabilizer.capture(
+            self._planner, support, landing, off, ahead, ticks_left=gait.ticks_left
+        )

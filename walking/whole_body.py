@@ -1,0 +1,111 @@
+"""The whole body: the joint targets that make it follow pendulum and feet."""
+
+from math import cos, sin
+
+import numpy as np
+
+from walking.feedforward import FeedForward
+from walking.gait import Gait
+from walking.lipm import Lipm
+from walking.measurement import BodyMeasurement
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.pattern import PendulumState
+from walking.posture import Posture
+from walking.robot_model import RobotModel
+from walking.stabilizer import Stabilizer
+from walking.swing_reaction import SwingCompensation, leg_reaction
+from walking.targets import JointTargets
+
+Point = tuple[float, float]
+
+
+class WholeBody:
+    """Carries the pelvis with the pendulum and makes joint targets of it.
+
+    Args:
+        robot: the robot's numbers.
+        parameters: of the engine.
+        lipm: pendulum.
+        stabilizer: moves the ankles.
+        gait: where the feet are meant to be.
+        pendulum: where the mass centre is meant to be.
+
+    Attributes:
+        pelvis: of the last tick.
+        turn_rate: planned, of the trunk [rad/s].
+        compensation: motion of the pelvis against the swinging legs.
+    """
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        parameters: WalkingParameters,
+        *,
+        lipm: Lipm,
+        stabilizer: Stabilizer,
+        gait: Gait,
+        pendulum: PendulumState,
+    ) -> None:
+        self._robot = robot
+        self._lipm = lipm
+        self._stabilizer = stabilizer
+        self._gait = gait
+        self._pendulum = pendulum
+        self._posture = Posture(robot, parameters)
+        base = parameters.pattern.pelvis_height - robot.legs[0].hip_z
+        self._feedforward = FeedForward(robot, parameters.stabilizer, base)
+        self.compensation = SwingCompensation(lipm, leg_reaction(robot, base, parameters.gait.lift))
+        self.pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
+        self.turn_rate = 0.0
+        self._com = robot.com(robot.ready)
+
+    @property
+    def com(self) -> Point:
+        """Mass centre of the last tick's posture in the plan frame [m]."""
+        pelvis, (x, y, _) = self.pelvis, self._com
+        c, s = cos(pelvis.yaw), sin(pelvis.yaw)
+        return pelvis.x + c * x - s * y, pelvis.y + s * x + c * y
+
+    def follow(
+        self,
+        body: BodyMeasurement,
+        zmp: Point,
+        zmp_shift: Point,
+        right_load: float,
+        head: Point,
+    ) -> JointTargets:
+        """One tick.
+
+        Args:
+            body: measured.
+            zmp: planned [m].
+            zmp_shift: by how much the ankles move the ZMP [m].
+            right_load: planned share of the weight on the right foot [1].
+            head: pan and tilt [rad].
+        """
+        gait, pendulum = self._gait, self._pendulum
+        before = self.pelvis.yaw
+        compensation = self.compensation
+        compensation.advance(gait.swings())
+        (ox, oy), (ex, ey) = compensation.offset, compensation.acceleration
+        self.pelvis = pelvis = self._posture.pelvis(gait, (pendulum.x + ox, pendulum.y + oy))
+        self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
+        angles, legs = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
+        position = np.array(angles)
+        self._com = self._robot.com(position)
+        c, s = cos(pelvis.yaw), sin(pelvis.yaw)
+        soles = []
+        for foot in gait.footholds:
+            x, y = gait.zmp_point(foot)
+            dx, dy = x - pelvis.x, y - pelvis.y
+            soles.append((c * dx + s * dy, c * dy - s * dx))
+        w2 = self._lipm.omega**2
+        ax, ay = w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey
+        offset = self._feedforward.offsets(
+            position, legs, (soles[0], soles[1]), right_load, (c * ax + s * ay, c * ay - s * ax)
+        )
+        for index, load in ((0, 1.0 - right_load), (1, right_load)):
+            ankle = self._stabilizer.ankles(gait.footholds[index], load, zmp_shift, body.gyro)
+            offset[6 * index + 4] += ankle.pitch
+            offset[6 * index + 5] += ankle.roll
+        return JointTargets(position=position, offset=offset)
