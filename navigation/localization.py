@@ -157,11 +157,8 @@ class Localizer:
         Raises:
             ValueError: if the frame is not younger than the one before.
         """
-        if self._previous is not None and frame.time <= self._previous[0]:
-            raise ValueError(
-                f"frames must come in the order of their capture: {frame.time:.3f} s came after "
-                f"{self._previous[0]:.3f} s"
-            )
+        if self._previous is not None:
+            frame.check_after(self._previous[0])
         # One blob split in two would otherwise count as two independent sightings.
         seen = {o.label: o for o in reversed(frame.observations) if o.kind == "beacon"}
         useless = self._relocalization.displaced

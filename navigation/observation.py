@@ -77,3 +77,15 @@ class Frame:
     motion_covariance: Array
     view: CameraView
     observations: tuple[Observation, ...]
+
+    def check_after(self, time: float) -> None:
+        """Make sure that it was captured after `time` [s].
+
+        Raises:
+            ValueError: if it was not.
+        """
+        if self.time <= time:
+            raise ValueError(
+                f"frames must come in the order of their capture: {self.time:.3f} s came after "
+                f"{time:.3f} s"
+            )

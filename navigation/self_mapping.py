@@ -86,11 +86,8 @@ class SelfMapping:
         Raises:
             ValueError: if the frame is not younger than the one before.
         """
-        if self._previous is not None and frame.time <= self._previous[0]:
-            raise ValueError(
-                f"frames must come in the order of their capture: {frame.time:.3f} s came after "
-                f"{self._previous[0]:.3f} s"
-            )
+        if self._previous is not None:
+            frame.check_after(self._previous[0])
         self._predict(frame)
         sound = self._x[:3].copy(), self._P[:3, :3].copy()
         try:

@@ -14,9 +14,10 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import version
-from math import sqrt
 from pathlib import Path
 from statistics import median
+
+from wilson import wilson
 
 COLUMNS = {
     "success": "success",
@@ -33,16 +34,6 @@ COLUMNS = {
     "real_time_factor": "real-time factor",
     "exit_reason": "ended by",
 }
-
-
-def wilson(successes: int, n: int) -> tuple[float, float]:
-    """95 % Wilson interval of a share."""
-    if n == 0:
-        return 0.0, 1.0
-    z, p = 1.96, successes / n
-    centre = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z * sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return centre - half, centre + half
 
 
 def run(scenario: str, seed: int, extra: list[str]) -> dict:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from walking.joints import LEFT_LEG, RIGHT_LEG
+from walking.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 from walking.leg_kinematics import foot_pose
 from walking.parameters import CONTROL_PERIOD
 from walking.robot_model import RobotModel
@@ -85,3 +85,18 @@ class IdealBody:
 @pytest.fixture
 def ideal_body(robot) -> IdealBody:
     return IdealBody(robot)
+
+
+@pytest.fixture(scope="session")
+def mirrored_joints():
+    """Mirrors angles of all joints (..., 26) at the sagittal plane."""
+    swapped = [
+        JOINT_NAMES.index(
+            {"l": "r", "r": "l"}[name[0]] + name[1:] if name[:2] in ("l_", "r_") else name
+        )
+        for name in JOINT_NAMES
+    ]
+    sign = np.array(
+        [-1.0 if name.endswith(("yaw", "roll", "gripper")) else 1.0 for name in JOINT_NAMES]
+    )
+    return lambda angles: sign * angles[..., swapped]

@@ -7,21 +7,11 @@ import pytest
 
 from walking.get_up import GetUp, Outcome
 from walking.get_up_motion import MOTIONS
-from walking.joints import JOINT_NAMES
 from walking.key_posture import STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
 from walking.sensing import BodySensors
 
 PARAMETERS = GetUpParameters(enabled=True)
-SWAP = [
-    JOINT_NAMES.index(
-        {"l": "r", "r": "l"}[name[0]] + name[1:] if name[:2] in ("l_", "r_") else name
-    )
-    for name in JOINT_NAMES
-]
-SIGN = np.array(
-    [-1.0 if name.endswith(("yaw", "roll", "gripper")) else 1.0 for name in JOINT_NAMES]
-)
 
 
 def felt(pitch=0.0, roll=0.0, gyro=(0.0, 0.0, 0.0)):
@@ -77,11 +67,11 @@ def test_on_its_left_side_it_goes_on_where_the_roll_has_come_to(get_up):
     assert all(reached(rows, posture) for posture in MOTIONS.roll[MOTIONS.from_side :])
 
 
-def test_the_other_side_is_the_mirror_image(robot):
+def test_the_other_side_is_the_mirror_image(robot, mirrored_joints):
     left, right = (
         follow(GetUp(robot, PARAMETERS, robot.ready), side, 4.0) for side in (LEFT, RIGHT)
     )
-    assert right == pytest.approx(SIGN * left[:, SWAP])
+    assert right == pytest.approx(mirrored_joints(left))
 
 
 def test_it_waits_until_it_lies_still(get_up):

@@ -8,21 +8,12 @@ from walking.joints import JOINT_NAMES
 from walking.key_posture import STRAIGHT
 
 POSTURES = (*MOTIONS.rise, *MOTIONS.roll, STRAIGHT)
-SWAP = [
-    JOINT_NAMES.index(
-        {"l": "r", "r": "l"}[name[0]] + name[1:] if name[:2] in ("l_", "r_") else name
-    )
-    for name in JOINT_NAMES
-]
-SIGN = np.array(
-    [-1.0 if name.endswith(("yaw", "roll", "gripper")) else 1.0 for name in JOINT_NAMES]
-)
 
 
 @pytest.mark.parametrize("posture", POSTURES, ids=lambda p: p.name)
-def test_the_mirror_image_swaps_the_sides_and_turns_roll_and_yaw(posture):
+def test_the_mirror_image_swaps_the_sides_and_turns_roll_and_yaw(posture, mirrored_joints):
     angles, mirrored = np.array(posture.angles()), np.array(posture.mirrored().angles())
-    assert mirrored == pytest.approx(SIGN * angles[SWAP])
+    assert mirrored == pytest.approx(mirrored_joints(angles))
     assert posture.mirrored().mirrored() == posture
 
 
