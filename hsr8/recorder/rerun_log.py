@@ -25,7 +25,7 @@ from walking.state import Footstep
 Array = NDArray[np.float64]
 
 APRON = 1.0  # the floor shown is larger than the field by this [m]
-BLOCK = 2.0  # rows are sent in blocks of this length; a kill loses the last one [s]
+BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one [s]
 POSE_PERIOD = 0.04  # [s]
 FRAME_PERIOD = 0.12  # of camera frames [s]
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
