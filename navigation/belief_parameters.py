@@ -39,7 +39,7 @@ class TrackingParameters:
 
     acceleration_noise: Positive = 0.01
     """White acceleration of a mover [m/s^1.5]."""
-    static_diffusion: Positive = 3e-6
+    static_diffusion: Positive = 5e-7
     """Random walk of what stands still [m²/s]."""
     velocity_sigma: Positive = 0.07
     """Standard deviation of each component of the velocity of what begins to move [m/s]."""

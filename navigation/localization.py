@@ -30,6 +30,11 @@ SHARED_LIMIT = 0.98
 """Largest share of a bearing's variance that may be common to the whole frame [1]."""
 
 
+def _root(covariance: Array) -> Array:
+    """Upper factor of Cholesky's, as scipy's but without the cost of its checks."""
+    return np.asarray(np.linalg.cholesky(covariance).T, np.float64)
+
+
 def _mean(angles: slice, points: Array, weights: Array) -> Array:
     mean: Array = weights @ points
     turned = points[:, angles]
@@ -106,7 +111,7 @@ class Localizer:
             dt=1.0,
             hx=_seen,
             fx=_moved,
-            points=JulierSigmaPoints(3, kappa=0.0),
+            points=JulierSigmaPoints(3, kappa=0.0, sqrt_method=_root),
             x_mean_fn=partial(_mean, STATE),
             z_mean_fn=partial(_mean, MEASUREMENT),
             residual_x=partial(_difference, STATE),

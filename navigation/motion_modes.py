@@ -140,6 +140,13 @@ def update(modes: Modes, R: Array, seen: Innovation, limit: Array) -> Modes:
     )
 
 
+def mean(modes: Modes) -> Array:
+    """Mean (4,) of one obstacle, given that it moves."""
+    on, back = modes.weights[ON:].tolist()
+    mixed: Array = (on * modes.states[ON] + back * modes.states[BACK]) / (on + back)
+    return mixed
+
+
 def moments(modes: Modes) -> tuple[Array, Array]:
     """Mean (4,) and covariance (4, 4) of one obstacle, given that it moves."""
     on, back = modes.weights[ON:].tolist()

@@ -1,6 +1,7 @@
 """One obstacle as the tracker keeps it between frames, and the verdict whether it moves."""
 
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,13 +64,12 @@ class TrackedObject:
             return mean
         if self.motion is Motion.STATIC:
             return self.modes.states[STILL, :2]
-        return motion_modes.moments(self.modes)[0][:2]
+        return motion_modes.mean(self.modes)[:2]
 
     @property
     def speed(self) -> float:
         """Speed if it moves [m/s]."""
-        velocity = motion_modes.moments(self.modes)[0][2:]
-        return float(np.hypot(velocity[0], velocity[1]))
+        return hypot(*motion_modes.mean(self.modes)[2:].tolist())
 
     def estimate(self) -> tuple[Array, Array]:
         """Mean (4,) and covariance (4, 4) of x, y, vx, vy under the verdict."""

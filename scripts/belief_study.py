@@ -3,7 +3,7 @@
 Runs a scenario with its body and camera as they are, keeps what reached the belief together
 with the truth at each capture, feeds it to the estimator again and scores every belief.
 
-    python scripts/belief_study.py course --seeds 1000-1019
+    python scripts/belief_study.py course --seeds 1000-1019 --write docs/results/belief.md
     python scripts/belief_study.py course --seeds 0-19 --keep /tmp/kept
     python scripts/belief_study.py course --seeds 0-19 --kept /tmp/kept    # seconds
 """
@@ -72,6 +72,22 @@ def score_run(score: Score, scenario: Scenario, seed: int, moments: list[Moment]
     score.add_run(things, zip(moments, beliefs, strict=True), milliseconds)
 
 
+def write_column(path: Path, seeds: str, rows: list[tuple[str, str]]) -> None:
+    """Put results into the first table of a page: held-out seeds left, tuning seeds right."""
+    held_out = int(seeds.partition("-")[0]) >= 1000
+    column = 2 if held_out else 3
+    wanted = [("what", f"seeds {seeds}" + " (held out)" * held_out), *rows]
+    lines = path.read_text().split("\n")
+    for i, line in enumerate(lines):
+        if wanted and line.startswith(f"| {wanted[0][0].strip()} |"):
+            cells = [c.strip() for c in line.split("|")]
+            cells[column] = wanted.pop(0)[1]
+            lines[i] = " | ".join(cells).strip()
+    if wanted:
+        raise SystemExit(f"{path}: no row {wanted[0][0].strip()!r} in its first table")
+    path.write_text("\n".join(lines))
+
+
 def main(
     scenario: Positional[str],
     *,
@@ -80,6 +96,7 @@ def main(
     set: UseAppendAction[Annotated[tuple[str, ...], tyro.conf.arg(metavar="KEY=VALUE")]] = (),
     keep: Path | None = None,
     kept: Path | None = None,
+    write: Path | None = None,
 ) -> None:
     """Run the study and print its table.
 
@@ -90,6 +107,7 @@ def main(
         set: settings of the scenario.
         keep: folder in which the frames are kept.
         kept: folder of frames kept before; nothing is run then.
+        write: page whose first table takes the results up.
     """
     first, last = (int(part) for part in seeds.split("-"))
     score = Score()
@@ -107,6 +125,8 @@ def main(
     print(f"| {scenario}, seeds {seeds}, {duration:g} s each | |\n|---|---|")
     for name, value in score.rows():
         print(f"| {name.strip()} | {value} |")
+    if write is not None:
+        write_column(write, seeds, score.rows())
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Where the robot went: support-foot kinematics with the IMU's heading."""
 
 from dataclasses import dataclass
-from math import cos, sin
+from math import cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,6 +112,8 @@ class LegOdometry:
 
     def __init__(self, parameters: OdometryParameters) -> None:
         self._growth = ErrorGrowth(parameters)
+        self._slip_share = parameters.slip_share
+        self._stood: tuple[float, float] | None = None
         self._yaw: float | None = None
         self._raw_yaw = 0.0
         self._arms: tuple[tuple[float, float], tuple[float, float]] | None = None
@@ -148,6 +150,7 @@ class LegOdometry:
         (lx, ly), (rx, ry) = feet
         left = (s * ly - c * lx, -s * lx - c * ly)
         right = (s * ry - c * rx, -s * rx - c * ry)
+        self._watch_slip(left[0] - right[0], left[1] - right[1], load)
         if self._arms is not None:
             if (load if self._anchor else 1.0 - load) < RELEASED:
                 self._anchor = 1 - self._anchor
@@ -156,6 +159,20 @@ class LegOdometry:
             self.y += now[1] - before[1]
             self._growth.add(self.x, self.y, self._yaw, stepping=stepping)
         self._arms = left, right
+
+    def _watch_slip(self, x: float, y: float, load: float) -> None:
+        """Feet that both carry keep their distance (x, y) unless one of them slips.
+
+        Which of them did, nobody sees; but where feet slide against each other, the foot that
+        counts has slipped as well, by a share that was measured.
+        """
+        if RELEASED <= load <= 1.0 - RELEASED:
+            if self._stood is None:
+                self._stood = x, y
+        elif self._stood is not None:
+            slip = hypot(x - self._stood[0], y - self._stood[1])
+            self._growth.jump(self.x, self.y, self._slip_share * slip, 0.0)
+            self._stood = None
 
     def interrupt(self, displacement: float, turn: float) -> None:
         """The robot has left its feet: what comes next starts from new footholds.
@@ -166,7 +183,7 @@ class LegOdometry:
             displacement: standard deviation of the unseen move per axis [m].
             turn: standard deviation of the turn that the IMU misses [rad].
         """
-        self._arms = None
+        self._arms = self._stood = None
         self._growth.jump(self.x, self.y, displacement, turn)
 
     def pose(self) -> Odometry:

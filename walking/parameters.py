@@ -135,10 +135,12 @@ class EstimatorParameters:
 class OdometryParameters:
     """How much of the robot's motion its dead reckoning does not see."""
 
-    forward_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0014
+    forward_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0005
     """Random walk along the heading while stepping [m/√s]."""
-    left_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0014
+    left_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0007
     """Random walk across the heading while stepping [m/√s]."""
+    slip_share: Annotated[float, Ge(0.0), NUMBER] = 0.7
+    """Unseen displacement per axis, by how far the feet slid against each other [1]."""
     yaw_drift: Annotated[float, Ge(0.0), NUMBER] = 0.001
     """Random walk of the IMU's yaw [rad/√s]."""
 

@@ -163,3 +163,30 @@ def test_a_foot_that_slides_while_it_is_loaded_does_not_count():
         feet = feet_in_body((body, 0.0, 0.0), ((0.0, 0.04), (slid, -0.04)))
         odometry.update(0.0, feet, load, stepping=True)
     assert odometry.x == pytest.approx(0.1)
+
+
+def stepped(slip, parameters):
+    """Growth of the covariance over a double support in which the left foot slides."""
+    odometry = LegOdometry(parameters)
+    loads = [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
+    for k, load in enumerate(loads):
+        slid = slip * min(1.0, max(0.0, (k - 2) / 3.0))
+        odometry.update(0.0, ((slid, 0.04), (0.1, -0.04)), load, stepping=True)
+        if k == 0:
+            before = odometry.pose()
+    return increment(before, odometry.pose()).covariance
+
+
+def test_feet_that_slide_against_each_other_are_held_against_the_odometry():
+    parameters = OdometryParameters(slip_share=0.5)
+    grown = stepped(0.004, parameters) - stepped(0.0, parameters)
+    assert grown[:2, :2] == pytest.approx(0.002**2 * np.eye(2), rel=1e-4, abs=1e-9)
+    assert grown[2] == pytest.approx(np.zeros(3), abs=1e-9)
+
+
+def test_a_foot_in_the_air_does_not_slip():
+    odometry, still = LegOdometry(PARAMETERS), LegOdometry(PARAMETERS)
+    for k in range(100):
+        odometry.update(0.0, ((0.0, 0.04), (0.001 * k, -0.04)), 0.1, stepping=True)
+        still.update(0.0, ((0.0, 0.04), (0.0, -0.04)), 0.1, stepping=True)
+    assert odometry.pose().covariance == pytest.approx(still.pose().covariance, abs=1e-18)
