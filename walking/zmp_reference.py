@@ -25,7 +25,7 @@ class ZmpReference:
     def __init__(self, parameters: WalkingParameters, sole: Sole) -> None:
         self._forward = sole.centre + parameters.pattern.zmp_forward
         self._inward = parameters.pattern.zmp_inward
-        self.stop = round(parameters.gait.stop_time / CONTROL_PERIOD)
+        self.stop = max(1, round(parameters.gait.stop_time / CONTROL_PERIOD))
 
     def under(self, foot: Footstep) -> Point:
         """ZMP under a foot that carries alone [m]."""

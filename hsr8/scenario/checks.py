@@ -14,6 +14,8 @@ from vision.errors import VisionError
 
 ROBOT_RADIUS = 0.12
 """Radius of the circle in which the walking robot fits, S_robot [m]."""
+MOST_CELLS = 1000
+"""Largest side of the local map, which every frame goes through [cells]."""
 
 
 def check(scenario: Scenario) -> list[Problem]:
@@ -21,6 +23,8 @@ def check(scenario: Scenario) -> list[Problem]:
     return [
         *_speeds(scenario),
         *_colours(scenario),
+        *_radii(scenario),
+        *_local_map(scenario),
         *_mission(scenario),
         *_command(scenario),
         *_disturbance(scenario),
@@ -51,6 +55,21 @@ def _colours(scenario: Scenario) -> Iterator[Problem]:
         load_table(FilePath(path))
     except VisionError as error:
         yield Problem(("vision", "colour_table"), str(error))
+
+
+def _radii(scenario: Scenario) -> Iterator[Problem]:
+    least, most = scenario.vision.min_radius, scenario.vision.max_radius
+    if least >= most:
+        yield Problem(("vision", "min_radius"), f"{least:g} must be below max_radius = {most:g}")
+
+
+def _local_map(scenario: Scenario) -> Iterator[Problem]:
+    grid = scenario.belief.local_map
+    if grid.size > MOST_CELLS * grid.cell:
+        yield Problem(
+            ("belief", "local_map", "cell"),
+            f"a map of {grid.size:g} m has more than {MOST_CELLS} cells of {grid.cell:g} m a side",
+        )
 
 
 def _mission(scenario: Scenario) -> Iterator[Problem]:

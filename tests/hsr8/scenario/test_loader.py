@@ -79,6 +79,8 @@ mode = "deadlin"
         ('mission = {kind = "points"}', "mission.points: is missing"),
         ('mission = {kind = "course", point = 1}', "mission.point: unknown key"),
         (COURSE + "[robot.speed]\nforward = 0.9", "walking.limits.forward"),
+        (COURSE + "[vision]\nmin_radius = 0.2", "must be below max_radius = 0.12"),
+        (COURSE + "[belief.local_map]\ncell = 1e-9", "more than 1000 cells"),
         (COURSE + '[camera]\nlens = "wide"\nvertical_fov_deg = 60', "lens = 'custom'"),
         (
             'mission = {kind = "tour"}\n[criteria]\ngoal_reached = true',
