@@ -23,6 +23,8 @@ class Limit(StrEnum):
     BALANCE = "balance"
     LANDING_FROZEN = "landing frozen"
     ZMP_REGION = "zmp region"
+    LANDING_SPEED = "landing speed"
+    FALLEN = "fallen"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +33,12 @@ class AdmissionReport:
 
     Attributes:
         asked: the command.
-        given: what the footsteps obey; of the other kind only while it may not change over.
-        limits: constraints that bound in this tick, in the order in which they are applied;
-            none when the command is obeyed to the letter.
+        given: what the footsteps to come obey; of the other kind only while it may not change
+            over.
+        limits: constraints that bound in this tick, in the order in which they are applied; for
+            the footstep under way, too, which may be past obeying what is given. None when the
+            command is obeyed: to the control tick in time, and to the millimetre (see
+            `FootstepPlanner.same`) in the landing under way.
     """
 
     asked: Command

@@ -8,7 +8,7 @@ from walking.admission import AdmissionReport, Limit
 from walking.catching import CatchingPendulum
 from walking.caution import Caution
 from walking.com_error import ComError
-from walking.command import Command, CommandState, HeadTarget
+from walking.command import Command, HeadTarget
 from walking.estimator import TiltFilter, TouchDown
 from walking.foot_placement import FootPlacement
 from walking.footsteps import FootstepPlanner
@@ -34,6 +34,8 @@ from walking.stride import Strides
 from walking.support import Footing, SupportRegion, depth, support_region
 from walking.targets import JointTargets
 from walking.whole_body import WholeBody
+
+SAME_LIFT = 1e-9  # difference of swing heights that is rounding [m]
 
 
 class WalkingEngine:
@@ -88,7 +90,7 @@ class WalkingEngine:
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
         self._footing = Footing(robot.sole, gait.support_feet)
         self._zmp_shift = (0.0, 0.0)
-        self._late = False
+        self._bound: list[Limit] = []
         self._last_opening_left = False
         self._ticks = 0
         self._sensors: BodySensors | None = None
@@ -115,7 +117,7 @@ class WalkingEngine:
     @property
     def _binding(self) -> list[Limit]:
         """Constraints that altered what the steering made of the last tick's command."""
-        return [*([Limit.TIMING] if self._late else []), *self._placement.bound]
+        return [*self._bound, *self._placement.bound]
 
     @property
     def zmp_depth(self) -> float:
@@ -161,6 +163,8 @@ class WalkingEngine:
         self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
         self._footing.feet = gait.support_feet
         gait.advance(moving=placement.moving)
+        if not gait.double and abs(gait.lift - gait.timing.lift) > SAME_LIFT:
+            self._bound.append(Limit.SWING_HEIGHT)
         self._catching.touch_down()
         return whole_body.follow(body, zmp, self._zmp_shift, load, self._head.advance(head))
 
@@ -229,7 +233,7 @@ class WalkingEngine:
         share = self._caution.update(off)
         self._steering.follow(command, share, settled=settled, balanced=balanced)
         retimed = self._gait.retime(self._steering.timing)
-        self._late = isinstance(command, CommandState) and not retimed
+        self._bound = [] if retimed else [Limit.TIMING]
 
     def _wish(self) -> Strides:
         """What the footsteps obey, with the heading hold."""
@@ -246,16 +250,23 @@ class WalkingEngine:
         gait, foot = self._gait, self._gait.footholds[0]
         share = self._parameters.stabilizer.step_error
         pushed = self._stabilizer.exceeds(foot, error, share)
-        if self.fallen or not (self._steering.moving or pushed):
+        moving = self._steering.moving
+        if self.fallen and moving:
+            self._bound.append(Limit.FALLEN)
+        if self.fallen or not (moving or pushed):
             return
         opening_left = self._planner.opening_left(self._steering.velocity)
         if pushed:
             # The foot on the side of the fall is the one that can catch it.
+            if not moving:
+                self._bound.append(Limit.BALANCE)
             opening_left = cos(foot.yaw) * error[1] - sin(foot.yaw) * error[0] > 0.0
         elif opening_left is None:
             opening_left = not self._last_opening_left
         self._last_opening_left = opening_left
         gait.start(1 if opening_left else 0, at_once=pushed)
+        if not gait.retime(self._steering.timing):
+            self._bound.append(Limit.TIMING)
 
     def _feel_floor(self, body: BodyMeasurement) -> None:
         """Leave the swing foot where it has met the floor before its time."""

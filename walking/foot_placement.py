@@ -95,7 +95,7 @@ class FootPlacement:
         self.bound, self.moved, self.moving = [], (0.0, 0.0), moving
         ramps, landing = self._reference(wish, velocity, region)
         if not adjustable:
-            if gait.stepping and not self._planner.same(gait.nominal(wish), landing):
+            if gait.stepping and not self._planner.same(gait.nominal(wish), gait.landing):
                 self.bound.append(Limit.LANDING_FROZEN)
         else:
             ramps = self._catch(landing, ramps, wish, error)
@@ -118,18 +118,26 @@ class FootPlacement:
             transition.skip(wish, moving=self.moving)
             landing = gait.nominal(wish) if gait.adjustable else gait.landing
             return gait.plan(landing, wish, moving=self.moving), landing
-        catching = self._catching
+        catching, clock = self._catching, gait.clock()
         ramps = transition.admit(
             catching.planned, region, wish, moving=self.moving, caught=catching.caught
         )
         share = transition.share
         if share < 1.0:
-            self.bound.append(Limit.ZMP_REGION)
+            if gait.clock() != clock or self._differs(wish):
+                self.bound.append(Limit.ZMP_REGION)
             a, b, c = (g + share * (v - g) for g, v in zip(self.given, velocity, strict=True))
             self.given = (a, b, c)
         else:
             self.given = velocity
         return ramps, transition.landing
+
+    def _differs(self, wish: Strides) -> bool:
+        """Whether the footsteps of the admitted plan are others than those wanted."""
+        gait, transition = self._gait, self._transition
+        if transition.strides != wish or transition.moving != self.moving:
+            return True
+        return gait.adjustable and not self._planner.same(gait.nominal(wish), transition.landing)
 
     def _catch(
         self, landing: Footstep, ramps: list[ZmpRamp], wish: Strides, error: Point
@@ -145,9 +153,12 @@ class FootPlacement:
         if not gait.double:
             caught = capture.landing
         self.moved = (caught.x - landing.x, caught.y - landing.y)
-        if caught != landing or gait.hurried:
-            self.bound.append(Limit.BALANCE)
         gait.aim(caught)
+        same = self._planner.same
+        if gait.hurried or not same(caught, landing):
+            self.bound.append(Limit.BALANCE)
+        elif Limit.ZMP_REGION not in self.bound and not same(gait.nominal(wish), gait.landing):
+            self.bound.append(Limit.LANDING_SPEED)
         if gait.landing != landing and not self._selects:
             ramps = gait.plan(gait.landing, wish, moving=self.moving)
         return ramps

@@ -149,7 +149,28 @@ class FootstepPlanner:
             bound.append(Limit.STEP_SIDE)
         if 2.0 * abs(turn) * time > limits.step_turn:
             bound.append(Limit.STEP_TURN)
+        for side in (-1.0, 1.0):
+            _, y, turned = self._step(velocity, time, side)
+            if self._clear(y, turned, side) != y:
+                bound.append(Limit.CLEARANCE)
+                break
         return bound
+
+    def velocity(self, strides: Strides, time: float) -> Velocity:
+        """Mean velocity of the stance's middle that strides make, each lasting `time` [s].
+
+        The middle moves along the chords of its arcs, see `strides`.
+        """
+        forward = left = turn = 0.0
+        half = self._gait.half_stance
+        for (x, y, turned), stance in ((strides.right, -half), (strides.left, half)):
+            ch, sh = cos(0.5 * turned), sin(0.5 * turned)
+            dx = x + stance * sin(turned)
+            dy = y - stance - stance * cos(turned)
+            forward += ch * dx + sh * dy
+            left += ch * dy - sh * dx
+            turn += turned
+        return forward / (2.0 * time), left / (2.0 * time), turn / (2.0 * time)
 
     def _timing(self, time: float) -> Timing:
         """A footstep of a duration [s], in whole ticks."""
@@ -164,6 +185,11 @@ class FootstepPlanner:
 
     def _stride(self, velocity: Velocity, time: float, side: float) -> Placement:
         """Landing in the frame of the support foot; `side` is that of the swing foot."""
+        x, y, turned = self._step(velocity, time, side)
+        return x, self._clear(y, turned, side), turned
+
+    def _step(self, velocity: Velocity, time: float, side: float) -> Placement:
+        """The same before it is kept clear of the support foot."""
         forward, left, turn = velocity
         gait, limits = self._gait, self._limits
         dx = min(limits.step_forward, max(-limits.step_forward, forward * time))
@@ -172,7 +198,7 @@ class FootstepPlanner:
         turned = 2.0 * turn * time if turn * side > 0.0 else 0.0
         turned = min(limits.step_turn, max(-limits.step_turn, turned))
         x, y = self._stance_after(dx, dy, turned, side * gait.half_stance)
-        return x, self._clear(y, turned, side), turned
+        return x, y, turned
 
     @staticmethod
     def _stance_after(dx: float, dy: float, turned: float, stance: float) -> tuple[float, float]:

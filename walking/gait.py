@@ -117,6 +117,11 @@ class Gait:
         return self._shift.end + self._single.ticks - self._tick
 
     @property
+    def lift(self) -> float:
+        """Height at mid-swing of the swing under way [m]; it follows `timing` in the air."""
+        return self._lift
+
+    @property
     def adjustable(self) -> bool:
         """Whether the landing may still move."""
         return self.stepping and not self.held and self.swing_phase < self._freeze
@@ -162,7 +167,7 @@ class Gait:
             if not self._shift_fixed and timing.double != self._shift.end:
                 self._retime_shift(max(timing.double, self._tick + 1))
             self._single = self._window.single_support(timing.single)
-            return self._shift_fixed or self._shift.end == timing.double
+            return self._shift.end == timing.double
         if timing.single != self._single.ticks and self.adjustable:
             self._single = self._window.retimed(self._single, self._elapsed, timing.single)
         return self._single.ticks == timing.single

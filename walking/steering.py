@@ -8,6 +8,7 @@ from walking.stride import Strides, Timing, Velocity
 from walking.velocity import VelocitySlew, limited, speed_limits
 
 SAME_SPEED = 1e-9  # difference of velocities that is rounding
+STRIDE_LIMITS = {Limit.STEP_LENGTH, Limit.STEP_SIDE, Limit.STEP_TURN, Limit.CLEARANCE}
 
 
 class Steering:
@@ -57,9 +58,10 @@ class Steering:
         """
         self._asked, self._bound = command, []
         if not balanced:
-            self._bound.append(Limit.BALANCE)
+            self._hold(command)
         elif not settled:
-            self._bound.append(Limit.SETTLING)
+            if command != VelocityCommand():
+                self._bound.append(Limit.SETTLING)
             self._slew.follow(VelocityCommand())
         elif isinstance(command, CommandState):
             self._follow_state(command)
@@ -89,9 +91,34 @@ class Steering:
         if not bound:
             return AdmissionReport(asked, asked, ())
         if self._state is None:
+            if not STRIDE_LIMITS.isdisjoint(bound):
+                time = timing.duration
+                given = self._planner.velocity(self._planner.strides(given, time), time)
             return AdmissionReport(asked, VelocityCommand(*given), bound)
         obeyed = strides or self._planner.explicit(self._state, 0.0)[0]
         return AdmissionReport(asked, self._planner.command_state(obeyed, timing), bound)
+
+    def _hold(self, command: Command) -> None:
+        """Nothing changes; that alters a command unless it is the one already obeyed."""
+        bound = self._bound
+        if isinstance(command, CommandState):
+            if command != self._state:
+                bound.append(Limit.BALANCE)
+                return
+            bound.extend(self._planner.explicit(command, 0.0)[1])
+            bound.extend(self._planner.timing(command)[1])
+            return
+        if self._state is not None or self._differs(limited(command, self._limits)):
+            bound.append(Limit.BALANCE)
+        bound.extend(speed_limits(command, self._limits))
+        if self._state is None:
+            bound.extend(self._planner.stride_limits(self.velocity, self.timing.duration))
+
+    def _differs(self, wanted: Velocity) -> bool:
+        """Whether the robot is not meant to have a velocity; from standing any is another."""
+        if wanted == STILL:
+            return self._slew.moving
+        return max(abs(a - b) for a, b in zip(self.velocity, wanted, strict=True)) > SAME_SPEED
 
     def _follow_velocity(self, command: VelocityCommand, share: float) -> None:
         self._state = None
@@ -104,7 +131,7 @@ class Steering:
         bound.extend(speed_limits(command, self._limits))
         given = self.velocity
         self.timing = self._planner.cadence(given)
-        if max(abs(a - b) for a, b in zip(given, wanted, strict=True)) > SAME_SPEED:
+        if self._differs(wanted):
             bound.append(Limit.ACCELERATION)
         bound.extend(self._planner.stride_limits(given, self.timing.duration))
 

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from walking.admission import AdmissionReport, Limit
-from walking.command import Command, HeadTarget
+from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.get_up import GetUp, Outcome
 from walking.odometry import LegOdometry
@@ -35,6 +37,7 @@ class Walker:
         self._odometry = LegOdometry(parameters.odometry)
         self._engine = WalkingEngine(robot, parameters, self._odometry)
         self.get_up: GetUp | None = None
+        self._asked: Command = VelocityCommand()
         self._steps = 0
         self.get_ups = 0
 
@@ -45,13 +48,15 @@ class Walker:
 
     @property
     def admission(self) -> AdmissionReport:
-        """What became of the last command of a robot on its feet."""
-        return self._engine.admission
+        """What became of the last tick's command: nothing while the robot is down."""
+        if self.get_up is None:
+            return self._engine.admission
+        return AdmissionReport(self._asked, VelocityCommand(), self.limits)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
         """Constraints that altered that command, none if it is obeyed."""
-        return self._engine.limits
+        return self._engine.limits if self.get_up is None else (Limit.FALLEN,)
 
     @property
     def zmp_depth(self) -> float:
@@ -74,7 +79,7 @@ class Walker:
         Returns:
             set-points of all joints.
         """
-        get_up = self.get_up
+        get_up, self._asked = self.get_up, command
         if get_up is None:
             targets = self._engine.step(sensors, command, head)
             if self._parameters.get_up.enabled and self._engine.fallen:
@@ -100,7 +105,14 @@ class Walker:
             return replace(state, step_count=steps) if self._steps else state
         gave_up = self.get_up.outcome is Outcome.GAVE_UP
         phase = Phase.FALLEN if gave_up else Phase.GETTING_UP
-        return replace(state, step_count=steps, phase=phase, fallen=True)
+        return replace(
+            state,
+            step_count=steps,
+            phase=phase,
+            fallen=True,
+            given=np.zeros(3),
+            admission=self.admission,
+        )
 
     def _stand(self) -> None:
         """Back to walking, from the ready posture where the robot now stands."""

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking.admission import Limit
 from walking.footsteps import FootstepPlanner
 from walking.parameters import GaitParameters, LimitParameters
 from walking.robot_model import Sole
@@ -127,7 +128,23 @@ def test_a_walk_is_quickened_before_its_footsteps_are_cut(velocity):
     timing = PLANNER.cadence(velocity)
     assert GAIT.shortest_time - 0.005 < timing.duration <= GAIT.footstep_time
     quickest = timing.duration == pytest.approx(GAIT.shortest_time)
-    assert quickest or not PLANNER.stride_limits(velocity, timing.duration - 0.0025)
+    cut = set(PLANNER.stride_limits(velocity, timing.duration - 0.0025)) - {Limit.CLEARANCE}
+    assert quickest or not cut
+
+
+@given(velocities)
+def test_strides_make_the_velocity_unless_a_limit_says_otherwise(velocity):
+    time = PLANNER.cadence(velocity).duration
+    made = PLANNER.velocity(PLANNER.strides(velocity, time), time)
+    assert made == pytest.approx(velocity, abs=1e-9) or PLANNER.stride_limits(velocity, time)
+
+
+def test_a_turn_that_must_keep_the_feet_apart_is_no_turn_on_the_spot():
+    time = PLANNER.cadence((0.0, 0.0, 1.5)).duration
+    assert PLANNER.stride_limits((0.0, 0.0, 1.5), time) == [Limit.CLEARANCE]
+    _, left, turn = PLANNER.velocity(PLANNER.strides((0.0, 0.0, 1.5), time), time)
+    assert left > 0.01
+    assert turn == pytest.approx(1.5)
 
 
 def test_a_slow_walk_keeps_the_usual_time():

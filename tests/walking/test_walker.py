@@ -6,6 +6,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
+from walking.admission import AdmissionReport, Limit
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.get_up import Outcome
@@ -58,6 +59,10 @@ def test_a_fallen_robot_gets_up_or_gives_up(robot, ideal_body):
     assert walker.down
     assert walker.state().phase is Phase.GETTING_UP
     assert walker.state().fallen
+    assert walker.limits == (Limit.FALLEN,)
+    assert walker.admission == AdmissionReport(FORWARD, VelocityCommand(), walker.limits)
+    assert walker.state().admission == walker.admission
+    assert not walker.state().given.any()
     fall(walker, ideal_body, 1600)
     assert walker.state().phase is Phase.FALLEN
 
