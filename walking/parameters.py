@@ -73,7 +73,7 @@ class GaitParameters:
     """Shortest single support to catch a fall [s]."""
     catch_double: Annotated[float, Gt(0.0), TIME] = 0.015
     """Shortest double support to catch a fall [s]."""
-    foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.012
+    foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.020
     """Distance of every corner of a landing sole from the strip of the support foot [m]."""
     preview_steps: Annotated[int, Gt(0)] = 4
     """Footholds planned ahead [1]."""
@@ -83,7 +83,7 @@ class GaitParameters:
 class PatternParameters:
     """The ZMP pattern and the point that follows it."""
 
-    generator: Literal["dcm", "preview", "paper", "robust"] = "dcm"
+    generator: Literal["dcm", "preview", "paper", "robust"] = "robust"
     """Preview of the footholds by the DCM recursion or by Kajita's regulator; the modifiable
     walking pattern of the paper, two-level ZMP functions in single support; or a plan whose ZMP
     is inside the soles at all times, a command that does not allow one being altered."""
