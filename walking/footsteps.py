@@ -102,13 +102,15 @@ class FootstepPlanner:
         placements = []
         for side in (-1.0, 1.0):
             x, y = self._stance_after(dx, 0.0, turned, 0.5 * side * apart)
-            clear = self._clear(y, turned, side)
+            clear = self._clear(y, turned, side, self._gait.foot_clearance)
             if clear != y and Limit.CLEARANCE not in bound:
                 bound.append(Limit.CLEARANCE)
             rx, ry = self._within_reach(x, clear, side)
             if (rx, ry) != (x, clear) and Limit.REACH not in bound:
                 bound.append(Limit.REACH)
-            placements.append((rx, self._clear(ry, turned, side), turned))
+            placements.append(
+                (rx, self._clear(ry, turned, side, self._gait.foot_clearance), turned)
+            )
         return Strides(right=placements[0], left=placements[1]), bound
 
     def timing(self, command: CommandState) -> tuple[Timing, list[Limit]]:
@@ -151,7 +153,7 @@ class FootstepPlanner:
             bound.append(Limit.STEP_TURN)
         for side in (-1.0, 1.0):
             _, y, turned = self._step(velocity, time, side)
-            if self._clear(y, turned, side) != y:
+            if self._clear(y, turned, side, self._gait.foot_clearance) != y:
                 bound.append(Limit.CLEARANCE)
                 break
         return bound
@@ -186,7 +188,7 @@ class FootstepPlanner:
     def _stride(self, velocity: Velocity, time: float, side: float) -> Placement:
         """Landing in the frame of the support foot; `side` is that of the swing foot."""
         x, y, turned = self._step(velocity, time, side)
-        return x, self._clear(y, turned, side), turned
+        return x, self._clear(y, turned, side, self._gait.foot_clearance), turned
 
     def _step(self, velocity: Velocity, time: float, side: float) -> Placement:
         """The same before it is kept clear of the support foot."""
@@ -220,7 +222,8 @@ class FootstepPlanner:
         wx, wy = landing.x + dx - support.x, landing.y + dy - support.y
         x, y = self._within_reach(c * wx + s * wy, c * wy - s * wx, side)
         turned = landing.yaw - support.yaw
-        return self._at(support, x, self._clear(y, turned, side), turned)
+        clear = self._clear(y, turned, side, self._gait.catch_clearance)
+        return self._at(support, x, clear, turned)
 
     def _within_reach(self, x: float, y: float, side: float) -> tuple[float, float]:
         """A landing in the frame of the support foot, scaled into the ellipse of reach [m]."""
@@ -265,14 +268,14 @@ class FootstepPlanner:
             and abs(one.yaw - other.yaw) < TURN_TOLERANCE
         )
 
-    def _clear(self, y: float, turned: float, side: float) -> float:
+    def _clear(self, y: float, turned: float, side: float, clearance: float) -> float:
         """Lateral landing with every corner clear of the strip of the support foot."""
         sole = self.sole
         heel = sole.centre - sole.half_length
         toe = sole.centre + sole.half_length
         s = side * sin(turned)
         inner = min(s * heel, s * toe) - sole.half_width * cos(turned)
-        nearest = sole.half_width + self._gait.foot_clearance - inner
+        nearest = sole.half_width + clearance - inner
         return side * max(side * y, nearest)
 
     @staticmethod

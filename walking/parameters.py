@@ -73,7 +73,10 @@ class GaitParameters:
     """Shortest single support to catch a fall [s]."""
     catch_double: Annotated[float, Gt(0.0), TIME] = 0.015
     """Shortest double support to catch a fall [s]."""
-    foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.020
+    catch_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.020
+    """What a footstep that catches a fall keeps for `foot_clearance`: the body is off its plan,
+    and a swing foot that meets the other one cannot catch it [m]."""
+    foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.012
     """Distance of every corner of a landing sole from the strip of the support foot [m]."""
     preview_steps: Annotated[int, Gt(0)] = 4
     """Footholds planned ahead [1]."""
