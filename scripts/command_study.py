@@ -6,15 +6,12 @@ Every number of the command state is drawn anew, from wider than the limits let 
 0.2 to 0.6 s or in every control tick. Tune on seeds 0-99, report on seeds from 1000.
 """
 
-import argparse
-import platform
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
+from study_page import options_of, write_page
 from walking_body import ROBOT, Body, Plant
 from walking_trial import SAMPLE, parameters_of
 
@@ -24,7 +21,7 @@ from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
 from walking.robot_model import RobotModel
 
-RESULT = Path(__file__).resolve().parents[1] / "docs" / "results" / "command-states.md"
+PAGE = "command-states.md"
 GENERATORS = ("dcm", "robust")
 EVERY = {"every 0.2-0.6 s": (0.2, 0.6), "every tick": (CONTROL_PERIOD, CONTROL_PERIOD)}
 # single support, double support [s], forward, side [m], direction [rad], swing height [m]
@@ -104,40 +101,20 @@ HEAD = (
 )
 
 
-def report(rows: list[str], options: argparse.Namespace) -> str:
-    """The page of results."""
-    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy", "pin"))
-    seeds = " ".join(map(str, options.seeds))
-    command = f"python scripts/command_study.py --seeds {seeds} --duration {options.duration:g}"
+def conditions() -> str:
+    """What was walked."""
     ranges = "; ".join(f"{low:g} to {high:g}" for low, high in zip(LOW, HIGH, strict=True))
-    return "\n".join(
-        [
-            "# Command states in full physics",
-            "",
-            f"{versions}; Python {platform.python_version()}, {platform.machine()}. "
-            "Leg collisions and sensor noise on.",
-            "",
-            "Single and double support [s], forward, side [m], direction [rad] and swing height "
-            f"[m] are uniform in {ranges}, partly beyond the limits. After a fall a fresh robot "
-            "goes on. Several constraints may bind in one tick; landing frozen, timing and swing "
-            "height bind for the footstep under way alone.",
-            "",
-            f"    {command} --write",
-            "",
-            HEAD,
-            *rows,
-            "",
-        ]
+    return (
+        "Leg collisions and sensor noise on. Single and double support [s], forward, side [m], "
+        f"direction [rad] and swing height [m] are uniform in {ranges}, partly beyond the limits. "
+        "After a fall a fresh robot goes on. Several constraints may bind in one tick; landing "
+        "frozen, timing and swing height bind for the footstep under way alone."
     )
 
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0])
-    parser.add_argument("--duration", type=float, default=30.0, help="per seed and row [s]")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULT.name}")
-    options = parser.parse_args()
+    options = options_of(__doc__, 30.0, PAGE)
     robot = RobotModel.from_mjcf(ROBOT)
     rows = []
     print(HEAD)
@@ -156,7 +133,7 @@ def main() -> None:
             rows.append(tally.row(f"{generator}, {name}"))
             print(rows[-1], flush=True)
     if options.write:
-        RESULT.write_text(report(rows, options))
+        write_page(PAGE, "Command states in full physics", conditions(), [HEAD, *rows], options)
 
 
 if __name__ == "__main__":

@@ -8,19 +8,16 @@ with it frozen and off. Rare slow ticks are told apart by what happened in them:
 time.
 """
 
-import argparse
 import gc
-import platform
 import resource
 import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 from command_study import EVERY, random_states
+from study_page import options_of, write_page
 from walking_body import ROBOT, Body, Plant
 from walking_trial import BOX, parameters_of, random_script
 
@@ -29,7 +26,7 @@ from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
 from walking.robot_model import RobotModel
 
-RESULT = Path(__file__).resolve().parents[1] / "docs" / "results" / "walking-tick.md"
+PAGE = "walking-tick.md"
 GENERATORS = ("dcm", "robust")
 SLOW = 1.5  # CPU time of a tick that is looked into [ms]
 VERY_SLOW = 5.0  # wall time of one [ms]
@@ -141,39 +138,17 @@ HEAD = (
 )
 
 
-def report(rows: list[str], options: argparse.Namespace) -> str:
-    """The page of results."""
-    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy", "pin"))
-    seeds = " ".join(map(str, options.seeds))
-    command = f"python scripts/tick_study.py --seeds {seeds} --duration {options.duration:g}"
-    return "\n".join(
-        [
-            "# CPU time of the walking tick",
-            "",
-            f"{versions}; Python {platform.python_version()}, {platform.machine()}.",
-            "",
-            "From sensors and command to the joints' set-points, in ms, one core, in full physics "
-            "under sensor noise; the first tick of every robot is among them. The collector is "
-            "Python's garbage collector, on as it comes or frozen and off. Causes of slow ticks: a "
-            "collection in the tick and its oldest generation, the process taken off its core, or "
-            "neither.",
-            "",
-            f"    {command} --write",
-            "",
-            HEAD,
-            *rows,
-            "",
-        ]
-    )
+CONDITIONS = (
+    "From sensors and command to the joints' set-points, in ms, one core, in full physics under "
+    "sensor noise; the first tick of every robot is among them. The collector is Python's garbage "
+    "collector, on as it comes or frozen and off. Causes of slow ticks: a collection in the tick "
+    "and its oldest generation, the process taken off its core, or neither."
+)
 
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0])
-    parser.add_argument("--duration", type=float, default=20.0, help="per seed and row [s]")
-    parser.add_argument("--write", action="store_true", help=f"write {RESULT.name}")
-    options = parser.parse_args()
+    options = options_of(__doc__, 20.0, PAGE)
     robot = RobotModel.from_mjcf(ROBOT)
     rows = []
     print(HEAD)
@@ -200,7 +175,7 @@ def main() -> None:
                 rows.append(times.row(f"{generator}, {name}, {'on' if collecting else 'off'}"))
                 print(rows[-1], flush=True)
     if options.write:
-        RESULT.write_text(report(rows, options))
+        write_page(PAGE, "CPU time of the walking tick", CONDITIONS, [HEAD, *rows], options)
 
 
 if __name__ == "__main__":
