@@ -1,18 +1,22 @@
-"""Parameters of the decisions: evaluations, gaze, field, movers, filter, mission.
+"""Parameters of the decisions: field, movers, filter, mission, and those of the gaze.
 
 Defaults are the profile `extended`; `NavigationParameters.paper` is the reference with
-the printed structure. Every difference between the two is a field of this module.
+the printed structure. Every difference between the two is a field of a section.
 """
 
 from dataclasses import dataclass, field
-from math import pi
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Gt, Lt
 
-Positive = Annotated[float, Gt(0.0)]
-NonNegative = Annotated[float, Ge(0.0)]
-Share = Annotated[float, Ge(0.0), Le(1.0)]
+from navigation.gaze_parameters import (
+    EvaluationParameters,
+    GazeParameters,
+    NonNegative,
+    Positive,
+    Share,
+)
+
 Count = Annotated[int, Ge(1)]
 
 
@@ -28,112 +32,6 @@ class MissionParameters:
     """Distance beyond which a robot turning at the goal walks back to it [m]."""
     heading_tolerance: Positive = 0.07
     """Heading error at which the mission is done [rad]."""
-
-
-@dataclass(frozen=True)
-class EvaluationParameters:
-    """Partial evaluations (1)-(4)."""
-
-    d_nm: Positive = 0.30
-    """Nearest sample points of the local map [m]."""
-    d_fm: Positive = 1.30
-    """Farthest sample points of the local map [m]."""
-    lambda_cf: Share = 0.85
-    """Confidence below which a sample point is under-confident [1]."""
-    map_ratio: Literal["printed", "share"] = "share"
-    """psi_lm: N_lp/N_cp as printed, or the share N_lp/(N_lp + N_cp)."""
-    t_sf: Positive = 0.05
-    """Position uncertainty at which psi_sf is one [m]."""
-    t_heading: NonNegative = 0.09
-    """Heading uncertainty at which psi_sf is one; 0 leaves the heading out [rad]."""
-    omega_o: Positive = 20.0
-    """Normalisation of the obstacle evaluation [1/m]."""
-    gamma_o: Positive = 0.25
-    """Obstacle evaluation at which psi_ob is one [1/s]."""
-    d_n_thres: Positive = 0.80
-    """Obstacle-free distance at which psi_way is one [m]."""
-    attention_range: Positive = 2.5
-    """Distance up to which obstacles take part in the gaze [m]."""
-    beacon_range: Positive = 4.5
-    """Distance up to which beacons are worth a look [m]."""
-
-
-@dataclass(frozen=True)
-class DeadlineParameters:
-    """Votes by age over half the worst-case time to contact."""
-
-    static_speed: NonNegative = 0.02
-    """Speed a static obstacle is feared to have [m/s]."""
-    unknown_speed: Share = 0.70
-    """Speed an undecided obstacle is feared to have, share of the robot's [1]."""
-    mover_speed: Share = 0.80
-    """Largest speed a mover is feared to have, share of the robot's [1]."""
-    exponent: Positive = 1.5
-    """Growth of a vote with its urgency [1]."""
-    urgency_limit: Positive = 4.0
-    """Largest urgency of a vote [1]."""
-    unknown_bonus: NonNegative = 1.0
-    """Age added to undecided obstacles [s]."""
-    static_weight: NonNegative = 0.12
-    """Weight of votes of static obstacles [1]."""
-    map_weight: NonNegative = 0.05
-    """Weight of votes of the local map [1]."""
-    way_weight: NonNegative = 0.2
-    """Weight of the vote of the way [1]."""
-    beacon_weight: NonNegative = 1.6
-    """Weight of the votes of the beacons together [1]."""
-    t_heading: Positive = 0.06
-    """Heading uncertainty at which the beacons vote fully [rad]."""
-    switch_ratio: Annotated[float, Ge(1.0)] = 1.03
-    """Gain in the gaze map that moves the gaze [1]."""
-
-
-@dataclass(frozen=True)
-class GazeParameters:
-    """Gaze map (5)-(6) and the timing of the gaze."""
-
-    mode: Literal["integrated", "deadline", "fixed", "sweep"] = "deadline"
-    """Who chooses the gaze: (1)-(6), deadline votes, nobody, or a blind sweep."""
-    w_lm: NonNegative = 0.09
-    """Weight of the local map in (6) [1]."""
-    w_way: NonNegative = 0.23
-    """Weight of the way point in (6) [1]."""
-    w_sf: NonNegative = 0.23
-    """Weight of self-localization in (6) [1]."""
-    w_ob: NonNegative = 0.45
-    """Weight of obstacles in (6) [1]."""
-    step: Positive = pi / 36.0
-    """Step of the gaze map [rad]."""
-    box_share: Annotated[float, Gt(0.0), Le(0.5)] = 0.45
-    """Half width of the box of a vote, share of the field of view [1]."""
-    obstacle_votes: Literal["mean", "sum"] = "sum"
-    """Votes of the obstacles in (6): divided by their number as printed, or summed."""
-    map_votes: Literal["mean", "each"] = "each"
-    """Vote of the local map: at the mean under-confident point as printed, or at each."""
-    candidates: Literal["obstacles", "beacons"] = "beacons"
-    """Who votes for self-localization: obstacles and beacons, or beacons alone."""
-    switch_ratio: Annotated[float, Ge(1.0)] = 1.1
-    """Gain in the gaze map that moves the gaze [1]."""
-    pan_limit: Positive = pi / 2.0
-    """Largest pan to either side [rad]."""
-    tilt_min: Annotated[float, Lt(0.0)] = -pi / 3.0
-    """Lowest tilt [rad]."""
-    tilt_max: NonNegative = pi / 9.0
-    """Highest tilt [rad]."""
-    dwell: NonNegative = 0.1
-    """Time the gaze rests after arrival before it is decided again [s]."""
-    arrival_tolerance: Positive = 0.06
-    """Distance from the target at which the head has arrived [rad]."""
-    saccade_limit: Positive = 0.6
-    """Time after which the gaze is decided again even without arrival [s]."""
-    fixed_tilt: float = -0.45
-    """Tilt of the fixed gaze and of the sweep [rad]."""
-    sweep_amplitude: NonNegative = 1.2
-    """Pan amplitude of the sweep [rad]."""
-    sweep_period: Positive = 4.0
-    """Period of the sweep [s]."""
-    deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
-    """Deadline votes."""
 
 
 @dataclass(frozen=True)

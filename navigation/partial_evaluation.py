@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.decision_parameters import EvaluationParameters
+from navigation.gaze_parameters import EvaluationParameters
 from navigation.obstacle_set import ObstacleSet, largest_deviation
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-import navigation.decision_parameters as module
+from navigation import decision_parameters, gaze_parameters
 from navigation.decision_parameters import NavigationParameters
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
@@ -37,7 +37,8 @@ def test_profiles_share_what_no_switch_names():
     assert PAPER.mover.xi == EXTENDED.mover.xi
 
 
-def test_every_parameter_has_a_docstring_with_a_unit_or_is_a_choice():
+@pytest.mark.parametrize("module", [decision_parameters, gaze_parameters])
+def test_every_parameter_has_a_docstring_with_a_unit_or_is_a_choice(module):
     tree = ast.parse(Path(module.__file__).read_text())
     for group in (n for n in tree.body if isinstance(n, ast.ClassDef)):
         body = group.body

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from navigation.belief_parameters import LocalMapParameters
-from navigation.decision_parameters import EvaluationParameters, NavigationParameters
+from navigation.decision_parameters import NavigationParameters
+from navigation.gaze_parameters import EvaluationParameters
 from navigation.obstacle_set import ObstacleSet
 from navigation.partial_evaluation import (
     SamplePoints,
