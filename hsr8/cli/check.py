@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hsr8.cli.command_line import run_command, settings
+from hsr8.cli.cost import estimate
 from hsr8.cli.options import Check
 from hsr8.errors import UsageError
 from hsr8.render.png import write_png
@@ -18,10 +19,6 @@ from hsr8.world.certificate import Certificate, certify, straight_length
 from hsr8.world.generator import draw_layout
 from hsr8.world.layout import Layout
 from hsr8.world.plan_view import PlanView
-
-# Measured on two cores without a graphics card, `paper` at its defaults.
-REAL_TIME_FACTOR = 4.4
-LOG_RATE = 0.19  # megabytes of log and records per simulated second
 
 Summary = dict[str, object]
 
@@ -53,6 +50,7 @@ def main(options: Check) -> int:
 
 def summarize(scenario: Scenario, layout: Layout, certificate: Certificate) -> Summary:
     """World, mission and cost of a scenario as plain values."""
+    cost = estimate(scenario)
     return {
         "name": scenario.name,
         "seed": scenario.seed,
@@ -79,8 +77,8 @@ def summarize(scenario: Scenario, layout: Layout, certificate: Certificate) -> S
         "certified": certificate.solvable,
         "certified_points": certificate.points_reached,
         "certified_time_s": round(certificate.time, 1),
-        "estimated_wall_time_s": round(scenario.duration / REAL_TIME_FACTOR, 1),
-        "estimated_log_mb": round(scenario.duration * LOG_RATE, 1),
+        "estimated_wall_time_s": round(cost.wall, 1),
+        "estimated_log_mb": round(cost.disk, 1),
     }
 
 

@@ -4,7 +4,7 @@ from hsr8.cli.options import CheckReplay
 from hsr8.errors import UsageError
 from hsr8.loop import named_rng
 from hsr8.recorder import atomic, run_folder
-from hsr8.recorder.manifest import RUNNING, versions
+from hsr8.recorder.manifest import RUNNING, other_versions
 from hsr8.recorder.measurements import CHANNELS, Measured, fingerprints, read_measurements
 from hsr8.recorder.run_reader import Run, open_run
 from hsr8.robot_builder import build_estimator
@@ -40,7 +40,7 @@ def main(options: CheckReplay) -> int:
         index, channel = difference
         time = measured[index].frame.time
         print(f"different   {run.path}: {channel} of frame {index} ({time:.3f} s)")
-        for name, then, now in _other_versions(run):
+        for name, then, now in other_versions(run.manifest):
             print(f"            {name} was {then}, is {now}")
     return 0 if difference is None else FAILED
 
@@ -59,10 +59,3 @@ def _first_difference(run: Run, measured: list[Measured]) -> tuple[int, str] | N
             if a != b:
                 return index, channel
     return None
-
-
-def _other_versions(run: Run) -> list[tuple[str, str, str]]:
-    """Name, then, now of every library whose version is another than the run's."""
-    then = run.manifest.get("libraries", {})
-    now = versions()
-    return [(n, str(then[n]), now[n]) for n in then if n in now and then[n] != now[n]]

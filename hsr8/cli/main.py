@@ -4,46 +4,45 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated, TextIO
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, TextIO
 
 import tyro
 
 from hsr8 import __version__
 from hsr8.cli import options
 from hsr8.cli.crash import CrashReport
-from hsr8.errors import Hsr8Error
+from hsr8.errors import Hsr8Error, UsageError
+from hsr8.suggestion import suggestion
 
 DESCRIPTION = f"""hsr8 {__version__}: a small humanoid walks among moving obstacles and sees \
 only through its own camera.
 
 First steps: `hsr8 doctor`, `hsr8 run quick`, `hsr8 render runs/quick`, `hsr8 replay runs/quick`."""
 
+CHECK_REPLAY = "check replay"  # a command of two words beside `check`
 # A command's module is imported when it is called: MuJoCo, Rerun and SciPy take seconds.
-MODULES: dict[type, str] = {
-    options.Run: "hsr8.cli.run",
-    options.List: "hsr8.cli.list",
-    options.Check: "hsr8.cli.check",
-    options.CheckReplay: "hsr8.cli.check_replay",
-    options.Doctor: "hsr8.cli.doctor",
-    options.Render: "hsr8.cli.render",
-    options.Replay: "hsr8.cli.replay",
-    options.Plot: "hsr8.cli.plot",
-    options.Colours: "hsr8.cli.colours",
+COMMANDS: dict[str, tuple[type, str]] = {
+    "run": (options.Run, "hsr8.cli.run"),
+    "list": (options.List, "hsr8.cli.list"),
+    "check": (options.Check, "hsr8.cli.check"),
+    CHECK_REPLAY: (options.CheckReplay, "hsr8.cli.check_replay"),
+    "info": (options.Info, "hsr8.cli.info"),
+    "render": (options.Render, "hsr8.cli.render"),
+    "replay": (options.Replay, "hsr8.cli.replay"),
+    "plot": (options.Plot, "hsr8.cli.plot"),
+    "colours": (options.Colours, "hsr8.cli.colours"),
+    "schema": (options.Schema, "hsr8.cli.schema"),
+    "completion": (options.Completion, "hsr8.cli.completion"),
+    "doctor": (options.Doctor, "hsr8.cli.doctor"),
+    "bug-report": (options.BugReport, "hsr8.cli.bug_report"),
 }
+MODULES = dict(COMMANDS.values())
 INTERRUPTED = 130
 READER_LEFT = 141  # as of a program that SIGPIPE ends
-CHECK_REPLAY = "check replay"  # a command of two words beside `check`
-
-Commands = (
-    Annotated[options.Run, tyro.conf.subcommand("run")]
-    | Annotated[options.List, tyro.conf.subcommand("list")]
-    | Annotated[options.Check, tyro.conf.subcommand("check")]
-    | Annotated[options.CheckReplay, tyro.conf.subcommand(CHECK_REPLAY)]
-    | Annotated[options.Doctor, tyro.conf.subcommand("doctor")]
-    | Annotated[options.Render, tyro.conf.subcommand("render")]
-    | Annotated[options.Replay, tyro.conf.subcommand("replay")]
-    | Annotated[options.Plot, tyro.conf.subcommand("plot")]
-    | Annotated[options.Colours, tyro.conf.subcommand("colours")]
+CALLED: Any = reduce(
+    or_, (Annotated[kind, tyro.conf.subcommand(name)] for name, (kind, _) in COMMANDS.items())
 )
 
 
@@ -95,16 +94,32 @@ def _answer(given: list[str]) -> int:
 
 def _parsed(given: list[str]) -> options.Command | int:
     """The command, or the exit code where help or a mistake has been told instead."""
-    try:
-        return tyro.cli(
-            Commands,
-            prog="hsr8",
-            description=DESCRIPTION,
-            args=given or ["--help"],
-            config=(tyro.conf.FlagCreatePairsOff,),
+    if given and not given[0].startswith("-") and given[0] not in COMMANDS:
+        raise UsageError(
+            f"there is no command {given[0]!r}{suggestion(given[0], list(COMMANDS))} "
+            f"(commands: {', '.join(COMMANDS)})"
         )
+    try:
+        command: options.Command = parse(given or ["--help"])
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else 2
+    return command
+
+
+def parse(arguments: Sequence[str]) -> options.Command:
+    """Command and options of a command line.
+
+    Raises:
+        SystemExit: it is wrong, or asks for help; what there is to say has been said.
+    """
+    command: options.Command = tyro.cli(
+        CALLED,
+        prog="hsr8",
+        description=DESCRIPTION,
+        args=arguments,
+        config=(tyro.conf.FlagCreatePairsOff,),
+    )
+    return command
 
 
 def _drop_unread(stream: TextIO) -> None:

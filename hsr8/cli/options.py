@@ -46,6 +46,8 @@ class Run:
     ] = None
     no_log: bool = False
     """Write no Rerun log."""
+    dry_run: bool = False
+    """Check everything, say what it would take, and run nothing."""
     json: bool = False
     """Print the results as one JSON object, and nothing else, on standard output."""
     quiet: bool = False
@@ -58,6 +60,48 @@ class List:
 
     json: bool = False
     """Print one JSON object."""
+
+
+@dataclass(frozen=True)
+class Info:
+    """Tell what a run folder holds: results, events, versions, files."""
+
+    run: Positional[RunPath]
+    json: bool = False
+    """Print one JSON object."""
+
+
+@dataclass(frozen=True)
+class BugReport:
+    """Pack what helps to find a mistake into one ZIP file: versions, OpenGL, the run."""
+
+    run: Positional[
+        Annotated[Path | None, _arg("RUN", "run folder; without one, this machine alone")]
+    ] = None
+    out: Path = Path("hsr8-bug-report.zip")
+    """File to write."""
+    json: bool = False
+    """Print one JSON object."""
+
+
+@dataclass(frozen=True)
+class Schema:
+    """Print the JSON Schema of scenario files, for editors that check as one types."""
+
+    out: Annotated[Path | None, _arg("FILE", "file to write; else standard output")] = None
+
+
+@dataclass(frozen=True)
+class Completion:
+    """Print the completion script of a shell; `--help` says where it goes.
+
+    bash: hsr8 completion bash > ~/.local/share/bash-completion/completions/hsr8
+
+    zsh: hsr8 completion zsh > ~/.zfunc/_hsr8, in a folder of $fpath
+    """
+
+    shell: Positional[Literal["bash", "zsh"]] = "bash"
+    """Shell to complete in."""
 
 
 @dataclass(frozen=True)
@@ -175,4 +219,18 @@ class Colours:
     """Print one JSON object."""
 
 
-Command = Run | List | Check | CheckReplay | Doctor | Render | Replay | Plot | Colours
+Command = (
+    Run
+    | List
+    | Check
+    | CheckReplay
+    | Info
+    | Render
+    | Replay
+    | Plot
+    | Colours
+    | Schema
+    | Completion
+    | Doctor
+    | BugReport
+)

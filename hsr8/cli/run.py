@@ -2,7 +2,7 @@
 
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -10,6 +10,7 @@ from typing import Any
 
 from hsr8.cli import report
 from hsr8.cli.command_line import run_command, settings
+from hsr8.cli.cost import estimate
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run
 from hsr8.errors import SimulationDiverged
@@ -25,6 +26,8 @@ from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump, load
+from hsr8.scenario.schema import Scenario
+from hsr8.world.generator import draw_layout
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
@@ -41,6 +44,9 @@ def main(options: Run) -> int:
     )
     renderer = require_gl() if scenario.camera.source == "egl" else "analytic"
     command = run_command(options, scenario.seed)
+    if options.dry_run:
+        _tell_cost(options, scenario, command)
+        return 0
     simulation = Simulation(scenario, scenario.seed)
     path = RunFolder.create(options.out, scenario.name, scenario.seed)
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer)
@@ -75,6 +81,29 @@ def main(options: Run) -> int:
             command=command,
         )
     return code
+
+
+def _tell_cost(options: Run, scenario: Scenario, command: Sequence[str]) -> None:
+    """What the run would take; its world is drawn, so that it can be."""
+    draw_layout(scenario, scenario.seed)
+    cost = estimate(scenario, log=not options.no_log)
+    folder = options.out / scenario.name
+    if options.json:
+        told = {
+            "scenario": scenario.name,
+            "seed": scenario.seed,
+            "folder": str(folder),
+            "simulated_time_s": cost.simulated,
+            "estimated_wall_time_s": round(cost.wall, 1),
+            "estimated_disk_mb": round(cost.disk, 1),
+            "command": " ".join(command),
+        }
+        print(atomic.dumps(told))
+        return
+    print(f"would run   {scenario.name}, seed {scenario.seed}, into a new folder in {folder}")
+    print(f"simulated   {cost.simulated:g} s at most")
+    print(f"takes       about {cost.wall:.0f} s on two cores, {cost.disk:.0f} MB")
+    print(f"for real    {' '.join(command)}")
 
 
 def option_tables(options: Run) -> dict[str, dict[str, Any]]:

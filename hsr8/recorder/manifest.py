@@ -1,11 +1,12 @@
 """What a run was made of: versions, seed, machine, and how it ended."""
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from hsr8 import __version__
 from hsr8.recorder import atomic
@@ -75,6 +76,14 @@ class Manifest:
     def write(self, path: Path) -> None:
         """Write to `path` at once."""
         atomic.write_json(path, asdict(self))
+
+
+def other_versions(manifest: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """Name, then, now of every library whose version is another than in `manifest`."""
+    then, now = manifest.get("libraries"), versions()
+    if not isinstance(then, dict):
+        return []
+    return [(n, str(then[n]), now[n]) for n in then if n in now and then[n] != now[n]]
 
 
 def versions() -> dict[str, str]:

@@ -13,10 +13,11 @@ from pydantic import ValidationError
 from hsr8.errors import ScenarioError
 from hsr8.scenario.checks import check
 from hsr8.scenario.presets import expand_presets
-from hsr8.scenario.problem import Problem, problems_of, suggestion
+from hsr8.scenario.problem import Problem, problems_of
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.toml_lines import Path, locate, nearest
 from hsr8.scenario.toml_writer import write_toml
+from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
 LARGEST = 1_000_000  # a scenario file is not longer than this [byte]

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any
 
 from pydantic import ValidationError
@@ -10,6 +9,7 @@ from pydantic_core import ErrorDetails
 
 from hsr8.scenario.reference import allowed, keys_at, node_at
 from hsr8.scenario.toml_lines import Path, holds
+from hsr8.suggestion import suggestion
 
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 _KINDS = {dict: "a table", list: "a list", str: "text", bool: "a truth value"}
@@ -34,12 +34,6 @@ class Problem:
         for part in self.path:
             name += f"[{part}]" if isinstance(part, int) else f".{part}" if name else part
         return name or "scenario"
-
-
-def suggestion(word: str, choices: Sequence[str]) -> str:
-    """``; did you mean 'x'?`` for the closest choice, else nothing."""
-    close = get_close_matches(word, choices, n=1)
-    return f"; did you mean '{close[0]}'?" if close else ""
 
 
 def problems_of(error: ValidationError, data: Mapping[str, Any]) -> list[Problem]:

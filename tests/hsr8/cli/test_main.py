@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from hsr8.cli.crash import CrashReport, InternalError
-from hsr8.cli.main import MODULES, entry
+from hsr8.cli.main import COMMANDS, MODULES, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
 
 HEAVY = (
@@ -32,7 +32,7 @@ def test_help_imports_nothing_heavy():
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
     )
     assert done.stderr.strip() == "[] 0"
-    for command in ("run", "list", "check", "doctor", "render", "replay", "plot"):
+    for command in COMMANDS:
         assert command in done.stdout
 
 
@@ -50,6 +50,12 @@ def test_a_wrong_command_line_is_a_usage_error(arguments, capsys):
 def test_a_wrong_option_is_answered_with_the_right_one(capsys):
     entry(["run", "quick", "--sed", "3"])
     assert "--seed" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("word", "right"), [("rum", "run"), ("rendr", "render"), ("inf", "info")])
+def test_a_wrong_command_is_answered_with_the_right_one(word, right, capsys):
+    assert entry([word, "quick"]) == 2
+    assert f"did you mean '{right}'?" in capsys.readouterr().err
 
 
 def test_every_command_has_a_main():

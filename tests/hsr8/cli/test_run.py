@@ -62,6 +62,21 @@ def test_the_resolved_scenario_is_the_same_run(tmp_path, capsys):
     assert open_run(tmp_path / "b").metrics()["state_hash"] == run.metrics()["state_hash"]
 
 
+def test_a_dry_run_says_what_it_would_take_and_leaves_nothing(tmp_path, capsys):
+    assert _run(tmp_path, "--seed", "3", "--dry-run", "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["simulated_time_s"], told["seed"]) == (1.0, 3)
+    assert told["estimated_wall_time_s"] > 0.0
+    assert _run(tmp_path, "--seed", "3", "--dry-run") == 0
+    assert told["command"] in capsys.readouterr().out
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_dry_run_finds_the_same_mistakes(tmp_path, capsys):
+    assert _run(tmp_path, "--dry-run", "--set", "world.n_moving=-1") == 2
+    assert "world.n_moving" in capsys.readouterr().err
+
+
 def test_quiet_is_quiet(tmp_path, capsys):
     _run(tmp_path, "--no-log", "--quiet")
     printed = capsys.readouterr()

@@ -1,0 +1,27 @@
+"""``hsr8 schema``: what a scenario file may hold, for editors."""
+
+from hsr8.cli.options import Schema
+from hsr8.errors import UsageError
+from hsr8.recorder import atomic
+from hsr8.scenario.reference import json_schema
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def main(options: Schema) -> int:
+    """Print the schema, or write it.
+
+    Raises:
+        UsageError: the file cannot be written.
+    """
+    schema = {"$schema": DIALECT, **json_schema(), "title": "hsr8 scenario"}
+    if options.out is None:
+        print(atomic.dumps(schema, indent=2))
+        return 0
+    try:
+        atomic.write_json(options.out, schema)
+    except OSError as error:
+        raise UsageError(f"--out {options.out}: cannot be written: {error.strerror}") from None
+    print(f"schema      {options.out}")
+    print(f'first line of a scenario, for Taplo and its editors:  "#:schema {options.out}"')
+    return 0

@@ -1,0 +1,25 @@
+import json
+import tomllib
+
+from hsr8.cli.main import entry
+from hsr8.scenario.loader import BUILT_IN
+
+
+def test_the_schema_knows_every_key_of_every_built_in_scenario(capsys):
+    assert entry(["schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert schema["$schema"].startswith("https://json-schema.org/")
+    for file in BUILT_IN.glob("*.toml"):
+        assert set(tomllib.loads(file.read_text())) <= set(schema["properties"])
+
+
+def test_the_file_holds_the_same(tmp_path, capsys):
+    entry(["schema"])
+    printed = json.loads(capsys.readouterr().out)
+    assert entry(["schema", "--out", str(tmp_path / "s.json")]) == 0
+    assert json.loads((tmp_path / "s.json").read_text()) == printed
+
+
+def test_a_place_that_cannot_be_written_is_a_usage_error(tmp_path, capsys):
+    assert entry(["schema", "--out", str(tmp_path / "no" / "s.json")]) == 2
+    assert "cannot be written" in capsys.readouterr().err
