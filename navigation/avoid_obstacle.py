@@ -8,6 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
+_AT_CENTRE = 0.01
+"""Distance from a centre below which the direction outward is not that of the point [m]."""
+
 
 def spiral_turn(gap: ArrayLike, s_oe: ArrayLike, d_e: ArrayLike, k_r: float) -> Array:
     """Angle between the outward direction and the spiral (Yoo & Kim, eq. (9)).
@@ -39,12 +42,13 @@ def avoid_obstacle(
     k_r: float,
     inside: Literal["zero", "outward"],
     outward: Array | None = None,
+    abeam: bool = False,
 ) -> Array:
     """u_auf of every obstacle at every point (Yoo & Kim, eq. (9)).
 
     theta_or points outward, from the obstacle to the robot. The sign takes the short way
     round: counter-clockwise if cross(p_od, p_or) < 0. Obstacles beyond the destination or
-    behind the robot do nothing.
+    behind the robot do nothing (second and third condition).
 
     Args:
         position: points in W (..., 2) [m].
@@ -56,6 +60,9 @@ def avoid_obstacle(
         k_r: curvature [m].
         inside: field inside the extended radius.
         outward: outward angle to use where a point meets a centre (n,) [rad].
+        abeam: waive the third condition. The centre of a dynamic virtual obstacle is the
+            foot of a perpendicular: before a mover that comes head-on it is neither ahead
+            nor behind but exactly abeam, and the condition would always switch it off.
 
     Returns:
         Unit vectors or zeros (..., n, 2).
@@ -66,14 +73,14 @@ def avoid_obstacle(
     rho = np.hypot(p_or[..., 0], p_or[..., 1])
     angle = np.arctan2(p_or[..., 1], p_or[..., 0])
     if outward is not None:
-        angle = np.where(rho < 0.01, outward, angle)
+        angle = np.where(rho < _AT_CENTRE, outward, angle)
     gap = rho - s_oe
     cross = p_od[..., 0] * p_or[..., 1] - p_od[..., 1] * p_or[..., 0]
     turn = np.where(cross < 0.0, 1.0, -1.0) * spiral_turn(gap, s_oe, d_e, k_r)
     before_target = np.hypot(p_rd[..., 0], p_rd[..., 1]) + s_oe >= np.hypot(
         p_od[..., 0], p_od[..., 1]
     )
-    ahead = np.sum(p_or * p_rd, axis=-1) < 0.0
+    ahead = (np.sum(p_or * p_rd, axis=-1) < 0.0) | abeam
     active = (gap >= 0.0) & (gap <= np.asarray(d_e) + d_b) & before_target & ahead
     if inside == "outward":
         turn = np.where(gap < 0.0, 0.0, turn)

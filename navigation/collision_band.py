@@ -93,6 +93,21 @@ class Encounter:
         low, high = sorted(((-qb - root) / (2.0 * qa), (-qb + root) / (2.0 * qa)))
         return low, high
 
+    def touch_time(self, speed: float) -> float:
+        """t_c = -p_ro.w/|w|² with w = v_o - v e, when `speed` [m/s] just touches the mover [s].
+
+        The point of contact of Fig. 4 is p_oc = v t_c on the line of motion. Inf where
+        `speed` passes at a distance or cuts through.
+        """
+        u, w = self.forward - speed, self.left
+        square = u * u + w * w
+        if square == 0.0:
+            return inf
+        time = -(self.along * u + self.across * w) / square
+        gap = (self.along + u * time) ** 2 + (self.across + w * time) ** 2
+        touches = abs(gap - self.radius**2) < 1e-6
+        return time if touches and time > 0.0 else inf
+
     def breakpoints(self, horizon: float) -> tuple[float, ...]:
         """Every speed at which the answer "contact before `horizon`" [s] can change [m/s]."""
         points = list(self.crossing_speeds())

@@ -12,7 +12,7 @@ from navigation.angles import wrap_array
 from navigation.belief import Belief
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
-from navigation.gaze_scene import AIM_HEIGHT, GazeScene, relative, to_field
+from navigation.gaze_scene import GazeScene, relative, to_field
 from navigation.integrated_gaze import beacon_votes
 from navigation.obstacle_set import largest_deviation
 
@@ -118,7 +118,9 @@ def obstacle_deadlines(
     age = o.age[index_] + _FRAME + d.unknown_bonus * unknown
     urgency = np.minimum(d.urgency_limit, age / (_HALF * contact)) ** d.exponent
     value = weight * urgency * np.where(static, d.static_weight, 1.0)
-    tilt = np.arctan2(AIM_HEIGHT - scene.camera_height, np.maximum(distance, 0.05))
+    tilt = np.arctan2(
+        parameters.evaluation.aim_height - scene.camera_height, np.maximum(distance, 0.05)
+    )
     return Votes(bearing, tilt, value)
 
 

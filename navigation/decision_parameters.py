@@ -60,6 +60,14 @@ class UnivectorParameters:
     """Largest deviation of the ramped field from the destination [rad]."""
     arrival_ramp: Positive = 0.5
     """Width of the ramp, share of d_con [1]."""
+    side_set: Positive = 2.304
+    """|beta| beyond which the ramped arrival remembers the side it circles on [rad]."""
+    side_clear: Positive = 1.798
+    """|beta| below which it forgets that side [rad]."""
+    posture_gain: Positive = 8.0
+    """Gain of Kim's posture field [1]."""
+    posture_offset: Positive = 0.25
+    """Distance of its reference point beyond the destination [m]."""
     holonomic_distance: NonNegative = 0.45
     """Distance from the goal within which the body turns to the goal's heading [m]."""
     slow_distance: Positive = 0.30
@@ -80,6 +88,12 @@ class UnivectorParameters:
     """Weight of move-to-goal for fixed weights [1]."""
     w_auf: NonNegative = 0.25
     """Weight of avoid-obstacle for fixed weights [1]."""
+    goal_share: Share = 0.6
+    """Share of the room between a destination and an obstacle left to its radius [1]."""
+    goal_gap: Positive = 0.02
+    """Least such room [m]."""
+    goal_offset: Positive = 0.03
+    """Least radius offset beside a destination [m]."""
     virtual_weight: NonNegative = 1.5
     """Weight of dynamic virtual obstacles in the blend by distance [1]."""
     memory: NonNegative = 1.0
@@ -98,6 +112,12 @@ class MoverParameters:
     """Length of the virtual path of the printed form [1]."""
     path_time: Positive = 6.0
     """Length of the virtual path of the own form, per relative speed [s]."""
+    side_switch: NonNegative = 0.05
+    """Distance from a mover's path within which the destination decides the side [m]."""
+    side_hold: NonNegative = 0.08
+    """Distance beyond a mover's path at which the own form changes its side [m]."""
+    side_aligned: Share = 0.2
+    """Sine of the angle between path and destination up to which that decides nothing [1]."""
     least_speed: Positive = 0.015
     """Speed below which an obstacle has no path [m/s]."""
     velocity_modification: Literal["off", "closed", "sampled"] = "sampled"

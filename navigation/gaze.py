@@ -44,7 +44,7 @@ class GazePlanner:
         self._parameters = parameters
         self._limits = limits
         self._beacons = np.array([beacons[name] for name in sorted(beacons)]).reshape(-1, 2)
-        self._samples = SamplePoints.polar(parameters.evaluation.d_nm, parameters.evaluation.d_fm)
+        self._samples = SamplePoints.polar(parameters.evaluation, p.pan_limit)
         self._grid = GazeGrid(
             pan_limit=p.pan_limit,
             tilt_min=p.tilt_min,

@@ -19,6 +19,10 @@ class EvaluationParameters:
     """Nearest sample points of the local map [m]."""
     d_fm: Positive = 1.30
     """Farthest sample points of the local map [m]."""
+    ring_step: Positive = 0.20
+    """Distance of the sample points along a ray [m]."""
+    ray_step: Positive = pi / 18.0
+    """Angle between the rays of sample points [rad]."""
     lambda_cf: Share = 0.85
     """Confidence below which a sample point is under-confident [1]."""
     map_ratio: Literal["printed", "share"] = "share"
@@ -31,6 +35,10 @@ class EvaluationParameters:
     """Normalisation of the obstacle evaluation [1/m]."""
     gamma_o: Positive = 0.25
     """Obstacle evaluation at which psi_ob is one [1/s]."""
+    least_distance: Positive = 0.05
+    """Distance below which an obstacle's evaluation grows no more [m]."""
+    aim_height: NonNegative = 0.05
+    """Height at which an obstacle is looked at: its foot gives the range [m]."""
     d_n_thres: Positive = 0.80
     """Obstacle-free distance at which psi_way is one [m]."""
     attention_range: Positive = 2.5

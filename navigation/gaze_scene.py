@@ -25,9 +25,6 @@ from navigation.partial_evaluation import (
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-AIM_HEIGHT = 0.05
-"""Height of an obstacle to look at: its foot gives the range [m]."""
-
 
 @dataclass(frozen=True, slots=True)
 class GazeScene:

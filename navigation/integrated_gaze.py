@@ -3,13 +3,17 @@
 from math import atan2, hypot
 
 import numpy as np
+from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief import Belief
 from navigation.decision import Task
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
-from navigation.gaze_scene import AIM_HEIGHT, GazeScene
+from navigation.gaze_parameters import GazeParameters
+from navigation.gaze_scene import GazeScene
+
+Array = NDArray[np.float64]
 
 
 def integrated_votes(
@@ -28,15 +32,28 @@ def integrated_votes(
     votes.append(_way_vote(scene, belief, task, p.w_way, parameters))
     seen = scene.attended & scene.reachable
     pan = np.clip(scene.bearing[seen], -p.pan_limit, p.pan_limit)
-    tilt = np.arctan2(AIM_HEIGHT - scene.camera_height, scene.distance[seen])
-    share = 1.0 / max(1, int(seen.sum())) if p.obstacle_votes == "mean" else 1.0
+    tilt = np.arctan2(parameters.evaluation.aim_height - scene.camera_height, scene.distance[seen])
+    share = 1.0 / max(1, len(pan)) if p.obstacle_votes == "mean" else 1.0
     votes.append(Votes(pan, tilt, share * p.w_ob * scene.psi_ob[seen]))
-    if p.candidates == "obstacles":
-        votes.append(Votes(pan, tilt, np.full(len(pan), share * p.w_sf * scene.psi_sf)))
-    beacons = beacon_votes(scene, p.w_sf * scene.psi_sf)
-    within = np.clip(beacons.pan, -p.pan_limit, p.pan_limit)
-    votes.append(Votes(within, beacons.tilt, beacons.value))
+    votes += _self_votes(scene, pan, tilt, p)
     return Votes.join(votes)
+
+
+def _self_votes(scene: GazeScene, pan: Array, tilt: Array, p: GazeParameters) -> list[Votes]:
+    """Votes of psi_sf for what can localize the robot: obstacles as printed, and beacons.
+
+    The printed mean runs over both together, so that GM stays within [0, 1].
+    """
+    value, posts = p.w_sf * scene.psi_sf, len(scene.beacon_bearing)
+    if p.candidates == "beacons":
+        pan, tilt = pan[:0], tilt[:0]
+    each, together = value, value
+    if p.obstacle_votes == "mean":
+        each = value / max(1, len(pan) + posts)
+        together = posts * each
+    beacons = beacon_votes(scene, together)
+    within = np.clip(beacons.pan, -p.pan_limit, p.pan_limit)
+    return [Votes(pan, tilt, np.full(len(pan), each)), Votes(within, beacons.tilt, beacons.value)]
 
 
 def beacon_votes(scene: GazeScene, value: float) -> Votes:

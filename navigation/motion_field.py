@@ -10,7 +10,7 @@ from navigation.avoid_obstacle import avoid_obstacle, spiral_turn
 from navigation.decision import VirtualObstacle
 from navigation.decision_parameters import MoverParameters, UnivectorParameters
 from navigation.extended_radius import physical_radius
-from navigation.move_to_goal import move_to_goal
+from navigation.move_to_goal import move_to_goal, muf
 from navigation.obstacle_set import ObstacleSet
 from navigation.univector import blended_sum, nearness, shrunk_for_goal, weighted_sum
 from navigation.virtual_obstacle import (
@@ -70,7 +70,7 @@ class MotionField:
         """Keep the parameters of the field and of moving obstacles."""
         self._univector = univector
         self._mover = mover
-        self._sides = VirtualSides()
+        self._sides = VirtualSides(mover)
 
     def at(
         self, points: Array, heading: float, scene: FieldScene, forces: tuple[VirtualForce, ...]
@@ -81,8 +81,7 @@ class MotionField:
         of the robot.
         """
         p = self._univector
-        phi = move_to_goal(points, heading, scene.target, scene.target_heading, p, side=scene.side)
-        u_muf = np.stack([np.cos(phi), np.sin(phi)], axis=-1)
+        u_muf = muf(points, heading, scene.target, scene.target_heading, p, side=scene.side)
         if p.blend == "weights":
             return self._weighted(points, u_muf, scene, forces)
         return self._blended(points, u_muf, scene, forces)
@@ -92,22 +91,30 @@ class MotionField:
     ) -> Array:
         """The printed sum: a virtual obstacle is one more obstacle with S_oe = R_vo."""
         p = self._univector
-        centres, radii, outward = scene.obstacles.position, scene.s_oe, None
-        if forces:
-            outward = np.concatenate([np.zeros(len(radii)), [f.outward for f in forces]])
-            centres = np.concatenate([centres, [f.obstacle.position for f in forces]])
-            radii = np.concatenate([radii, [f.obstacle.radius for f in forces]])
         u_auf = avoid_obstacle(
             points,
             scene.target,
-            centres,
-            radii,
+            scene.obstacles.position,
+            scene.s_oe,
             d_e=p.d_e,
             d_b=p.d_b,
             k_r=p.k_r,
             inside=p.inside,
-            outward=outward,
         )
+        if forces:
+            virtual = avoid_obstacle(
+                points,
+                scene.target,
+                np.array([f.obstacle.position for f in forces]),
+                np.array([f.obstacle.radius for f in forces]),
+                d_e=p.d_e,
+                d_b=p.d_b,
+                k_r=p.k_r,
+                inside=p.inside,
+                outward=np.array([f.outward for f in forces]),
+                abeam=True,
+            )
+            u_auf = np.concatenate([u_auf, virtual], axis=-2)
         return weighted_sum(u_muf, u_auf, p.w_muf, p.w_auf)
 
     def _blended(
@@ -121,7 +128,7 @@ class MotionField:
             scene.s_oe,
             physical_radius(scene.obstacles, p),
             np.hypot(offset[:, 0], offset[:, 1]),
-            p.d_e,
+            p,
         )
         u_auf = avoid_obstacle(
             points, scene.target, centres, radii, d_e=d_e, d_b=p.d_b, k_r=p.k_r, inside=p.inside
@@ -204,7 +211,7 @@ class MotionField:
                 self._univector.eta_imp,
             )
             radius = printed_radius(foot, float(scene.s_oe[index]), length, self._mover.xi)
-            if radius > 0.0:
+            if radius is not None:
                 goal_side = foot.ux * sin(phi) - foot.uy * cos(phi)
                 side = -1 if goal_side < 0.0 else 1
                 track = int(scene.obstacles.ids[index])

@@ -1,6 +1,6 @@
 """Move-to-goal univector field with an arrival heading, Yoo & Kim, eq. (8)."""
 
-from math import pi, radians
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,11 +9,6 @@ from navigation.angles import wrap_array
 from navigation.decision_parameters import UnivectorParameters
 
 Array = NDArray[np.float64]
-
-_POSTURE_GAIN = 8.0
-_POSTURE_OFFSET = 0.25
-_REMEMBER = radians(132.0)
-_FORGET = radians(103.0)
 
 
 def move_to_goal(
@@ -45,11 +40,13 @@ def move_to_goal(
     bearing: Array = np.arctan2(offset[..., 1], offset[..., 0])
     distance: Array = np.hypot(offset[..., 0], offset[..., 1])
     if parameters.arrival == "nposture":
-        return wrap_array(bearing - _posture_turn(offset, bearing, target_heading))
+        return wrap_array(bearing - _posture_turn(offset, bearing, target_heading, parameters))
     beta = wrap_array(target_heading - bearing)
     if side:
         beta = np.where(
-            (np.abs(beta) > _FORGET) & (np.sign(beta) != side), beta + side * 2.0 * pi, beta
+            (np.abs(beta) > parameters.side_clear) & (np.sign(beta) != side),
+            beta + side * 2.0 * pi,
+            beta,
         )
     if parameters.arrival == "hard":
         alpha = wrap_array(bearing - np.asarray(heading))
@@ -61,11 +58,34 @@ def move_to_goal(
     return wrap_array(np.where(distance > parameters.d_con, bearing, near))
 
 
-def _posture_turn(offset: Array, bearing: Array, target_heading: float) -> Array:
+def muf(
+    position: ArrayLike,
+    heading: ArrayLike,
+    target: Array,
+    target_heading: float,
+    parameters: UnivectorParameters,
+    *,
+    side: int = 0,
+) -> Array:
+    """u_muf of eq. (8) with k_rho = 1: unit vectors (..., 2), zero at the destination.
+
+    k_rho scales the speed, see `arrival_gain`; the third component of the printed vector
+    is a heading, which the body turns to by itself. Arguments as for `move_to_goal`.
+    """
+    phi = move_to_goal(position, heading, target, target_heading, parameters, side=side)
+    there = np.all(np.asarray(position) == target, axis=-1)
+    unit: Array = np.stack([np.cos(phi), np.sin(phi)], axis=-1)
+    return np.where(there[..., None], 0.0, unit)
+
+
+def _posture_turn(
+    offset: Array, bearing: Array, target_heading: float, parameters: UnivectorParameters
+) -> Array:
     """Kim's posture field: turn against the bearing of a point beyond the destination."""
-    beyond = _POSTURE_OFFSET * np.array([np.cos(target_heading), np.sin(target_heading)])
+    p = parameters
+    beyond = p.posture_offset * np.array([np.cos(target_heading), np.sin(target_heading)])
     ahead = offset + beyond
-    return _POSTURE_GAIN * wrap_array(np.arctan2(ahead[..., 1], ahead[..., 0]) - bearing)
+    return p.posture_gain * wrap_array(np.arctan2(ahead[..., 1], ahead[..., 0]) - bearing)
 
 
 class ArrivalSide:
@@ -74,14 +94,15 @@ class ArrivalSide:
     At |beta| = pi both sides are equal and noise would make the field chatter.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, parameters: UnivectorParameters) -> None:
+        self._parameters = parameters
         self._side = 0
 
     def update(self, beta: float) -> int:
         """Sign to give beta, 0 while it is free, from the present `beta` [rad], wrapped."""
-        if abs(beta) < _FORGET:
+        if abs(beta) < self._parameters.side_clear:
             self._side = 0
-        elif self._side == 0 and abs(beta) > _REMEMBER:
+        elif self._side == 0 and abs(beta) > self._parameters.side_set:
             self._side = 1 if beta > 0.0 else -1
         return self._side
 

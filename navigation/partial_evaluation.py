@@ -15,9 +15,6 @@ from navigation.obstacle_set import ObstacleSet, largest_deviation
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-NEAREST = 0.05
-"""Least distance in (3) [m]."""
-
 
 @dataclass(frozen=True, slots=True)
 class SamplePoints:
@@ -34,10 +31,12 @@ class SamplePoints:
     points: Array
 
     @classmethod
-    def polar(cls, d_nm: float, d_fm: float) -> "SamplePoints":
-        """Every 0.2 m from `d_nm` to `d_fm` [m], every 10 deg from -90 to 90."""
-        rings = np.arange(d_nm, d_fm + 1e-9, 0.2)
-        rays = np.radians(np.arange(-90.0, 90.1, 10.0))
+    def polar(cls, parameters: EvaluationParameters, pan_limit: float) -> "SamplePoints":
+        """Rings from `d_nm` to `d_fm`, rays to `pan_limit` [rad] on both sides of ahead."""
+        p = parameters
+        rings = np.arange(p.d_nm, p.d_fm + 1e-9, p.ring_step)
+        count = int(pan_limit / p.ray_step + 1e-9)
+        rays = p.ray_step * np.arange(-count, count + 1, dtype=np.float64)
         distance, bearing = (a.ravel() for a in np.meshgrid(rings, rays, indexing="ij"))
         points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
         return cls(distance, bearing, points)
@@ -98,14 +97,14 @@ def psi_obstacle(
         obstacles: n obstacles in W.
         position: of the robot in W (2,) [m].
         velocity: of the robot in W (2,) [m/s].
-        parameters: `omega_o` and `gamma_o`.
+        parameters: `omega_o`, `gamma_o` and `least_distance`.
 
     Returns:
         (n,), each in [0, 1].
     """
     relative = obstacles.velocity - velocity
     offset = obstacles.position - position
-    distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), NEAREST)
+    distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), parameters.least_distance)
     speed = np.hypot(relative[:, 0], relative[:, 1])
     alpha = parameters.omega_o * obstacles.sigma * speed / distance
     return np.minimum(1.0, alpha / parameters.gamma_o)

@@ -43,7 +43,7 @@ class Planner:
         self._limits = limits
         self._field = MotionField(parameters.univector, parameters.mover)
         self._filter = CollisionFilter(parameters.filter, parameters.body, limits)
-        self._arrival = ArrivalSide()
+        self._arrival = ArrivalSide(parameters.univector)
         self._leg = -1
         self._body = np.zeros(3)
         self._direction: float | None = None

@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from navigation.decision_parameters import UnivectorParameters
+
 Array = NDArray[np.float64]
 
 _NOTHING = 1e-9
@@ -73,7 +75,7 @@ def blended_sum(
 
 
 def shrunk_for_goal(
-    s_oe: Array, s_physical: Array, goal_distance: Array, d_e: float
+    s_oe: Array, s_physical: Array, goal_distance: Array, parameters: UnivectorParameters
 ) -> tuple[Array, Array]:
     """Extended radii and offsets small enough to let the robot reach the destination.
 
@@ -83,13 +85,14 @@ def shrunk_for_goal(
         s_oe: extended radii (n,) [m].
         s_physical: radii at which the bodies touch (n,) [m].
         goal_distance: rho_od (n,) [m].
-        d_e: radius offset [m].
+        parameters: radius offset and the room to leave.
 
     Returns:
         Radii and offsets (n,), (n,) [m].
     """
-    room = 0.6 * np.maximum(0.02, goal_distance - s_physical)
+    p, d_e = parameters, parameters.d_e
+    room = p.goal_share * np.maximum(p.goal_gap, goal_distance - s_physical)
     near = goal_distance < s_oe + d_e
     radius = np.where(near, np.minimum(s_oe, s_physical + room), s_oe)
-    offset = np.where(near, np.minimum(d_e, np.maximum(0.03, goal_distance - radius)), d_e)
+    offset = np.where(near, np.minimum(d_e, np.maximum(p.goal_offset, goal_distance - radius)), d_e)
     return radius, offset

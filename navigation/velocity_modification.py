@@ -64,7 +64,7 @@ def modify_speed(
     standing_hits = any(e.collides(0.0, horizon) for e in encounters)
     above = [low for low, _ in intervals if low > desired]
     if above:
-        time = min((_touch_time(e, above[0]) for e in encounters), default=inf)
+        time = min((e.touch_time(above[0]) for e in encounters), default=inf)
         if needed_acceleration(now, above[0], time, footstep) <= acceleration:
             situation = "escape" if standing_hits else "accelerate"
             return ModifiedSpeed(min(v_max, above[0] + _TOUCH), situation)
@@ -72,18 +72,6 @@ def modify_speed(
     if below:
         return ModifiedSpeed(max(0.0, below[-1] - _TOUCH), "brake")
     return ModifiedSpeed(desired, "path_change")
-
-
-def _touch_time(encounter: Encounter, speed: float) -> float:
-    """t_c = -p_ro.w/|w|² with w = v_o - v e, if it is this mover that is touched [s]."""
-    u, w = encounter.forward - speed, encounter.left
-    square = u * u + w * w
-    if square == 0.0:
-        return inf
-    time = -(encounter.along * u + encounter.across * w) / square
-    gap = (encounter.along + u * time) ** 2 + (encounter.across + w * time) ** 2
-    touches = abs(gap - encounter.radius**2) < 1e-6
-    return time if touches and time > 0.0 else inf
 
 
 def sample_speed(

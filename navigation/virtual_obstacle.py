@@ -6,11 +6,9 @@ from math import expm1, hypot, log
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from navigation.decision_parameters import MoverParameters
 
-_SWITCH = 0.05
-_HOLD = 0.08
-_ALIGNED = 0.2
+Array = NDArray[np.float64]
 
 
 def oval(h: float, xi: float) -> float:
@@ -102,17 +100,21 @@ def printed_path_length(
     return omega_dist * (eta_vo * relative_speed + eta_imp * psi)
 
 
-def printed_radius(foot: PathPoint, s_oe: float, length: float, xi: float) -> float:
-    """R_vo = min(f S_oe, |p_vo - p_r|) (Yoo & Kim, eq. (11)); 0 for none [m]."""
-    if length <= 0.0 or foot.along >= length:
-        return 0.0
+def printed_radius(foot: PathPoint, s_oe: float, length: float, xi: float) -> float | None:
+    """R_vo = min(f S_oe, |p_vo - p_r|) (Yoo & Kim, eq. (11)) [m]; None beyond the length.
+
+    On the path itself it is zero: the robot is on the circle, which still turns it away.
+    """
+    if foot.along >= length:
+        return None
     return min(oval(foot.along / length, xi) * s_oe, abs(foot.lateral))
 
 
 class VirtualSides:
     """Side on which the robot leaves the path of each mover, kept until it is settled."""
 
-    def __init__(self) -> None:
+    def __init__(self, parameters: MoverParameters) -> None:
+        self._parameters = parameters
         self._sides: dict[int, int] = {}
 
     def update(self, track: int, foot: PathPoint, u_muf: tuple[float, float]) -> int:
@@ -123,14 +125,15 @@ class VirtualSides:
             foot: robot and path.
             u_muf: move-to-goal direction, decides while the robot is near the path.
         """
+        p = self._parameters
         side = self._sides.get(track)
         here = 1 if foot.lateral >= 0.0 else -1
         if side is None:
             goal_side = foot.ux * u_muf[1] - foot.uy * u_muf[0]
             side = here
-            if abs(foot.lateral) < _SWITCH and abs(goal_side) > _ALIGNED:
+            if abs(foot.lateral) < p.side_switch and abs(goal_side) > p.side_aligned:
                 side = 1 if goal_side > 0.0 else -1
-        elif side != here and abs(foot.lateral) > _HOLD:
+        elif side != here and abs(foot.lateral) > p.side_hold:
             side = here
         self._sides[track] = side
         return side

@@ -87,3 +87,11 @@ def test_rigid_motion_moves_the_field_along():
     u = field(points, centres, s, "outward")
     moved = field(points @ r.T + shift, centres @ r.T + shift, s, "outward", r @ TARGET + shift)
     assert moved == pytest.approx(u @ r.T, abs=1e-9)
+
+
+def test_a_centre_exactly_abeam_acts_only_if_the_third_condition_is_waived():
+    abeam = np.array([[0.0, 0.3]])
+    assert not field([0.0, 0.0], centres=abeam).any()
+    assert field([0.0, 0.0], centres=abeam, abeam=True)[0] == pytest.approx([0.0, -1.0])
+    behind_target = np.array([[3.0, 0.3]])
+    assert not field([2.2, 0.0], centres=behind_target, abeam=True).any()

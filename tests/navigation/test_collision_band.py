@@ -123,3 +123,18 @@ def test_in_case_b_exactly_the_speeds_below_the_larger_root_collide():
             assert e.contact_time(high + 1e-6) == inf
             found += 1
     assert found > 50
+
+
+def test_at_the_points_of_contact_of_figure_4_disc_and_robot_touch():
+    rng = np.random.default_rng(6)
+    found = 0
+    for e in encounters(rng, 500):
+        for v in e.crossing_speeds():
+            time = e.touch_time(v)
+            if isfinite(time):
+                x, y = e.along + e.forward * time, e.across + e.left * time
+                assert hypot(x - v * time, y) == pytest.approx(e.radius, abs=1e-9)
+                found += 1
+    assert found > 200
+    e = Encounter(1.0, -1.0, 0.0, 0.15, 0.3)
+    assert e.touch_time(0.05) == inf

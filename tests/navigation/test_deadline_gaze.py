@@ -8,7 +8,7 @@ from navigation.gaze_scene import gaze_scene
 from navigation.partial_evaluation import SamplePoints
 
 P = NavigationParameters.extended()
-SAMPLES = SamplePoints.polar(0.3, 1.3)
+SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)
 
 
 def votes(b, way=0.0):

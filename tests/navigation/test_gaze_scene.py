@@ -7,7 +7,7 @@ from navigation.partial_evaluation import SamplePoints
 from navigation.planner import Planner
 
 P = NavigationParameters.extended()
-SAMPLES = SamplePoints.polar(0.3, 1.3)
+SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)
 BEACONS = np.array([[2.9, 0.0], [-2.9, 0.0], [9.0, 0.0]])
 
 

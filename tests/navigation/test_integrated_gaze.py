@@ -8,7 +8,7 @@ from navigation.integrated_gaze import integrated_votes
 from navigation.partial_evaluation import SamplePoints
 
 PAPER, EXTENDED = NavigationParameters.paper(), NavigationParameters.extended()
-SAMPLES = SamplePoints.polar(0.3, 1.3)
+SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)
 NO_BEACONS = np.zeros((0, 2))
 
 
@@ -76,3 +76,13 @@ def test_beacons_share_the_vote_of_self_localization(belief, task):
 def test_what_the_head_cannot_reach_does_not_vote(belief, task, track):
     behind = track((-1.0, 0.05), (0.3, 0.0), sigma=0.2)
     assert len(votes(belief([behind], sigma=0.0), task()).pan) == 1
+
+
+def test_obstacles_and_beacons_together_do_not_exceed_one(belief, task, track, view, limits):
+    """Everything at its largest and in one line of sight."""
+    gaze = GazePlanner(PAPER, limits, {}, 1.6, 2.0)
+    mover = track((2.2, 0.0), (-0.2, 0.0), sigma=1.0)
+    b = belief([mover], sigma=0.2, confidence=lambda x, y: 0.0, camera=view(1.57, -0.44))
+    v = votes(b, task(), beacons=np.array([[4.0, 0.0]]))
+    assert v.value.sum() == pytest.approx(1.0)
+    assert gaze.grid.gaze_map(v).max() == pytest.approx(1.0)

@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from navigation.avoid_obstacle import avoid_obstacle
 from navigation.decision_parameters import (
     MoverParameters,
     NavigationParameters,
@@ -10,8 +11,9 @@ from navigation.decision_parameters import (
 )
 from navigation.extended_radius import extended_radius
 from navigation.motion_field import FieldScene, MotionField
+from navigation.move_to_goal import muf
 from navigation.obstacle_set import ObstacleSet
-from navigation.univector import normalized
+from navigation.univector import normalized, weighted_sum
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
 TARGET = np.array([2.0, 0.0])
@@ -140,3 +142,33 @@ def test_no_obstacles_leave_the_way_to_the_goal():
     assert field.at(np.zeros(2), 0.0, replace(s, target=np.array([0.0, 3.0])), ()) == pytest.approx(
         [0.0, 1.0]
     )
+
+
+def test_against_the_printed_sign_every_start_enters_the_disc(track):
+    p = PAPER.univector
+    s = scene([track((0, 0), radius=0.15)], PAPER)
+    place = np.array([(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)])
+    least = np.full(15, np.inf)
+    for _ in range(200):
+        u_muf = muf(place, 0.0, s.target, 0.0, p)
+        u = avoid_obstacle(
+            place, s.target, s.obstacles.position, s.s_oe, d_e=p.d_e, d_b=p.d_b, k_r=p.k_r,
+            inside=p.inside,
+        )  # fmt: skip
+        outward = normalized(place[:, None] - s.obstacles.position)
+        other = 2.0 * (u * outward).sum(axis=-1, keepdims=True) * outward - u
+        place = place + 0.01 * normalized(weighted_sum(u_muf, other, p.w_muf, p.w_auf))
+        least = np.minimum(least, np.hypot(*place.T))
+    assert np.all(least < s.s_oe[0])
+
+
+@pytest.mark.parametrize("lateral", [0.0, 0.004, 0.02, -0.02, 0.1, -0.1])
+def test_the_printed_virtual_obstacle_acts_before_a_mover_head_on(lateral, track):
+    """Fig. 4 (c): its centre lies abeam, where the third condition of (9) would drop it."""
+    field = MotionField(PAPER.univector, PAPER.mover)
+    s = scene([track((1.6, lateral), (-0.1, 0.0))], PAPER)
+    forces = field.printed_forces(np.zeros(3), np.array([0.2, 0.0]), s, (0,))
+    without, with_it = (field.at(np.zeros(2), 0.0, s, f) for f in ((), forces))
+    assert without[1] == pytest.approx(0.0)
+    away = np.copysign(1.0, lateral) if abs(lateral) > 0.01 else 1.0
+    assert -0.25 - 1e-9 <= away * with_it[1] < -0.2

@@ -7,7 +7,7 @@ import pytest
 from navigation.angles import wrap_array
 from navigation.body_command import body_velocity
 from navigation.decision_parameters import NavigationParameters, UnivectorParameters
-from navigation.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
+from navigation.move_to_goal import ArrivalSide, arrival_gain, move_to_goal, muf
 
 EXTENDED = UnivectorParameters()
 PAPER = NavigationParameters.paper().univector
@@ -114,7 +114,7 @@ def test_the_ramped_field_is_continuous_at_d_con():
 
 
 def test_the_side_is_kept_while_beta_passes_pi():
-    side = ArrivalSide()
+    side = ArrivalSide(EXTENDED)
     assert side.update(1.0) == 0
     assert side.update(3.0) == 1
     assert side.update(-3.1) == 1
@@ -134,3 +134,12 @@ def test_k_rho_falls_at_the_goal_only():
     assert arrival_gain(0.3, True, EXTENDED) == 1.0
     gains = [arrival_gain(d, True, EXTENDED) for d in np.linspace(0, 0.5, 20)]
     assert np.all(np.diff(gains) >= 0)
+
+
+@pytest.mark.parametrize("p", ALL)
+def test_the_vector_has_the_direction_phi_and_is_zero_at_the_destination(p):
+    places = np.random.default_rng(5).uniform(-1, 1, (50, 2))
+    phi = move_to_goal(places, 0.0, ORIGIN, 0.5, p)
+    u = muf(places, 0.0, ORIGIN, 0.5, p)
+    assert u == pytest.approx(np.stack([np.cos(phi), np.sin(phi)], axis=1))
+    assert not muf(ORIGIN, 0.0, ORIGIN, 0.5, p).any()

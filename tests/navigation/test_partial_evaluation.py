@@ -23,7 +23,7 @@ HERE, STILL = np.zeros(2), np.zeros(2)
 
 
 def test_sample_points_fill_the_printed_ring():
-    s = SamplePoints.polar(0.30, 1.30)
+    s = SamplePoints.polar(E, np.pi / 2)
     assert len(s.distance) == 114
     assert s.distance.min() == pytest.approx(0.30)
     assert s.distance.max() == pytest.approx(1.30)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from navigation.decision_parameters import UnivectorParameters
 from navigation.univector import blended_sum, nearness, normalized, shrunk_for_goal, weighted_sum
 
 NO_VIRTUAL = np.zeros((0, 2)), np.zeros(0)
@@ -63,7 +64,7 @@ def test_opposite_obstacles_that_cancel_leave_the_goal():
 def test_a_goal_near_an_obstacle_shrinks_it_but_never_into_the_bodies():
     s_phys = np.full(50, 0.2)
     distance = np.linspace(0.2, 1.0, 50)
-    s, d_e = shrunk_for_goal(np.full(50, 0.3), s_phys, distance, 0.2)
+    s, d_e = shrunk_for_goal(np.full(50, 0.3), s_phys, distance, UnivectorParameters())
     assert np.all(s > s_phys)
     assert np.all(s <= 0.3)
     assert np.all(d_e >= 0.03)

@@ -92,3 +92,19 @@ def test_the_needed_acceleration_brings_the_robot_there_in_time():
     a = needed_acceleration(speed, wanted, time, 0.34)
     assert speed * time + 0.5 * a * time**2 == pytest.approx(wanted * time)
     assert needed_acceleration(speed, wanted, 0.0, 0.34) == pytest.approx(2 * 0.1 / 0.34)
+
+
+def test_the_speed_that_passes_first_does_not_jump_where_the_robot_enters_the_band():
+    """From case (a) to case (b): the lateral distance from the mover's path crosses S."""
+    found = 0
+    for along in np.linspace(0.25, 1.5, 26).tolist():
+        outside, inside = (
+            closed((Encounter(0.3 + e, -along, 0.0, 0.1, 0.3),), desired=0.05, now=0.05,
+                   acceleration=inf, horizon=60.0)
+            for e in (1e-7, -1e-7)
+        )  # fmt: skip
+        if outside.situation == "accelerate":
+            assert inside.situation == "escape"
+            assert outside.speed == pytest.approx(inside.speed, abs=1e-5)
+            found += 1
+    assert found > 10
