@@ -1,32 +1,34 @@
 """Decision study: gaze and planner in a 2-D closed loop without MuJoCo and pixels.
 
-A disc of the robot's width walks with footstep-latched, slipping commands through four
-via points to a goal with an arrival heading, among 12 still and 4 shuttling cylinders.
-Sensing is `perfect` (true poses and velocities) or `camera` (the estimator fed by a
-simulated head camera that sees what the gaze shows it). A run ends at its first contact.
+The worlds are those of a scenario. The outline of the walking body moves with
+footstep-latched, slipping commands. Sensing is `perfect` (true poses and velocities) or
+`camera` (the estimator fed by a simulated head camera that sees what the gaze shows it).
+A run ends at its first contact.
 
-    python scripts/decision_study.py --profile extended --sensing camera --first 1000 --runs 100
+    python scripts/decision_study.py course --first 1000 --runs 100
+    python scripts/decision_study.py course --settings navigation.gaze.mode=sweep
 """
 
 import json
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import atan2, cos, degrees, hypot
 from pathlib import Path
 from time import perf_counter
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import tyro
-from belief_world import BEACONS, FRAME, HFOV, VFOV, Camera, view
-from decision_world import LIMITS, S_ROBOT, STEP_TICKS, TICK, Walker, draw_world, perfect_belief
+from belief_world import FRAME, HFOV, VFOV, Camera, view
+from decision_world import TICK, Walker, World, perfect_belief
 from numpy.typing import NDArray
 from wilson import wilson
 
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from hsr8.world.generator import draw_layout
 from navigation.angles import wrap
 from navigation.belief import Belief
-from navigation.belief_parameters import BeliefParameters
 from navigation.decision import MotionDecision, Task
-from navigation.decision_parameters import NavigationParameters
 from navigation.estimator import Estimator
 from navigation.gaze import GazePlanner
 from navigation.mission import Mission
@@ -36,7 +38,6 @@ from navigation.planner import Planner
 Array = NDArray[np.float64]
 
 FRAME_TICKS = 3
-TIME_LIMIT = 240.0  # [s]
 HEAD_SPEED = 6.0  # [rad/s]
 
 
@@ -60,26 +61,24 @@ class Episode:
 class Run:
     """One closed loop."""
 
-    def __init__(
-        self,
-        seed: int,
-        parameters: NavigationParameters,
-        sensing: str,
-        movers: int,
-        ratio: tuple[float, float],
-    ) -> None:
+    def __init__(self, scenario: Scenario, seed: int, sensing: str) -> None:
         streams = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)]
         self.seed, self.sensing = seed, sensing
-        self.world = draw_world(streams[0], 12, movers, ratio)
-        self.walker = Walker(self.world.start, streams[1])
+        self.world = World(draw_layout(scenario, seed))
+        layout, limits = self.world.layout, scenario.speed_limits()
+        parameters = scenario.navigation_parameters()
+        self.duration, self.step_ticks = scenario.duration, round(limits.footstep / TICK)
+        self.walker = Walker(np.array(layout.start), limits, streams[1])
         self.mission = Mission(
-            self.world.waypoints, self.world.goal_heading, False, parameters.mission
+            layout.waypoints, layout.goal_heading, layout.endless, parameters.mission
         )
-        self.planner = Planner(parameters, LIMITS)
-        self.gaze = GazePlanner(parameters, LIMITS, BEACONS, HFOV, VFOV)
+        self.planner = Planner(parameters, limits)
+        self.gaze = GazePlanner(parameters, limits, self.world.beacons, HFOV, VFOV)
         self.camera = Camera(streams[2])
-        start = self.world.start + streams[2].normal(0.0, 0.02, 3)
-        self.estimator = Estimator(BeliefParameters(), BEACONS, start, np.eye(3) * 4e-4, streams[3])
+        start = np.array(layout.start) + streams[2].normal(0.0, 0.02, 3)
+        self.estimator = Estimator(
+            scenario.belief_parameters(), self.world.beacons, start, np.eye(3) * 4e-4, streams[3]
+        )
         self.head, self.target = np.array([0.0, -0.45]), np.array([0.0, -0.45])
         self.times: dict[str, list[float]] = {"plan": [0.0], "gaze": [0.0]}
         self.motion: MotionDecision | None = None
@@ -88,11 +87,10 @@ class Run:
     def run(self) -> Episode:
         """Walk until done, a contact or the time limit."""
         world, walker = self.world, self.walker
-        radii = np.array([o.radius for o in world.obstacles])
         clearance = 9.0
         belief: Belief | None = None
         task: Task | None = None
-        for tick in range(round(TIME_LIMIT / TICK)):
+        for tick in range(round(self.duration / TICK)):
             time = tick * TICK
             if self.sensing == "camera":
                 step = HEAD_SPEED * TICK
@@ -105,22 +103,21 @@ class Run:
             assert task is not None
             if task.done:
                 return self._end("goal", time, clearance, task)
-            if tick % STEP_TICKS == 0:
+            if tick % self.step_ticks == 0:
                 begin = perf_counter()
                 self.motion = self.planner.plan(belief, task)
                 self.times["plan"].append(perf_counter() - begin)
                 walker.latch(self.motion.velocity)
                 self.history.append((time, walker.pose.copy(), self.motion.velocity, belief))
             walker.step()
-            positions, _ = world.state(time + TICK)
-            gaps = np.hypot(*(positions - walker.pose[:2]).T) - radii - S_ROBOT
+            gaps = world.gaps(time + TICK, walker.pose)
             clearance = min(clearance, float(gaps.min()))
             if clearance < 0.0:
                 episode = self._end("contact", time, clearance, task)
                 episode.cause = self._cause(int(gaps.argmin()), belief, time)
                 return episode
         assert task is not None
-        return self._end("timeout", TIME_LIMIT, clearance, task)
+        return self._end("timeout", self.duration, clearance, task)
 
     def _sense(self, time: float) -> Belief:
         if self.sensing == "perfect":
@@ -130,13 +127,13 @@ class Run:
         pan, tilt = self.head.tolist()
         positions, _ = self.world.state(time)
         things = [
-            ("obstacle", o.label, p, o.radius)
-            for o, p in zip(self.world.obstacles, positions, strict=True)
+            ("obstacle", o.colour, p, o.radius)
+            for o, p in zip(self.world.layout.obstacles, positions, strict=True)
             if self._in_tilt(p, tilt, pan, 0.0, 0.30)
         ]
         things += [
             ("beacon", name, np.array(p), 0.05)
-            for name, p in BEACONS.items()
+            for name, p in self.world.beacons.items()
             if self._in_tilt(np.array(p), tilt, pan, 0.25, 0.35)
         ]
         seen = self.camera.observe(time, self.walker.pose, pan, things)
@@ -168,8 +165,10 @@ class Run:
 
     def _end(self, reason: str, time: float, clearance: float, task: Task) -> Episode:
         pose = self.walker.pose
-        position = float(np.hypot(*(pose[:2] - self.world.waypoints[-1])))
-        heading = abs(wrap(float(pose[2]) - self.world.goal_heading))
+        layout = self.world.layout
+        position = float(np.hypot(*(pose[:2] - layout.waypoints[-1])))
+        wanted = float(pose[2]) if layout.goal_heading is None else layout.goal_heading
+        heading = abs(wrap(float(pose[2]) - wanted))
         return Episode(
             self.seed,
             reason == "goal" and position < 0.10 and heading < 0.26,
@@ -185,9 +184,9 @@ class Run:
 
     def _cause(self, index: int, belief: Belief, time: float) -> dict[str, object]:
         """What the robot knew of what it touched."""
-        obstacle = self.world.obstacles[index]
+        obstacle = self.world.layout.obstacles[index]
         pose, body = self.walker.pose, self.walker.body
-        position, velocity = obstacle.state(time)
+        position, velocity = (a[index] for a in self.world.state(time))
         bearing = wrap(atan2(*(position - pose[:2])[::-1].tolist()) - float(pose[2]))
         looks = []
         for back in (2.0, 1.0, 0.0):
@@ -195,22 +194,22 @@ class Run:
             if not then:
                 continue
             known = then[-1][3] if back else belief
-            truth = obstacle.state(known.time)[0]
-            same = [t for t in known.tracks if t.label == obstacle.label]
+            truth, true_velocity = (a[index] for a in self.world.state(known.time))
+            same = [t for t in known.tracks if t.label == obstacle.colour]
             best = min(same, key=lambda t: float(np.hypot(*(t.position - truth))), default=None)
             if best is None:
                 looks.append("none")
             else:
                 off = float(np.hypot(*(best.position - truth)))
-                speed_off = float(np.hypot(*(best.velocity - obstacle.state(known.time)[1])))
+                speed_off = float(np.hypot(*(best.velocity - true_velocity)))
                 cloud = "*" if best.particles is not None else ""
                 looks.append(
                     f"{best.motion}{cloud} age {best.age:.1f} off {off:.2f} v {speed_off:.2f}"
                 )
         pose_error = float(np.hypot(*(belief.pose[:2] - pose[:2])))
         return {
-            "moving": obstacle.speed > 0,
-            "speed": round(obstacle.speed, 3),
+            "moving": obstacle.motion is not None,
+            "speed": round(float(np.hypot(*velocity)), 3),
             "bearing": round(degrees(bearing)),
             "robot_speed": round(hypot(body[0], body[1]), 3),
             "head_on": round(float(velocity @ (pose[:2] - position)) / 0.2, 2),
@@ -219,31 +218,12 @@ class Run:
         }
 
 
-def override(parameters: NavigationParameters, settings: tuple[str, ...]) -> NavigationParameters:
-    """Apply settings like ``filter.margin=0.04``."""
-    for setting in settings:
-        path, _, text = setting.partition("=")
-        *groups, name = path.split(".")
-        chain = [parameters]
-        for group in groups:
-            chain.append(getattr(chain[-1], group))
-        old = getattr(chain[-1], name)
-        value = text == "true" if isinstance(old, bool) else type(old)(text)
-        new = replace(chain[-1], **{name: value})
-        for owner, group in zip(reversed(chain[:-1]), reversed(groups), strict=True):
-            new = replace(owner, **{group: new})
-        parameters = new
-    return parameters
-
-
 def main(
+    scenario: Annotated[str, tyro.conf.Positional] = "course",
     *,
-    profile: Literal["paper", "extended"] = "extended",
-    sensing: Literal["perfect", "camera"] = "perfect",
+    sensing: Literal["perfect", "camera"] = "camera",
     first: int = 0,
     runs: int = 20,
-    movers: int = 4,
-    ratio: tuple[float, float] = (0.3, 0.7),
     settings: tuple[str, ...] = (),
     out: Path | None = None,
     quiet: bool = False,
@@ -251,22 +231,18 @@ def main(
     """Run the study and print its summary.
 
     Args:
-        profile: parameters to start from.
+        scenario: its worlds, missions, speeds and parameters.
         sensing: what the robot knows.
         first: first seed; 0-99 are for tuning, 1000 and above for reports.
         runs: number of seeds.
-        movers: number of moving obstacles.
-        ratio: their speeds, as a ratio to the robot's.
-        settings: changed parameters, like filter.margin=0.04.
+        settings: changed settings, like navigation.filter.margin=0.04.
         out: file for one JSON line per run.
         quiet: do not print failures as they come.
     """
-    parameters = getattr(NavigationParameters, profile)()
-    parameters = override(parameters, settings)
     episodes = []
     begin = perf_counter()
     for seed in range(first, first + runs):
-        episode = Run(seed, parameters, sensing, movers, ratio).run()
+        episode = Run(load(scenario, settings, seed), seed, sensing).run()
         episodes.append(episode)
         if not episode.success and not quiet:
             print(episode, flush=True)
@@ -280,7 +256,7 @@ def main(
     hit = sum(bool(e.cause.get("moving")) for e in episodes)
     times = [e.time for e in good] or [0.0]
     print(
-        f"{profile} {sensing} seeds {first}-{first + n - 1} {movers} movers x {ratio} {settings}\n"
+        f"{scenario} {sensing} seeds {first}-{first + n - 1} {settings}\n"
         f"  success {len(good)}/{n} = {100 * len(good) / n:.1f} % [{100 * low:.0f}, "
         f"{100 * high:.0f}]  contacts {count['contact']} (movers {hit})  "
         f"time-outs {count['timeout']}  "
