@@ -9,6 +9,9 @@ from annotated_types import Ge, Gt, Le, Lt
 Positive = Annotated[float, Gt(0.0)]
 NonNegative = Annotated[float, Ge(0.0)]
 Share = Annotated[float, Ge(0.0), Le(1.0)]
+GazeMode = Literal[
+    "deadline", "integrated", "psi-lm", "psi-sf", "psi-ob", "psi-way", "info", "sweep", "fixed"
+]
 
 
 @dataclass(frozen=True)
@@ -78,11 +81,24 @@ class DeadlineParameters:
 
 
 @dataclass(frozen=True)
+class InformationParameters:
+    """Greedy information gain: what one detection is taken to tell."""
+
+    sight_sigma: Positive = 0.01
+    """Standard deviation of a place seen at no distance [m]."""
+    sight_rate: NonNegative = 0.015
+    """Growth of that with distance [1]."""
+    presence: Annotated[float, Ge(0.0), Le(0.5)] = 0.02
+    """Chance that something stands on a sample point never seen [1]."""
+
+
+@dataclass(frozen=True)
 class GazeParameters:
     """Gaze map (5)-(6) and the timing of the gaze."""
 
-    mode: Literal["integrated", "deadline", "fixed", "sweep"] = "deadline"
-    """Who chooses the gaze: (1)-(6), deadline votes, nobody, or a blind sweep."""
+    mode: GazeMode = "deadline"
+    """deadline: ours; integrated: (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one of them alone;
+    info: greedy information gain; sweep: from side to side by the clock; fixed: ahead."""
     w_lm: NonNegative = 0.09
     """Weight of the local map in (6) [1]."""
     w_way: NonNegative = 0.23
@@ -123,3 +139,5 @@ class GazeParameters:
     """Period of the sweep [s]."""
     deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
     """Deadline votes."""
+    information: InformationParameters = field(default_factory=InformationParameters)
+    """Greedy information gain."""

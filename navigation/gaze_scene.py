@@ -42,6 +42,7 @@ class GazeScene:
         map: eq. (1).
         samples: its sample points.
         beacon_bearing: of the beacons worth a look, in R (m,) [rad].
+        beacon_distance: of them (m,) [m].
         camera_height: above the floor [m].
     """
 
@@ -56,6 +57,7 @@ class GazeScene:
     map: MapEvaluation
     samples: SamplePoints
     beacon_bearing: Array
+    beacon_distance: Array
     camera_height: float
 
     @property
@@ -130,5 +132,6 @@ def gaze_scene(
         map=psi_local_map(confidence, in_gaze, e),
         samples=samples,
         beacon_bearing=beacon_bearing[worth],
+        beacon_distance=beacon_distance[worth],
         camera_height=height,
     )
