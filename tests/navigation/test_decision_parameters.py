@@ -49,7 +49,10 @@ def test_every_parameter_has_a_docstring_with_a_unit_or_is_a_choice(module):
                 text = ast.literal_eval(after.value)
                 kind = ast.unparse(here.annotation)
                 assert (
-                    "[" in text or "Literal" in kind or kind in {"bool"} or "Parameters" in kind
+                    "[" in text
+                    or "Literal" in kind
+                    or kind in {"bool", "GazeMode"}
+                    or "Parameters" in kind
                 ), name
 
 
