@@ -43,6 +43,7 @@ def avoid_obstacle(
     inside: Literal["zero", "outward"],
     outward: Array | None = None,
     abeam: bool = False,
+    signs: Array | None = None,
 ) -> Array:
     """u_auf of every obstacle at every point (Yoo & Kim, eq. (9)).
 
@@ -63,6 +64,7 @@ def avoid_obstacle(
         abeam: waive the third condition. The centre of a dynamic virtual obstacle is the
             foot of a perpendicular: before a mover that comes head-on it is neither ahead
             nor behind but exactly abeam, and the condition would always switch it off.
+        signs: +1 counter-clockwise, -1 clockwise (n,); None takes the short way round.
 
     Returns:
         Unit vectors or zeros (..., n, 2).
@@ -76,7 +78,8 @@ def avoid_obstacle(
         angle = np.where(rho < _AT_CENTRE, outward, angle)
     gap = rho - s_oe
     cross = p_od[..., 0] * p_or[..., 1] - p_od[..., 1] * p_or[..., 0]
-    turn = np.where(cross < 0.0, 1.0, -1.0) * spiral_turn(gap, s_oe, d_e, k_r)
+    short = np.where(cross < 0.0, 1.0, -1.0)
+    turn = (short if signs is None else signs) * spiral_turn(gap, s_oe, d_e, k_r)
     before_target = np.hypot(p_rd[..., 0], p_rd[..., 1]) + s_oe >= np.hypot(
         p_od[..., 0], p_od[..., 1]
     )

@@ -88,6 +88,10 @@ class UnivectorParameters:
     """Weight of move-to-goal for fixed weights [1]."""
     w_auf: NonNegative = 0.25
     """Weight of avoid-obstacle for fixed weights [1]."""
+    grouping: bool = False
+    """Whether obstacles with gaps too narrow for the robot are passed on one side."""
+    side_memory: bool = False
+    """Whether the side on which an obstacle is passed is kept while it is near."""
     goal_share: Share = 0.6
     """Share of the room between a destination and an obstacle left to its radius [1]."""
     goal_gap: Positive = 0.02
@@ -184,10 +188,32 @@ class FilterParameters:
     """Weight of a lost mover's particles together [1]."""
     reversal_weight: NonNegative = 0.12
     """Weight of the reversal of a visible mover [1]."""
+    reachable: bool = False
+    """Whether an unseen mover also counts as all it can have reached from its last place."""
+    reachable_radius: NonNegative = 0.4
+    """Largest growth of that disc [m]."""
+    reachable_delay: NonNegative = 0.3
+    """Time unseen before it grows [s]."""
+    reachable_age: Positive = 6.0
+    """Time unseen after which it is dropped [s]."""
     margin: NonNegative = 0.025
     """Distance kept from the bodies of obstacles [m]."""
     sigma_limit: NonNegative = 0.06
     """Largest part of a mover's position uncertainty added to that [m]."""
+
+
+@dataclass(frozen=True)
+class WaySearchParameters:
+    """Way points round still obstacles that block the straight way."""
+
+    enabled: bool = False
+    """Whether the search is used."""
+    cell: Positive = 0.10
+    """Side of a cell [m]."""
+    reach: Positive = 1.2
+    """Largest distance of the way point [m]."""
+    around: Positive = 1.0
+    """How far the search goes beyond robot and destination [m]."""
 
 
 @dataclass(frozen=True)
@@ -218,6 +244,8 @@ class NavigationParameters:
     """Confidence gate."""
     filter: FilterParameters = field(default_factory=FilterParameters)
     """Time-to-contact filter."""
+    way_search: WaySearchParameters = field(default_factory=WaySearchParameters)
+    """Way-point search."""
     body: BodyParameters = field(default_factory=BodyParameters)
     """Body command."""
 

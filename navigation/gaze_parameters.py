@@ -10,7 +10,16 @@ Positive = Annotated[float, Gt(0.0)]
 NonNegative = Annotated[float, Ge(0.0)]
 Share = Annotated[float, Ge(0.0), Le(1.0)]
 GazeMode = Literal[
-    "deadline", "integrated", "psi-lm", "psi-sf", "psi-ob", "psi-way", "info", "sweep", "fixed"
+    "deadline",
+    "urgency",
+    "integrated",
+    "psi-lm",
+    "psi-sf",
+    "psi-ob",
+    "psi-way",
+    "info",
+    "sweep",
+    "fixed",
 ]
 
 
@@ -93,11 +102,31 @@ class InformationParameters:
 
 
 @dataclass(frozen=True)
+class UrgencyParameters:
+    """Votes of obstacles by age over time to contact; the other evaluations as in (6)."""
+
+    limit: Positive = 10.0
+    """Largest urgency [1]."""
+    bonus: NonNegative = 0.3
+    """Age added to obstacles [s]."""
+    unknown_bonus: NonNegative = 1.0
+    """Age added to undecided obstacles instead [s]."""
+    least_time: Positive = 0.4
+    """Shortest time to contact counted [s]."""
+    aside: Share = 0.6
+    """Weight of what is not ahead [1]."""
+    static_weight: NonNegative = 0.15
+    """Weight of static obstacles [1]."""
+    gate_weight: NonNegative = 0.8
+    """Vote for ground the confidence gate waits for [1]."""
+
+
+@dataclass(frozen=True)
 class GazeParameters:
     """Gaze map (5)-(6) and the timing of the gaze."""
 
     mode: GazeMode = "deadline"
-    """deadline: ours; integrated: (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one of them alone;
+    """deadline: ours; urgency: its forerunner; integrated: (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one of them alone;
     info: greedy information gain; sweep: from side to side by the clock; fixed: ahead."""
     w_lm: NonNegative = 0.09
     """Weight of the local map in (6) [1]."""
@@ -137,6 +166,8 @@ class GazeParameters:
     """Pan amplitude of the sweep [rad]."""
     sweep_period: Positive = 4.0
     """Period of the sweep [s]."""
+    urgency: UrgencyParameters = field(default_factory=UrgencyParameters)
+    """Urgency votes."""
     deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
     """Deadline votes."""
     information: InformationParameters = field(default_factory=InformationParameters)

@@ -18,6 +18,7 @@ from navigation.gaze_parameters import GazeMode, GazeParameters
 from navigation.gaze_scene import GazeScene
 from navigation.information_gaze import information_votes
 from navigation.integrated_gaze import integrated_votes
+from navigation.urgency_gaze import urgency_votes
 
 Array = NDArray[np.float64]
 Gaze = tuple[float, float]
@@ -135,6 +136,19 @@ def gaze_policy(
             return deadline_votes(moment.scene, moment.belief, way, limits.forward, parameters)
 
         return VotingGaze(deadline, grid, p.deadline.switch_ratio)
+    if p.mode == "urgency":
+        return VotingGaze(
+            lambda m: urgency_votes(
+                m.scene,
+                m.belief,
+                m.task,
+                way=way_bearing(m),
+                speed=limits.forward,
+                parameters=parameters,
+            ),
+            grid,
+            p.switch_ratio,
+        )
     if p.mode == "info":
         return VotingGaze(
             lambda m: information_votes(m.scene, m.belief, parameters), grid, p.switch_ratio

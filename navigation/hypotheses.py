@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,9 @@ from numpy.typing import NDArray
 from navigation.belief import Track
 from navigation.decision_parameters import FilterParameters
 from navigation.obstacle_set import ObstacleSet
+
+if TYPE_CHECKING:
+    from navigation.local_map import LocalMap
 
 Array = NDArray[np.float64]
 
@@ -50,7 +54,11 @@ class Hypotheses:
 
 
 def collision_hypotheses(
-    tracks: Sequence[Track], obstacles: ObstacleSet, s_robot: float, parameters: FilterParameters
+    tracks: Sequence[Track],
+    obstacles: ObstacleSet,
+    s_robot: float,
+    parameters: FilterParameters,
+    local_map: "LocalMap",
 ) -> Hypotheses:
     """Build the hypotheses of all tracks.
 
@@ -61,6 +69,7 @@ def collision_hypotheses(
         obstacles: the same tracks as arrays.
         s_robot: radius of the robot [m].
         parameters: horizons, weights and margins.
+        local_map: when a place was last looked at.
     """
     base = s_robot + obstacles.radius + parameters.margin
     swollen = base + np.minimum(parameters.sigma_limit, obstacles.sigma)
@@ -100,10 +109,46 @@ def collision_hypotheses(
                     parameters.particle_weight * track.particles.weights,
                 )
             )
+    if parameters.reachable:
+        parts.append(reachable_discs(tracks, obstacles, base, parameters, local_map))
     return Hypotheses(
         np.concatenate([p.position for p in parts]),
         np.concatenate([p.velocity for p in parts]),
         np.concatenate([p.radius for p in parts]),
         np.concatenate([p.horizon for p in parts]),
         np.concatenate([p.weight for p in parts]),
+    )
+
+
+def reachable_discs(
+    tracks: Sequence[Track],
+    obstacles: ObstacleSet,
+    base: Array,
+    parameters: FilterParameters,
+    local_map: "LocalMap",
+) -> Hypotheses:
+    """All that unseen movers can have reached, as still discs about where they were seen last.
+
+    A disc lasts until its place is looked at or it is too old.
+
+    Args:
+        tracks: of the belief.
+        obstacles: the same tracks as arrays.
+        base: radii at which they count as touched when seen (n,) [m].
+        parameters: growth and age.
+        local_map: when a place was last looked at.
+    """
+    p = parameters
+    place = np.array([t.last_seen for t in tracks], dtype=np.float64).reshape(-1, 2)
+    unseen = obstacles.age - local_map.age_at(place) < p.reachable_delay
+    kept = obstacles.moving & (obstacles.age > p.reachable_delay) & unseen
+    kept &= obstacles.age <= p.reachable_age
+    grown = obstacles.speed * np.maximum(0.0, obstacles.age - p.reachable_delay)
+    n = int(kept.sum())
+    return Hypotheses(
+        place[kept],
+        np.zeros((n, 2)),
+        base[kept] + np.minimum(p.reachable_radius, grown[kept]),
+        np.full(n, p.static_horizon),
+        np.ones(n),
     )

@@ -28,18 +28,18 @@ def integrated_votes(
         parameters: weights and forms.
     """
     p = parameters.gaze
-    votes = _map_votes(scene, p.w_lm, p.map_votes)
-    votes.append(_way_vote(scene, belief, task, p.w_way, parameters))
+    votes = map_votes(scene, p.w_lm, p.map_votes)
+    votes.append(way_vote(scene, belief, task, p.w_way, parameters))
     seen = scene.attended & scene.reachable
     pan = np.clip(scene.bearing[seen], -p.pan_limit, p.pan_limit)
     tilt = np.arctan2(parameters.evaluation.aim_height - scene.camera_height, scene.distance[seen])
     share = 1.0 / max(1, len(pan)) if p.obstacle_votes == "mean" else 1.0
     votes.append(Votes(pan, tilt, share * p.w_ob * scene.psi_ob[seen]))
-    votes += _self_votes(scene, pan, tilt, p)
+    votes += self_votes(scene, pan, tilt, p)
     return Votes.join(votes)
 
 
-def _self_votes(scene: GazeScene, pan: Array, tilt: Array, p: GazeParameters) -> list[Votes]:
+def self_votes(scene: GazeScene, pan: Array, tilt: Array, p: GazeParameters) -> list[Votes]:
     """Votes of psi_sf for what can localize the robot: obstacles as printed, and beacons.
 
     The printed mean runs over both together, so that GM stays within [0, 1].
@@ -62,7 +62,8 @@ def beacon_votes(scene: GazeScene, value: float) -> Votes:
     return Votes(scene.beacon_bearing, np.zeros(n), np.full(n, value / max(1, n)))
 
 
-def _map_votes(scene: GazeScene, weight: float, form: str) -> list[Votes]:
+def map_votes(scene: GazeScene, weight: float, form: str) -> list[Votes]:
+    """Votes of psi_lm: `weight` at the mean under-confident point, or shared by all of them."""
     under = scene.map.under_confident
     count = int(under.sum())
     if count == 0:
@@ -74,9 +75,10 @@ def _map_votes(scene: GazeScene, weight: float, form: str) -> list[Votes]:
     return [Votes(pan, tilt, np.full(count, weight * scene.map.psi / count))]
 
 
-def _way_vote(
+def way_vote(
     scene: GazeScene, belief: Belief, task: Task, weight: float, parameters: NavigationParameters
 ) -> Votes:
+    """Vote of psi_way towards the way point, on the floor; arguments as `integrated_votes`."""
     e, limit = parameters.evaluation, parameters.gaze.pan_limit
     dx, dy = (task.target - belief.pose[:2]).tolist()
     bearing = wrap(atan2(dy, dx) - float(belief.pose[2]))

@@ -36,6 +36,7 @@ class FieldScene:
         target: destination (2,) [m].
         target_heading: heading to arrive with [rad].
         side: remembered side of the arrival, see `move_to_goal`.
+        signs: sign of (9) for each obstacle (n,); None for the short way at every point.
     """
 
     obstacles: ObstacleSet
@@ -44,6 +45,7 @@ class FieldScene:
     target: Array
     target_heading: float
     side: int = 0
+    signs: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +102,7 @@ class MotionField:
             d_b=p.d_b,
             k_r=p.k_r,
             inside=p.inside,
+            signs=scene.signs,
         )
         if forces:
             virtual = avoid_obstacle(
@@ -131,7 +134,15 @@ class MotionField:
             p,
         )
         u_auf = avoid_obstacle(
-            points, scene.target, centres, radii, d_e=d_e, d_b=p.d_b, k_r=p.k_r, inside=p.inside
+            points,
+            scene.target,
+            centres,
+            radii,
+            d_e=d_e,
+            d_b=p.d_b,
+            k_r=p.k_r,
+            inside=p.inside,
+            signs=scene.signs,
         )
         away = np.asarray(points)[..., None, :] - centres
         ramp = nearness(np.hypot(away[..., 0], away[..., 1]), radii, d_e, p.d_b)

@@ -11,6 +11,7 @@ from navigation.belief import Belief
 from navigation.body_command import body_velocity
 from navigation.collision_band import Encounter, Situation
 from navigation.collision_filter import CollisionFilter, direction_and_speed
+from navigation.confidence_gate import gate_points
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.decision_parameters import NavigationParameters
 from navigation.extended_radius import extended_radius, physical_radius
@@ -19,7 +20,9 @@ from navigation.motion_field import FieldScene, MotionField, VirtualForce
 from navigation.move_to_goal import ArrivalSide, arrival_gain
 from navigation.obstacle_set import ObstacleSet
 from navigation.partial_evaluation import psi_obstacle, psi_self
+from navigation.passing_side import PassingSides
 from navigation.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
+from navigation.way_search import way_point
 
 Array = NDArray[np.float64]
 
@@ -43,6 +46,7 @@ class Planner:
         self._limits = limits
         self._field = MotionField(parameters.univector, parameters.mover)
         self._filter = CollisionFilter(parameters.filter, parameters.body, limits)
+        self._sides = PassingSides(parameters.univector)
         self._arrival = ArrivalSide(parameters.univector)
         self._leg = -1
         self._body = np.zeros(3)
@@ -61,6 +65,7 @@ class Planner:
         if task.done or belief.lost:
             self._body = np.zeros(3)
             return MotionDecision(self._body, self._direction, 0.0, "free", (), ())
+        task = self._round_obstacles(belief, task)
         scene, radii = self._scene(belief, task)
         wanted = self._wanted(belief, task, scene)
         facing = self._facing(belief, task)
@@ -75,6 +80,21 @@ class Planner:
         )
         return replace(wanted, velocity=self._body, extended_radii=radii)
 
+    def _round_obstacles(self, belief: Belief, task: Task) -> Task:
+        """The task, or one on the way round still obstacles that block the straight way."""
+        p = self._parameters
+        if not p.way_search.enabled or task.aligning:
+            return task
+        still = ObstacleSet.from_tracks(belief.tracks)
+        still = still.where(still.static)
+        radii = physical_radius(still, p.univector) + p.univector.margin
+        here = belief.pose[:2]
+        point = way_point(here, task.target, still.position, radii, p.way_search)
+        if point is task.target:
+            return task
+        dx, dy = (task.target - point).tolist()
+        return replace(task, target=point, heading=atan2(dy, dx), is_goal=False)
+
     def _filtered(
         self, belief: Belief, wanted: MotionDecision, facing: float | None
     ) -> tuple[float, float]:
@@ -87,6 +107,7 @@ class Planner:
             ObstacleSet.from_tracks(belief.tracks),
             p.univector.s_robot,
             p.filter,
+            belief.local_map,
         )
         velocity = self._filter.choose(
             belief.pose,
@@ -117,7 +138,10 @@ class Planner:
                 self._leg = task.index
             dx, dy = (task.target - belief.pose[:2]).tolist()
             side = self._arrival.update(wrap(task.heading - atan2(dy, dx)))
-        scene = FieldScene(obstacles, s_oe, psi_sf + psi_ob, task.target, task.heading, side)
+        signs = None
+        if p.univector.grouping or p.univector.side_memory:
+            signs = self._sides.signs(belief.pose[:2], task.target, obstacles, s_oe)
+        scene = FieldScene(obstacles, s_oe, psi_sf + psi_ob, task.target, task.heading, side, signs)
         return scene, tuple(zip(obstacles.ids.tolist(), s_oe.tolist(), strict=True))
 
     def _wanted(self, belief: Belief, task: Task, scene: FieldScene) -> MotionDecision:
@@ -224,12 +248,6 @@ class Planner:
         p = self._parameters.gate
         if not p.enabled:
             return self._limits.forward
-        along, across = np.meshgrid(
-            np.linspace(p.near, p.far, 4), np.array([-p.half_width, 0.0, p.half_width])
-        )
-        c, s = cos(direction), sin(direction)
-        points = belief.pose[:2] + np.stack(
-            [(c * along - s * across).ravel(), (s * along + c * across).ravel()], axis=1
-        )
+        points = gate_points(belief.pose, direction, p)
         seen = float(np.min(belief.local_map.confidence_at(points))) >= p.confidence
         return self._limits.forward if seen else p.speed

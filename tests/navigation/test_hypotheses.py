@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,19 @@ from navigation.obstacle_set import ObstacleSet
 P = FilterParameters()
 
 
-def build(*tracks):
-    return collision_hypotheses(tracks, ObstacleSet.from_tracks(tracks), 0.12, P)
+class LookedAt:
+    """A local map of one age."""
+
+    def __init__(self, age):
+        self._age = age
+
+    def age_at(self, points):
+        return np.full(len(points), self._age)
+
+
+def build(*tracks, p=P, looked=np.inf):
+    obstacles = ObstacleSet.from_tracks(tracks)
+    return collision_hypotheses(tracks, obstacles, 0.12, p, LookedAt(looked))
 
 
 def test_static_obstacles_matter_briefly_and_without_their_sigma(track):
@@ -50,3 +63,18 @@ def test_only_what_can_be_reached_in_time_is_kept(track):
 
 def test_no_tracks_are_no_hypotheses():
     assert len(build()) == 0
+
+
+def test_an_unseen_mover_can_have_gone_anywhere_near_until_its_place_is_looked_at(track):
+    p = replace(P, reachable=True, reversal_weight=0.0)
+    plain = replace(p, reachable=False)
+    for age, grown in ((0.2, None), (1.3, 0.1), (5.0, 0.4), (6.5, None)):
+        mover = track((1, 0), (0.1, 0.0), age=age)
+        h, without = build(mover, p=p), build(mover, p=plain)
+        assert len(h) - len(without) == (grown is not None)
+        if grown is not None:
+            assert h.position[-1] == pytest.approx(mover.last_seen)
+            assert h.radius[-1] == pytest.approx(0.12 + 0.08 + P.margin + grown)
+            assert not h.velocity[-1].any()
+        assert len(build(mover, p=p, looked=0.1)) == len(without)
+    assert len(build(track((1, 0), age=2.0), p=p)) == 1

@@ -146,3 +146,21 @@ def test_switches_of_the_movers_can_be_turned_off(belief, task, track, limits):
     decision = Planner(off, limits).plan(belief([track((0.9, 0.1), (-0.12, 0.0))]), task())
     assert decision.speed == limits.forward
     assert decision.virtual_obstacles == ()
+
+
+def test_a_wall_is_walked_round_with_the_search_and_not_without(belief, task, track, limits):
+    wall = [track((1.0, y), id=k) for k, y in enumerate(np.arange(-0.6, 1.01, 0.2))]
+    search = replace(EXTENDED, way_search=replace(EXTENDED.way_search, enabled=True))
+    plain, round_it = (Planner(p, limits).plan(belief(wall), task()) for p in (EXTENDED, search))
+    assert round_it.direction < -0.3
+    assert abs(plain.direction) < abs(round_it.direction)
+
+
+@pytest.mark.parametrize("name", ["grouping", "side_memory"])
+def test_sides_are_chosen_once_for_the_whole_field(name, belief, task, track, limits):
+    p = replace(EXTENDED, univector=replace(EXTENDED.univector, **{name: True}))
+    planner = Planner(p, limits)
+    pair = [track((0.45, 0.17), id=1), track((0.45, -0.18), id=2)]
+    first = planner.plan(belief(pair), task()).direction
+    again = planner.plan(belief(pair, pose=(0.0, 0.03, 0.0)), task()).direction
+    assert np.sign(first) == np.sign(again) != 0.0
