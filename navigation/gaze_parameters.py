@@ -126,8 +126,9 @@ class GazeParameters:
     """Gaze map (5)-(6) and the timing of the gaze."""
 
     mode: GazeMode = "deadline"
-    """deadline: ours; urgency: its forerunner; integrated: (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one of them alone;
-    info: greedy information gain; sweep: from side to side by the clock; fixed: ahead."""
+    """deadline: ours; urgency: what it grew from; integrated: (1)-(6); psi-lm, psi-sf, psi-ob,
+    psi-way: one of them alone; info: greedy information gain; sweep: from side to side by the
+    clock; fixed: ahead."""
     w_lm: NonNegative = 0.09
     """Weight of the local map in (6) [1]."""
     w_way: NonNegative = 0.23
