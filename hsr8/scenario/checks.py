@@ -9,11 +9,9 @@ from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
 from hsr8.scenario.toml_lines import Path
-from hsr8.scenario.world import CircleMover, Mover, ShuttleMover
+from hsr8.scenario.world import ROBOT_RADIUS, CircleMover, Mover, ShuttleMover
 from vision.errors import VisionError
 
-ROBOT_RADIUS = 0.12
-"""Radius of the circle in which the walking robot fits, S_robot [m]."""
 MOST_CELLS = 1000
 """Largest side of the local map, which every frame goes through [cells]."""
 
@@ -30,6 +28,7 @@ def check(scenario: Scenario) -> list[Problem]:
         *_disturbance(scenario),
         *_inside(scenario),
         *_free(scenario),
+        *_rows_free(scenario),
     ]
 
 
@@ -81,6 +80,10 @@ def _mission(scenario: Scenario) -> Iterator[Problem]:
         )
     if criteria.min_via_points and isinstance(mission, Walk):
         yield Problem(("criteria", "min_via_points"), 'a mission of kind "walk" has no via points')
+    if scenario.world.encounters.n and isinstance(mission, Walk):
+        yield Problem(
+            ("world", "encounters", "n"), 'a mission of kind "walk" has no way to meet on'
+        )
     if isinstance(mission, Points) and mission.endless and len(mission.points) == 1:
         yield Problem(("mission", "points"), "an endless tour needs at least 2 points, got 1")
     if isinstance(mission, Tour | Course):
@@ -143,6 +146,9 @@ def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
         yield ("robot", "start", "position"), scenario.robot.start.position, ROBOT_RADIUS
     for i, obstacle in enumerate(world.obstacle):
         yield ("world", "obstacle", i, "position"), obstacle.position, obstacle.radius
+    for i, row in enumerate(world.row):
+        yield ("world", "row", i, "start"), row.start, row.radius
+        yield ("world", "row", i, "end"), row.end, row.radius
     for i, mover in enumerate(world.mover):
         if isinstance(mover, CircleMover):
             room = mover.path_radius + mover.radius
@@ -185,6 +191,19 @@ def _free(scenario: Scenario) -> Iterator[Problem]:
             yield Problem(
                 ("world", "mover", i, key), f"begins on the start of the robot at {list(start)}"
             )
+
+
+def _rows_free(scenario: Scenario) -> Iterator[Problem]:
+    """No wall stands on the robot or on a point."""
+    start, mission = scenario.robot.start.position, scenario.mission
+    places = [("the start of the robot at", start)] if start is not None else []
+    if isinstance(mission, Points):
+        places += [(f"mission.points[{k}] =", point) for k, point in enumerate(mission.points)]
+    for i, row in enumerate(scenario.world.row):
+        reach = row.radius + ROBOT_RADIUS
+        for name, place in places:
+            if any(_apart(cylinder, place) < reach for cylinder in row.positions()):
+                yield Problem(("world", "row", i), f"stands on {name} {list(place)}")
 
 
 def _begin(mover: Mover) -> tuple[str, Point]:

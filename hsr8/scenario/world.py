@@ -1,9 +1,10 @@
 """The world a scenario describes: what is drawn from the seed and what is placed by hand."""
 
+from math import ceil, hypot
 from typing import Annotated, Literal
 
 from annotated_types import Interval, Len
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from hsr8.scenario.section import (
     Colour,
@@ -16,9 +17,15 @@ from hsr8.scenario.section import (
     RatioRange,
     Section,
     Speed,
+    ordered,
 )
 
 Side = Annotated[float, Interval(ge=1.0, le=20.0)]
+Bearing = Annotated[float, Interval(ge=0.0, le=180.0)]
+BearingRange = Annotated[tuple[Bearing, Bearing], AfterValidator(ordered)]
+
+ROBOT_RADIUS = 0.12
+"""Radius of the circle in which the walking robot fits, S_robot [m]."""
 
 
 class StaticObstacle(Section):
@@ -78,6 +85,42 @@ class CircleMover(_Mover):
     """Sense of the motion."""
 
 
+class Row(Section):
+    """Static cylinders side by side, too close for the robot: a wall that vision knows."""
+
+    start: Point
+    """Axis of the first cylinder in W [m]."""
+    end: Point
+    """Axis of the last cylinder in W [m]."""
+    radius: Radius = 0.12
+    """Radius of each [m]."""
+    gap: Annotated[float, Interval(ge=0.0, lt=2.0 * ROBOT_RADIUS)] = 0.20
+    """Widest gap between neighbours, narrower than the robot [m]."""
+
+    def positions(self) -> list[Point]:
+        """Axes of the cylinders, evenly spaced [m]."""
+        (x, y), (dx, dy) = self.start, (self.end[0] - self.start[0], self.end[1] - self.start[1])
+        n = ceil(hypot(dx, dy) / (2.0 * self.radius + self.gap) - 1e-9)
+        return [(x + k / n * dx, y + k / n * dy) for k in range(n + 1)] if n else [self.start]
+
+
+class Encounters(Section):
+    """Movers on collision courses: they cross the field once, at constant velocity.
+
+    Each would meet a robot that goes straight from the start through all points at the
+    nominal pace. None of them knows where the robot is.
+    """
+
+    n: Count = 0
+    """Movers to draw, spread over the nominal walk [1]."""
+    speed_ratio: RatioRange = (0.4, 1.0)
+    """Slowest and fastest, relative to the robot's forward speed `robot.speed.forward` [1]."""
+    bearing_deg: BearingRange = (0.0, 90.0)
+    """Where the nominal robot sees it come: 0 ahead, 180 behind, either side [deg]."""
+    pace: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.75
+    """Pace of the nominal walk, relative to the robot's forward speed [1]."""
+
+
 Mover = Annotated[ShuttleMover | LineMover | CircleMover, Field(discriminator="motion")]
 
 
@@ -94,10 +137,12 @@ class World(Section):
     """Smallest and largest radius of a drawn obstacle [m]."""
     speed_ratio: RatioRange = (0.3, 0.7)
     """Slowest and fastest drawn mover, relative to the robot's forward speed [1]."""
-    motions: Annotated[tuple[Literal["shuttle", "circle"], ...], Len(1, 2)] = ("shuttle",)
+    motions: Annotated[tuple[Literal["shuttle", "circle", "wander"], ...], Len(1, 3)] = ("shuttle",)
     """Motions drawn for movers, each as likely as the other."""
     lane: LengthRange = (0.8, 1.8)
-    """Shortest and longest lane of a drawn mover; of a circle, its diameter's range [m]."""
+    """Shortest and longest lane of a drawn mover; else the range of its track's extent [m]."""
+    encounters: Encounters = Encounters()
+    """Further movers, on collision courses with the nominal walk."""
     beacons: bool = True
     """Whether the six beacons stand around the field."""
     moved_beacon: Annotated[float, Interval(ge=-2.0, le=2.0)] = 0.0
@@ -106,6 +151,8 @@ class World(Section):
     """Strength of all lights, relative to the usual [1]."""
     obstacle: Annotated[tuple[StaticObstacle, ...], Len(0, 64)] = ()
     """Static obstacles placed by hand."""
+    row: Annotated[tuple[Row, ...], Len(0, 16)] = ()
+    """Walls of static cylinders placed by hand."""
     mover: Annotated[tuple[Mover, ...], Len(0, 64)] = ()
     """Moving obstacles placed by hand."""
 

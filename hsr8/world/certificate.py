@@ -13,7 +13,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.checks import ROBOT_RADIUS
+from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.layout import Layout
 
 Array = NDArray[np.float64]

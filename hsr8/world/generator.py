@@ -6,54 +6,20 @@ The rules, with distances between surfaces unless a point is named:
 * the start is a point 0.35 m from static obstacles and 0.9 m from movers;
 * via points and the goal are robot radius and 0.25 m from static obstacles;
 * lanes of movers keep 0.3 m from static obstacles, so that none pins the robot, keep
-  clear of one another, and turn about robot radius and 0.3 m from the goal at least.
+  clear of one another, and turn about robot radius and 0.3 m from the goal at least;
+* movers that wander or cross the field may cross lanes, but never meet another mover.
 """
 
 import zlib
-from collections.abc import Callable, Sequence
-from math import cos, pi, radians, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.checks import ROBOT_RADIUS
-from hsr8.scenario.mission import Course, Points, Tour
 from hsr8.scenario.schema import Scenario
-from hsr8.world.lane import Lane, distance, motion_law
-from hsr8.world.layout import (
-    OBSTACLE_HEIGHT,
-    Beacon,
-    Layout,
-    Obstacle,
-    standard_beacons,
-    with_first_moved,
-)
-from hsr8.world.motion import Circle, MotionLaw, Shuttle
+from hsr8.world.attempt import Attempt, CrowdedError
+from hsr8.world.layout import Layout
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Point = tuple[float, float]
-
-STATIC_GAP = 2.0 * ROBOT_RADIUS + 0.16  # between static obstacles [m]
-START_TO_STATIC = 0.35  # from the start, a point [m]
-START_TO_MOVER = 0.90  # from the start, a point [m]
-POINT_TO_STATIC = ROBOT_RADIUS + 0.25  # from via points and goal [m]
-LANE_TO_STATIC = 0.30  # between a mover and a static obstacle [m]
-LANE_TO_LANE = 0.05  # between two movers [m]
-LANE_TO_GOAL = ROBOT_RADIUS + 0.30  # between a turning mover and the goal, a point [m]
-POINT_TO_RIM = 0.35  # from the rim to points the robot must reach [m]
-OBSTACLE_TO_RIM = 0.05  # from the rim to obstacles [m]
-START_TURN = radians(60.0)  # the robot faces the first via point within this [rad]
-COLOURS = ("red", "green", "blue", "violet")
-BATCH = 64  # candidates drawn at a time
-TRIES = 30  # batches for one thing
 WORLDS = 20  # worlds begun before giving up
-LANE_TRIES = 300  # for one mover
-
-
-class _CrowdedError(Exception):
-    """One thing finds no place in this attempt."""
 
 
 def draw_layout(scenario: Scenario, seed: int) -> Layout:
@@ -67,8 +33,8 @@ def draw_layout(scenario: Scenario, seed: int) -> Layout:
     reasons: dict[str, int] = {}
     for _ in range(WORLDS):
         try:
-            return _Draw(scenario, rng).layout()
-        except _CrowdedError as crowded:
+            return Attempt(scenario, rng).layout()
+        except CrowdedError as crowded:
             reasons[str(crowded)] = reasons.get(str(crowded), 0) + 1
     worst = max(reasons, key=lambda reason: reasons[reason])
     width, depth = scenario.world.size
@@ -77,203 +43,3 @@ def draw_layout(scenario: Scenario, seed: int) -> Layout:
         f"most often for want of room for {worst} in a field of {width:g} m x {depth:g} m; "
         "make world.size larger or world.n_static, world.n_moving or world.radius smaller"
     )
-
-
-class _Draw:
-    """One attempt."""
-
-    def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:
-        self._scenario = scenario
-        self._world = scenario.world
-        self._rng = rng
-        self._half = 0.5 * np.asarray(scenario.world.size)
-        self._static: list[Obstacle] = []
-        self._lanes: list[Lane] = []
-
-    def layout(self) -> Layout:
-        """Lanes first, for they need most room; then what stands, the start and the points."""
-        world = self._world
-        start = self._scenario.robot.start.position
-        points = self._given_points()
-        self._lanes = [Lane.of(motion_law(m), m.radius, m.colour) for m in world.mover]
-        self._static = [
-            Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.colour) for o in world.obstacle
-        ]
-        for _ in range(world.n_moving):
-            self._lanes.append(self._draw_mover(start, points))
-        self._draw_static(start, points)
-        if start is None:
-            start = self._draw_point("the start", self._start_clear)
-        if points is None:
-            points = self._draw_points(start)
-        return Layout(
-            field_size=world.size,
-            obstacles=(*self._static, *(lane.obstacle for lane in self._lanes)),
-            beacons=self._beacons(),
-            start=(*start, self._start_heading(start, points)),
-            waypoints=np.array(points, dtype=float).reshape(-1, 2),
-            goal_heading=self._goal_heading(),
-            endless=self._is_endless(),
-        )
-
-    def _beacons(self) -> tuple[Beacon, ...]:
-        world = self._world
-        if not world.beacons:
-            return ()
-        return with_first_moved(standard_beacons(world.size), world.moved_beacon)
-
-    def _given_points(self) -> list[Point] | None:
-        mission = self._scenario.mission
-        if isinstance(mission, Points):
-            return list(mission.points)
-        return None if isinstance(mission, Tour | Course) else []
-
-    def _is_endless(self) -> bool:
-        mission = self._scenario.mission
-        return isinstance(mission, Tour) or (isinstance(mission, Points) and mission.endless)
-
-    def _has_goal(self) -> bool:
-        return isinstance(self._scenario.mission, Course | Points) and not self._is_endless()
-
-    def _goal_heading(self) -> float | None:
-        mission = self._scenario.mission
-        if isinstance(mission, Course | Points) and mission.goal_heading_deg is not None:
-            return radians(mission.goal_heading_deg)
-        return float(self._rng.uniform(-pi, pi)) if isinstance(mission, Course) else None
-
-    def _start_heading(self, start: Point, points: Sequence[Point]) -> float:
-        given = self._scenario.robot.start.heading_deg
-        if given is not None:
-            return radians(given)
-        turn = float(self._rng.uniform(-1.0, 1.0))
-        if not points:
-            return turn * pi
-        ahead = float(np.arctan2(points[0][1] - start[1], points[0][0] - start[0]))
-        return float(np.angle(np.exp(1j * (ahead + turn * START_TURN))))
-
-    def _draw_static(self, start: Point | None, points: Sequence[Point] | None) -> None:
-        for _ in range(self._world.n_static):
-            radius = self._radius()
-
-            def clear(p: Array, radius: float = radius) -> Mask:
-                free: Mask = self._static_gap(p) - radius >= STATIC_GAP
-                if start is not None:
-                    free &= distance(p, [start]) - radius >= START_TO_STATIC
-                if points:
-                    free &= distance(p, points) - radius >= POINT_TO_STATIC
-                for lane in self._lanes:
-                    gap = distance(p, lane.path) - radius - lane.obstacle.radius
-                    free &= gap >= LANE_TO_STATIC
-                return free
-
-            room = radius + OBSTACLE_TO_RIM
-            position = self._draw_point("static obstacles", clear, room)
-            self._static.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._colour()))
-
-    def _draw_points(self, start: Point) -> list[Point]:
-        """Via points of a tour, or via points and goal of a course."""
-        mission = self._scenario.mission
-        assert isinstance(mission, Tour | Course)
-        shortest, longest = mission.leg
-        course = isinstance(mission, Course)
-        points: list[Point] = []
-        for k in range(mission.via_points + course):
-            last = points[-1] if points else start
-            # A tour comes back to the same places; a course never does.
-            apart = [start, *points] if course else [last]
-
-            is_goal = course and k == mission.via_points
-
-            def clear(
-                p: Array, last: Point = last, apart: list[Point] = apart, is_goal: bool = is_goal
-            ) -> Mask:
-                free: Mask = self._static_gap(p) >= POINT_TO_STATIC
-                free &= distance(p, apart) >= shortest
-                free &= distance(p, [last]) <= longest
-                if is_goal:
-                    for lane in self._lanes:
-                        gap = distance(p, lane.ends) - lane.obstacle.radius
-                        free &= gap >= LANE_TO_GOAL
-                return free
-
-            points.append(self._draw_point("via points", clear))
-        return points
-
-    def _draw_mover(self, start: Point | None, points: Sequence[Point] | None) -> Lane:
-        goal = points[-1] if points and self._has_goal() else None
-        for _ in range(LANE_TRIES):
-            lane = Lane.of(self._draw_law(), self._radius(), self._colour())
-            if self._lane_clear(lane, start, goal):
-                return lane
-        raise _CrowdedError("moving obstacles")
-
-    def _draw_law(self) -> MotionLaw:
-        rng, world = self._rng, self._world
-        centre = tuple(rng.uniform(-self._half, self._half).tolist())
-        angle = float(rng.uniform(-pi, pi))
-        length = float(rng.uniform(*world.lane))
-        speed = float(rng.uniform(*world.speed_ratio)) * self._scenario.robot.speed.forward
-        kind = world.motions[int(rng.integers(len(world.motions)))]
-        if kind == "circle":
-            sense = 1.0 if rng.random() < 0.5 else -1.0
-            return Circle((centre[0], centre[1]), 0.5 * length, sense * speed, angle)
-        dx, dy = 0.5 * length * cos(angle), 0.5 * length * sin(angle)
-        return Shuttle(
-            (centre[0] - dx, centre[1] - dy),
-            (centre[0] + dx, centre[1] + dy),
-            speed,
-            offset=float(rng.uniform(0.0, 2.0 * length)),
-        )
-
-    def _lane_clear(self, lane: Lane, start: Point | None, goal: Point | None) -> bool:
-        radius = lane.obstacle.radius
-        if (np.abs(lane.path) > self._half - radius - OBSTACLE_TO_RIM).any():
-            return False
-        if (self._static_gap(lane.path) - radius < LANE_TO_STATIC).any():
-            return False
-        at_first = np.array([lane.obstacle.position])
-        if start is not None and distance(at_first, [start])[0] - radius < START_TO_MOVER:
-            return False
-        if goal is not None and (distance(lane.ends, [goal]) - radius < LANE_TO_GOAL).any():
-            return False
-        return all(
-            (distance(lane.path, other.path) - radius - other.obstacle.radius >= LANE_TO_LANE).all()
-            for other in self._lanes
-        )
-
-    def _start_clear(self, p: Array) -> Mask:
-        free: Mask = self._static_gap(p) >= START_TO_STATIC
-        for lane in self._lanes:
-            gap = distance(p, [lane.obstacle.position]) - lane.obstacle.radius
-            free &= gap >= START_TO_MOVER
-        return free
-
-    def _draw_point(
-        self, what: str, clear: Callable[[Array], Mask], room: float = POINT_TO_RIM
-    ) -> Point:
-        reach = self._half - room
-        if (reach <= 0.0).any():
-            raise _CrowdedError(what)
-        for _ in range(TRIES):
-            candidates = self._rng.uniform(-reach, reach, (BATCH, 2))
-            free = np.flatnonzero(clear(candidates))
-            if len(free):
-                x, y = candidates[free[0]].tolist()
-                return x, y
-        raise _CrowdedError(what)
-
-    def _static_gap(self, p: Array) -> Array:
-        """Distance of points (n, 2) to the nearest surface of a static obstacle (n,)."""
-        if not self._static:
-            return np.full(len(p), np.inf)
-        centres = np.array([o.position for o in self._static])
-        radii = np.array([o.radius for o in self._static])
-        gaps = np.hypot(*(p[:, None] - centres[None]).transpose(2, 0, 1)) - radii
-        nearest: Array = gaps.min(axis=1)
-        return nearest
-
-    def _radius(self) -> float:
-        return float(self._rng.uniform(*self._world.radius))
-
-    def _colour(self) -> str:
-        return COLOURS[int(self._rng.integers(len(COLOURS)))]

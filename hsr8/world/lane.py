@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 from hsr8.scenario.world import LineMover, Mover, ShuttleMover
 from hsr8.world.layout import OBSTACLE_HEIGHT, Obstacle
 from hsr8.world.motion import Circle, Line, MotionLaw, Point, Shuttle
+from hsr8.world.passage import Passage
+from hsr8.world.wander import Wander
 
 Array = NDArray[np.float64]
 
 SAMPLES = 61  # points that stand for a lane
+GLANCE = 0.5  # crossing movers are looked at this often [s]
 OPEN_TIME = 60.0  # a lane without an end is followed for so long [s]
 
 
@@ -25,11 +28,13 @@ class Lane:
         obstacle: the mover.
         path: points along its lane (n, 2) [m].
         ends: points where it may stay for a while or turn about (k, 2) [m].
+        crosses: it takes so much room that lanes may cross, if never at the same time.
     """
 
     obstacle: Obstacle
     path: Array
     ends: Array
+    crosses: bool = False
 
     @classmethod
     def of(cls, law: MotionLaw, radius: float, colour: str) -> "Lane":
@@ -43,6 +48,12 @@ class Lane:
             rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
             path = np.asarray(law.centre) + law.radius * rim
             return cls(obstacle, path, path)
+        if isinstance(law, Passage):
+            path = np.linspace(law.start, law.end, SAMPLES)
+            return cls(obstacle, path, path[[0, -1]], crosses=True)
+        if isinstance(law, Wander):
+            path = np.array(law.track)
+            return cls(obstacle, path, path, crosses=True)
         times = np.linspace(0.0, OPEN_TIME, SAMPLES).tolist()
         path = np.array([law.position(time) for time in times])
         return cls(obstacle, path, path[:1])
@@ -59,6 +70,19 @@ def motion_law(mover: Mover) -> MotionLaw:
         return Line(mover.start, (mover.speed * way[0], mover.speed * way[1]))
     speed = -mover.speed if mover.clockwise else mover.speed
     return Circle(mover.centre, mover.path_radius, speed, radians(mover.angle_deg))
+
+
+def apart_at_all_times(lane: Lane, other: Lane, room: float, duration: float) -> bool:
+    """Whether the axes of two movers keep `room` [m] from each other for `duration` [s]."""
+    laws = lane.obstacle.motion, other.obstacle.motion
+    assert laws[0] is not None
+    assert laws[1] is not None
+    times = np.arange(0.0, duration + GLANCE, GLANCE).tolist()
+    first, second = (np.array([law.position(time) for time in times]) for law in laws if law)
+    gaps = np.hypot(*(first - second).T)
+    # Between two glances each comes nearer by half the way it goes, at most.
+    speeds = sum(float(np.hypot(*np.diff(p, axis=0).T).max()) for p in (first, second))
+    return bool((gaps >= room + 0.5 * speeds).all())
 
 
 def distance(points: Array, others: Sequence[Point] | Array) -> Array:

@@ -6,6 +6,9 @@ from math import cos, fmod, hypot, inf, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world.passage import Passage
+from hsr8.world.wander import Wander
+
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
@@ -119,21 +122,23 @@ class Circle:
         return -self.speed * sin(angle), self.speed * cos(angle)
 
 
-MotionLaw = Still | Line | Shuttle | Circle
+MotionLaw = Still | Line | Shuttle | Circle | Passage | Wander
 
 
 class Movers:
     """All moving obstacles of a layout, evaluated together.
 
     Straight laws are one formula: a point walks `rate` along a lane of some length, which
-    is infinite when it never turns about.
+    is infinite when it never turns about. Circles are another; the rest is asked one by one.
     """
 
     def __init__(self, laws: tuple[MotionLaw, ...]) -> None:
         """Take the laws in layout order."""
         self.laws = laws
-        straight = [k for k, law in enumerate(laws) if not isinstance(law, Circle)]
+        straight = [k for k, law in enumerate(laws) if isinstance(law, Still | Line | Shuttle)]
         round_ = [k for k, law in enumerate(laws) if isinstance(law, Circle)]
+        self._others = [(k, w) for k, w in enumerate(laws) if isinstance(w, Passage | Wander)]
+        self._all_straight = len(straight) == len(laws)
         self._straight = np.array(straight, dtype=np.intp)
         self._round = np.array(round_, dtype=np.intp)
         lanes = [_lane(laws[k]) for k in straight]
@@ -156,22 +161,28 @@ class Movers:
         gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
         along = np.minimum(gone, 2.0 * self._length - gone)
         straight: Array = self._origin + along[:, None] * self._way
-        if len(self._round) == 0:
+        if self._all_straight:
             return straight
         angle = self._angle + self._rim_speed / self._radius * time
         rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        return self._ordered(straight, self._centre + self._radius[:, None] * rim)
+        both = self._ordered(straight, self._centre + self._radius[:, None] * rim)
+        for k, law in self._others:
+            both[k] = law.position(time)
+        return both
 
     def velocities(self, time: float) -> Array:
         """Velocities at `time` [s], layout order (n, 2) [m/s]."""
         gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
         speed = np.where(gone < self._length, self._speed, -self._speed)
         straight: Array = speed[:, None] * self._way
-        if len(self._round) == 0:
+        if self._all_straight:
             return straight
         angle = self._angle + self._rim_speed / self._radius * time
         rim = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-        return self._ordered(straight, self._rim_speed[:, None] * rim)
+        both = self._ordered(straight, self._rim_speed[:, None] * rim)
+        for k, law in self._others:
+            both[k] = law.velocity(time)
+        return both
 
     def _ordered(self, straight: Array, rim: Array) -> Array:
         both = np.empty((len(self.laws), 2))

@@ -7,6 +7,8 @@ import numpy as np
 from hsr8.world.canvas import Canvas, Colour, Image, Point, framed
 from hsr8.world.layout import Layout
 from hsr8.world.motion import Circle, Line, Shuttle
+from hsr8.world.passage import Passage
+from hsr8.world.wander import Wander
 from vision.colour import COLOUR_CLASSES
 
 INK = (60, 58, 55)
@@ -75,6 +77,10 @@ class PlanView:
             self._canvas.line((law.start, ahead), INK)
         elif isinstance(law, Circle):
             self._canvas.ring(law.centre, law.radius, INK)
+        elif isinstance(law, Passage):
+            self._canvas.line((law.start, law.end), INK)
+        elif isinstance(law, Wander):
+            self._canvas.outline(law.track, INK)
 
     def _robot(self) -> None:
         x, y, heading = self._layout.start

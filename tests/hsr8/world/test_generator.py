@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load
-from hsr8.world import generator
+from hsr8.world import fairness
 from hsr8.world.certificate import certify
 from hsr8.world.generator import draw_layout
 
@@ -42,16 +42,16 @@ def test_the_robot_fits_between_static_obstacles(worlds):
     for layout in worlds[1]:
         for a, b in combinations(layout.static, 2):
             gap = apart(a.position, b.position) - a.radius - b.radius
-            assert gap >= generator.STATIC_GAP - 1e-9
+            assert gap >= fairness.STATIC_GAP - 1e-9
 
 
 def test_the_start_is_clear(worlds):
     for layout in worlds[1]:
         start = layout.start[:2]
         for o in layout.static:
-            assert apart(o.position, start) - o.radius >= generator.START_TO_STATIC - 1e-9
+            assert apart(o.position, start) - o.radius >= fairness.START_TO_STATIC - 1e-9
         for o in layout.movers:
-            assert apart(o.position, start) - o.radius >= generator.START_TO_MOVER - 1e-9
+            assert apart(o.position, start) - o.radius >= fairness.START_TO_MOVER - 1e-9
 
 
 def test_points_are_clear_of_static_obstacles_and_apart(worlds):
@@ -60,7 +60,7 @@ def test_points_are_clear_of_static_obstacles_and_apart(worlds):
     for layout in layouts:
         for point in layout.waypoints.tolist():
             for o in layout.static:
-                assert apart(o.position, point) - o.radius >= generator.POINT_TO_STATIC - 1e-9
+                assert apart(o.position, point) - o.radius >= fairness.POINT_TO_STATIC - 1e-9
         legs = [apart(a, b) for a, b in pairwise([layout.start[:2], *layout.waypoints.tolist()])]
         assert all(shortest - 1e-9 <= leg <= longest + 1e-9 for leg in legs)
         if not layout.endless:
@@ -78,7 +78,7 @@ def test_movers_never_pin_the_robot_nor_run_into_anything(worlds):
             assert (np.abs(places) <= half - radii[:, None]).all()
             for o in layout.static:
                 gaps = np.hypot(*(places - o.position).T) - radii - o.radius
-                assert (gaps >= generator.LANE_TO_STATIC - SAMPLED).all()
+                assert (gaps >= fairness.LANE_TO_STATIC - SAMPLED).all()
             for i, k in combinations(range(len(radii)), 2):
                 assert apart(places[i], places[k]) > radii[i] + radii[k]
 
@@ -90,7 +90,7 @@ def test_movers_turn_about_away_from_the_goal(worlds):
         for o in layout.movers:
             for end in (o.motion.start, o.motion.end):
                 gap = apart(end, layout.waypoints[-1]) - o.radius
-                assert gap >= generator.LANE_TO_GOAL - 1e-9
+                assert gap >= fairness.LANE_TO_GOAL - 1e-9
 
 
 def test_a_slow_robot_that_knows_all_gets_through():
@@ -138,7 +138,7 @@ def test_drawn_obstacles_keep_clear_of_those_placed_by_hand():
         assert placed.position == (0.0, 0.0)
         for o in drawn:
             gap = apart(o.position, (0.0, 0.0)) - o.radius - placed.radius
-            assert gap >= generator.STATIC_GAP - 1e-9
+            assert gap >= fairness.STATIC_GAP - 1e-9
 
 
 def test_circles_can_be_drawn():

@@ -6,6 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.world.motion import Circle, Line, Movers, Shuttle, Still
+from hsr8.world.passage import Passage
+from hsr8.world.wander import Wander, draw_wander
 
 coordinate = st.floats(-3.0, 3.0)
 point = st.tuples(coordinate, coordinate)
@@ -28,7 +30,20 @@ circles = st.builds(
     speed.flatmap(lambda v: st.sampled_from([v, -v])),
     coordinate,
 )
-laws = st.one_of(shuttles(), circles, st.builds(Line, point, point), st.builds(Still, point))
+passages = st.builds(
+    lambda shuttle, depart: Passage(shuttle.start, shuttle.end, shuttle.speed, depart),
+    shuttles(),
+    st.floats(0.0, 60.0),
+)
+wanders = st.builds(
+    lambda seed, centre, pace: draw_wander(np.random.default_rng(seed), centre, 1.5, pace),
+    st.integers(0, 99),
+    point,
+    speed,
+)
+laws = st.one_of(
+    passages, wanders, shuttles(), circles, st.builds(Line, point, point), st.builds(Still, point)
+)
 
 
 @given(st.lists(laws, max_size=6), times)
@@ -49,10 +64,8 @@ def test_all_together_are_each_alone(chosen, time):
 @given(laws, times)
 def test_velocity_is_the_slope_of_position(law, time):
     step = 1e-5
-    if isinstance(law, Shuttle):
-        room = min(_to_end(law, time), law.length - _to_end(law, time))
-        if room < 2.0 * law.speed * step:
-            return  # it turns about in between
+    if _bends_within(law, time, step):
+        return
     before, after = np.array(law.position(time)), np.array(law.position(time + step))
     assert (after - before) / step == pytest.approx(np.array(law.velocity(time)), abs=1e-4)
 
@@ -87,6 +100,19 @@ def test_shuttle_turns_about_at_the_ends():
 def test_no_movers_are_no_rows():
     assert Movers(()).positions(1.0).shape == (0, 2)
     assert Movers(()).velocities(1.0).shape == (0, 2)
+
+
+def _bends_within(law, time: float, step: float) -> bool:
+    """Whether the velocity jumps soon after `time`."""
+    if isinstance(law, Shuttle):
+        room = min(_to_end(law, time), law.length - _to_end(law, time))
+        return room < 2.0 * law.speed * step
+    if isinstance(law, Passage):
+        jumps = (law.depart, law.depart + law.length / law.speed)
+        return any(abs(jump - time) < 2.0 * step for jump in jumps)
+    if isinstance(law, Wander):
+        return law.velocity(time) != law.velocity(time + step)
+    return False
 
 
 def _to_end(law: Shuttle, time: float) -> float:
