@@ -1,20 +1,19 @@
 """The closed loop: world, sensors, robot, and back, one control tick after the other."""
 
 import hashlib
-import zlib
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 
-import numpy as np
-
+from hsr8.body_builder import build_body, build_model
 from hsr8.errors import SimulationDiverged
 from hsr8.recorder.record import FrameRecord, Listener, TickRecord
+from hsr8.recorder.tape import TapeWriter
 from hsr8.robot import SensorFrame
-from hsr8.robot_builder import build_robot
+from hsr8.robot_builder import build_robot, head_camera
 from hsr8.scenario.schema import Scenario
+from hsr8.seeds import named_rng
 from hsr8.world.analytic import AnalyticCamera
-from hsr8.world.assembly import Optics, assemble
 from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
 from hsr8.world.camera_feed import CameraFeed, Picture
@@ -22,14 +21,12 @@ from hsr8.world.episodes import Episodes
 from hsr8.world.falls import Falls
 from hsr8.world.generator import draw_layout
 from hsr8.world.index import ModelIndex
-from hsr8.world.kinematic import KinematicBody
-from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
-from hsr8.world.pushes import schedule
+from hsr8.world.physics import CONTROL_PERIOD
 from hsr8.world.truth import Truth
-from vision.camera import PinholeCamera
 from walking.state import Phase
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
+TICKS_A_SECOND = round(1.0 / CONTROL_PERIOD)
 FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]
 
 
@@ -46,13 +43,6 @@ class RunOutcome:
     exit_reason: str
     time: float
     state_hash: str
-
-
-def named_rng(seed: int, name: str) -> np.random.Generator:
-    """Generator of the subsystem `name`; independent of every other name's."""
-    return np.random.default_rng(
-        np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(name.encode()),))
-    )
 
 
 class Simulation:
@@ -72,31 +62,20 @@ class Simulation:
         self.scenario = scenario
         self.seed = seed
         self.listeners = list(listeners)
+        self.tape: TapeWriter | None = None
         self.layout = draw_layout(scenario, seed)
-        camera = scenario.camera
-        fov = float(np.radians(camera.vertical_fov_deg))
-        self.model = assemble(
-            self.layout,
-            "vision",
-            Optics(camera.width, camera.height, fov, scenario.world.brightness, camera.shadows),
-        )
-        self._body = self._make_body()
-        self._pinhole = PinholeCamera.from_vertical_fov(camera.width, camera.height, fov)
-        self._robot = build_robot(
-            scenario,
-            self.layout,
-            self._pinhole,
-            named_rng(seed, "belief"),
-            named_rng(seed, "command"),
-        )
+        self.model = build_model(scenario, self.layout)
+        self._body = build_body(scenario, seed, self.layout, self.model)
+        self._robot = build_robot(scenario, self.layout, seed)
         self._watch = _EventWatch(self._tell)
         self._interrupted = False
         self._rendered: RenderedCamera | None = None
         self._analytic: AnalyticCamera | None = None
         self._camera_rng = named_rng(seed, "camera")
+        camera = scenario.camera
         if camera.source == "analytic":
             self._analytic = AnalyticCamera(
-                self.layout, self._pinhole, self._camera_rng, scenario.camera
+                self.layout, head_camera(scenario), self._camera_rng, scenario.camera
             )
         self._feed = CameraFeed(camera, self._take, named_rng(seed, "camera_feed"))
 
@@ -131,29 +110,30 @@ class Simulation:
                 reason = "interrupted"
             finally:
                 with ExitStack() as farewell:  # each is closed, also when another one fails
+                    if self.tape is not None:
+                        farewell.callback(self.tape.close)
                     for listener in reversed(self.listeners):
                         farewell.callback(listener.close, reason)
         return RunOutcome(reason, self._body.time, self.state_hash())
 
     def state_hash(self) -> str:
         """SHA-256 of the world's state and the robot's belief."""
-        digest = hashlib.sha256(self._body.state_bytes())
-        if self._robot.frame is not None:
-            belief = self._robot.frame.belief
-            digest.update(belief.pose.tobytes() + belief.pose_covariance.tobytes())
-            for track in belief.tracks:
-                digest.update(track.position.tobytes() + track.covariance.tobytes())
-        return digest.hexdigest()
+        return hashlib.sha256(self._body.state_bytes() + self._believed()).hexdigest()
 
-    def _make_body(self) -> Body:
-        scenario, rng = self.scenario, named_rng(self.seed, "body")
-        noise = scenario.sensor_noise()
-        if scenario.robot.body == "kinematic":
-            return KinematicBody(self.model, self.layout, noise, rng)
-        pushes = schedule(
-            scenario.disturbance, scenario.duration, CONTROL_PERIOD, named_rng(self.seed, "push")
-        )
-        return PhysicsBody(self.model, self.layout, noise, rng, pushes=pushes)
+    def _believed(self) -> bytes:
+        """All numbers of the pose and the tracks the robot believes in."""
+        if self._robot.frame is None:
+            return b""
+        belief = self._robot.frame.belief
+        parts = [belief.pose, belief.pose_covariance]
+        for track in belief.tracks:
+            parts += (track.position, track.covariance)
+        return b"".join(part.tobytes() for part in parts)
+
+    def _mark(self, tick: int) -> None:
+        """Hash of everything, once a second and at the end."""
+        if self.tape is not None:
+            self.tape.mark(tick, self._body.state_bytes(), self._believed())
 
     def _ticks(self) -> str:
         scenario = self.scenario
@@ -162,6 +142,8 @@ class Simulation:
         end: tuple[int, str] | None = None
         published: FrameRecord | None = None
         for tick in range(last + 1):
+            if tick % TICKS_A_SECOND == 0:
+                self._mark(tick)
             sensed = self._sense(tick)
             targets = self._robot.step(sensed)
             if tick % record_ticks == 0:
@@ -170,11 +152,18 @@ class Simulation:
                 self._publish(tick, truth, frame if frame is not published else None)
                 published = frame
                 end = end or self._ending(tick, truth)
-            if self._interrupted:
-                return "interrupted"
-            if end is not None and tick >= end[0]:
-                return end[1]
+            if self._interrupted or (end is not None and tick >= end[0]):
+                break
+            if self.tape is not None:
+                self.tape.add(self._body.set_points(targets))
             self._body.apply(targets)
+        else:
+            tick = last + 1
+        self._mark(tick)
+        if self._interrupted:
+            return "interrupted"
+        if end is not None and tick >= end[0]:
+            return end[1]
         finite = len(self.layout.waypoints) > 0 and not self.layout.endless
         return "timeout" if finite else "completed"
 

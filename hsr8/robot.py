@@ -7,12 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
+from hsr8.decisions import Decisions, Now
 from hsr8.recorder.record import FrameRecord, Image
 from hsr8.recorder.walk_tally import WalkTally
 from navigation.belief import Belief
-from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import CameraView, Frame, Observation
-from navigation.prediction import predict
 from vision.camera import CameraPose, PinholeCamera
 from vision.detection import Detection
 from vision.parameters import PoseParameters
@@ -61,27 +60,6 @@ class Believes(Protocol):
         """Belief after `frame`."""
 
 
-class Goes(Protocol):
-    """Knows where to go next."""
-
-    def update(self, pose: np.ndarray) -> Task:
-        """Task at the believed pose (3,)."""
-
-
-class Looks(Protocol):
-    """Chooses where to look."""
-
-    def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
-        """Gaze for this frame."""
-
-
-class Moves(Protocol):
-    """Chooses how to move."""
-
-    def plan(self, belief: Belief, task: Task) -> MotionDecision:
-        """Motion for the next footstep."""
-
-
 class Commands(Protocol):
     """Asks for motion by the clock alone."""
 
@@ -98,10 +76,7 @@ class Robot:
         vision: detector; unused when the frames carry detections.
         pose: how well the body knows the pose of the camera.
         belief: estimator.
-        mission: sequence of destinations.
-        gaze: gaze planner.
-        planner: motion planner.
-        footstep: time between two motion decisions [s].
+        decisions: where to go, how to move, where to look.
         script: commands that walking obeys in place of the planner's, new in any tick.
     """
 
@@ -113,10 +88,7 @@ class Robot:
         vision: Sees,
         pose: PoseParameters,
         belief: Believes,
-        mission: Goes,
-        gaze: Looks,
-        planner: Moves,
-        footstep: float,
+        decisions: Decisions,
         script: Commands | None = None,
     ) -> None:
         self._walking = walking
@@ -124,14 +96,8 @@ class Robot:
         self._vision = vision
         self._pose = pose
         self._belief = belief
-        self._mission = mission
-        self._gaze = gaze
-        self._planner = planner
-        self._footstep = footstep
+        self._decisions = decisions
         self._script = script
-        self._motion: MotionDecision | None = None
-        self._planned_at = -np.inf
-        self._planned_step = -1
         self._frames = 0
         self._taken: deque[tuple[float, WalkingState]] = deque(maxlen=UNDER_WAY)
         self._odometry: Odometry | None = None
@@ -169,20 +135,14 @@ class Robot:
             assert sensed.image is not None
             detections = self._vision.detect(sensed.image, camera_pose(then.camera, self._pose))
         measured = self._frame(sensed.captured, then, detections)
-        belief = estimate = self._belief.update(measured)
-        state = then
-        if sensed.time > sensed.captured:
-            state = self._walking.state()
-            belief = predict(
-                belief, _odometry(then), _odometry(state), sensed.time, self._view(state)
-            )
-        task = self._mission.update(belief.pose)
-        motion = self._decide_motion(sensed.time, state, belief, task)
-        gaze = self._gaze.choose(belief, task, motion)
+        estimate = self._belief.update(measured)
+        state = self._walking.state() if sensed.time > sensed.captured else then
+        now = Now(sensed.time, _odometry(state), self._view(state), state.step_count)
+        decided = self._decisions.make(estimate, measured, now)
         if self._script is None:
-            forward, left, turn = motion.velocity.tolist()
+            forward, left, turn = decided.motion.velocity.tolist()
             self.command = VelocityCommand(forward, left, turn)
-        self.head = HeadTarget(gaze.pan, gaze.tilt)
+        self.head = HeadTarget(decided.gaze.pan, decided.gaze.tilt)
         self.frame = FrameRecord(
             index=self._frames,
             time=sensed.time,
@@ -190,16 +150,14 @@ class Robot:
             detections=detections,
             measured=measured,
             estimate=estimate,
-            belief=belief,
-            gaze=gaze,
-            motion=motion,
-            task=task,
+            now=now,
+            decided=decided,
         )
         self._frames += 1
 
     def _wait(self) -> None:
         """Off its feet the robot does not know where its camera is: neither see nor decide."""
-        self._motion = None
+        self._decisions.forget()
         self.head = HeadTarget()
         if self._script is None:
             self.command = VelocityCommand()
@@ -210,17 +168,6 @@ class Robot:
         while time < captured:
             time, state = self._taken.popleft()
         return state
-
-    def _decide_motion(
-        self, time: float, state: WalkingState, belief: Belief, task: Task
-    ) -> MotionDecision:
-        """A new decision once per footstep, or after a footstep's time when standing."""
-        due = state.step_count != self._planned_step or time - self._planned_at >= self._footstep
-        if self._motion is None or due:
-            self._motion = self._planner.plan(belief, task)
-            self._planned_at = time
-            self._planned_step = state.step_count
-        return self._motion
 
     def _view(self, state: WalkingState) -> CameraView:
         head = state.camera

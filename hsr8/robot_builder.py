@@ -2,10 +2,12 @@
 
 import numpy as np
 
-from hsr8.robot import Goes, Moves, Robot
+from hsr8.decisions import Decisions, Goes, Moves
+from hsr8.robot import Robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
+from hsr8.seeds import named_rng
 from hsr8.world.layout import Layout
 from hsr8.world.models import models_dir
 from navigation.estimator import Estimator
@@ -28,47 +30,54 @@ ARM_RADII = (0.029, 0.032, 0.045)
 START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m, m, rad]
 
 
-def build_robot(
-    scenario: Scenario,
-    layout: Layout,
-    camera: PinholeCamera,
-    rng: np.random.Generator,
-    command_rng: np.random.Generator,
-) -> Robot:
-    """The robot of `scenario`, placed by `layout`.
-
-    Args:
-        scenario: what to build.
-        layout: start, way points and beacons.
-        camera: intrinsics of the head camera.
-        rng: draws its particles.
-        command_rng: draws the commands of a walk.
-    """
-    beacons = known_beacons(scenario, layout)
-    limits = scenario.speed_limits()
-    navigation = scenario.navigation_parameters()
+def build_robot(scenario: Scenario, layout: Layout, seed: int) -> Robot:
+    """The robot of `scenario`, placed by `layout`; `seed` draws its particles and commands."""
+    camera = head_camera(scenario)
     body = RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
-    mission: Goes
-    planner: Moves
-    script: CommandScript | None = None
-    if isinstance(scenario.mission, Walk):
-        script = command_script(scenario.command, scenario.duration, command_rng)
-        mission = ScriptedMission()
-        planner = ScriptedPlanner(script)
-    else:
-        mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
-        planner = Planner(navigation, limits)
+    script = build_script(scenario, named_rng(seed, "command"))
     return Robot(
         walking=Walker(body, parameters_for(body, scenario.walking_parameters())),
         camera=camera,
         vision=Detector(camera, scenario.vision_parameters(), arms()),
         pose=scenario.vision_parameters().pose,
-        belief=build_estimator(scenario, layout, rng),
-        mission=mission,
-        gaze=GazePlanner(navigation, limits, beacons, camera.horizontal_fov, camera.vertical_fov),
-        planner=planner,
-        footstep=limits.footstep,
+        belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
+        decisions=build_decisions(scenario, layout, camera, script),
         script=script,
+    )
+
+
+def head_camera(scenario: Scenario) -> PinholeCamera:
+    """Intrinsics of the head camera of `scenario`."""
+    camera = scenario.camera
+    fov = float(np.radians(camera.vertical_fov_deg))
+    return PinholeCamera.from_vertical_fov(camera.width, camera.height, fov)
+
+
+def build_script(scenario: Scenario, rng: np.random.Generator) -> CommandScript | None:
+    """The commands of a walk; None where the robot decides by itself."""
+    if not isinstance(scenario.mission, Walk):
+        return None
+    return command_script(scenario.command, scenario.duration, rng)
+
+
+def build_decisions(
+    scenario: Scenario, layout: Layout, camera: PinholeCamera, script: CommandScript | None
+) -> Decisions:
+    """Mission, planner and gaze of the robot of `scenario`; with a `script`, it is obeyed."""
+    navigation, limits = scenario.navigation_parameters(), scenario.speed_limits()
+    mission: Goes
+    planner: Moves
+    if script is not None:
+        mission, planner = ScriptedMission(), ScriptedPlanner(script)
+    else:
+        mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
+        planner = Planner(navigation, limits)
+    beacons = known_beacons(scenario, layout)
+    return Decisions(
+        mission=mission,
+        planner=planner,
+        gaze=GazePlanner(navigation, limits, beacons, camera.horizontal_fov, camera.vertical_fov),
+        footstep=limits.footstep,
     )
 
 

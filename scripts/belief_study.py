@@ -20,11 +20,12 @@ import tyro
 from belief_score import Moment, Score, Thing
 from tyro.conf import Positional, UseAppendAction
 
-from hsr8.loop import Simulation, named_rng
+from hsr8.loop import Simulation
 from hsr8.recorder.record import TickRecord
 from hsr8.robot_builder import build_estimator
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
+from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
 
 

@@ -19,9 +19,10 @@ import tyro
 from tyro.conf import Positional, UseAppendAction
 
 from hsr8 import robot_builder
-from hsr8.loop import Simulation, named_rng
+from hsr8.loop import Simulation
 from hsr8.recorder.record import TickRecord
 from hsr8.scenario.loader import load
+from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
 from navigation.angles import wrap
 from navigation.belief import Belief

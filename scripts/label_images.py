@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.cli.colours import MASK, mask_colours
-from hsr8.loop import named_rng
 from hsr8.scenario.loader import load
+from hsr8.seeds import named_rng
 from hsr8.world.assembly import Optics, assemble
 from hsr8.world.camera import HEAD_CAMERA, RenderedCamera
 from hsr8.world.generator import draw_layout

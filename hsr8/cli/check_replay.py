@@ -1,61 +1,45 @@
-"""``hsr8 check replay``: what a run believed, computed again from what it measured."""
+"""``hsr8 check replay``: a run computed again from what it recorded."""
+
+from dataclasses import asdict
 
 from hsr8.cli.options import CheckReplay
 from hsr8.errors import UsageError
-from hsr8.loop import named_rng
-from hsr8.recorder import atomic, run_folder
-from hsr8.recorder.manifest import RUNNING, other_versions
-from hsr8.recorder.measurements import CHANNELS, Measured, fingerprints, read_measurements
-from hsr8.recorder.run_reader import Run, open_run
-from hsr8.robot_builder import build_estimator
-from hsr8.scenario.loader import load
-from hsr8.world.generator import draw_layout
+from hsr8.evaluation.replay import Replayed, replay
+from hsr8.recorder import atomic
+from hsr8.recorder.manifest import other_versions
+from hsr8.recorder.run_reader import open_run
 
 FAILED = 1
 
 
 def main(options: CheckReplay) -> int:
-    """Feed a run's measurements to the estimator and compare every belief, bit for bit.
+    """Compute physics, belief and decisions again and compare them, bit for bit.
 
     Raises:
-        UsageError: there is no such run, or its measurements cannot be read.
+        UsageError: there is no such run, or its records cannot be read.
     """
     run = open_run(options.run)
-    file = run.path / run_folder.MEASUREMENTS
-    if not file.exists():
-        raise UsageError(f"{run.path} has no measurements: there is no {file.name}")
-    measured = read_measurements(file, whole=run.manifest.get("exit_reason") != RUNNING)
-    if not measured:
-        raise UsageError(f"{file} holds no frame")
-    difference = _first_difference(run, measured)
+    stages = replay(run)
+    if not any(stage.count for stage in stages):
+        raise UsageError(
+            f"{run.path} holds nothing to compute again: it ended before its first second"
+        )
+    equal = all(stage.equal for stage in stages)
     if options.json:
-        result = {"run": str(run.path), "frames": len(measured), "equal": difference is None}
-        if difference is not None:
-            index, channel = difference
-            result |= {"frame": index, "time_s": measured[index].frame.time, "channel": channel}
-        print(atomic.dumps(result))
-    elif difference is None:
-        print(f"equal       {len(measured)} frames of {run.path}, bit for bit")
-    else:
-        index, channel = difference
-        time = measured[index].frame.time
-        print(f"different   {run.path}: {channel} of frame {index} ({time:.3f} s)")
+        told = [asdict(stage) | {"equal": stage.equal} for stage in stages]
+        print(atomic.dumps({"run": str(run.path), "equal": equal, "stages": told}))
+        return 0 if equal else FAILED
+    print(f"run         {run.path}")
+    for stage in stages:
+        print(f"{stage.stage:<12}{_verdict(stage)}")
+    if not equal:
         for name, then, now in other_versions(run.manifest):
             print(f"            {name} was {then}, is {now}")
-    return 0 if difference is None else FAILED
+    return 0 if equal else FAILED
 
 
-def _first_difference(run: Run, measured: list[Measured]) -> tuple[int, str] | None:
-    """Frame and channel where the belief first differs from the recorded one."""
-    scenario = load(str(run.scenario_file), seed=run.seed)
-    layout = draw_layout(scenario, run.seed)
-    estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
-    for index, recorded in enumerate(measured):
-        try:
-            found = fingerprints(estimator.update(recorded.frame))
-        except ValueError:  # the frames are not in their order
-            return index, "order"
-        for channel, a, b in zip(CHANNELS, found, recorded.fingerprints, strict=True):
-            if a != b:
-                return index, channel
-    return None
+def _verdict(stage: Replayed) -> str:
+    if stage.equal:
+        return f"equal, {stage.count} {stage.unit}, bit for bit"
+    unit = stage.unit.removesuffix("s")
+    return f"different: {stage.channel} of {unit} {stage.place} ({stage.time:.3f} s)"

@@ -24,6 +24,7 @@ from hsr8.recorder.progress import Progress
 from hsr8.recorder.record import Listener
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.tape import TapeWriter
 from hsr8.recorder.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump, load
 from hsr8.scenario.schema import Scenario
@@ -57,6 +58,7 @@ def main(options: Run) -> int:
         metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
         message = ""
         with _interruptible(simulation):
+            simulation.tape = TapeWriter(path / run_folder.TAPE)
             simulation.listeners += [folder, metrics]
             simulation.listeners += _extra_listeners(options, simulation, path)
             try:

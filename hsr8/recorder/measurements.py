@@ -1,11 +1,10 @@
-"""All that reached the belief, exactly, with fingerprints of what came of it.
+"""All that reached the belief and the decisions, exactly, with fingerprints of what came of it.
 
 A file of frames behind a magic word. Each frame has its length and checksum before it, so
 a damaged one is named and a killed run loses its last at most. Numbers are little-endian
-doubles as they were computed: the estimator fed with them again must give the same bits.
+doubles as they were computed: estimator and planners fed with them again must give the same bits.
 """
 
-import hashlib
 import struct
 import zlib
 from dataclasses import dataclass
@@ -14,19 +13,26 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.decisions import Now
 from hsr8.errors import UsageError
+from hsr8.recorder.fingerprints import (
+    DECISIONS,
+    FINGERPRINT,
+    decision_fingerprints,
+    fingerprints,
+)
 from hsr8.recorder.record import TickRecord
-from navigation.belief import Belief
 from navigation.observation import CameraView, Frame, Observation
 
 Array = NDArray[np.float64]
 
-MAGIC = b"HSR8MEA1"
-CHANNELS = ("pose", "pose covariance", "tracks", "local map", "state")
-FINGERPRINT = 8  # bytes per channel
+MAGIC = b"HSR8MEA2"
 _GUARD = struct.Struct("<II")
 _COUNT = struct.Struct("<H")
-_FIXED = 1 + 3 + 9 + 9 + 3 + 5  # doubles of a frame apart from its observations
+_VIEW = 9 + 3 + 5  # doubles of a camera view
+_FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame apart from its observations
+_NOW = 1 + 3 + _VIEW  # doubles of the moment of a decision
+_STEP = struct.Struct("<q?")
 _SEEN = 8  # doubles of an observation
 _KINDS = ("obstacle", "beacon")
 
@@ -37,11 +43,17 @@ class Measured:
 
     Attributes:
         frame: what reached the belief.
+        now: the moment it was decided for.
+        fresh: no decision was in force.
         fingerprints: of the belief after it, one per channel.
+        decided: of what was decided, one per decision channel.
     """
 
     frame: Frame
+    now: Now
+    fresh: bool
     fingerprints: tuple[bytes, ...]
+    decided: tuple[bytes, ...]
 
 
 class MeasurementWriter:
@@ -58,8 +70,10 @@ class MeasurementWriter:
     def on_record(self, record: TickRecord) -> None:
         """Append the camera frame, if there is one."""
         if record.frame is not None:
-            payload = _packed(record.frame.measured)
-            payload += b"".join(fingerprints(record.frame.estimate))
+            frame = record.frame
+            payload = _packed(frame.measured) + _packed_now(frame.now, frame.decided.fresh)
+            payload += b"".join(decision_fingerprints(frame.decided))
+            payload += b"".join(fingerprints(frame.estimate))
             self._file.write(_GUARD.pack(len(payload), zlib.crc32(payload)) + payload)
 
     def flush(self) -> None:
@@ -69,27 +83,6 @@ class MeasurementWriter:
     def close(self) -> None:
         """Finish the file."""
         self._file.close()
-
-
-def fingerprints(belief: Belief) -> tuple[bytes, ...]:
-    """Digest of each channel of a belief, in the order of `CHANNELS`."""
-    tracks = hashlib.blake2b(digest_size=FINGERPRINT)
-    for t in belief.tracks:
-        told = f"{t.id} {t.label} {t.motion} {t.hits} {t.visible}"
-        tracks.update(told.encode() + struct.pack("<4d", t.radius, t.radius_sigma, t.age, t.reach))
-        for part in (t.position, t.velocity, t.covariance, t.last_seen):
-            tracks.update(part.tobytes())
-        if t.particles is not None:
-            for part in (t.particles.positions, t.particles.velocities, t.particles.weights):
-                tracks.update(part.tobytes())
-    state = f"{belief.seen_beacons} {belief.lost} {belief.filter_faults}"
-    return (
-        _digest(belief.pose.tobytes()),
-        _digest(belief.pose_covariance.tobytes()),
-        tracks.digest(),
-        _digest(belief.local_map.tobytes()),
-        _digest(state.encode()),
-    )
 
 
 def read_measurements(path: Path, *, whole: bool) -> list[Measured]:
@@ -122,26 +115,23 @@ def read_measurements(path: Path, *, whole: bool) -> list[Measured]:
         payload = payload[:length]
         if zlib.crc32(payload) != checksum:
             raise UsageError(f"{path} is damaged in frame {len(frames)}, at byte {place}")
-        frames.append(_unpacked(payload))
+        try:
+            frames.append(_unpacked(payload))
+        except (ValueError, IndexError, struct.error) as error:
+            raise UsageError(
+                f"{path} is damaged in frame {len(frames)}, at byte {place}: {error}"
+            ) from error
         place += _GUARD.size + length
     return frames
 
 
-def _digest(content: bytes) -> bytes:
-    return hashlib.blake2b(content, digest_size=FINGERPRINT).digest()
-
-
 def _packed(frame: Frame) -> bytes:
-    view = frame.view
-    angles = (view.pan, view.tilt, view.horizontal_fov, view.vertical_fov, view.yaw_sigma)
     numbers = np.concatenate(
         [
             [frame.time],
             frame.odometry,
             frame.motion_covariance.ravel(),
-            view.rotation.ravel(),
-            view.position,
-            angles,
+            *_view_numbers(frame.view),
         ],
         dtype="<f8",
     )
@@ -154,9 +144,24 @@ def _packed(frame: Frame) -> bytes:
     return b"".join(parts)
 
 
+def _packed_now(now: Now, fresh: bool) -> bytes:
+    numbers = np.concatenate([[now.time], now.odometry, *_view_numbers(now.view)], dtype="<f8")
+    return numbers.tobytes() + _STEP.pack(now.step_count, fresh)
+
+
+def _view_numbers(view: CameraView) -> tuple[Array, ...]:
+    angles = (view.pan, view.tilt, view.horizontal_fov, view.vertical_fov, view.yaw_sigma)
+    return view.rotation.ravel(), view.position, np.array(angles)
+
+
+def _view(numbers: Array) -> CameraView:
+    rotation, position, angles = np.split(numbers, [9, 12])
+    return CameraView(rotation.reshape(3, 3), position, *angles.tolist())
+
+
 def _unpacked(payload: bytes) -> Measured:
     numbers = np.frombuffer(payload, "<f8", _FIXED).astype(np.float64)
-    time, odometry, motion, rotation, position, angles = np.split(numbers, [1, 4, 13, 22, 25])
+    time, odometry, motion, view = np.split(numbers, [1, 4, 13])
     place = 8 * _FIXED
     (count,) = _COUNT.unpack_from(payload, place)
     place += _COUNT.size
@@ -185,11 +190,14 @@ def _unpacked(payload: bytes) -> Measured:
         time=float(time[0]),
         odometry=odometry,
         motion_covariance=motion.reshape(3, 3),
-        view=CameraView(rotation.reshape(3, 3), position, *angles.tolist()),
+        view=_view(view),
         observations=tuple(observations),
     )
-    prints = tuple(
-        payload[place + FINGERPRINT * i : place + FINGERPRINT * (i + 1)]
-        for i in range(len(CHANNELS))
-    )
-    return Measured(frame, prints)
+    numbers = np.frombuffer(payload, "<f8", _NOW, place).astype(np.float64)
+    place += 8 * _NOW
+    step_count, fresh = _STEP.unpack_from(payload, place)
+    place += _STEP.size
+    now = Now(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
+    prints = [payload[k : k + FINGERPRINT] for k in range(place, len(payload), FINGERPRINT)]
+    decided, believed = prints[: len(DECISIONS)], prints[len(DECISIONS) :]
+    return Measured(frame, now, fresh, tuple(believed), tuple(decided))

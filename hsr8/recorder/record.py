@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.decisions import Decided, Now
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth import Truth
 from navigation.belief import Belief
@@ -28,10 +29,9 @@ class FrameRecord:
         image: (height, width, 3) RGB, or None with the analytic camera.
         detections: what vision found in it.
         measured: all that reached the belief, at the capture; earlier by the latency.
-        belief: what the robot believes after it, at `time`.
-        gaze: where it decided to look.
-        motion: how it decided to move (the decision in force; new once per footstep).
-        task: where it is going.
+        estimate: what is believed of that time.
+        now: the moment it was decided for.
+        decided: what the robot believes at `time`, and what it decided.
     """
 
     index: int
@@ -40,10 +40,28 @@ class FrameRecord:
     detections: tuple[Detection, ...]
     measured: Frame
     estimate: Belief
-    belief: Belief
-    gaze: GazeDecision
-    motion: MotionDecision
-    task: Task
+    now: Now
+    decided: Decided
+
+    @property
+    def belief(self) -> Belief:
+        """What the robot believes at `time`."""
+        return self.decided.belief
+
+    @property
+    def gaze(self) -> GazeDecision:
+        """Where it decided to look."""
+        return self.decided.gaze
+
+    @property
+    def motion(self) -> MotionDecision:
+        """How it decided to move (the decision in force; new once per footstep)."""
+        return self.decided.motion
+
+    @property
+    def task(self) -> Task:
+        """Where it is going."""
+        return self.decided.task
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,8 @@
     events.jsonl     what happened, one line each
     trajectory.bin   motion of robot and movers
     walking.bin      how it walked: ZMP, feet, torques, velocities
-    measurements.bin all that reached the belief, exactly, for ``hsr8 check replay``
+    measurements.bin all that reached the belief and the decisions, exactly
+    tape.bin         what the servos were told in every tick, a hash of the world each second
     frames.jsonl     belief and decisions, one camera frame a line
     log.rrd          everything, for the Rerun viewer
     video.mp4        after ``hsr8 render``
@@ -34,6 +35,7 @@ EVENTS = "events.jsonl"
 TRAJECTORY = "trajectory.bin"
 WALKING = "walking.bin"
 MEASUREMENTS = "measurements.bin"
+TAPE = "tape.bin"
 FRAMES = "frames.jsonl"
 LOG = "log.rrd"
 VIDEO = "video.mp4"

@@ -3,6 +3,8 @@
 from typing import Protocol
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.world.truth import Truth
 from walking.sensing import BodySensors
@@ -21,6 +23,9 @@ class Body(Protocol):
 
     def sense(self) -> BodySensors:
         """Read the body's sensors now."""
+
+    def set_points(self, targets: JointTargets) -> NDArray[np.float64]:
+        """What the servos are told (26,) [rad]; given as `targets` again, the same happens."""
 
     def apply(self, targets: JointTargets) -> None:
         """Advance one control tick towards `targets`."""

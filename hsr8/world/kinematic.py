@@ -78,6 +78,10 @@ class KinematicBody:
             foot_force=np.repeat(self._load[:, None] * self._weight / 4.0, 4, axis=1),
         )
 
+    def set_points(self, targets: JointTargets) -> Array:
+        """What the servos are told (26,) [rad]."""
+        return targets.position
+
     def apply(self, targets: JointTargets) -> None:
         """Put the joints at their targets and the body where the planted foot says."""
         self._tick += 1

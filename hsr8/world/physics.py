@@ -100,13 +100,17 @@ class PhysicsBody:
             foot_force=data.sensordata[index.foot_force],
         )
 
+    def set_points(self, targets: JointTargets) -> Array:
+        """What the servos are told (26,) [rad]."""
+        return targets.position + targets.offset
+
     def apply(self, targets: JointTargets) -> None:
         """Send the set-points and advance one control tick.
 
         Raises:
             SimulationDiverged: MuJoCo warned or the state is no longer finite.
         """
-        self.data.ctrl[self._index.actuators] = targets.position + targets.offset
+        self.data.ctrl[self._index.actuators] = self.set_points(targets)
         root = self._index.root_qpos
         yaw = heading(self.data.qpos[root + 3 : root + 7])
         self._pusher.act(self.data, self._substep // self._substeps, yaw)

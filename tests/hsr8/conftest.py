@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from hsr8.decisions import Decided, Now
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.assembly import Optics, assemble
@@ -120,17 +121,21 @@ def _frame(layout, time, pose, **change):
         ),
         measured=Frame(time, np.asarray(pose, float), np.zeros((3, 3)), belief["view"], ()),
         estimate=Belief(**belief),
-        belief=Belief(**belief),
-        gaze=GazeDecision(0.3, -0.3, 0.2, 0.4, 0.6, 0.1, gaze_map),
-        motion=MotionDecision(
-            velocity=np.array([0.2, 0.0, 0.1]),
-            direction=0.0,
-            speed=0.2,
-            situation="free",
-            virtual_obstacles=(VirtualObstacle(np.array([1.0, 0.2]), 0.2, 2),),
-            extended_radii=((0, 0.4),),
+        now=Now(time, np.asarray(pose, float), belief["view"], 3),
+        decided=Decided(
+            belief=Belief(**belief),
+            gaze=GazeDecision(0.3, -0.3, 0.2, 0.4, 0.6, 0.1, gaze_map),
+            motion=MotionDecision(
+                velocity=np.array([0.2, 0.0, 0.1]),
+                direction=0.0,
+                speed=0.2,
+                situation="free",
+                virtual_obstacles=(VirtualObstacle(np.array([1.0, 0.2]), 0.2, 2),),
+                extended_radii=((0, 0.4),),
+            ),
+            task=Task(**task),
+            fresh=time == 0.0,
         ),
-        task=Task(**task),
     )
 
 

@@ -2,7 +2,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.loop import _EventWatch, named_rng
+from hsr8.loop import _EventWatch
+from hsr8.seeds import named_rng
 from hsr8.world.truth import Contact, Truth
 
 

@@ -52,13 +52,21 @@ def flipped(index):
     return change
 
 
-def test_a_run_is_believed_again_bit_for_bit(run, capsys):
+def stages(capsys):
+    """Every stage by name, as JSON told it."""
+    return {s["stage"]: s for s in json.loads(capsys.readouterr().out)["stages"]}
+
+
+def test_a_run_is_computed_again_bit_for_bit(run, capsys):
     assert entry(["check", "replay", str(run)]) == 0
-    assert "bit for bit" in capsys.readouterr().out
+    assert capsys.readouterr().out.count("bit for bit") == 3
     assert entry(["check", "replay", str(run), "--json"]) == 0
-    result = json.loads(capsys.readouterr().out)
-    assert result["equal"]
-    assert result["frames"] == 33
+    told = stages(capsys)
+    assert {name: (s["equal"], s["count"]) for name, s in told.items()} == {
+        "physics": (True, 401),
+        "estimator": (True, 33),
+        "decisions": (True, 33),
+    }
 
 
 @pytest.mark.parametrize(("byte", "channel"), [(-40, "pose"), (-24, "tracks"), (-16, "local map")])
@@ -71,8 +79,41 @@ def test_the_first_frame_and_channel_that_differ_are_named(run, capsys, byte, ch
 def test_a_change_of_a_measurement_shows(run, capsys):
     rewrite(run, 7, flipped(8 + 4))  # x of the odometry, in its tenth digit
     assert entry(["check", "replay", str(run), "--json"]) == 1
-    result = json.loads(capsys.readouterr().out)
-    assert (result["frame"], result["channel"]) == (7, "pose")
+    found = stages(capsys)["estimator"]
+    assert (found["place"], found["channel"]) == (7, "pose")
+
+
+@pytest.mark.parametrize(
+    ("byte", "channel"),
+    [(-72, "belief at the decision"), (-64, "task"), (-56, "motion"), (-48, "gaze")],
+)
+def test_a_decision_that_differs_is_named(run, capsys, byte, channel):
+    rewrite(run, 11, flipped(byte))
+    assert entry(["check", "replay", str(run), "--json"]) == 1
+    told = stages(capsys)
+    assert (told["decisions"]["place"], told["decisions"]["channel"]) == (11, channel)
+    assert told["physics"]["equal"]
+    assert told["estimator"]["equal"]
+
+
+def test_another_number_of_footsteps_makes_another_plan(run, capsys):
+    """What the decisions are told beside the belief is compared too."""
+    step_count = -(4 + 5) * 8 - 9
+    rewrite(run, 12, flipped(step_count))
+    assert entry(["check", "replay", str(run), "--json"]) == 1
+    assert stages(capsys)["decisions"]["place"] >= 12
+
+
+def test_another_set_point_gives_another_world(run, capsys):
+    file = run / "tape.bin"
+    content = bytearray(file.read_bytes())
+    (length, _) = struct.unpack_from("<II", content, 8)
+    content[16 + 40 + 8 * 26 * 199 + 6] ^= 1  # of one joint, in the last tick of a second
+    struct.pack_into("<II", content, 8, length, zlib.crc32(content[16 : 16 + length]))
+    file.write_bytes(content)
+    assert entry(["check", "replay", str(run), "--json"]) == 1
+    found = stages(capsys)["physics"]
+    assert (found["place"], found["channel"]) == (200, "world")
 
 
 def test_another_scenario_gives_another_belief(run, capsys):
@@ -103,11 +144,30 @@ def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
     file.write_bytes(content[: places[9] + 3])
     refused("is cut off in frame 9")
     file.write_bytes(content[:8])
-    refused("holds no frame")
+    assert entry(["check", "replay", str(run), "--json"]) == 0  # there is still the physics
+    capsys.readouterr()
     file.write_bytes(b"something else")
     refused("is no file of measurements")
     file.unlink()
-    refused("has no measurements")
+    refused("cannot read the measurements")
+
+
+def test_a_damaged_cut_or_missing_tape_is_one_clear_error(run, capsys):
+    file = run / "tape.bin"
+    content = file.read_bytes()
+
+    def refused(text):
+        assert entry(["check", "replay", str(run)]) == 2
+        assert text in capsys.readouterr().err
+
+    file.write_bytes(content[:1000] + b"?" + content[1001:])
+    refused("is damaged in block 0")
+    file.write_bytes(content[:-1])
+    refused("is cut off in block")
+    file.write_bytes(b"something else")
+    refused("is no tape")
+    file.unlink()
+    refused("cannot read the tape")
 
 
 def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
@@ -116,7 +176,7 @@ def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
     file.write_bytes(content[:-5])
     manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))
     assert entry(["check", "replay", str(run), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["frames"] == 32
+    assert stages(capsys)["estimator"]["count"] == 32
 
 
 def test_a_scenario_is_still_checked_by_its_name(capsys):

@@ -174,6 +174,7 @@ def test_saccades_are_large_changes_of_the_wanted_gaze(metrics, fake):
     records = []
     for k, pan in enumerate((0.0, 0.05, 0.6, 0.6, -0.3)):
         frame = fake.frame(0.06 * k)
-        frame = replace(frame, gaze=replace(frame.gaze, pan=pan))
+        gaze = replace(frame.gaze, pan=pan)
+        frame = replace(frame, decided=replace(frame.decided, gaze=gaze))
         records.append(fake.record(0.06 * k, frame=frame))
     assert _feed(metrics, records)["saccades_per_s"] == pytest.approx(2 / 0.24)

@@ -1,0 +1,33 @@
+"""Builds the world and the body in it for a scenario."""
+
+import mujoco
+import numpy as np
+
+from hsr8.scenario.schema import Scenario
+from hsr8.seeds import named_rng
+from hsr8.world.assembly import Optics, assemble
+from hsr8.world.body import Body
+from hsr8.world.kinematic import KinematicBody
+from hsr8.world.layout import Layout
+from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.pushes import schedule
+
+
+def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
+    """The world as the robot's camera sees it."""
+    camera = scenario.camera
+    fov = float(np.radians(camera.vertical_fov_deg))
+    brightness = scenario.world.brightness
+    optics = Optics(camera.width, camera.height, fov, brightness, camera.shadows)
+    return assemble(layout, "vision", optics)
+
+
+def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjModel) -> Body:
+    """The robot's body in `model`; `seed` draws its noise and what disturbs it."""
+    noise, rng = scenario.sensor_noise(), named_rng(seed, "body")
+    if scenario.robot.body == "kinematic":
+        return KinematicBody(model, layout, noise, rng)
+    pushes = schedule(
+        scenario.disturbance, scenario.duration, CONTROL_PERIOD, named_rng(seed, "push")
+    )
+    return PhysicsBody(model, layout, noise, rng, pushes=pushes)

@@ -1,0 +1,121 @@
+"""The robot's decisions at a camera frame: where to go, how to move, where to look."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.belief import Belief
+from navigation.decision import GazeDecision, MotionDecision, Task
+from navigation.observation import CameraView, Frame
+from navigation.prediction import predict
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Now:
+    """The moment a decision is made for, as the body knows it.
+
+    Attributes:
+        time: simulated time [s].
+        odometry: pose of R in the odometry frame (3,) [m, m, rad].
+        view: where the camera looks.
+        step_count: footsteps made so far.
+    """
+
+    time: float
+    odometry: Array
+    view: CameraView
+    step_count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """What was decided.
+
+    Attributes:
+        belief: what the robot believes now; the estimate, carried on to now.
+        task: where it is going.
+        motion: how it moves; the decision in force, new once per footstep.
+        gaze: where it looks.
+        fresh: nothing was in force before: the first frame, or the first after a fall.
+    """
+
+    belief: Belief
+    task: Task
+    motion: MotionDecision
+    gaze: GazeDecision
+    fresh: bool
+
+
+class Goes(Protocol):
+    """Knows where to go next."""
+
+    def update(self, pose: Array) -> Task:
+        """Task at the believed pose (3,)."""
+
+
+class Looks(Protocol):
+    """Chooses where to look."""
+
+    def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
+        """Gaze for this frame."""
+
+
+class Moves(Protocol):
+    """Chooses how to move."""
+
+    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+        """Motion for the next footstep."""
+
+
+class Decisions:
+    """Mission, motion and gaze, one after the other.
+
+    Args:
+        mission: sequence of destinations.
+        planner: motion planner.
+        gaze: gaze planner.
+        footstep: time between two motion decisions [s].
+    """
+
+    def __init__(self, *, mission: Goes, planner: Moves, gaze: Looks, footstep: float) -> None:
+        self._mission = mission
+        self._planner = planner
+        self._gaze = gaze
+        self._footstep = footstep
+        self._motion: MotionDecision | None = None
+        self._planned_at = -np.inf
+        self._planned_step = -1
+
+    def make(self, estimate: Belief, measured: Frame, now: Now) -> Decided:
+        """Decide.
+
+        Args:
+            estimate: what is believed of the time of the capture.
+            measured: the frame it comes from.
+            now: later than the capture by the camera's latency.
+        """
+        belief = estimate
+        if now.time > measured.time:
+            belief = predict(estimate, measured.odometry, now.odometry, now.time, now.view)
+        task = self._mission.update(belief.pose)
+        fresh = self._motion is None
+        motion = self._move(now, belief, task)
+        return Decided(belief, task, motion, self._gaze.choose(belief, task, motion), fresh)
+
+    def forget(self) -> None:
+        """Off its feet the robot does not go on with what it was about to do."""
+        self._motion = None
+
+    def _move(self, now: Now, belief: Belief, task: Task) -> MotionDecision:
+        """A new decision once per footstep, or after a footstep's time when standing."""
+        since = now.time - self._planned_at
+        due = now.step_count != self._planned_step or since >= self._footstep
+        if self._motion is None or due:
+            self._motion = self._planner.plan(belief, task)
+            self._planned_at = now.time
+            self._planned_step = now.step_count
+        return self._motion

@@ -1,0 +1,53 @@
+"""Short digests of what a robot believed and decided: equal bits, equal fingerprints."""
+
+import hashlib
+import struct
+
+from hsr8.decisions import Decided
+from navigation.belief import Belief
+
+CHANNELS = ("pose", "pose covariance", "tracks", "local map", "state")
+DECISIONS = ("belief at the decision", "task", "motion", "gaze")
+FINGERPRINT = 8  # bytes per channel
+
+
+def fingerprints(belief: Belief) -> tuple[bytes, ...]:
+    """Digest of each channel of a belief, in the order of `CHANNELS`."""
+    tracks = hashlib.blake2b(digest_size=FINGERPRINT)
+    for t in belief.tracks:
+        told = f"{t.id} {t.label} {t.motion} {t.hits} {t.visible}"
+        tracks.update(told.encode() + struct.pack("<4d", t.radius, t.radius_sigma, t.age, t.reach))
+        for part in (t.position, t.velocity, t.covariance, t.last_seen):
+            tracks.update(part.tobytes())
+        if t.particles is not None:
+            for part in (t.particles.positions, t.particles.velocities, t.particles.weights):
+                tracks.update(part.tobytes())
+    state = f"{belief.seen_beacons} {belief.lost} {belief.filter_faults}"
+    return (
+        _digest(belief.pose.tobytes()),
+        _digest(belief.pose_covariance.tobytes()),
+        tracks.digest(),
+        _digest(belief.local_map.tobytes()),
+        _digest(state.encode()),
+    )
+
+
+def decision_fingerprints(decided: Decided) -> tuple[bytes, ...]:
+    """Digest of each part of a decision, in the order of `DECISIONS`."""
+    task, motion, gaze = decided.task, decided.motion, decided.gaze
+    place = f"{task.is_goal} {task.index} {task.aligning} {task.done}".encode()
+    place += task.target.tobytes() + struct.pack("<d", task.heading)
+    move = motion.situation.encode() + motion.velocity.tobytes()
+    move += struct.pack("<2d", motion.direction, motion.speed)
+    for v in motion.virtual_obstacles:
+        move += v.position.tobytes() + struct.pack("<dq", v.radius, v.track_id)
+    for track, radius in motion.extended_radii:
+        move += struct.pack("<qd", track, radius)
+    evaluations = (gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
+    look = struct.pack("<6d", gaze.pan, gaze.tilt, *evaluations) + gaze.gaze_map.tobytes()
+    believed = _digest(b"".join(fingerprints(decided.belief)))
+    return believed, _digest(place), _digest(move), _digest(look)
+
+
+def _digest(content: bytes) -> bytes:
+    return hashlib.blake2b(content, digest_size=FINGERPRINT).digest()
