@@ -1,19 +1,25 @@
 """Command lines taken apart, and put together again for people to type."""
 
 import shlex
+from collections.abc import Sequence
 
-from hsr8.cli.options import Check, Run
+from hsr8.cli.options import Check, Run, Sweep
 
 
-def settings(options: Run | Check) -> tuple[str, ...]:
+def settings(options: Run | Check | Sweep) -> tuple[str, ...]:
     """Every ``key=value`` of every ``--set``."""
     return tuple(setting for group in options.set for setting in group)
 
 
-def run_command(options: Run | Check, seed: int) -> tuple[str, ...]:
-    """Words, quoted for a shell, of the command line that makes exactly this run."""
-    words = ["hsr8", "run", options.scenario, "--seed", str(seed)]
-    if isinstance(options, Run):
+def run_words(options: Run | Check | Sweep, more: Sequence[str] = ()) -> tuple[str, ...]:
+    """Words of the command line that makes such a run, but for its seed.
+
+    Args:
+        options: as they were given.
+        more: further settings.
+    """
+    words = ["hsr8", "run", options.scenario]
+    if not isinstance(options, Check):
         for flag, value in (
             ("--duration", options.duration),
             ("--body", options.body),
@@ -21,6 +27,13 @@ def run_command(options: Run | Check, seed: int) -> tuple[str, ...]:
         ):
             if value is not None:
                 words += [flag, str(value)]
-    for group in options.set:
+    for group in (*options.set, *((setting,) for setting in more)):
         words += ["--set", *group]
+    return tuple(words)
+
+
+def run_command(options: Run | Check, seed: int) -> tuple[str, ...]:
+    """Words, quoted for a shell, of the command line that makes exactly this run."""
+    head, name, scenario, *rest = run_words(options)
+    words = [head, name, scenario, "--seed", str(seed), *rest]
     return tuple(shlex.quote(word) for word in words)

@@ -25,6 +25,7 @@ CHECK_REPLAY = "check replay"  # a command of two words beside `check`
 # A command's module is imported when it is called: MuJoCo, Rerun and SciPy take seconds.
 COMMANDS: dict[str, tuple[type, str]] = {
     "run": (options.Run, "hsr8.cli.run"),
+    "sweep": (options.Sweep, "hsr8.cli.sweep"),
     "list": (options.List, "hsr8.cli.list"),
     "check": (options.Check, "hsr8.cli.check"),
     CHECK_REPLAY: (options.CheckReplay, "hsr8.cli.check_replay"),

@@ -55,6 +55,64 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Sweep:
+    """Run a scenario over many seeds, a process each, and sum up the results.
+
+    What has a result in the folder is not run again: the same command line goes on where a
+    stopped sweep ended, and more seeds join the old ones.
+    """
+
+    scenario: Positional[ScenarioName]
+    seeds: Annotated[
+        str,
+        _arg("SEEDS", "A:B for A to B-1, or a list: 1000:1200, 1,5,9, or 0:10,42"),
+    ]
+    out: Annotated[
+        Path | None, _arg("DIR", "folder of the sweep; by default sweeps/ and the scenario's name")
+    ] = None
+    workers: Annotated[int | None, _arg("N", "runs at a time; by default, one per CPU")] = None
+    set: Settings = ()
+    vary: UseAppendAction[
+        Annotated[
+            tuple[tuple[str, ...], ...],
+            _arg(
+                "KEY=V1,V2,...",
+                "sweep over these values too, a folder each; repeated, over all combinations",
+            ),
+        ]
+    ] = ()
+    duration: Annotated[
+        float | None, _arg("S", "simulated time at most [s]; else the scenario's")
+    ] = None
+    body: Annotated[
+        Literal["full", "kinematic"] | None,
+        _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
+    ] = None
+    camera: Annotated[
+        Literal["egl", "analytic"] | None,
+        _arg("{egl,analytic}", "rendered head camera, or geometry alone, without OpenGL"),
+    ] = None
+    executor: str = "local"
+    """Who runs: local, dask, dask://HOST:PORT, ray or ray://HOST:PORT."""
+    shard: Annotated[
+        str | None,
+        _arg("I/N", "run only the I-th of N parts, from 1; then once without it, to sum up"),
+    ] = None
+    timeout: Annotated[
+        float | None,
+        _arg("S", "wall time after which a run hangs [s]; by default 60 s + 20 x its duration"),
+    ] = None
+    keep: Literal["all", "failed", "none"] = "all"
+    """Run folders that stay; one takes about 45 kB per simulated second."""
+    log: bool = False
+    """Write the Rerun log of every run."""
+    json: bool = False
+    """Print the results as one JSON object on standard output."""
+    quiet: bool = False
+    """No progress, no result table."""
+
+
+@dataclass(frozen=True)
 class List:
     """List the scenarios that come with hsr8."""
 
@@ -221,6 +279,7 @@ class Colours:
 
 Command = (
     Run
+    | Sweep
     | List
     | Check
     | CheckReplay

@@ -12,7 +12,7 @@ from hsr8.cli import report
 from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.cost import estimate
 from hsr8.cli.crash import CrashReport
-from hsr8.cli.options import Run
+from hsr8.cli.options import Run, Sweep
 from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import exit_code, judge
@@ -108,7 +108,7 @@ def _tell_cost(options: Run, scenario: Scenario, command: Sequence[str]) -> None
     print(f"for real    {' '.join(command)}")
 
 
-def option_tables(options: Run) -> dict[str, dict[str, Any]]:
+def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
     """What the options set in the scenario, by option; ``--set`` comes after them."""
     tables: dict[str, dict[str, Any]] = {}
     if options.duration is not None:

@@ -1,0 +1,230 @@
+"""``hsr8 sweep``: one scenario over many seeds, and over values of a setting."""
+
+import itertools
+import os
+import re
+import shlex
+import signal
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+from types import FrameType
+
+from rich.console import Console
+from rich.table import Table
+
+from hsr8.cli.command_line import run_words, settings
+from hsr8.cli.options import Sweep
+from hsr8.cli.run import option_tables
+from hsr8.errors import UsageError
+from hsr8.evaluation.sweep.definition import Definition
+from hsr8.evaluation.sweep.driver import drive, pending
+from hsr8.evaluation.sweep.executor import open_executor
+from hsr8.evaluation.sweep.folder import REPORT, SweepFolder
+from hsr8.evaluation.sweep.job import Job, Row
+from hsr8.evaluation.sweep.progress import SweepProgress
+from hsr8.evaluation.sweep.report import headline, write_comparison_of_values, write_report
+from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
+from hsr8.evaluation.sweep.summary import Summary, summarize
+from hsr8.gl import require_gl
+from hsr8.recorder import atomic
+from hsr8.scenario.loader import dump, load
+from hsr8.scenario.schema import Scenario
+
+START = 60.0  # a process may need so long to begin [s]
+SLOWEST = 20.0  # and so long for a simulated second [s]
+MOST_WORKERS = 1024
+MOST_VARIANTS = 1000
+INTERRUPTED = 130
+
+
+def main(options: Sweep) -> int:
+    """Run what has no result yet, write the results, and tell them.
+
+    Raises:
+        UsageError: the scenario, the seeds, the folder or the executor will not do.
+        RenderingUnavailable: the camera needs OpenGL and there is none.
+    """
+    seeds = parse_seeds(options.seeds)
+    shard = None if options.shard is None else parse_shard(options.shard)
+    workers = _workers(options)
+    variants = _variants(options)
+    scenarios = {name: _scenario(options, more) for name, more in variants.items()}
+    if options.executor == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
+        require_gl()
+    out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
+    sweeps: dict[str, SweepFolder] = {}
+    with ExitStack() as stack:
+        jobs: list[Job] = []
+        for name, scenario in scenarios.items():
+            definition = Definition.now(
+                scenario.name, run_words(options, variants[name]), dump(scenario)
+            )
+            folder = SweepFolder.open(out / name, definition)
+            folder.lock(shard)
+            stack.callback(folder.close)
+            sweeps[str(folder.path.resolve())] = folder
+            timeout = options.timeout or START + SLOWEST * scenario.duration
+            jobs += [
+                Job(
+                    seed,
+                    str(folder.path.resolve()),
+                    definition.scenario,
+                    timeout,
+                    log=options.log,
+                    keep=options.keep,
+                )
+                for seed in pending(seeds, folder.rows(), shard)
+            ]
+        mine = len(seeds if shard is None else seeds[shard[0] - 1 :: shard[1]]) * len(sweeps)
+        interrupted = _run(options, jobs, sweeps, workers, mine)
+        command = _command(options)
+        summaries = {}
+        for name, folder in zip(scenarios, sweeps.values(), strict=True):
+            rows = folder.rows()
+            folder.write_results(write_report(folder.definition, rows, command))
+            summaries[name] = summarize(rows)
+        if options.vary:
+            _write_values(options, out, summaries, next(iter(sweeps.values())), command)
+    _tell(options, out, summaries, command if interrupted else "")
+    return INTERRUPTED if interrupted else _exit_code(list(summaries.values()))
+
+
+def _run(
+    options: Sweep,
+    jobs: Sequence[Job],
+    sweeps: dict[str, SweepFolder],
+    workers: int,
+    mine: int,
+) -> bool:
+    """Run the jobs; whether they were interrupted."""
+    if not jobs:
+        return False
+    progress = None if options.quiet else SweepProgress(mine, mine - len(jobs))
+
+    def record(job: Job, row: Row) -> None:
+        folder = sweeps[job.folder]
+        folder.append([row | {"command": folder.definition.command(job.seed)}])
+        if progress is not None:
+            progress.on_row(job, row)
+
+    with ExitStack() as stack:
+        if progress is not None:
+            stack.callback(progress.close)
+        stack.enter_context(_terminated_like_ctrl_c())
+        try:
+            executor = stack.enter_context(closing(open_executor(options.executor, workers)))
+            drive(jobs, executor, record, progress.tick if progress else lambda: None)
+        except KeyboardInterrupt:
+            return True
+    return False
+
+
+def _workers(options: Sweep) -> int:
+    if options.workers is None:
+        return len(os.sched_getaffinity(0))
+    if not 1 <= options.workers <= MOST_WORKERS:
+        raise UsageError(f"--workers {options.workers}: give 1 to {MOST_WORKERS}")
+    return options.workers
+
+
+def _variants(options: Sweep) -> dict[str, tuple[str, ...]]:
+    """Settings of every combination of varied values, by the name of its folder."""
+    varied = [parse_values(text) for text in settings_of(options.vary)]
+    keys = [key for key, _ in varied]
+    if len(set(keys)) < len(keys):
+        raise UsageError("--vary names a key twice: give all its values in one")
+    grid = itertools.product(*([f"{key}={value}" for value in values] for key, values in varied))
+    variants = {_folder_name(combination): combination for combination in grid}
+    if not 1 <= len(variants) <= MOST_VARIANTS:
+        raise UsageError(f"--vary: at most {MOST_VARIANTS} combinations of values")
+    return variants
+
+
+def settings_of(groups: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
+    """Every value of an option that may be repeated."""
+    return tuple(value for group in groups for value in group)
+
+
+def _folder_name(combination: Sequence[str]) -> str:
+    return re.sub(r"[^A-Za-z0-9._=+,-]+", "_", ",".join(combination))[:120]
+
+
+def _scenario(options: Sweep, more: tuple[str, ...]) -> Scenario:
+    chosen = (*settings(options), *more)
+    return load(options.scenario, chosen, options=option_tables(options))
+
+
+def _command(options: Sweep) -> str:
+    words = ["hsr8", "sweep", *run_words(options)[2:], "--seeds", options.seeds]
+    for group in options.vary:
+        words += ["--vary", *group]
+    if options.out is not None:
+        words += ["--out", str(options.out)]
+    if options.executor != "local":
+        words += ["--executor", options.executor]
+    if options.shard is not None:
+        words += ["--shard", options.shard]
+    return shlex.join(words)
+
+
+def _write_values(
+    options: Sweep,
+    out: Path,
+    summaries: dict[str, Summary],
+    folder: SweepFolder,
+    command: str,
+) -> None:
+    keys = ", ".join(parse_values(text)[0] for text in settings_of(options.vary))
+    made_with = folder.definition.made_with()
+    try:
+        atomic.write_text(
+            out / REPORT, write_comparison_of_values(keys, summaries, command, made_with)
+        )
+    except OSError as error:
+        raise UsageError(f"cannot write {out / REPORT}: {error.strerror}") from error
+
+
+def _tell(options: Sweep, out: Path, summaries: dict[str, Summary], go_on: str) -> None:
+    if options.json:
+        (first, *_) = summaries.values()
+        results = (
+            {"values": {name: s.to_json() for name, s in summaries.items()}}
+            if options.vary
+            else first.to_json()
+        )
+        print(atomic.dumps({"folder": str(out), "interrupted": bool(go_on), **results}))
+    elif not options.quiet:
+        console = Console(highlight=False)
+        for name, summary in summaries.items():
+            table = Table(title=name or str(out), title_justify="left", show_header=False)
+            for label, text in headline(summary):
+                table.add_row(label, text)
+            console.print(table)
+        console.print(f"report      {out / REPORT}", soft_wrap=True, markup=False)
+    if go_on:
+        print(f"hsr8: interrupted; go on with: {go_on}", file=sys.stderr)
+
+
+def _exit_code(summaries: Sequence[Summary]) -> int:
+    """3 if a run crashed or diverged, 2 if none could be made, 1 if one failed, else 0."""
+    if any(s.crashed or s.diverged for s in summaries):
+        return 3
+    if any(s.refused and not s.runs for s in summaries):
+        return 2
+    return 0 if all(s.passed.count == s.runs for s in summaries) else 1
+
+
+@contextmanager
+def _terminated_like_ctrl_c() -> Iterator[None]:
+    """SIGTERM, which schedulers send, ends a sweep like Ctrl-C."""
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

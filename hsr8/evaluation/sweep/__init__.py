@@ -1,0 +1,1 @@
+"""Sweeps: one scenario over many seeds, each run in a process of its own."""

@@ -1,0 +1,117 @@
+"""Who runs the jobs of a sweep: processes of this machine, or a cluster's workers."""
+
+import time as clock
+from concurrent.futures import ThreadPoolExecutor
+from queue import Empty, SimpleQueue
+from threading import Lock
+from typing import Protocol
+
+from hsr8.errors import UsageError
+from hsr8.evaluation.sweep.job import Job, Process, Row, lost, run_job
+
+GRACE = 5.0  # an interrupted run has so long to close its files [s]
+NAMES = "local, dask, dask://HOST:PORT, ray or ray://HOST:PORT"
+
+
+class Executor(Protocol):
+    """Runs jobs, as many at a time as it has workers."""
+
+    workers: int
+
+    def submit(self, job: Job) -> None:
+        """Take a job; it begins when a worker is free."""
+
+    def wait(self, seconds: float) -> list[tuple[Job, Row]]:
+        """What has ended since the last call; waits so long for the first of it."""
+
+    def close(self) -> None:
+        """Stop what still runs."""
+
+
+def open_executor(name: str, workers: int) -> Executor:
+    """The executor called `name`.
+
+    Args:
+        name: see `NAMES`; with an address, a cluster that is there already.
+        workers: runs at a time; a cluster with an address has its own number.
+
+    Raises:
+        UsageError: there is none of that name, its package is missing, or nobody answers.
+    """
+    kind, _, address = name.partition("://")
+    if kind == "local" and not address:
+        return LocalExecutor(workers)
+    if kind == "dask":
+        from hsr8.evaluation.sweep.dask_executor import DaskExecutor  # noqa: PLC0415  an extra
+
+        return DaskExecutor(address, workers)
+    if kind == "ray":
+        from hsr8.evaluation.sweep.ray_executor import RayExecutor  # noqa: PLC0415  an extra
+
+        return RayExecutor(address, workers)
+    raise UsageError(f"--executor {name}: choose {NAMES}")
+
+
+class LocalExecutor:
+    """A process per run on this machine.
+
+    Args:
+        workers: runs at a time.
+    """
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+        self._pool = ThreadPoolExecutor(workers)
+        self._ended: SimpleQueue[tuple[Job, Row]] = SimpleQueue()
+        self._running: set[Process] = set()
+        self._lock = Lock()
+        self._closed = False
+
+    def submit(self, job: Job) -> None:
+        """Take a job."""
+        self._pool.submit(self._run, job)
+
+    def wait(self, seconds: float) -> list[tuple[Job, Row]]:
+        """What has ended."""
+        ended: list[tuple[Job, Row]] = []
+        try:
+            ended.append(self._ended.get(timeout=seconds))
+            while True:
+                ended.append(self._ended.get_nowait())
+        except Empty:
+            return ended
+
+    def close(self) -> None:
+        """Interrupt what still runs, and kill what does not end soon."""
+        with self._lock:
+            self._closed = True
+            running = list(self._running)
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in running:
+            process.terminate()
+        until = clock.monotonic() + GRACE
+        while any(process.returncode is None for process in running) and clock.monotonic() < until:
+            clock.sleep(0.05)
+        for process in running:
+            if process.returncode is None:
+                process.kill()
+        self._pool.shutdown()
+
+    def _run(self, job: Job) -> None:
+        mine: list[Process] = []
+
+        def started(process: Process) -> None:
+            with self._lock:
+                mine.append(process)
+                self._running.add(process)
+                if self._closed:
+                    process.terminate()
+
+        try:
+            row = run_job(job, started)
+        except OSError as error:  # no process, no disk
+            row = lost(job, str(error))
+        finally:
+            with self._lock:
+                self._running.difference_update(mine)
+        self._ended.put((job, row))

@@ -1,0 +1,76 @@
+"""Runs as Ray tasks; needs the extra ``hsr8[ray]``."""
+
+import os
+import time as clock
+from typing import Any
+
+from hsr8.errors import UsageError
+from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
+
+
+class RayExecutor:
+    """Jobs as Ray tasks, a CPU each.
+
+    Args:
+        address: ``HOST:PORT`` of a Ray client server; empty for a cluster on this machine,
+            reachable from this machine only.
+        workers: CPUs of the cluster on this machine.
+
+    Raises:
+        UsageError: the extra is missing, or nobody answers.
+    """
+
+    def __init__(self, address: str, workers: int) -> None:
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+        try:
+            import ray  # noqa: PLC0415  an extra
+        except ImportError:
+            raise UsageError(
+                "--executor ray needs a package that is missing: "
+                'pip install "hsr8[ray]", or pip install ray'
+            ) from None
+        self._ray: Any = ray
+        try:
+            if address:
+                ray.init(f"ray://{address}", log_to_driver=False)
+            else:
+                ray.init(
+                    num_cpus=workers,
+                    include_dashboard=False,
+                    log_to_driver=False,
+                    logging_level="ERROR",
+                    _node_ip_address="127.0.0.1",
+                )
+        except (OSError, ValueError, RuntimeError) as error:
+            raise UsageError(f"--executor ray: the cluster does not start: {error}") from error
+        # A run whose worker died is ours to retry, and to mark.
+        self._work: Any = ray.remote(max_retries=0, scheduling_strategy="SPREAD")(run_job)
+        self._running: dict[Any, Job] = {}
+        self.workers = int(ray.cluster_resources().get("CPU", 1))
+
+    def submit(self, job: Job) -> None:
+        """Take a job."""
+        self._running[self._work.remote(job)] = job
+
+    def wait(self, seconds: float) -> list[tuple[Job, Row]]:
+        """What has ended."""
+        if not self._running:
+            clock.sleep(seconds)
+            return []
+        references = list(self._running)
+        ended, _ = self._ray.wait(references, num_returns=len(references), timeout=seconds)
+        return [self._row(reference) for reference in ended]
+
+    def close(self) -> None:
+        """Stop what still runs, and a cluster on this machine."""
+        for reference in self._running:
+            self._ray.cancel(reference, force=True)
+        self._ray.shutdown()
+
+    def _row(self, reference: Any) -> tuple[Job, Row]:
+        job = self._running.pop(reference)
+        try:
+            row: Row = self._ray.get(reference)
+        except self._ray.exceptions.RayError as error:
+            row = lost(job, f"the worker went away: {error}")
+        return job, row

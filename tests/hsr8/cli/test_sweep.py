@@ -1,0 +1,196 @@
+import json
+import os
+import signal
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.evaluation.sweep.folder import SweepFolder
+from hsr8.loop import Simulation
+from hsr8.scenario.loader import load
+
+TINY = ["--body", "kinematic", "--camera", "analytic"]
+FAST = ["sweep", "quick", *TINY, "--duration", "0.3", "--quiet"]
+GOOD = {
+    "success": True,
+    "collisions": 0,
+    "falls": 0,
+    "path_length_m": 2.0,
+    "min_clearance_m": 0.2,
+    "exit_reason": "goal",
+}
+
+
+class Instant:
+    """An executor whose runs all succeed at once, but for what is told."""
+
+    def __init__(self, told):
+        self.told, self.queue, self.ran = told, [], []
+        self.closed = False
+
+    def submit(self, job):
+        self.queue.append(job)
+        self.ran.append(job)
+
+    def wait(self, seconds):
+        job = self.queue.pop(0)
+        outcome = self.told.get(job.seed, "passed")
+        if isinstance(outcome, BaseException):
+            raise outcome
+        if callable(outcome):
+            outcome()
+        row = {"seed": job.seed, "outcome": outcome, "attempts": job.attempt, "worker": "here"}
+        return [(job, row | (GOOD if outcome in ("passed", "failed") else {"error": "oh no"}))]
+
+    def close(self):
+        self.closed = True
+
+
+@pytest.fixture
+def instant(monkeypatch, tmp_path):
+    """Replace the executor; the command runs in `tmp_path`."""
+    monkeypatch.chdir(tmp_path)
+
+    def use(told=None):
+        executor = Instant(told or {})
+        monkeypatch.setattr("hsr8.cli.sweep.open_executor", lambda name, workers: executor)
+        return executor
+
+    return use
+
+
+def test_two_workers_give_the_states_of_single_runs(tmp_path, capsys):
+    """Real processes, two at a time."""
+    out = tmp_path / "sweep"
+    assert entry([*FAST, "--seeds", "4:6", "--workers", "2", "--out", str(out), "--json"]) == 1
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["runs"] == 2
+    rows = SweepFolder.read(out).rows()
+    overrides = ("robot.body=kinematic", "camera.source=analytic", "duration=0.3")
+    for row in rows:
+        alone = Simulation(load("quick", overrides, row["seed"]), row["seed"]).run()
+        assert row["state_hash"] == alone.state_hash
+        assert (out / row["run"] / "metrics.json").exists()
+        assert not (out / row["run"] / "log.rrd").exists()
+        assert row["command"] == (
+            f"hsr8 run quick --duration 0.3 --body kinematic --camera analytic --seed {row['seed']}"
+        )
+    assert (out / "runs.parquet").exists()
+    assert rows[0]["command"] in (out / "report.md").read_text()
+
+
+def test_what_has_a_result_is_kept_and_more_seeds_join(instant, tmp_path, capsys):
+    instant()
+    assert entry([*FAST, "--seeds", "0:2"]) == 0
+    more = instant()
+    assert entry([*FAST, "--seeds", "0:3"]) == 0
+    assert [job.seed for job in more.ran] == [2]
+    assert more.closed
+    assert [r["seed"] for r in SweepFolder.read(tmp_path / "sweeps" / "quick").rows()] == [0, 1, 2]
+
+
+def test_another_scenario_does_not_join(instant, capsys):
+    instant()
+    entry([*FAST, "--seeds", "0:2"])
+    assert entry([*FAST, "--seeds", "0:2", "--set", "world.n_static=3"]) == 2
+    assert "world.n_static: 4 there, 3 now" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("told", "code"),
+    [
+        ({}, 0),
+        ({1: "failed"}, 1),
+        ({1: "diverged"}, 3),
+        ({1: "crashed"}, 3),
+        ({1: "refused"}, 0),
+        ({0: "refused", 1: "refused"}, 2),
+    ],
+)
+def test_exit_codes(instant, told, code):
+    instant(told)
+    assert entry([*FAST, "--seeds", "0:2"]) == code
+
+
+def test_a_crashed_run_is_run_again_by_the_next_sweep(instant):
+    instant({1: "crashed"})
+    entry([*FAST, "--seeds", "0:3"])
+    again = instant()
+    assert entry([*FAST, "--seeds", "0:3"]) == 0
+    assert [job.seed for job in again.ran] == [1]
+
+
+def test_ctrl_c_leaves_a_folder_that_goes_on(instant, capsys):
+    stopped = instant({1: KeyboardInterrupt()})
+    assert entry([*FAST, "--seeds", "0:3"]) == 130
+    assert stopped.closed
+    assert "go on with: hsr8 sweep quick" in capsys.readouterr().err
+    again = instant()
+    assert entry([*FAST, "--seeds", "0:3"]) == 0
+    assert [job.seed for job in again.ran] == [1, 2]
+
+
+def test_a_scheduler_s_signal_is_like_ctrl_c(instant):
+    handler = signal.getsignal(signal.SIGTERM)
+    instant({0: lambda: os.kill(os.getpid(), signal.SIGTERM)})
+    assert entry([*FAST, "--seeds", "0:2"]) == 130
+    assert signal.getsignal(signal.SIGTERM) is handler
+
+
+def test_shards_are_put_together(instant, capsys):
+    ran = []
+    for shard in ("1/2", "2/2"):
+        executor = instant()
+        entry([*FAST, "--seeds", "0:5", "--shard", shard, "--out", "s"])
+        ran.append([job.seed for job in executor.ran])
+    assert ran == [[0, 2, 4], [1, 3]]
+    whole = instant()
+    assert entry([*FAST, "--seeds", "0:5", "--out", "s", "--json"]) == 0
+    assert whole.ran == []
+    assert json.loads(capsys.readouterr().out)["runs"] == 5
+
+
+def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_path, capsys):
+    executor = instant()
+    vary = ["--vary", "camera.period_ms=40,80", "--vary", "world.n_moving=0,1"]
+    assert entry([*FAST, "--seeds", "0:2", *vary, "--out", "v", "--json"]) == 0
+    assert len(executor.ran) == 8
+    values = json.loads(capsys.readouterr().out)["values"]
+    assert list(values)[1] == "camera.period_ms=40,world.n_moving=1"
+    page = (tmp_path / "v" / "report.md").read_text()
+    assert "| `camera.period_ms=80,world.n_moving=0` | 2 |" in page
+    one = SweepFolder.read(tmp_path / "v" / "camera.period_ms=80,world.n_moving=0")
+    assert one.rows()[0]["command"].endswith(
+        "--set camera.period_ms=80 --set world.n_moving=0 --seed 0"
+    )
+
+
+@pytest.mark.parametrize(
+    ("more", "word"),
+    [
+        (["--seeds", "x"], "--seeds"),
+        (["--seeds", "0:2", "--workers", "0"], "--workers"),
+        (["--seeds", "0:2", "--shard", "3/2"], "--shard"),
+        (["--seeds", "0:2", "--vary", "a"], "--vary"),
+        (["--seeds", "0:2", "--vary", "seed=1,2", "seed=3"], "twice"),
+        (["--seeds", "0:2", "--vary", "wrld.n=1,2"], "world"),
+        (["--seeds", "0:2", "--set", "nonsense"], "nonsense"),
+        (["--seeds", "0:2", "--executor", "slurm"], "--executor"),
+        (["--seeds", "0:2", "--executor", "local://x"], "--executor"),
+    ],
+)
+def test_wrong_options_are_told(tmp_path, monkeypatch, capsys, more, word):
+    monkeypatch.chdir(tmp_path)
+    assert entry([*FAST, *more]) == 2
+    printed = capsys.readouterr()
+    assert word in printed.err
+    assert printed.out == ""
+
+
+def test_progress_and_table_are_told(instant, capsys):
+    instant({1: "failed"})
+    entry([*FAST[:-1], "--seeds", "0:2"])
+    printed = capsys.readouterr()
+    assert "2/2 runs" in printed.err
+    assert "success" in printed.out
+    assert "sweeps/quick/report.md" in printed.out
