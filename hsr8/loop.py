@@ -73,7 +73,7 @@ class Simulation:
         self._analytic: AnalyticCamera | None = None
         self._camera_rng = named_rng(seed, "camera")
         camera = scenario.camera
-        if camera.source == "analytic":
+        if camera.source != "egl":
             self._analytic = AnalyticCamera(
                 self.layout, head_camera(scenario), self._camera_rng, scenario.camera
             )

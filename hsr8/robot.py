@@ -12,7 +12,7 @@ from hsr8.recorder.record import FrameRecord, Image
 from hsr8.recorder.walk_tally import WalkTally
 from navigation.belief import Belief
 from navigation.observation import CameraView, Frame, Observation
-from vision.camera import CameraPose, PinholeCamera
+from vision.camera import CameraPose
 from vision.detection import Detection
 from vision.parameters import PoseParameters
 from walking.command import Command, HeadTarget, VelocityCommand
@@ -72,7 +72,7 @@ class Robot:
 
     Args:
         walking: walks, and gets up after a fall.
-        camera: intrinsics of the head camera.
+        fov: horizontal and vertical field of view of the head camera [rad].
         vision: detector; unused when the frames carry detections.
         pose: how well the body knows the pose of the camera.
         belief: estimator.
@@ -84,7 +84,7 @@ class Robot:
         self,
         *,
         walking: Walker,
-        camera: PinholeCamera,
+        fov: tuple[float, float],
         vision: Sees,
         pose: PoseParameters,
         belief: Believes,
@@ -92,7 +92,7 @@ class Robot:
         script: Commands | None = None,
     ) -> None:
         self._walking = walking
-        self._camera = camera
+        self._fov = fov
         self._vision = vision
         self._pose = pose
         self._belief = belief
@@ -176,8 +176,8 @@ class Robot:
             position=head.position,
             pan=head.pan,
             tilt=head.tilt,
-            horizontal_fov=self._camera.horizontal_fov,
-            vertical_fov=self._camera.vertical_fov,
+            horizontal_fov=self._fov[0],
+            vertical_fov=self._fov[1],
             yaw_sigma=self._pose.yaw_sigma,
         )
 

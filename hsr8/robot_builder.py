@@ -1,5 +1,7 @@
 """Builds the robot side for a scenario: the only place where its parts meet."""
 
+from math import pi
+
 import numpy as np
 
 from hsr8.decisions import Decisions, Goes, Moves
@@ -27,7 +29,13 @@ ARM_X = (0.0, -0.012, 0.018)
 ARM_Y = (0.087, 0.096, 0.106)
 ARM_Z = (0.378, 0.305, 0.225)
 ARM_RADII = (0.029, 0.032, 0.045)
+ALL_ROUND = (2.0 * pi, pi)  # field of view of a camera that sees everything [rad]
 START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m, m, rad]
+
+
+def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, float]:
+    """Horizontal and vertical field of view of what the robot sees with [rad]."""
+    return ALL_ROUND if scenario.camera.all_round else (camera.horizontal_fov, camera.vertical_fov)
 
 
 def build_robot(scenario: Scenario, layout: Layout, seed: int) -> Robot:
@@ -37,7 +45,7 @@ def build_robot(scenario: Scenario, layout: Layout, seed: int) -> Robot:
     script = build_script(scenario, named_rng(seed, "command"))
     return Robot(
         walking=Walker(body, parameters_for(body, scenario.walking_parameters())),
-        camera=camera,
+        fov=field_of_view(scenario, camera),
         vision=Detector(camera, scenario.vision_parameters(), arms()),
         pose=scenario.vision_parameters().pose,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
@@ -76,7 +84,7 @@ def build_decisions(
     return Decisions(
         mission=mission,
         planner=planner,
-        gaze=GazePlanner(navigation, limits, beacons, camera.horizontal_fov, camera.vertical_fov),
+        gaze=GazePlanner(navigation, limits, beacons, *field_of_view(scenario, camera)),
         footstep=limits.footstep,
     )
 

@@ -1,7 +1,7 @@
 """What the camera could see: the pinhole view, its range, and what hides what."""
 
 from dataclasses import dataclass
-from math import cos, sin, tan
+from math import cos, pi, sin, tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,8 @@ class Viewpoint:
     Attributes:
         rotation: R_WC, columns right, down, forward (3, 3).
         position: p_WC (3,) [m].
-        horizontal_half, vertical_half: half the fields of view [rad].
+        horizontal_half, vertical_half: half the fields of view [rad]; with a horizontal one of
+            a quarter turn or more the camera is no pinhole but sees all around, up and down.
         range: distance along the floor beyond which nothing is recognised [m].
     """
 
@@ -69,6 +70,11 @@ class Viewpoint:
         """`contains` for coordinates that broadcast against each other [m]."""
         dx = x - self.position[0]
         dy = y - self.position[1]
+        if self.horizontal_half >= 0.5 * pi:
+            near: Mask = np.broadcast_to(
+                dx * dx + dy * dy <= self.range**2, np.broadcast(x, y).shape
+            )
+            return near.copy()
         dz = height - float(self.position[2])
         R = self.rotation.tolist()
         forward = (R[0][2] * dx + R[2][2] * dz) + R[1][2] * dy

@@ -78,8 +78,10 @@ BEACONS = {
 class Camera:
     """Noisy detector: what one frame of a walking robot's head camera yields."""
 
-    def __init__(self, rng: np.random.Generator) -> None:
+    def __init__(self, rng: np.random.Generator, hfov: float = HFOV, period: float = FRAME) -> None:
         self.rng = rng
+        self.period = period
+        self.hfov = hfov
         self.pitch = Smooth(0.006, 0.15, rng)
         self.pitch_bias = 0.002 * float(rng.standard_normal())
         self.yaw = Smooth(0.004, 0.15, rng)
@@ -91,7 +93,7 @@ class Camera:
     ) -> tuple[Observation, ...]:
         """Observations of `things` (kind, label, position, radius) from a true pose."""
         rng = self.rng
-        dt = FRAME
+        dt = self.period
         pitch = self.pitch.step(dt) + self.pitch_bias
         pitch += 0.006 * sin(2 * pi * 1.5 * time + self.sway_phase)
         yaw = self.yaw.step(dt)
@@ -104,7 +106,7 @@ class Camera:
         for i, kind, label, d, b, radius in polar:
             own = self.size.setdefault(i, Smooth(1.0, 0.1, rng)).step(dt)
             half = asin(min(0.9, radius / d))
-            off = abs(wrap(b - pan)) - 0.5 * HFOV
+            off = abs(wrap(b - pan)) - 0.5 * self.hfov
             if d > (RANGE if kind == "obstacle" else BEACON_RANGE) or d < 0.2 or off > 0.5 * half:
                 continue
             hidden = max(
@@ -162,11 +164,11 @@ class Camera:
         return tuple(seen)
 
 
-def view(pan: float, tilt: float) -> CameraView:
+def view(pan: float, tilt: float, hfov: float = HFOV) -> CameraView:
     """Camera at a pan and tilt."""
     cp, sp, ct, st = cos(pan), sin(pan), cos(tilt), sin(tilt)
     forward = np.array([cp * ct, sp * ct, st])
     right = np.array([sp, -cp, 0.0])
     down = np.cross(forward, right)
     rotation = np.stack([right, down, forward], axis=1)
-    return CameraView(rotation, np.array([0.0, 0.0, CAMERA_HEIGHT]), pan, tilt, HFOV, VFOV)
+    return CameraView(rotation, np.array([0.0, 0.0, CAMERA_HEIGHT]), pan, tilt, hfov, VFOV)

@@ -11,14 +11,14 @@ A run ends at its first contact.
 
 import json
 from dataclasses import dataclass, field
-from math import atan2, cos, degrees, hypot
+from math import atan2, cos, degrees, hypot, pi
 from pathlib import Path
 from time import perf_counter
 from typing import Annotated, Literal
 
 import numpy as np
 import tyro
-from belief_world import FRAME, HFOV, VFOV, Camera, view
+from belief_world import HFOV, VFOV, Camera, view
 from decision_world import TICK, Walker, World, perfect_belief
 from numpy.typing import NDArray
 from wilson import wilson
@@ -37,7 +37,6 @@ from navigation.planner import Planner
 
 Array = NDArray[np.float64]
 
-FRAME_TICKS = 3
 HEAD_SPEED = 6.0  # [rad/s]
 
 
@@ -74,7 +73,11 @@ class Run:
         )
         self.planner = Planner(parameters, limits)
         self.gaze = GazePlanner(parameters, limits, self.world.beacons, HFOV, VFOV)
-        self.camera = Camera(streams[2])
+        self.all_round = scenario.camera.all_round
+        self.fov = 2.0 * pi if self.all_round else HFOV
+        self.period = scenario.camera.period_ms / 1000
+        self.frame_ticks = round(self.period / TICK)
+        self.camera = Camera(streams[2], self.fov, self.period)
         start = np.array(layout.start) + streams[2].normal(0.0, 0.02, 3)
         self.estimator = Estimator(
             scenario.belief_parameters(), self.world.beacons, start, np.eye(3) * 4e-4, streams[3]
@@ -95,7 +98,7 @@ class Run:
             if self.sensing == "camera":
                 step = HEAD_SPEED * TICK
                 self.head += np.clip(self.target - self.head, -step, step)
-            if tick % FRAME_TICKS == 0:
+            if tick % self.frame_ticks == 0:
                 belief = self._sense(time)
                 task = self.mission.update(belief.pose)
                 self._look(belief, task)
@@ -141,14 +144,16 @@ class Run:
             Frame(
                 time,
                 self.walker.odometry.copy(),
-                self.walker.motion_covariance(FRAME),
-                view(pan, tilt),
+                self.walker.motion_covariance(self.period),
+                view(pan, tilt, self.fov),
                 seen,
             )
         )
 
     def _in_tilt(self, point: Array, tilt: float, pan: float, low: float, high: float) -> bool:
         """Whether part of a cylinder is within the image's height."""
+        if self.all_round:
+            return True
         dx, dy = (point - self.walker.pose[:2]).tolist()
         off = wrap(atan2(dy, dx) - float(self.walker.pose[2]) - pan)
         depth = max(0.05, hypot(dx, dy) * max(0.2, cos(off)))

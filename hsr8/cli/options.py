@@ -41,8 +41,11 @@ class Run:
         _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
     ] = None
     camera: Annotated[
-        Literal["egl", "analytic"] | None,
-        _arg("{egl,analytic}", "rendered head camera, or geometry alone, without OpenGL"),
+        Literal["egl", "analytic", "all-round"] | None,
+        _arg(
+            "{egl,analytic,all-round}",
+            "rendered head camera; geometry alone, without OpenGL; that, of all around at once",
+        ),
     ] = None
     no_log: bool = False
     """Write no Rerun log."""

@@ -52,8 +52,9 @@ class BrightnessStep(Section):
 class Camera(Section):
     """The head camera; walking.head limits how fast it turns, navigation.gaze how far."""
 
-    source: Literal["egl", "analytic"] = "egl"
-    """Rendered pixels, or cylinders projected geometrically (needs no OpenGL)."""
+    source: Literal["egl", "analytic", "all-round"] = "egl"
+    """egl: rendered pixels; analytic: cylinders projected geometrically (needs no OpenGL);
+    all-round: the same, of everything around at once. No camera is: an upper bound of gazes."""
     width: Annotated[int, Interval(ge=32, le=1920)] = 320
     """Image width [pixel]."""
     height: Annotated[int, Interval(ge=24, le=1080)] = 240
@@ -74,6 +75,11 @@ class Camera(Section):
     """Times during which images are black."""
     brightness_step: Annotated[tuple[BrightnessStep, ...], Len(0, 64)] = ()
     """Sudden changes of the light."""
+
+    @property
+    def all_round(self) -> bool:
+        """Whether it sees everything around at once."""
+        return self.source == "all-round"
 
     @property
     def horizontal_fov_deg(self) -> float:

@@ -1,11 +1,13 @@
 """A camera without pixels: cylinders projected geometrically, seen with known noise.
 
+An all-round one differs in its field of view alone: occlusion, range, noise and misses stay.
+
 It yields the same detections as vision would and needs no OpenGL. Occlusion, borders,
 range and missed detections are modelled; colours are taken as recognised.
 """
 
 from dataclasses import dataclass
-from math import asin, atan2, cos, hypot, sin
+from math import asin, atan2, cos, hypot, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,7 +118,7 @@ class AnalyticCamera:
                 continue
             if missed and self._fault_rng.random() < missed:
                 continue
-            box = self._box(places[i], thing, position, rotation)
+            box = self._seen_box(places[i], thing, position, rotation)
             if box is None:
                 continue
             x, y = (places[i] - robot[:2]).tolist()
@@ -128,7 +130,7 @@ class AnalyticCamera:
         """Detections of obstacles that are not there."""
         mean, rng = self._settings.noise.false_blobs, self._fault_rng
         ahead = atan2(rotation[1, 2], rotation[0, 2]) - float(robot[2])
-        half = 0.5 * self._camera.horizontal_fov
+        half = pi if self._settings.all_round else 0.5 * self._camera.horizontal_fov
         found = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             colour = OBSTACLE_COLOURS[rng.integers(len(OBSTACLE_COLOURS))]
@@ -136,10 +138,40 @@ class AnalyticCamera:
             polar = (rng.uniform(*FALSE_RANGE), ahead + rng.uniform(-half, half))
             direction = polar[1] + float(robot[2])
             place = robot[:2] + polar[0] * np.array([cos(direction), sin(direction)])
-            box = self._box(place, thing, position, rotation)
+            box = self._seen_box(place, thing, position, rotation)
             if box is not None:
                 found.append(_detection(polar, thing, box, hidden=0.0, noise=np.zeros(3)))
         return found
+
+    def _seen_box(
+        self, place: Array, thing: _Thing, position: Array, rotation: Array
+    ) -> tuple[int, int, int, int, bool] | None:
+        if self._settings.all_round:
+            return self._panorama_box(place, thing, position, rotation)
+        return self._box(place, thing, position, rotation)
+
+    def _panorama_box(
+        self, place: Array, thing: _Thing, position: Array, rotation: Array
+    ) -> tuple[int, int, int, int, bool]:
+        """Box of a cylinder in a panorama about the camera's forward; nothing is out of it."""
+        width, height = self._camera.width, self._camera.height
+        x, y = (place - position[:2]).tolist()
+        distance = hypot(x, y)
+        half = asin(min(1.0, thing.radius / distance))
+        left = atan2(y, x) - atan2(rotation[1, 2], rotation[0, 2])
+        column = width * (0.5 - atan2(sin(left), cos(left)) / (2.0 * pi))
+        reach = width * half / (2.0 * pi)
+        top, bottom = (
+            height * (0.5 - atan2(z - float(position[2]), distance) / pi)
+            for z in (thing.height, 0.0)
+        )
+        return (
+            max(0, int(column - reach)),
+            int(top),
+            min(width, int(column + reach) + 1),
+            int(bottom) + 1,
+            False,
+        )
 
     def _box(
         self, place: Array, thing: _Thing, position: Array, rotation: Array

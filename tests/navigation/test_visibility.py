@@ -75,3 +75,11 @@ def test_visibility_moves_with_the_robot(view):
     plain = expected(0.0, 0.0, 0.0)
     assert plain.any()
     assert np.array_equal(expected(1.0, -2.0, pi / 3), plain)
+
+
+def test_an_all_round_camera_contains_everything_in_range(view):
+    rng = np.random.default_rng(2)
+    points = rng.uniform(-3.0, 3.0, (50, 2))
+    wide = view(0.4, -0.3, hfov=2.0 * np.pi, vfov=np.pi)
+    seen = Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5).contains(points, margin=0.1)
+    np.testing.assert_array_equal(seen, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)

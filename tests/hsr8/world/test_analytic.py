@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from hsr8.scenario.camera import Camera
 from hsr8.world.analytic import AnalyticCamera
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.layout import Obstacle
@@ -13,11 +14,11 @@ CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
 def see(world, silent):
     """Detections over many frames of a robot that looks down a little."""
 
-    def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35):
+    def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35, settings=None):
         layout, model = world(*obstacles, start=start)
         body = KinematicBody(model, layout, silent, np.random.default_rng(0))
         body.data.joint("head_tilt").qpos[0] = tilt
-        camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1))
+        camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1), settings)
         return [camera.capture(body) for _ in range(frames)]
 
     return make
@@ -89,3 +90,27 @@ def test_beacons_carry_their_names(see):
 
 def test_far_things_are_not_reported(see):
     assert not obstacles_in(see(Obstacle((3.6, 0.0), 0.1, 0.3, "red")))
+
+
+@pytest.mark.parametrize("bearing", np.radians([0.0, 100.0, -160.0, 180.0]))
+def test_an_all_round_camera_sees_in_every_direction_with_the_noise_of_any(see, bearing):
+    place = (1.2 * np.cos(bearing), 1.2 * np.sin(bearing))
+    thing = Obstacle(place, 0.08, 0.3, "red")
+    frames = see(thing, frames=100, settings=Camera(source="all-round"))
+    found = obstacles_in(frames)
+    assert len(found) > 85
+    for d in found:
+        assert 0 <= d.box[0] < d.box[2] <= CAMERA.width
+        assert 0 <= d.box[1] < d.box[3] <= CAMERA.height
+        assert not d.cut
+    off = [np.angle(np.exp(1j * (d.bearing - bearing))) / d.covariance[1, 1] ** 0.5 for d in found]
+    assert 0.7 < np.std(off) < 1.4
+    (ahead,) = {d.covariance[1, 1] for d in obstacles_in(see(Obstacle((1.2, 0), 0.08, 0.3, "red")))}
+    assert found[0].covariance[1, 1] == pytest.approx(ahead)
+
+
+def test_what_stands_behind_another_stays_hidden_all_around(see):
+    near = Obstacle((-0.8, 0.0), 0.12, 0.3, "red")
+    behind = Obstacle((-1.6, 0.0), 0.08, 0.3, "blue")
+    found = obstacles_in(see(near, behind, settings=Camera(source="all-round")))
+    assert {d.label for d in found} == {"red"}
