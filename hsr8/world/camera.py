@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from hsr8.gl import require_gl
 from hsr8.scenario.camera import Camera
+from hsr8.world.frustum import Frustum
 from hsr8.world.image_noise import ImageNoise
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ Image = NDArray[np.uint8]
 
 HEAD_CAMERA = "egocentric"
 THINGS = ("obstacle_", "mover_", "beacon_")  # names of what the robot looks for begin so
-AWAY = -100.0  # where what an image does not show is drawn [m]
+NOT_DRAWN = 5  # a group of geoms that MuJoCo does not draw
 
 
 class RenderedCamera:
@@ -38,9 +39,11 @@ class RenderedCamera:
         self._noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
         self._renderer = mujoco.Renderer(model, height=settings.height, width=settings.width)
         self._lights = _Lights(model)
+        self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)
+        self._group, self._usual_group = model.geom_group, model.geom_group.copy()
         bodies = [i for i in range(model.nbody) if model.body(i).name.startswith(THINGS)]
         self._things = [
-            range(model.body_geomadr[i], model.body_geomadr[i] + model.body_geomnum[i])
+            slice(model.body_geomadr[i], model.body_geomadr[i] + model.body_geomnum[i])
             for i in bodies
         ]
 
@@ -52,9 +55,12 @@ class RenderedCamera:
         if settings.black(body.time):
             return noise.spoil(np.zeros((settings.height, settings.width, 3), np.uint8))
         self._lights.set(light * settings.light(body.time))
+        away = self._frustum.misses(body.data)
+        for i in missed:
+            away[self._things[i]] = True
+        self._group[away] = NOT_DRAWN
         self._renderer.update_scene(body.data, camera=HEAD_CAMERA)
-        if missed:
-            self._take_away({geom for i in missed for geom in self._things[i]})
+        self._group[:] = self._usual_group
         image: Image = self._renderer.render()
         return noise.spoil(image)
 
@@ -62,30 +68,20 @@ class RenderedCamera:
         """Free the OpenGL context."""
         self._renderer.close()
 
-    def _take_away(self, geoms: set[int]) -> None:
-        """Leave geoms of the model out of the scene that is to be drawn."""
-        scene = self._renderer.scene
-        for shape in scene.geoms[: scene.ngeom]:
-            if shape.objtype == mujoco.mjtObj.mjOBJ_GEOM and shape.objid in geoms:
-                shape.pos[2] = AWAY
-
 
 class _Lights:
     """The lights of a model, which can be dimmed."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
-        self._model = model
         self._factor = 1.0
         head = model.vis.headlight
-        self._usual = (head.ambient.copy(), head.diffuse.copy(), model.light_diffuse.copy())
+        lights = (head.ambient, head.diffuse, model.light_diffuse)
+        self._lights = [(light, light.copy()) for light in lights]
 
     def set(self, factor: float) -> None:
         """Make all lights `factor` times as strong as the model has them."""
         if factor == self._factor:
             return
         self._factor = factor
-        head = self._model.vis.headlight
-        ambient, diffuse, lights = self._usual
-        head.ambient[:] = factor * ambient
-        head.diffuse[:] = factor * diffuse
-        self._model.light_diffuse[:] = factor * lights
+        for light, usual in self._lights:
+            light[:] = factor * usual

@@ -23,15 +23,16 @@ class ContactWatch:
         self._force = np.zeros(6)
         self._fromto = np.zeros(6)
         self._seen: dict[tuple[int, int], Contact] = {}
-        self._is_foot = np.zeros(model.ngeom, dtype=bool)
-        self._is_foot[list(index.foot_geoms)] = True
+        self._first_obstacle = int(min(index.obstacle_geoms, default=model.ngeom))
+        self._obstacles: list[int] = index.obstacle_geoms.tolist()
+        self._robot_geoms: list[int] = index.robot_geoms.tolist()
+        self._sizes = model.geom_size[index.obstacle_geoms, 0].copy()
 
     def watch(self, data: mujoco.MjData) -> None:
         """Note the present contacts with obstacles."""
-        n = data.ncon
-        if n == 0:
-            return
         pairs = data.contact.geom
+        if len(pairs) == 0 or pairs.max() < self._first_obstacle:
+            return
         obstacles = self._index.obstacle_of_geom[pairs]
         for i in np.flatnonzero(obstacles.max(axis=1) >= 0).tolist():
             first, second = obstacles[i].tolist()
@@ -66,31 +67,32 @@ class ContactWatch:
         geoms = self._index.obstacle_geoms
         if len(geoms) == 0:
             return float("inf")
-        gaps = (
-            np.hypot(*(data.geom_xpos[geoms, :2] - robot[:2]).T) - self._model.geom_size[geoms, 0]
-        )
+        gaps = np.hypot(*(data.geom_xpos[geoms, :2] - robot[:2]).T) - self._sizes
         nearest = int(np.argmin(gaps))
         if gaps[nearest] > NEAR:
             return float(gaps[nearest])
+        model, obstacle, fromto = self._model, self._obstacles[nearest], self._fromto
         return float(
             min(
-                mujoco.mj_geomDistance(
-                    self._model, data, int(g), int(geoms[nearest]), NEAR, self._fromto
-                )
-                for g in self._index.robot_geoms
+                mujoco.mj_geomDistance(model, data, geom, obstacle, NEAR, fromto)
+                for geom in self._robot_geoms
             )
         )
 
     def feet(self, data: mujoco.MjData) -> tuple[Array, Array]:
         """Normal force under each foot (2,) [N] and the centre of pressure (2,) [m]."""
-        load = np.zeros(2)
-        moment = np.zeros(2)
-        pairs = data.contact.geom[: data.ncon]
-        on_foot = self._is_foot[pairs].any(axis=1) & (pairs == self._index.floor).any(axis=1)
-        for i in np.flatnonzero(on_foot).tolist():
+        load = [0.0, 0.0]
+        x = y = 0.0
+        contact, feet, floor = data.contact, self._index.foot_geoms, self._index.floor
+        places = contact.pos.tolist()
+        for i, pair in enumerate(contact.geom.tolist()):
+            if floor not in pair or not (feet[0] in pair or feet[1] in pair):
+                continue
             mujoco.mj_contactForce(self._model, data, i, self._force)
-            side = 0 if self._index.foot_geoms[0] in pairs[i] else 1
-            load[side] += self._force[0]
-            moment += self._force[0] * data.contact.pos[i][:2]
-        total = load.sum()
-        return load, moment / total if total > 0.0 else np.full(2, np.nan)
+            force = float(self._force[0])
+            load[0 if feet[0] in pair else 1] += force
+            x += force * places[i][0]
+            y += force * places[i][1]
+        total = load[0] + load[1]
+        pressure = np.array([x, y]) / total if total > 0.0 else np.full(2, np.nan)
+        return np.array(load), pressure

@@ -35,11 +35,13 @@ class ImageNoise:
         self._shape = (*shape, 3)
         self._size = 3 * shape[0] * shape[1]
         self._colours = np.array([c.rgb for c in COLOUR_CLASSES.values()])
-        self._grain: NDArray[np.int16] | None = None
+        self._grain: tuple[Image, Image] | None = None
         if noise.pixel > 0.0:
             # Drawing every image's grain afresh would cost half as much as rendering it.
             grain = noise.pixel * rng.standard_normal(GRAIN_IMAGES * self._size, np.float32)
-            self._grain = np.clip(np.round(grain), -GRAIN_LIMIT, GRAIN_LIMIT).astype(np.int16)
+            grain = np.clip(np.round(grain), -GRAIN_LIMIT, GRAIN_LIMIT)
+            brighter, darker = np.maximum(grain, 0.0), np.maximum(-grain, 0.0)
+            self._grain = brighter.astype(np.uint8), darker.astype(np.uint8)
 
     def light(self) -> float:
         """Factor on all lights for the next image."""
@@ -61,10 +63,11 @@ class ImageNoise:
                 self._paint(image)
         if self._grain is None:
             return image
-        start = int(self._rng.integers(len(self._grain) - self._size))
-        grain = self._grain[start : start + self._size].reshape(self._shape)
-        spoiled: Image = np.clip(image + grain, 0, 255).astype(np.uint8)
-        return spoiled
+        start = int(self._rng.integers((GRAIN_IMAGES - 1) * self._size))
+        stretch = slice(start, start + self._size)
+        # Unsigned and saturating: four times as fast as a sum that is clipped.
+        brighter, darker = (part[stretch].reshape(self._shape) for part in self._grain)
+        return np.asarray(cv2.subtract(cv2.add(image, brighter), darker), np.uint8)
 
     def _paint(self, image: Image) -> None:
         """One false blob: an ellipse in a colour of obstacles or beacons."""

@@ -156,18 +156,20 @@ class Movers:
     def __len__(self) -> int:
         return len(self.laws)
 
-    def positions(self, time: float) -> Array:
-        """Positions at `time` [s], layout order (n, 2) [m]."""
+    def positions(self, time: float | Array) -> Array:
+        """Positions at `time` [s], of any shape (...), in layout order (..., n, 2) [m]."""
+        time = np.asarray(time, dtype=float)[..., None]
         gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
         along = np.minimum(gone, 2.0 * self._length - gone)
-        straight: Array = self._origin + along[:, None] * self._way
+        straight: Array = self._origin + along[..., None] * self._way
         if self._all_straight:
             return straight
         angle = self._angle + self._rim_speed / self._radius * time
-        rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        rim = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         both = self._ordered(straight, self._centre + self._radius[:, None] * rim)
         for k, law in self._others:
-            both[k] = law.position(time)
+            places = [law.position(instant) for instant in time.ravel().tolist()]
+            both[..., k, :] = np.reshape(places, both[..., k, :].shape)
         return both
 
     def velocities(self, time: float) -> Array:
@@ -185,9 +187,9 @@ class Movers:
         return both
 
     def _ordered(self, straight: Array, rim: Array) -> Array:
-        both = np.empty((len(self.laws), 2))
-        both[self._straight] = straight
-        both[self._round] = rim
+        both = np.empty((*straight.shape[:-2], len(self.laws), 2))
+        both[..., self._straight, :] = straight
+        both[..., self._round, :] = rim
         return both
 
 

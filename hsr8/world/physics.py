@@ -1,6 +1,7 @@
 """The full body: MuJoCo physics, two steps a control tick."""
 
 from collections.abc import Sequence
+from math import isfinite
 
 import mujoco
 import numpy as np
@@ -74,6 +75,7 @@ class PhysicsBody:
                 f"{model.opt.timestep} s"
             )
         self._substep = 0
+        self._timestep = float(model.opt.timestep)
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
         place_robot(model, self.data, np.array(layout.start))
         self._lying = FALLEN_SHARE * float(self.data.qpos[self._index.root_qpos + 2])
@@ -85,7 +87,7 @@ class PhysicsBody:
     @property
     def time(self) -> float:
         """Simulated time [s]."""
-        return float(self._substep * self.model.opt.timestep)
+        return self._substep * self._timestep
 
     def sense(self) -> BodySensors:
         """Read encoders, IMU and foot pads."""
@@ -110,17 +112,18 @@ class PhysicsBody:
         Raises:
             SimulationDiverged: MuJoCo warned or the state is no longer finite.
         """
-        self.data.ctrl[self._index.actuators] = self.set_points(targets)
+        model, data, around = self.model, self.data, self._around
+        data.ctrl[self._index.actuators] = self.set_points(targets)
         root = self._index.root_qpos
-        yaw = heading(self.data.qpos[root + 3 : root + 7])
-        self._pusher.act(self.data, self._substep // self._substeps, yaw)
+        tick = self._substep // self._substeps
+        if self._pusher.busy(tick):
+            self._pusher.act(data, tick, heading(data.qpos[root + 3 : root + 7]))
         for _ in range(self._substeps):
-            # where the movers are at the end of this physics step
-            self._around.move(self.data, (self._substep + 1) * self.model.opt.timestep)
-            mujoco.mj_step(self.model, self.data)
+            around.step(data, self._substep)
+            mujoco.mj_step(model, data)
             self._substep += 1
-        self._around.watch.watch(self.data)
-        self._saturation.watch(self.data)
+        around.watch.watch(data)
+        self._saturation.watch(data)
         self._guard()
 
     def update_kinematics(self) -> None:
@@ -160,8 +163,8 @@ class PhysicsBody:
         return self._state.tobytes()
 
     def _guard(self) -> None:
-        warned = self.data.warning.number.any()
-        if not warned and np.isfinite(self.data.qacc).all():
+        # A sum is finite only if all of its terms are.
+        if not self.data.warning.number.any() and isfinite(self.data.qacc.sum()):
             return
         speeds = np.abs(self.data.qvel)
         dof = int(np.argmax(np.where(np.isfinite(speeds), speeds, np.inf)))

@@ -83,6 +83,11 @@ class Pusher:
         self._acting: dict[int, Array] = {}
         self._seen: dict[int, PushActing] = {}
 
+    def busy(self, tick: int) -> bool:
+        """Whether there is anything to do in control tick `tick`."""
+        due = self._next < len(self._pushes) and self._pushes[self._next].first <= tick
+        return due or bool(self._acting)
+
     def act(self, data: mujoco.MjData, tick: int, heading: float) -> None:
         """Set the forces of one control tick.
 
@@ -91,9 +96,6 @@ class Pusher:
             tick: about to be made.
             heading: of the robot [rad].
         """
-        starts = self._next < len(self._pushes) and self._pushes[self._next].first <= tick
-        if not starts and not self._acting:
-            return
         for number in self._acting:
             data.xfrc_applied[self._bodies[number]] = 0.0
         while self._next < len(self._pushes) and self._pushes[self._next].first <= tick:

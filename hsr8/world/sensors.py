@@ -26,6 +26,18 @@ class SensorSuite:
         self._bias_step = noise.gyro_bias * period
         self._yaw_drift = 0.0
         self._gain = 1.0 + noise.foot_force_gain * rng.standard_normal((2, 4))
+        widths = (26, 26, 3, 3, 8, 1, 1, 1)
+        sigmas = (
+            noise.encoder,
+            noise.encoder_rate,
+            noise.gyro,
+            noise.accelerometer,
+            noise.foot_force,
+            noise.tilt,
+            noise.tilt,
+            self._drift_step,
+        )
+        self._sigma = np.repeat(sigmas, widths)
 
     def read(
         self,
@@ -39,21 +51,18 @@ class SensorSuite:
     ) -> BodySensors:
         """Turn true values (units as in ``BodySensors``) into one noisy reading."""
         noise = self._noise
-        draw = self._rng.standard_normal(69)
-        self._yaw_drift += self._drift_step * float(draw[68]) + self._bias_step
+        error = self._sigma * self._rng.standard_normal(69)
+        roll, pitch, drift = error[66:].tolist()
+        self._yaw_drift += drift + self._bias_step
         tilted = quaternion_product(
-            orientation,
-            small_rotation(
-                noise.roll_bias + noise.tilt * float(draw[66]),
-                noise.pitch_bias + noise.tilt * float(draw[67]),
-            ),
+            orientation, small_rotation(noise.roll_bias + roll, noise.pitch_bias + pitch)
         )
-        force = self._gain * foot_force + noise.foot_force * draw[58:66].reshape(2, 4)
+        force = self._gain * foot_force + error[58:66].reshape(2, 4)
         return BodySensors(
-            joint_position=joint_position + noise.encoder * draw[0:26],
-            joint_velocity=joint_velocity + noise.encoder_rate * draw[26:52],
-            gyro=gyro + noise.gyro_bias + noise.gyro * draw[52:55],
-            accelerometer=accelerometer + noise.accelerometer * draw[55:58],
+            joint_position=joint_position + error[0:26],
+            joint_velocity=joint_velocity + error[26:52],
+            gyro=gyro + noise.gyro_bias + error[52:55],
+            accelerometer=accelerometer + error[55:58],
             orientation=quaternion_product(quaternion_from_yaw(self._yaw_drift), tilted),
             foot_force=np.maximum(force, 0.0),
         )

@@ -10,6 +10,8 @@ from hsr8.world.layout import Layout
 
 Array = NDArray[np.float64]
 
+BLOCK = 256  # physics steps for which the movers' places are computed at a time
+
 
 class Surroundings:
     """The obstacles of a layout in its compiled model.
@@ -30,11 +32,24 @@ class Surroundings:
         self._still = np.zeros_like(self._static)
         self.index = ModelIndex.of(model, len(static), len(self._movers))
         self.watch = ContactWatch(model, self.index, len(static))
+        self._timestep = float(model.opt.timestep)
+        self._first, self._places = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))
 
     def move(self, data: mujoco.MjData, time: float) -> None:
         """Put every mover where its law wants it at `time` [s]."""
         if len(self._movers):
             data.mocap_pos[self.index.mover_mocap, :2] = self._movers.positions(time)
+
+    def step(self, data: mujoco.MjData, number: int) -> None:
+        """Put every mover where it is at the end of physics step `number`, counted from 0."""
+        if len(self._movers) == 0:
+            return
+        if not 0 <= number - self._first < BLOCK:
+            self._first = number
+            ends = np.arange(number + 1.0, number + 1.0 + BLOCK) * self._timestep
+            self._places[:] = data.mocap_pos
+            self._places[:, self.index.mover_mocap, :2] = self._movers.positions(ends)
+        data.mocap_pos[:] = self._places[number - self._first]
 
     def positions(self, time: float) -> Array:
         """Axes of all obstacles at `time` [s], layout order (n, 2) [m]."""

@@ -61,6 +61,13 @@ def test_all_together_are_each_alone(chosen, time):
     assert movers.velocities(time)[keep] == pytest.approx(velocities[keep], abs=1e-9)
 
 
+@given(st.lists(laws, max_size=6), st.lists(times, min_size=1, max_size=4))
+def test_many_times_at_once_are_each_alone(chosen, instants):
+    movers = Movers(tuple(chosen))
+    together = movers.positions(np.array(instants))
+    assert np.array_equal(together, np.array([movers.positions(time) for time in instants]))
+
+
 @given(laws, times)
 def test_velocity_is_the_slope_of_position(law, time):
     step = 1e-5
