@@ -6,7 +6,7 @@ then turns as long as it must, then goes straight.
 """
 
 from dataclasses import dataclass
-from math import atan2, hypot, pi
+from math import atan2, hypot, isfinite, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,36 +50,46 @@ def contact_times(paths: Paths, position: Array, discs: Hypotheses) -> tuple[Arr
         discs: m discs at constant velocity.
 
     Returns:
-        Time to contact (n, m) [s], infinite for none; closing speed at the start (n, m)
-        [m/s].
+        Time to contact (n, m) [s], infinite for none; closing speed at the start (n, m), of
+        discs out of reach of the first piece zero [m/s].
     """
     k, n = paths.duration.shape
-    dx = np.broadcast_to(discs.position[:, 0] - position[0], (n, len(discs))).copy()
-    dy = np.broadcast_to(discs.position[:, 1] - position[1], (n, len(discs))).copy()
-    square = discs.radius**2
     first = np.full((n, len(discs)), np.inf)
     closing = np.zeros_like(first)
-    start = np.zeros((n, 1))
+    offset = discs.position - position
+    gap = np.hypot(offset[:, 0], offset[:, 1]) - discs.radius
+    speed = np.hypot(discs.velocity[:, 0], discs.velocity[:, 1])
+    moved, start, fastest = np.zeros((n, 2)), np.zeros(n), 0.0
     for piece in range(k):
-        u = discs.velocity[:, 0] - paths.velocity[piece, :, 0, None]
-        w = discs.velocity[:, 1] - paths.velocity[piece, :, 1, None]
-        duration = paths.duration[piece, :, None]
+        velocity, duration = paths.velocity[piece], paths.duration[piece]
+        end = start + duration
+        fastest = max(fastest, float(np.hypot(velocity[:, 0], velocity[:, 1]).max()))
+        latest = float(end.max())
+        # Only these can be touched by then.
+        near = np.arange(len(discs))
+        if isfinite(latest):
+            near = np.nonzero(gap <= (speed + fastest) * latest)[0]
+        u = discs.velocity[near, 0] - velocity[:, 0, None]
+        w = discs.velocity[near, 1] - velocity[:, 1, None]
+        dx = offset[near, 0] + start[:, None] * discs.velocity[near, 0] - moved[:, 0, None]
+        dy = offset[near, 1] + start[:, None] * discs.velocity[near, 1] - moved[:, 1, None]
         rate = dx * u + dy * w
+        outside = dx * dx + dy * dy - discs.radius[near] ** 2
         speed2 = u * u + w * w
-        outside = dx * dx + dy * dy - square
         discriminant = rate * rate - speed2 * outside
-        meets = (rate < 0.0) & ((discriminant > 0.0) | (outside < 0.0))
-        root = np.sqrt(np.maximum(discriminant, 0.0))
-        time = np.maximum(0.0, (-rate - root) / np.maximum(speed2, 1e-12))
-        meets &= time <= duration
-        np.minimum(first, np.where(meets, start + time, np.inf), out=first)
+        row, column = np.nonzero((rate < 0.0) & ((discriminant > 0.0) | (outside < 0.0)))
+        root = np.sqrt(np.maximum(discriminant[row, column], 0.0))
+        closest = -rate[row, column] - root
+        time = np.maximum(0.0, closest / np.maximum(speed2[row, column], 1e-12))
+        meets = time <= duration[row]
+        row, column, time = row[meets], near[column[meets]], time[meets]
+        first[row, column] = np.minimum(first[row, column], start[row] + time)
         if piece == 0:
-            distance = np.maximum(np.sqrt(outside + square), 1e-6)
-            closing = np.maximum(0.0, -rate / distance)
+            distance = np.hypot(offset[near, 0], offset[near, 1])
+            closing[:, near] = np.maximum(0.0, -rate / np.maximum(distance, 1e-6))
         if piece < k - 1:
-            dx += u * duration
-            dy += w * duration
-            start = start + duration
+            moved = moved + duration[:, None] * velocity
+            start = end
     return first, closing
 
 

@@ -13,7 +13,7 @@ import json
 from dataclasses import dataclass, field
 from math import atan2, cos, degrees, hypot, pi
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Annotated, Literal
 
 import numpy as np
@@ -107,9 +107,9 @@ class Run:
             if task.done:
                 return self._end("goal", time, clearance, task)
             if tick % self.step_ticks == 0:
-                begin = perf_counter()
+                begin = process_time()
                 self.motion = self.planner.plan(belief, task)
-                self.times["plan"].append(perf_counter() - begin)
+                self.times["plan"].append(process_time() - begin)
                 walker.latch(self.motion.velocity)
                 self.history.append((time, walker.pose.copy(), self.motion.velocity, belief))
             walker.step()
@@ -163,9 +163,9 @@ class Run:
     def _look(self, belief: Belief, task: Task) -> None:
         if self.sensing == "perfect":
             return
-        begin = perf_counter()
+        begin = process_time()
         decision = self.gaze.choose(belief, task, self.motion)
-        self.times["gaze"].append(perf_counter() - begin)
+        self.times["gaze"].append(process_time() - begin)
         self.target = np.array([decision.pan, decision.tilt])
 
     def _end(self, reason: str, time: float, clearance: float, task: Task) -> Episode:
