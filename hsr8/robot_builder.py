@@ -15,7 +15,7 @@ from hsr8.world.models import models_dir
 from navigation.estimator import Estimator
 from navigation.gaze import GazePlanner
 from navigation.mission import Mission
-from navigation.planner import Planner
+from navigation.peers.choice import build_planner
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.own_body import BodyPart
@@ -49,7 +49,7 @@ def build_robot(scenario: Scenario, layout: Layout, seed: int) -> Robot:
         vision=Detector(camera, scenario.vision_parameters(), arms()),
         pose=scenario.vision_parameters().pose,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
-        decisions=build_decisions(scenario, layout, camera, script),
+        decisions=build_decisions(scenario, layout, camera, script, named_rng(seed, "planner")),
         script=script,
     )
 
@@ -69,9 +69,16 @@ def build_script(scenario: Scenario, rng: np.random.Generator) -> CommandScript 
 
 
 def build_decisions(
-    scenario: Scenario, layout: Layout, camera: PinholeCamera, script: CommandScript | None
+    scenario: Scenario,
+    layout: Layout,
+    camera: PinholeCamera,
+    script: CommandScript | None,
+    rng: np.random.Generator,
 ) -> Decisions:
-    """Mission, planner and gaze of the robot of `scenario`; with a `script`, it is obeyed."""
+    """Mission, planner and gaze of the robot of `scenario`.
+
+    With a `script`, it is obeyed; `rng` is for a planner that draws samples.
+    """
     navigation, limits = scenario.navigation_parameters(), scenario.speed_limits()
     mission: Goes
     planner: Moves
@@ -79,7 +86,7 @@ def build_decisions(
         mission, planner = ScriptedMission(), ScriptedPlanner(script)
     else:
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
-        planner = Planner(navigation, limits)
+        planner = build_planner(navigation, limits, rng)
     beacons = known_beacons(scenario, layout)
     return Decisions(
         mission=mission,

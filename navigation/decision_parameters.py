@@ -16,6 +16,7 @@ from navigation.gaze_parameters import (
     Positive,
     Share,
 )
+from navigation.peers.parameters import PlannerParameters
 
 Count = Annotated[int, Ge(1)]
 
@@ -236,6 +237,8 @@ class NavigationParameters:
     """Partial evaluations."""
     gaze: GazeParameters = field(default_factory=GazeParameters)
     """Gaze."""
+    planner: PlannerParameters = field(default_factory=PlannerParameters)
+    """Choice of the planner, and the peers."""
     univector: UnivectorParameters = field(default_factory=UnivectorParameters)
     """Univector field."""
     mover: MoverParameters = field(default_factory=MoverParameters)

@@ -33,7 +33,7 @@ from navigation.estimator import Estimator
 from navigation.gaze import GazePlanner
 from navigation.mission import Mission
 from navigation.observation import Frame
-from navigation.planner import Planner
+from navigation.peers.choice import build_planner
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ class Run:
     """One closed loop."""
 
     def __init__(self, scenario: Scenario, seed: int, sensing: str) -> None:
-        streams = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)]
+        streams = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(5)]
         self.seed, self.sensing = seed, sensing
         self.world = World(draw_layout(scenario, seed))
         layout, limits = self.world.layout, scenario.speed_limits()
@@ -71,7 +71,7 @@ class Run:
         self.mission = Mission(
             layout.waypoints, layout.goal_heading, layout.endless, parameters.mission
         )
-        self.planner = Planner(parameters, limits)
+        self.planner = build_planner(parameters, limits, streams[4])
         self.gaze = GazePlanner(parameters, limits, self.world.beacons, HFOV, VFOV)
         self.all_round = scenario.camera.all_round
         self.fov = 2.0 * pi if self.all_round else HFOV

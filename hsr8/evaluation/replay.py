@@ -108,7 +108,8 @@ def _differences(run: Run, measured: list[Measured]) -> Iterator[tuple[str, int,
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
     script = build_script(scenario, named_rng(run.seed, "command"))
-    decisions = build_decisions(scenario, layout, head_camera(scenario), script)
+    rng = named_rng(run.seed, "planner")
+    decisions = build_decisions(scenario, layout, head_camera(scenario), script, rng)
     for index, recorded in enumerate(measured):
         try:
             estimate = estimator.update(recorded.frame)

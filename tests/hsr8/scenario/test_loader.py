@@ -77,6 +77,7 @@ mode = "deadlin"
         ("", "mission: is missing"),
         ("mission = {}", 'mission.kind: is missing; choose one of "course"'),
         ('mission = {kind = "tours"}', "did you mean 'tour'?"),
+        (COURSE + '[navigation.planner]\nmethod = "orka"', "did you mean 'orca'?"),
         ('mission = {kind = "points"}', "mission.points: is missing"),
         ('mission = {kind = "course", point = 1}', "mission.point: unknown key"),
         (COURSE + "[robot.speed]\nforward = 0.9", "walking.limits.forward"),

@@ -1,0 +1,145 @@
+"""Parameters of the planners: which one, and those of the peers.
+
+The defaults of every peer are those found by `scripts/tune_peers.py`.
+"""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le, Lt
+
+from navigation.gaze_parameters import NonNegative, Positive
+
+Method = Literal["univector", "univector-plain", "n-posture", "apf", "orca", "dwa", "mppi"]
+
+
+@dataclass(frozen=True)
+class PlainUnivectorParameters:
+    """Univector field of static discs: no virtual obstacle, no speed, no filter."""
+
+    margin: NonNegative = 0.05
+    """Distance kept from the bodies of obstacles [m]."""
+    eta_vo: NonNegative = 0.5
+    """Growth of the radius of a mover with its speed [s]."""
+    d_e: Positive = 0.20
+    """Radius offset of the spiral (9) [m]."""
+    d_b: Positive = 0.25
+    """Width of the outer band of (9) [m]."""
+    k_r: Positive = 0.30
+    """Curvature of the outer spiral (9) [m]."""
+
+
+@dataclass(frozen=True)
+class NPostureParameters:
+    """Posture field of Kim with the obstacle field of Lim."""
+
+    margin: NonNegative = 0.05
+    """Distance kept from the bodies of obstacles [m]."""
+    gain: Positive = 2.0
+    """Winding n of the posture field [1]."""
+    offset: Positive = 0.25
+    """Distance d of the point behind the destination that bends the field [m]."""
+    lead: NonNegative = 1.0
+    """Displacement K_o of an obstacle per velocity relative to the robot [s]."""
+    d_min: NonNegative = 0.05
+    """Gap within which only the obstacle counts [m]."""
+    delta: Positive = 0.15
+    """Width of the Gaussian over which it loses its weight [m]."""
+
+
+@dataclass(frozen=True)
+class ApfParameters:
+    """Artificial potential field with moving obstacles."""
+
+    margin: NonNegative = 0.05
+    """Distance kept from the bodies of obstacles [m]."""
+    influence: Positive = 0.45
+    """Gap within which an obstacle repels [m]."""
+    gain: Positive = 0.02
+    """Repulsion, as a share of the largest speed [m]."""
+    reaction: NonNegative = 0.8
+    """Time of approach by which the gap counts as shorter [s]."""
+    swirl: NonNegative = 0.6
+    """Tangential part of the repulsion [1]."""
+
+
+@dataclass(frozen=True)
+class OrcaParameters:
+    """Optimal reciprocal collision avoidance, with full responsibility."""
+
+    margin: NonNegative = 0.05
+    """Distance kept from the bodies of obstacles [m]."""
+    horizon: Positive = 5.0
+    """Time for which movers are avoided [s]."""
+    static_horizon: Positive = 2.0
+    """Time for which static obstacles are avoided [s]."""
+    responsibility: Annotated[float, Gt(0.0), Le(1.0)] = 1.0
+    """Share of the avoidance taken by the robot; obstacles that never give way leave all [1]."""
+
+
+@dataclass(frozen=True)
+class DwaParameters:
+    """Dynamic window over velocities reachable in one footstep."""
+
+    margin: NonNegative = 0.05
+    """Distance kept from the bodies of obstacles [m]."""
+    horizon: Positive = 3.0
+    """Time a velocity is kept for when it is judged [s]."""
+    heading_weight: NonNegative = 0.3
+    """Weight of the heading left to turn [1]."""
+    clearance_weight: NonNegative = 0.4
+    """Weight of the gap to the nearest obstacle [1]."""
+    clearance: Positive = 0.25
+    """Gap from which on it does not matter [m]."""
+    contact_weight: NonNegative = 6.0
+    """Weight of a contact, the sooner the more [1]."""
+
+
+@dataclass(frozen=True)
+class MppiParameters:
+    """Model predictive path integral control."""
+
+    margin: NonNegative = 0.05
+    """Distance kept from the bodies of obstacles [m]."""
+    samples: Annotated[int, Ge(8), Le(8192)] = 256
+    """Sampled sequences of footsteps, half of them mirrored [1]."""
+    steps: Annotated[int, Ge(1), Le(200)] = 18
+    """Footsteps per sequence [1]."""
+    spread: Positive = 0.5
+    """Standard deviation of the samples, share of the speed limits [1]."""
+    persistence: Annotated[float, Ge(0.0), Lt(1.0)] = 0.8
+    """Correlation of a sample from footstep to footstep [1]."""
+    temperature: Positive = 0.05
+    """Cost over which a sample's weight falls to 1/e [1]."""
+    heading_weight: NonNegative = 0.2
+    """Weight of the heading left to turn [1]."""
+    clearance_weight: NonNegative = 0.5
+    """Weight of the gap to the nearest obstacle [1]."""
+    clearance: Positive = 0.15
+    """Gap from which on it does not matter [m]."""
+    contact_weight: NonNegative = 8.0
+    """Weight of a contact, the sooner the more [1]."""
+
+
+@dataclass(frozen=True)
+class PlannerParameters:
+    """Which planner moves the robot, and the parameters of the peers."""
+
+    method: Method = "univector"
+    """Planner: the modified univector field of the profile, or a peer."""
+    memory: Positive = 4.0
+    """Time unseen after which a peer forgets what may move [s]."""
+    sigma_limit: NonNegative = 0.06
+    """Largest part of an obstacle's position uncertainty a peer adds to its radius [m]."""
+    univector_plain: PlainUnivectorParameters = field(default_factory=PlainUnivectorParameters)
+    """Univector field alone."""
+    n_posture: NPostureParameters = field(default_factory=NPostureParameters)
+    """Posture field."""
+    apf: ApfParameters = field(default_factory=ApfParameters)
+    """Artificial potential field."""
+    orca: OrcaParameters = field(default_factory=OrcaParameters)
+    """Optimal reciprocal collision avoidance."""
+    dwa: DwaParameters = field(default_factory=DwaParameters)
+    """Dynamic window."""
+    mppi: MppiParameters = field(default_factory=MppiParameters)
+    """Path integral."""

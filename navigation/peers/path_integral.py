@@ -1,0 +1,91 @@
+"""Model predictive path integral control, Williams et al. 2017.
+
+G. Williams, A. Aldrich, E. Theodorou, "Model predictive path integral control: from theory
+to parallel computation", J. Guidance, Control and Dynamics 40(2). Obstacles are predicted at
+constant velocity; the sampled sequences keep to the acceleration the body has.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap_array
+from navigation.peers.parameters import MppiParameters
+from navigation.peers.roll_out import contact_cost, gaps, roll_out
+from navigation.peers.situation import Situation
+
+Array = NDArray[np.float64]
+
+_MIRROR = np.array([1.0, -1.0, -1.0])
+
+
+class PathIntegral:
+    """Mean of sampled sequences of footsteps, weighted by the exponential of their cost."""
+
+    def __init__(
+        self, parameters: MppiParameters, s_robot: float, rng: np.random.Generator
+    ) -> None:
+        """Start with a plan of standing.
+
+        Args:
+            parameters: samples and weights.
+            s_robot: radius of the robot [m].
+            rng: draws the samples.
+        """
+        self.margin = parameters.margin
+        self._parameters = parameters
+        self._s_robot = s_robot
+        self._rng = rng
+        self._plan = np.zeros((parameters.steps, 3))
+        lag = np.arange(parameters.steps)
+        rho = parameters.persistence
+        power = rho ** np.maximum(0, lag[:, None] - lag)
+        drive = np.where(lag == 0, 1.0, np.sqrt(1.0 - rho**2))
+        self._colour = np.tril(power) * drive
+
+    def decide(self, situation: Situation) -> Array:
+        """First footstep of the mean sequence (3,) [m/s, m/s, rad/s]."""
+        s = situation
+        body = self._samples(s)
+        cost = self._cost(s, body)
+        weight = np.exp(-(cost - cost.min()) / self._parameters.temperature)
+        plan = np.einsum("k,kti->ti", weight / weight.sum(), body)
+        self._plan = np.concatenate([plan[1:], plan[-1:]])
+        first: Array = plan[0]
+        return first
+
+    def _samples(self, s: Situation) -> Array:
+        """Body velocities about the plan (k, t, 3), mirrored in pairs, the plan and a stop."""
+        p = self._parameters
+        low, high, change = s.envelope.low(), s.envelope.high(), s.envelope.change()
+        white = self._rng.standard_normal((p.samples // 2, p.steps, 3))
+        noise = p.spread * high * np.einsum("ts,ksi->kti", self._colour, white)
+        still = np.zeros((1, p.steps, 3))
+        asked = np.concatenate([self._plan + noise, self._plan + _MIRROR * noise])
+        asked = np.concatenate([asked, self._plan[None], still])
+        asked = np.clip(asked, low, high)
+        begun = np.broadcast_to(s.body, (len(asked), 1, 3))
+        steps = np.diff(asked, axis=1, prepend=begun)
+        reached = s.body + np.cumsum(np.clip(steps, -change, change), axis=1)
+        body: Array = np.clip(reached, low, high)
+        return body
+
+    def _cost(self, s: Situation, body: Array) -> Array:
+        """Cost of every sequence (k,)."""
+        p, limits = self._parameters, s.envelope.limits
+        position, heading = roll_out(s.pose, body, limits.footstep)
+        to_go = s.task.target - position
+        distance = np.hypot(to_go[..., 0], to_go[..., 1])
+        # Walking the whole time and standing differ by one.
+        walked = 0.5 * p.steps * limits.footstep * limits.forward
+        facing = np.arctan2(to_go[..., 1], to_go[..., 0]) if s.facing is None else s.facing
+        left = np.abs(wrap_array(facing - heading))
+        if s.facing is None:
+            left = left * np.minimum(1.0, distance / 0.2)
+        gap = gaps(position, s, self._s_robot + s.radii(p.margin))
+        cost: Array = (
+            distance.mean(axis=1) / walked
+            + p.heading_weight * left.mean(axis=1) / np.pi
+            + p.clearance_weight * np.maximum(0.0, 1.0 - gap / p.clearance).mean(axis=1)
+            + p.contact_weight * contact_cost(gap)
+        )
+        return cost

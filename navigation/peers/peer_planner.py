@@ -1,0 +1,109 @@
+"""All that the peers share: the way to the destination, arrival, turning at the goal."""
+
+from math import atan2, hypot
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap
+from navigation.belief import Belief
+from navigation.decision import MotionDecision, SpeedLimits, Task
+from navigation.decision_parameters import NavigationParameters
+from navigation.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
+from navigation.obstacle_set import ObstacleSet
+from navigation.peers.situation import Envelope, Situation
+
+Array = NDArray[np.float64]
+
+
+class Avoids(Protocol):
+    """What distinguishes one peer from another."""
+
+    margin: float
+
+    def decide(self, situation: Situation) -> Array:
+        """Body velocity for the next footstep (3,) [m/s, m/s, rad/s]."""
+
+
+class PeerPlanner:
+    """A published way to avoid obstacles with our way to arrive.
+
+    Direction and speed towards the destination, the turn to the goal's heading near it,
+    standing when lost or done are those of our planner; only the avoidance differs.
+    """
+
+    def __init__(
+        self, parameters: NavigationParameters, limits: SpeedLimits, avoidance: Avoids
+    ) -> None:
+        """Start standing.
+
+        Args:
+            parameters: profile; univector, body and planner are used.
+            limits: envelope of the walking layer.
+            avoidance: the peer.
+        """
+        self._parameters = parameters
+        self._limits = limits
+        self._avoidance = avoidance
+        self._envelope = Envelope(limits, parameters.body.turn_gain, parameters.filter.turn_change)
+        self._arrival = ArrivalSide(parameters.univector)
+        self._leg = -1
+        self._body = np.zeros(3)
+
+    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+        """Decide the motion of the next footstep; call once per footstep.
+
+        Args:
+            belief: what the robot believes now.
+            task: where it is to go.
+        """
+        heading = float(belief.pose[2])
+        if task.done or belief.lost:
+            self._body = np.zeros(3)
+            return MotionDecision(self._body, heading, 0.0, "free", (), ())
+        situation = self._situation(belief, task)
+        limits = self._envelope
+        self._body = np.clip(self._avoidance.decide(situation), limits.low(), limits.high())
+        forward, left, _ = self._body.tolist()
+        speed = hypot(forward, left)
+        direction = wrap(heading + atan2(left, forward)) if speed > 1e-9 else situation.course
+        radii = self._parameters.univector.s_robot + situation.radii(self._avoidance.margin)
+        pairs = zip(situation.obstacles.ids.tolist(), radii.tolist(), strict=True)
+        return MotionDecision(self._body, direction, speed, "free", (), tuple(pairs))
+
+    def _situation(self, belief: Belief, task: Task) -> Situation:
+        p = self._parameters
+        known = [t for t in belief.tracks if t.particles is None or t.age <= p.planner.memory]
+        obstacles = ObstacleSet.from_tracks(known)
+        course, speed, side = self._way(belief.pose, task)
+        dx, dy = (task.target - belief.pose[:2]).tolist()
+        near = task.is_goal and hypot(dx, dy) < p.univector.holonomic_distance
+        return Situation(
+            pose=belief.pose,
+            body=self._body,
+            obstacles=obstacles,
+            swelling=np.where(
+                obstacles.static, 0.0, np.minimum(p.planner.sigma_limit, obstacles.sigma)
+            ),
+            task=task,
+            course=course,
+            speed=speed,
+            facing=task.heading if task.aligning or near else None,
+            side=side,
+            envelope=self._envelope,
+        )
+
+    def _way(self, pose: Array, task: Task) -> tuple[float, float, int]:
+        """Direction [rad], speed [m/s] and side of our way where there is no obstacle."""
+        if task.aligning:
+            return float(pose[2]), 0.0, 0
+        p = self._parameters.univector
+        if task.index != self._leg:
+            self._arrival.reset()
+            self._leg = task.index
+        dx, dy = (task.target - pose[:2]).tolist()
+        side = self._arrival.update(wrap(task.heading - atan2(dy, dx)))
+        course = float(move_to_goal(pose[:2], pose[2], task.target, task.heading, p, side=side))
+        speed = self._limits.forward * arrival_gain(hypot(dx, dy), task.is_goal, p)
+        return course, speed, side

@@ -1,0 +1,43 @@
+"""Univector field of Yoo & Kim, eqs. (7)-(10), without anything for movers or time."""
+
+from dataclasses import replace
+from math import atan2, hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.decision_parameters import NavigationParameters
+from navigation.motion_field import FieldScene, MotionField
+from navigation.peers.situation import Situation
+
+Array = NDArray[np.float64]
+
+
+class PlainUnivector:
+    """The field alone: a mover is a disc where it is now, larger by its speed.
+
+    No dynamic virtual obstacle, no velocity modification, no filter, no gate.
+    """
+
+    def __init__(self, parameters: NavigationParameters) -> None:
+        """Take the field's form from `univector`, its sizes from `planner.univector_plain`."""
+        p = parameters.planner.univector_plain
+        self.margin = p.margin
+        self._eta_vo = p.eta_vo
+        self._s_robot = parameters.univector.s_robot
+        shape = replace(parameters.univector, d_e=p.d_e, d_b=p.d_b, k_r=p.k_r)
+        self._field = MotionField(shape, parameters.mover)
+
+    def decide(self, situation: Situation) -> Array:
+        """Body velocity along the field (3,) [m/s, m/s, rad/s]."""
+        s = situation.in_effect()
+        if s.speed == 0.0:
+            return s.walk(np.zeros(2))
+        n = len(s.obstacles)
+        radii = self._s_robot + s.radii(self.margin) + self._eta_vo * s.obstacles.speed
+        scene = FieldScene(s.obstacles, radii, np.zeros(n), s.task.target, s.task.heading, s.side)
+        u_x, u_y = self._field.at(s.pose[:2], float(s.pose[2]), scene, ()).tolist()
+        if hypot(u_x, u_y) < 1e-9:
+            return s.walk(s.wanted())
+        angle = atan2(u_y, u_x)
+        return s.walk(s.speed * np.array([np.cos(angle), np.sin(angle)]))

@@ -1,0 +1,58 @@
+"""Artificial potential field, Khatib 1986, with moving obstacles after Ge & Cui 2002.
+
+O. Khatib, "Real-time obstacle avoidance for manipulators and mobile robots", IJRR 5(1);
+S. S. Ge, Y. J. Cui, "Dynamic motion planning for mobile robots using potential field
+method", Autonomous Robots 13, 2002; the tangential part after A. De Luca, G. Oriolo,
+"Local incremental planning for nonholonomic mobile robots", ICRA 1994.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.peers.parameters import ApfParameters
+from navigation.peers.situation import Situation
+from navigation.univector import normalized
+
+Array = NDArray[np.float64]
+
+_LEAST_GAP = 0.02
+"""Gap below which the repulsion does not grow any more [m]."""
+
+
+class PotentialField:
+    """Sum of the wanted velocity and of the repulsions of near obstacles."""
+
+    def __init__(self, parameters: ApfParameters, s_robot: float) -> None:
+        """Keep the gains; `s_robot` is the robot's radius [m]."""
+        self.margin = parameters.margin
+        self._parameters = parameters
+        self._s_robot = s_robot
+
+    def decide(self, situation: Situation) -> Array:
+        """Body velocity down the potential (3,) [m/s, m/s, rad/s]."""
+        s = situation.in_effect()
+        limits = s.envelope.limits
+        total = s.wanted() + limits.forward * self._repulsion(s)
+        speed = float(np.hypot(*total))
+        return s.walk(total * min(1.0, limits.forward / max(speed, 1e-9)))
+
+    def _repulsion(self, s: Situation) -> Array:
+        """Sum over the obstacles (2,), as a share of the largest speed."""
+        p = self._parameters
+        away = s.pose[:2] - s.obstacles.position
+        distance = np.hypot(away[:, 0], away[:, 1])
+        out = normalized(away)
+        gap = distance - self._s_robot - s.radii(self.margin)
+        relative = s.obstacles.velocity - s.velocity()
+        approach = np.maximum(0.0, np.sum(relative * out, axis=1))
+        braking = p.reaction * approach + approach**2 / (2.0 * s.envelope.limits.acceleration)
+        braking = np.where(s.obstacles.speed > 0.0, braking, 0.0)
+        effective = np.maximum(_LEAST_GAP, gap - braking)
+        strength = p.gain * np.maximum(0.0, 1.0 / effective - 1.0 / p.influence)
+        # The side: that of the wanted way; for a mover, away from where it goes.
+        reference = s.wanted()[None] - s.obstacles.velocity
+        side = np.sign(out[:, 0] * reference[:, 1] - out[:, 1] * reference[:, 0])
+        ahead = np.sum(reference * out, axis=1) < 0.0
+        around = np.stack([-out[:, 1], out[:, 0]], axis=1) * (p.swirl * side * ahead)[:, None]
+        total: Array = (strength[:, None] * (out + around)).sum(axis=0)
+        return total

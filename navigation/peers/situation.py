@@ -1,0 +1,109 @@
+"""What a peer is told: the same belief, task, envelope and delays as our planner."""
+
+from dataclasses import dataclass, replace
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.body_command import body_velocity
+from navigation.decision import SpeedLimits, Task
+from navigation.obstacle_set import ObstacleSet
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Envelope:
+    """What the body can do.
+
+    Attributes:
+        limits: largest speeds, acceleration and the footstep a command is latched for.
+        turn_gain: turn rate per heading error [1/s].
+        turn_change: largest change of the turn rate per footstep [rad/s].
+    """
+
+    limits: SpeedLimits
+    turn_gain: float
+    turn_change: float
+
+    def low(self) -> Array:
+        """Least forward, left and turn (3,) [m/s, m/s, rad/s]."""
+        return np.array([-self.limits.backward, -self.limits.lateral, -self.limits.turn])
+
+    def high(self) -> Array:
+        """Largest forward, left and turn (3,) [m/s, m/s, rad/s]."""
+        return np.array([self.limits.forward, self.limits.lateral, self.limits.turn])
+
+    def change(self) -> Array:
+        """Largest change of them from footstep to footstep (3,) [m/s, m/s, rad/s]."""
+        step = self.limits.acceleration * self.limits.footstep
+        return np.array([step, step, self.turn_change])
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """One decision to be made.
+
+    Attributes:
+        pose: of the robot in W (3,) [m, m, rad].
+        body: its present velocity in R (3,) [m/s, m/s, rad/s].
+        obstacles: n obstacles in W.
+        swelling: uncertainty to add to their radii (n,) [m].
+        task: where to go.
+        course: direction of the way to the destination in W [rad].
+        speed: wanted along it [m/s].
+        facing: heading to turn to; None for the direction of motion [rad].
+        side: on which a destination to be entered from beyond is circled, see `move_to_goal`.
+        envelope: of the body.
+    """
+
+    pose: Array
+    body: Array
+    obstacles: ObstacleSet
+    swelling: Array
+    task: Task
+    course: float
+    speed: float
+    facing: float | None
+    side: int
+    envelope: Envelope
+
+    def wanted(self) -> Array:
+        """Velocity towards the destination in W (2,) [m/s]."""
+        return self.speed * np.array([cos(self.course), sin(self.course)])
+
+    def velocity(self) -> Array:
+        """Present velocity in W (2,) [m/s]."""
+        forward, left, _ = self.body.tolist()
+        c, s = cos(float(self.pose[2])), sin(float(self.pose[2]))
+        return np.array([c * forward - s * left, s * forward + c * left])
+
+    def radii(self, margin: float) -> Array:
+        """Distances of the robot's centre not to go below (n,) [m], without its own radius."""
+        return self.obstacles.radius + self.swelling + margin
+
+    def in_effect(self) -> "Situation":
+        """The situation one footstep later, when the command has become motion."""
+        dt = self.envelope.limits.footstep
+        moved = self.pose + dt * np.array([*self.velocity().tolist(), float(self.body[2])])
+        carried = self.obstacles.position + dt * self.obstacles.velocity
+        return replace(self, pose=moved, obstacles=replace(self.obstacles, position=carried))
+
+    def walk(self, velocity: Array) -> Array:
+        """Body velocity (3,) that walks with `velocity` in W (2,) [m/s].
+
+        The body turns to where it walks, to the destination when it stands, and to the
+        goal's heading near the goal.
+        """
+        x, y = velocity.tolist()
+        speed = float(np.hypot(x, y))
+        course = float(np.arctan2(y, x)) if speed > 1e-9 else self.course
+        return body_velocity(
+            course,
+            speed,
+            self.pose[2],
+            course if self.facing is None else self.facing,
+            limits=self.envelope.limits,
+            turn_gain=self.envelope.turn_gain,
+        )

@@ -1,0 +1,293 @@
+"""Tunes every peer planner with the same budget, in the 2-D loop of the decision study.
+
+Each peer gets `candidates` parameter sets, the first by hand and the others drawn, on
+`seeds` worlds; the best `finalists` get `more` worlds, and the best over all of them wins.
+A run scores the share of its legs walked without contact, one for a success. The worlds are
+the course with twice its movers. Sensing is without a camera but not perfect: correlated
+errors of pose, positions and velocities, velocities that lag, and no sight beyond 2.5 m.
+
+    python scripts/tune_peers.py tune --out runs/peers
+    python scripts/tune_peers.py compare --out runs/peers --first 1000 --runs 40
+"""
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import numpy as np
+import tyro
+from decision_study import FRAME_TICKS, Run
+from decision_world import TICK, perfect_belief
+from numpy.typing import NDArray
+from wilson import wilson
+
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from navigation.angles import wrap
+from navigation.belief import Belief
+from navigation.peers.parameters import PlannerParameters
+
+Array = NDArray[np.float64]
+
+TUNING = ("world.n_moving=8",)
+POSITION_SIGMA, VELOCITY_SIGMA, ERROR_TIME = 0.02, 0.02, 1.0  # [m], [m/s], [s]
+POSE_SIGMA = np.array([0.012, 0.012, 0.015])  # [m, m, rad]
+VELOCITY_LAG, SIGHT = 0.6, 2.5  # [s], [m]
+
+# Parameter: smallest and largest value, drawn uniformly in the logarithm.
+RANGES: dict[str, dict[str, tuple[float, float]]] = {
+    "univector-plain": {
+        "margin": (0.02, 0.10), "eta_vo": (0.1, 1.5), "d_e": (0.08, 0.40),
+        "d_b": (0.10, 0.60), "k_r": (0.10, 0.50),
+    },
+    "n-posture": {
+        "margin": (0.02, 0.10), "gain": (1.0, 8.0), "offset": (0.05, 0.40),
+        "lead": (0.2, 3.0), "d_min": (0.01, 0.15), "delta": (0.05, 0.30),
+    },
+    "apf": {
+        "margin": (0.02, 0.10), "influence": (0.15, 0.80), "gain": (0.005, 0.2),
+        "reaction": (0.3, 3.0), "swirl": (0.1, 2.0),
+    },
+    "orca": {"margin": (0.02, 0.10), "horizon": (2.0, 10.0), "static_horizon": (0.8, 5.0)},
+    "dwa": {
+        "margin": (0.02, 0.10), "horizon": (1.5, 6.0), "heading_weight": (0.1, 1.0),
+        "clearance_weight": (0.1, 2.0), "clearance": (0.08, 0.40), "contact_weight": (2.0, 20.0),
+    },
+    "mppi": {
+        "margin": (0.02, 0.10), "spread": (0.2, 1.0), "persistence": (0.5, 0.95),
+        "temperature": (0.01, 0.3), "heading_weight": (0.05, 1.0),
+        "clearance_weight": (0.1, 2.0), "clearance": (0.08, 0.40), "contact_weight": (2.0, 20.0),
+    },
+}  # fmt: skip
+
+Settings = dict[str, float]
+Row = dict[str, Any]
+
+
+class Blurred(Run):
+    """A run with errors of sensing instead of a camera, thinned out to be fast."""
+
+    def __init__(self, scenario: Scenario, seed: int) -> None:
+        super().__init__(scenario, seed, "perfect")
+        self._rng = np.random.default_rng(np.random.SeedSequence([seed, 7]))
+        n = len(self.world.radii)
+        self._position = POSITION_SIGMA * self._rng.standard_normal((n, 2))
+        self._speed = VELOCITY_SIGMA * self._rng.standard_normal((n, 2))
+        self._pose = POSE_SIGMA * self._rng.standard_normal(3)
+        self._lagged = self.world.state(0.0)[1]
+
+    def outcome(self) -> Row:
+        """Walk to the end; how it ended."""
+        total = len(self.world.layout.waypoints)
+        walker, belief, task = self.walker, None, None
+        clearance = 9.0
+        begin, planned, calls = process_time(), 0.0, 0
+        reason, time = "timeout", self.duration
+        for tick in range(round(self.duration / TICK)):
+            if tick % FRAME_TICKS == 0:
+                clearance = min(clearance, float(self.world.gaps(tick * TICK, walker.pose).min()))
+                task = self.mission.update(walker.pose + self._pose)
+                if clearance < 0.0 or task.done:
+                    reason, time = ("goal" if clearance >= 0.0 else "contact"), tick * TICK
+                    break
+            if tick % self.step_ticks == 0:
+                belief = self._blurred(tick * TICK)
+                task = self.mission.update(belief.pose)
+                before = process_time()
+                self.motion = self.planner.plan(belief, task)
+                planned, calls = planned + process_time() - before, calls + 1
+                walker.latch(self.motion.velocity)
+            walker.step()
+        assert task is not None
+        success = reason == "goal"
+        return {
+            "seed": self.seed,
+            "success": success,
+            "reason": reason,
+            "score": 1.0 if success else min(task.index, total - 1) / total,
+            "time": round(time, 2),
+            "clearance": round(clearance, 3),
+            "plan_ms": round(1e3 * planned / max(1, calls), 3),
+            "cpu_s": round(process_time() - begin, 2),
+        }
+
+    def _blurred(self, time: float) -> Belief:
+        """What is believed one footstep after the last call."""
+        dt = self.step_ticks * TICK
+        keep = float(np.exp(-dt / ERROR_TIME))
+        fresh = float(np.sqrt(1.0 - keep**2))
+        normal = self._rng.standard_normal
+        self._position = keep * self._position + fresh * POSITION_SIGMA * normal(
+            self._position.shape
+        )
+        self._speed = keep * self._speed + fresh * VELOCITY_SIGMA * normal(self._speed.shape)
+        self._pose = keep * self._pose + fresh * POSE_SIGMA * normal(3)
+        lag = float(np.exp(-dt / VELOCITY_LAG))
+        self._lagged = lag * self._lagged + (1.0 - lag) * self.world.state(time)[1]
+        pose = self.walker.pose + self._pose
+        pose[2] = wrap(float(pose[2]))
+        truth = perfect_belief(time, pose, self.world)
+        moving = np.array([t.motion.value == "moving" for t in truth.tracks])
+        tracks = []
+        for index, track in enumerate(truth.tracks):
+            away = track.position - self.walker.pose[:2]
+            if float(np.hypot(*away)) > SIGHT:
+                continue
+            velocity = (self._lagged + self._speed)[index] * moving[index]
+            place = track.position + self._position[index]
+            tracks.append(replace(track, position=place, velocity=velocity, last_seen=place))
+        return replace(truth, tracks=tuple(tracks))
+
+
+def section(method: str) -> str:
+    """Name of a peer's section."""
+    return method.replace("-", "_")
+
+
+def defaults(method: str) -> Settings:
+    """Present values of what is tuned."""
+    own = getattr(PlannerParameters(), section(method))
+    return {name: float(getattr(own, name)) for name in RANGES[method]}
+
+
+def drawn(method: str, count: int) -> Iterator[Settings]:
+    """The defaults, then `count` - 1 sets drawn from the ranges."""
+    yield defaults(method)
+    rng = np.random.default_rng(np.random.SeedSequence([ord(c) for c in method]))
+    for _ in range(count - 1):
+        yield {
+            name: float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3g}")
+            for name, (low, high) in RANGES[method].items()
+        }
+
+
+@cache
+def base(extra: tuple[str, ...], method: str) -> Scenario:
+    return load("course", (f"navigation.planner.method={method}", *extra))
+
+
+def walk(method: str, settings: Settings, seed: int, extra: tuple[str, ...] = TUNING) -> Row:
+    """One run of a peer with these settings."""
+    lines = tuple(f"navigation.planner.{section(method)}.{k}={v}" for k, v in settings.items())
+    scenario = base((*extra, *lines), method)
+    return {"method": method, "settings": settings, **Blurred(scenario, seed).outcome()}
+
+
+def mean(rows: list[Row]) -> tuple[float, float]:
+    """Mean score, and the mean time of successes as a tie-break, less is better."""
+    times = [r["time"] for r in rows if r["success"]] or [999.0]
+    return float(np.mean([r["score"] for r in rows])), -float(np.mean(times))
+
+
+def tune(
+    *,
+    out: Path,
+    methods: tuple[str, ...] = tuple(RANGES),
+    candidates: int = 12,
+    seeds: int = 5,
+    finalists: int = 4,
+    more: int = 10,
+) -> None:
+    """Tune peers; resumes where it stopped.
+
+    Args:
+        out: folder of tune.jsonl.
+        methods: peers.
+        candidates: parameter sets per peer, the present defaults among them.
+        seeds: worlds for each of them, seeds from 0.
+        finalists: sets that go on.
+        more: further worlds for those.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    file = out / "tune.jsonl"
+    done = {}
+    if file.exists():
+        for row in map(json.loads, file.read_text().splitlines()):
+            done[row["method"], json.dumps(row["settings"]), row["seed"]] = row
+
+    def rows(method: str, settings: Settings, count: range) -> list[Row]:
+        found = []
+        for seed in count:
+            key = (method, json.dumps(settings), seed)
+            if key not in done:
+                done[key] = walk(method, settings, seed)
+                with file.open("a") as stream:
+                    stream.write(json.dumps(done[key]) + "\n")
+            found.append(done[key])
+        return found
+
+    for method in methods:
+        table = [(s, rows(method, s, range(seeds))) for s in drawn(method, candidates)]
+        first = table[0][0]
+        table.sort(key=lambda pair: mean(pair[1]), reverse=True)
+        final = table[:finalists]
+        if all(s != first for s, _ in final):
+            final.append(next(pair for pair in table if pair[0] == first))
+        final = [(s, r + rows(method, s, range(seeds, seeds + more))) for s, r in final]
+        final.sort(key=lambda pair: mean(pair[1]), reverse=True)
+        before = next(r for s, r in final if s == first)
+        best, after = final[0]
+        print(
+            f"{method}: score {mean(before)[0]:.3f} -> {mean(after)[0]:.3f}, success "
+            f"{sum(r['success'] for r in before)} -> {sum(r['success'] for r in after)} of "
+            f"{len(after)}; {best}",
+            flush=True,
+        )
+
+
+def compare(
+    *,
+    out: Path,
+    methods: tuple[str, ...] = ("univector", "paper", *RANGES),
+    first: int = 1000,
+    runs: int = 40,
+    movers: int = 4,
+) -> None:
+    """Compare the planners with their defaults on held-out seeds; resumes.
+
+    Args:
+        out: folder of compare.jsonl.
+        methods: planners; "univector" is the profile extended, "paper" the profile paper.
+        first: first seed, 1000 or above.
+        runs: worlds.
+        movers: movers in each.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    file = out / "compare.jsonl"
+    done: dict[tuple[str, int, int], Row] = {}
+    if file.exists():
+        for row in map(json.loads, file.read_text().splitlines()):
+            done[row["method"], row["movers"], row["seed"]] = row
+    for seed in range(first, first + runs):
+        for method in methods:
+            if (method, movers, seed) in done:
+                continue
+            extra: tuple[str, ...] = (f"world.n_moving={movers}",)
+            if method == "paper":
+                extra = (*extra, "navigation.profile=paper")
+            name = "univector" if method == "paper" else method
+            row = walk(name, {}, seed, extra) | {"method": method, "movers": movers}
+            done[method, movers, seed] = row
+            with file.open("a") as stream:
+                stream.write(json.dumps(row) + "\n")
+    for method in methods:
+        rows = [done[method, movers, s] for s in range(first, first + runs)]
+        good = sum(r["success"] for r in rows)
+        low, high = wilson(good, runs)
+        times = [r["time"] for r in rows if r["success"]] or [0.0]
+        print(
+            f"| {method} | {good}/{runs} | {100 * good / runs:.1f} "
+            f"[{100 * low:.0f}, {100 * high:.0f}] | "
+            f"{sum(r['reason'] == 'contact' for r in rows)} | "
+            f"{sum(r['reason'] == 'timeout' for r in rows)} | {np.median(times):.0f} | "
+            f"{100 * float(np.percentile([r['clearance'] for r in rows], 50)):.1f} | "
+            f"{float(np.mean([r['plan_ms'] for r in rows])):.2f} |"
+        )
+
+
+if __name__ == "__main__":
+    tyro.extras.subcommand_cli_from_dict({"tune": tune, "compare": compare})

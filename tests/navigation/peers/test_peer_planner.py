@@ -1,0 +1,208 @@
+"""What every peer must do, whatever its method."""
+
+from dataclasses import replace
+from math import pi
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from navigation.decision import Task
+from navigation.decision_parameters import NavigationParameters
+from navigation.mission import Mission
+from navigation.peers.choice import build_planner
+from navigation.peers.parameters import Method, PlannerParameters
+from navigation.peers.peer_planner import PeerPlanner
+from navigation.planner import Planner
+
+PEERS = [m for m in get_args(Method) if m != "univector"]
+EACH = pytest.mark.parametrize("method", PEERS)
+MIRROR = np.array([1.0, -1.0, -1.0])
+FOOTSTEP, REACH = 0.34, 0.12
+
+
+def planner(method, limits, seed=0):
+    p = NavigationParameters(planner=PlannerParameters(method=method))
+    return build_planner(p, limits, np.random.default_rng(seed))
+
+
+class Body:
+    """Walks as commanded once per footstep, with the acceleration it has."""
+
+    def __init__(self, pose, limits):
+        self.pose, self.body, self._limits = np.array(pose, float), np.zeros(3), limits
+
+    def step(self, command):
+        change = FOOTSTEP * np.array([self._limits.acceleration] * 2 + [2.0])
+        self.body = self.body + np.clip(command - self.body, -change, change)
+        forward, left, turn = self.body.tolist()
+        h = self.pose[2] + 0.5 * FOOTSTEP * turn
+        c, s = np.cos(h), np.sin(h)
+        self.pose += FOOTSTEP * np.array([c * forward - s * left, s * forward + c * left, turn])
+
+
+def scene(rng):
+    places = rng.uniform(-1.2, 1.2, (7, 2))
+    places = places[np.hypot(places[:, 0], places[:, 1]) > 0.35]
+    speeds = np.where(np.arange(len(places))[:, None] % 2, rng.normal(0, 0.08, places.shape), 0.0)
+    return places, speeds
+
+
+def test_every_method_is_built(limits):
+    assert isinstance(planner("univector", limits), Planner)
+    assert all(isinstance(planner(m, limits), PeerPlanner) for m in PEERS)
+
+
+@EACH
+def test_done_or_lost_stands(method, belief, task, limits):
+    for b, t in ((belief(), task(done=True)), (belief(lost=True), task())):
+        assert planner(method, limits).plan(b, t).velocity == pytest.approx(0.0)
+
+
+@EACH
+def test_an_empty_world_is_crossed_and_the_goal_arrived_at(method, belief, limits):
+    start, goal, heading = (0.0, 0.0, 2.0), np.array([1.1, 0.4]), -1.0
+    points = np.array([[0.5, -0.3], goal])
+    mission = Mission(points, heading, False, NavigationParameters().mission)
+    walker, planned = Body(start, limits), planner(method, limits)
+    for _ in range(110):
+        task = mission.update(walker.pose)
+        if task.done:
+            break
+        walker.step(planned.plan(belief(pose=walker.pose), task).velocity)
+    assert task.done
+    assert task.index == 1
+    assert np.hypot(*(walker.pose[:2] - goal)) < 0.08
+    assert abs(np.angle(np.exp(1j * (walker.pose[2] - heading)))) < 0.1
+
+
+@EACH
+def test_commands_keep_to_the_envelope(method, belief, task, track, limits):
+    rng = np.random.default_rng(2)
+    low = np.array([-limits.backward, -limits.lateral, -limits.turn])
+    high = np.array([limits.forward, limits.lateral, limits.turn])
+    for _ in range(15):
+        places, speeds = scene(rng)
+        tracks = [track(x, v, id=i) for i, (x, v) in enumerate(zip(places, speeds, strict=True))]
+        planned = planner(method, limits)
+        t = task(rng.uniform(-1.5, 1.5, 2), rng.uniform(-pi, pi), is_goal=True)
+        for _ in range(2):
+            decision = planned.plan(belief(tracks, (0, 0, rng.uniform(-pi, pi))), t)
+            assert np.all(decision.velocity <= high + 1e-12)
+            assert np.all(decision.velocity >= low - 1e-12)
+            assert decision.speed == pytest.approx(np.hypot(*decision.velocity[:2]))
+
+
+@EACH
+def test_a_mirrored_world_mirrors_the_command(method, belief, task, track, limits):
+    rng = np.random.default_rng(3)
+    for _ in range(6):
+        places, speeds = scene(rng)
+        heading, target, arrival = rng.uniform(-1, 1), rng.uniform(0.6, 1.5, 2), rng.uniform(-1, 1)
+        commands = []
+        for sign in (1.0, -1.0):
+            flip = np.array([1.0, sign])
+            tracks = [
+                track(x * flip, v * flip, id=i)
+                for i, (x, v) in enumerate(zip(places, speeds, strict=True))
+            ]
+            planned = planner(method, limits)
+            b, t = belief(tracks, (0, 0, sign * heading)), task(target * flip, sign * arrival)
+            planned.plan(b, t)
+            commands.append(planned.plan(b, t).velocity)
+        assert commands[1] == pytest.approx(MIRROR * commands[0], abs=1e-6)
+        assert np.abs(commands[0]).max() > 0.01
+
+
+@EACH
+def test_the_order_of_tracks_is_irrelevant(method, belief, task, track, limits):
+    places, speeds = scene(np.random.default_rng(4))
+    tracks = [track(x, v, id=i) for i, (x, v) in enumerate(zip(places, speeds, strict=True))]
+    one = planner(method, limits).plan(belief(tracks), task())
+    other = planner(method, limits).plan(belief(tracks[::-1]), task())
+    assert other.velocity == pytest.approx(one.velocity, abs=1e-9)
+
+
+@EACH
+def test_it_walks_around_what_stands_in_the_way(method, belief, task, track, limits):
+    walker, planned = Body((0.0, 0.02, 0.0), limits), planner(method, limits)
+    least = 9.0
+    for _ in range(60):
+        b = belief([track((0.8, 0.0))], walker.pose)
+        walker.step(planned.plan(b, task((1.6, 0.0))).velocity)
+        least = min(least, float(np.hypot(*(walker.pose[:2] - [0.8, 0.0]))))
+        if np.hypot(*(walker.pose[:2] - [1.6, 0.0])) < 0.15:
+            break
+    assert np.hypot(*(walker.pose[:2] - [1.6, 0.0])) < 0.15
+    assert least > REACH + 0.08
+
+
+# The plain field knows no future: a mover that crosses is a disc that jumps.
+@pytest.mark.parametrize("method", [m for m in PEERS if m != "univector-plain"])
+def test_it_does_not_touch_a_mover_that_crosses(method, belief, task, track, limits):
+    walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
+    mover, velocity = np.array([0.85, -0.5]), np.array([0.0, 0.11])
+    straight, least = 9.0, 9.0
+    for k in range(45):
+        b = belief([track(mover, velocity)], walker.pose)
+        walker.step(planned.plan(b, task((1.8, 0.0))).velocity)
+        mover = mover + FOOTSTEP * velocity
+        least = min(least, float(np.hypot(*(walker.pose[:2] - mover))))
+        straight = min(straight, float(np.hypot(0.2 * FOOTSTEP * (k + 1) - mover[0], mover[1])))
+    assert straight < 0.1
+    assert least > REACH + 0.08
+    assert walker.pose[0] > 1.2
+
+
+@EACH
+def test_long_lost_movers_are_forgotten(method, belief, task, track, limits):
+    cloud = ([[3.0, 3.0]], [[0.0, 0.0]], [1.0])
+    memory = PlannerParameters().memory
+    for age, known in ((0.5 * memory, 1), (2.0 * memory, 0)):
+        lost = track((0.6, 0.0), (0.0, 0.05), age=age, particles=cloud)
+        decision = planner(method, limits).plan(belief([lost]), task())
+        assert len(decision.extended_radii) == known
+
+
+@EACH
+def test_radii_shown_contain_robot_obstacle_margin_and_uncertainty(
+    method, belief, task, track, limits
+):
+    parameters = PlannerParameters()
+    margin = getattr(parameters, method.replace("-", "_")).margin
+    tracks = [track((0.9, 0.9), id=1), track((0.9, -0.9), (0.05, 0.0), id=2, sigma=0.5)]
+    radii = dict(planner(method, limits).plan(belief(tracks), task()).extended_radii)
+    assert radii[1] == pytest.approx(0.12 + 0.08 + margin)
+    assert radii[2] == pytest.approx(0.12 + 0.08 + margin + parameters.sigma_limit)
+
+
+@EACH
+def test_at_the_goal_it_turns_in_place(method, belief, limits):
+    t = Task(np.zeros(2), 0.6, True, 0, True, False)
+    walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
+    for _ in range(25):
+        walker.step(planned.plan(belief(pose=walker.pose), t).velocity)
+    assert walker.pose[2] == pytest.approx(0.6, abs=0.1)
+    assert np.hypot(*walker.pose[:2]) < 0.05
+
+
+def test_samples_come_from_the_generator_alone(belief, task, track, limits):
+    b, t = belief([track((0.6, 0.05))]), task()
+    first, again, other = (planner("mppi", limits, s).plan(b, t).velocity for s in (0, 0, 1))
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+def test_each_peer_obeys_its_own_section(belief, task, track, limits):
+    b, t = belief([track((0.5, 0.1))]), task()
+    for method in PEERS:
+        name = method.replace("-", "_")
+        near = PlannerParameters(method=method)
+        far = replace(near, **{name: replace(getattr(near, name), margin=0.25)})
+        commands = [
+            build_planner(NavigationParameters(planner=p), limits, np.random.default_rng(0))
+            .plan(b, t)
+            .velocity
+            for p in (near, far)
+        ]
+        assert not np.allclose(*commands), method

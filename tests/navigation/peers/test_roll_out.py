@@ -1,0 +1,83 @@
+import numpy as np
+import pytest
+
+from navigation.decision import Task
+from navigation.obstacle_set import ObstacleSet
+from navigation.peers.roll_out import contact_cost, gaps, roll_out
+from navigation.peers.situation import Envelope, Situation
+
+DT = 0.34
+
+
+def situation(tracks, limits, pose=(0.0, 0.0, 0.0), body=(0.0, 0.0, 0.0)):
+    obstacles = ObstacleSet.from_tracks(tracks)
+    return Situation(
+        pose=np.array(pose, float),
+        body=np.array(body, float),
+        obstacles=obstacles,
+        swelling=np.zeros(len(obstacles)),
+        task=Task(np.array([2.0, 0.0]), 0.0, False, 0, False, False),
+        course=0.0,
+        speed=0.2,
+        facing=None,
+        side=0,
+        envelope=Envelope(limits, 1.5, 0.4),
+    )
+
+
+def test_a_constant_turn_walks_a_circle():
+    body = np.broadcast_to([0.2, 0.0, 0.5], (1, 40, 3))
+    position, heading = roll_out(np.zeros(3), body, DT)
+    middle = np.array([0.0, 0.4])
+    assert np.hypot(*(position[0] - middle).T) == pytest.approx(0.4, abs=0.002)
+    assert heading[0, -1] == pytest.approx(40 * DT * 0.5)
+
+
+def test_gaps_equal_brute_force(track, limits):
+    rng = np.random.default_rng(0)
+    tracks = [
+        track(x, v, id=i)
+        for i, (x, v) in enumerate(
+            zip(rng.uniform(-1, 1, (6, 2)), rng.normal(0, 0.1, (6, 2)), strict=True)
+        )
+    ]
+    s = situation(tracks, limits)
+    position = rng.uniform(-1, 1, (5, 8, 2))
+    radii = rng.uniform(0.1, 0.3, 6)
+    found = gaps(position, s, radii)
+    for k in range(5):
+        for t in range(8):
+            there = [x.position + DT * (t + 1) * x.velocity for x in tracks]
+            least = min(
+                float(np.hypot(*(position[k, t] - x))) - r
+                for x, r in zip(there, radii, strict=True)
+            )
+            assert found[k, t] == pytest.approx(min(1.0, least))
+
+
+def test_no_obstacle_leaves_the_largest_gap(limits):
+    assert np.all(gaps(np.zeros((2, 3, 2)), situation([], limits), np.zeros(0)) == 1.0)
+
+
+def test_an_earlier_contact_costs_more():
+    gap = np.full((4, 5), 0.3)
+    gap[1, 3] = gap[2, 1] = gap[3, 0] = -0.01
+    cost = contact_cost(gap)
+    assert cost[0] == 0.0
+    assert cost.tolist() == sorted(cost.tolist())
+    assert cost[3] == pytest.approx(1.01)
+
+
+def test_the_situation_in_effect_is_a_footstep_later(track, limits):
+    s = situation([track((1.0, 0.0), (0.0, 0.1))], limits, (0, 0, np.pi / 2), (0.1, 0.0, 0.2))
+    later = s.in_effect()
+    assert later.pose == pytest.approx([0.0, 0.034, np.pi / 2 + 0.068])
+    assert later.obstacles.position[0] == pytest.approx([1.0, 0.034])
+    assert later.body == pytest.approx(s.body)
+
+
+def test_walking_faces_the_motion_or_what_it_is_told(limits):
+    s = situation([], limits)
+    aside = np.array([0.0, 0.1])
+    assert s.walk(aside) == pytest.approx([0.0, limits.lateral, limits.turn])
+    assert s.walk(np.zeros(2)) == pytest.approx(0.0)
