@@ -30,6 +30,7 @@ COMMANDS: dict[str, tuple[type, str]] = {
     "check": (options.Check, "hsr8.cli.check"),
     CHECK_REPLAY: (options.CheckReplay, "hsr8.cli.check_replay"),
     "info": (options.Info, "hsr8.cli.info"),
+    "diff": (options.Diff, "hsr8.cli.diff"),
     "render": (options.Render, "hsr8.cli.render"),
     "replay": (options.Replay, "hsr8.cli.replay"),
     "plot": (options.Plot, "hsr8.cli.plot"),

@@ -49,6 +49,8 @@ class Run:
     ] = None
     no_log: bool = False
     """Write no Rerun log."""
+    verify_determinism: bool = False
+    """Run twice, in processes of their own, and compare every bit."""
     dry_run: bool = False
     """Check everything, say what it would take, and run nothing."""
     json: bool = False
@@ -124,6 +126,16 @@ class List:
 
 
 @dataclass(frozen=True)
+class Diff:
+    """Compare two runs bit for bit: the first tick, channel and values that differ."""
+
+    a: Positional[RunPath]
+    b: Positional[RunPath]
+    json: bool = False
+    """Print one JSON object."""
+
+
+@dataclass(frozen=True)
 class Info:
     """Tell what a run folder holds: results, events, versions, files."""
 
@@ -179,7 +191,7 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckReplay:
-    """Check a run: does its belief, computed again from its measurements, come out the same?"""
+    """Compute a run again: physics, belief and decisions from their records, bit for bit."""
 
     run: Positional[RunPath]
     json: bool = False
@@ -287,6 +299,7 @@ Command = (
     | Check
     | CheckReplay
     | Info
+    | Diff
     | Render
     | Replay
     | Plot

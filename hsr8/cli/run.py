@@ -13,9 +13,10 @@ from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.cost import estimate
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run, Sweep
+from hsr8.cli.verify import Verified, verify
 from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.metrics import Metrics
-from hsr8.evaluation.verdict import exit_code, judge
+from hsr8.evaluation.verdict import Check, exit_code, judge
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder import atomic, run_folder
@@ -30,6 +31,7 @@ from hsr8.scenario.loader import dump, load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.generator import draw_layout
 
+ENDED = (0, 1)  # exit codes of runs that came to their end
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -70,6 +72,11 @@ def main(options: Run) -> int:
         folder.write_metrics(results)
     checks = judge(scenario.criteria, results)
     code = exit_code(reason, checks)
+    if options.verify_determinism and code in ENDED:
+        verified = verify(path)
+        results["deterministic"] = verified.equal
+        checks = (*checks, _deterministic(verified))
+        code = exit_code(reason, checks)
     if message:
         print(f"hsr8: {message}", file=sys.stderr)
     if options.json:
@@ -83,6 +90,14 @@ def main(options: Run) -> int:
             command=command,
         )
     return code
+
+
+def _deterministic(verified: Verified) -> Check:
+    """The second run as one more criterion."""
+    found = f"{verified.hashes} hashes equal"
+    if not verified.equal:
+        found = f"{verified.difference}; second run: {verified.second}"
+    return Check("the same in another process", "every bit", found, verified.equal)
 
 
 def _tell_cost(options: Run, scenario: Scenario, command: Sequence[str]) -> None:

@@ -1,0 +1,82 @@
+import json
+import re
+import shutil
+import struct
+import zlib
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder.run_reader import open_run
+
+RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """A run, and one that differs by a setting from its second second on."""
+    out = tmp_path_factory.mktemp("runs")
+    for name, more in (("a", []), ("b", ["--set", "camera.blackout=[{start=1.0,duration=0.5}]"])):
+        entry([*RUN, "--no-log", "--quiet", "--out", str(out / name), *more])
+    return open_run(out / "a").path, open_run(out / "b").path
+
+
+def diff(capsys, a, b):
+    code = entry(["diff", str(a), str(b), "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_run_does_not_differ_from_its_copy(recorded, tmp_path, capsys):
+    copy = shutil.copytree(recorded[0], tmp_path / "copy")
+    code, told = diff(capsys, recorded[0], copy)
+    assert (code, told["equal"], told["first"], told["differences"]) == (0, True, None, [])
+    assert entry(["diff", str(recorded[0]), str(copy)]) == 0
+    assert "equal, bit for bit" in capsys.readouterr().out
+
+
+def test_the_first_difference_is_where_the_setting_acts(recorded, capsys):
+    code, told = diff(capsys, *recorded)
+    assert code == 1
+    first = told["first"]
+    assert first["record"] == "measurements"
+    assert 1.0 <= first["time"] < 1.1
+    assert first["tick"] == round(first["time"] / 0.005)
+    assert "number of observations" in first["channel"]
+    assert first["a"] > first["b"] == 0
+    keys = {d["channel"] for d in told["differences"] if d["record"] == "settings"}
+    assert keys == {"camera.blackout.0.start", "camera.blackout.0.duration"}
+
+
+def test_the_order_of_the_runs_only_swaps_the_values(recorded, capsys):
+    (_, one), (_, other) = diff(capsys, *recorded), diff(capsys, *reversed(recorded))
+    assert one["first"] | {"a": 0, "b": 0} == other["first"] | {"a": 0, "b": 0}
+    assert (one["first"]["a"], one["first"]["b"]) == (other["first"]["b"], other["first"]["a"])
+
+
+def test_one_bit_of_a_set_point_is_named_with_tick_and_joint(recorded, tmp_path, capsys):
+    copy = shutil.copytree(recorded[0], tmp_path / "copy")
+    file = copy / "tape.bin"
+    content = bytearray(file.read_bytes())
+    (length, _) = struct.unpack_from("<II", content, 8)
+    content[16 + 40 + 8 * (26 * 77 + 3)] ^= 1
+    struct.pack_into("<II", content, 8, length, zlib.crc32(content[16 : 16 + length]))
+    file.write_bytes(content)
+    code, told = diff(capsys, recorded[0], copy)
+    assert code == 1
+    assert told["first"]["tick"] == 77
+    assert re.fullmatch(r"set-point of [lr]_\w+ \[rad\]", told["first"]["channel"])
+    assert told["first"]["a"] != told["first"]["b"]
+
+
+def test_people_read_the_first_difference_in_a_line(recorded, capsys):
+    assert entry(["diff", *map(str, recorded)]) == 1
+    out = capsys.readouterr().out
+    assert re.search(r"they part   at tick \d+ \(\d\.\d{3} s\)", out)
+    assert "settings" in out
+
+
+def test_a_run_without_a_tape_is_a_usage_error(recorded, tmp_path, capsys):
+    copy = shutil.copytree(recorded[0], tmp_path / "copy")
+    (copy / "tape.bin").unlink()
+    assert entry(["diff", str(recorded[0]), str(copy)]) == 2
+    assert "cannot read the tape" in capsys.readouterr().err
