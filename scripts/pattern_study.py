@@ -21,7 +21,7 @@ from scipy.spatial import ConvexHull
 
 from walking import zmp_program
 from walking.command import Command, CommandState, VelocityCommand
-from walking.footsteps import FootstepPlanner
+from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.lipm import Lipm
@@ -139,7 +139,7 @@ class Walker:
             gait.start(0)
         begin = time.process_time()
         region = CountingRegion(support_region(self.sole, *gait.support_feet, self._margin))
-        wish, moving = self.steering.wish(0.0), self.steering.moving
+        wish, moving = self.steering.wish(STILL), self.steering.moving
         if self.generator.selective:
             ramps = self.transition.admit(self.state, region, wish, moving=moving)
             moving, gait.landing = self.transition.moving, self.transition.landing

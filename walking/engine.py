@@ -9,9 +9,10 @@ from walking.catching import CatchingPendulum
 from walking.caution import Caution
 from walking.com_error import ComError
 from walking.command import Command, HeadTarget
+from walking.cycle import Cycle
 from walking.estimator import TiltFilter, TouchDown
 from walking.foot_placement import FootPlacement
-from walking.footsteps import FootstepPlanner
+from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.head import Head
@@ -27,6 +28,7 @@ from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
 from walking.sensing import BodySensors
 from walking.snapshot import PlanToOdometry, balance, camera_pose
+from walking.speed_hold import SpeedHold
 from walking.stabilizer import Stabilizer
 from walking.state import WalkingState
 from walking.steering import Steering
@@ -84,7 +86,9 @@ class WalkingEngine:
         self._error = ComError(lipm.omega, parameters.estimator)
         self._touch = TouchDown(parameters.estimator)
         self._caution = Caution(parameters.stabilizer)
+        self._cycle = Cycle()
         self._heading = HeadingHold(parameters.stabilizer)
+        self._speed = SpeedHold(parameters.stabilizer)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
@@ -236,14 +240,25 @@ class WalkingEngine:
         self._bound = [] if retimed else [Limit.TIMING]
 
     def _wish(self) -> Strides:
-        """What the footsteps obey, with the heading hold."""
-        ahead = self._whole_body.pelvis.yaw - self._odometry.yaw
-        if not self._gait.stepping:
+        """What the footsteps obey, making up for what the feet slip."""
+        odometry, gait, steering = self._odometry, self._gait, self._steering
+        ahead = self._whole_body.pelvis.yaw - odometry.yaw
+        if not gait.stepping:
             # Standing, the plan takes the heading as it is.
             self._heading.rest(ahead)
-        # The last footsteps only close the stance.
-        turning = self._gait.stepping and self._steering.moving
-        return self._steering.wish(self._heading.rate(ahead) if turning else 0.0)
+            self._cycle.rest()
+        if not (gait.stepping and steering.moving):
+            # The last footsteps only close the stance.
+            self._speed.rest()
+            return steering.wish(STILL)
+        begins = self._cycle.begins(gait.support)
+        forward, left = self._speed.correction(
+            (odometry.x, odometry.y, odometry.yaw),
+            steering.velocity,
+            begins=begins,
+            disturbed=gait.hurried or self._placement.moved != (0.0, 0.0),
+        )
+        return steering.wish((forward, left, self._heading.rate(ahead, begins=begins)))
 
     def _maybe_start(self, error: tuple[float, float]) -> None:
         """Take a first footstep if the command asks for it, or balance."""

@@ -6,6 +6,9 @@ from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 class HeadingHold:
     """Turn rate that takes back what the body has turned against the plan.
 
+    Of the two footsteps of a cycle one turns for both. The rate is decided on once a cycle, so
+    that what it adds up to is what they turn.
+
     Args:
         parameters: gain and limit.
     """
@@ -14,13 +17,24 @@ class HeadingHold:
         self._gain = parameters.heading_gain
         self._limit = parameters.heading_rate
         self._held = 0.0
+        self._rate = 0.0
 
     def rest(self, ahead: float) -> None:
         """Take the plan's heading `ahead` of the body's as it is [rad]."""
         self._held = ahead
 
-    def rate(self, ahead: float) -> float:
-        """Turn rate of this tick [rad/s], the plan's heading being `ahead` of the body's [rad]."""
-        rate = min(self._limit, max(-self._limit, self._gain * (ahead - self._held)))
-        self._held += rate * CONTROL_PERIOD
-        return rate
+    def rate(self, ahead: float, *, begins: bool) -> float:
+        """Turn rate of this tick.
+
+        Args:
+            ahead: of the body's heading, that of the plan [rad].
+            begins: whether a cycle of two footsteps does.
+
+        Returns:
+            the rate [rad/s].
+        """
+        if begins:
+            wanted = self._gain * (ahead - self._held)
+            self._rate = min(self._limit, max(-self._limit, wanted))
+        self._held += self._rate * CONTROL_PERIOD
+        return self._rate

@@ -200,6 +200,10 @@ class StabilizerParameters:
     """Turn rate per error of the heading [1/s]."""
     heading_rate: Annotated[float, Ge(0.0), RATE] = 0.3
     """Largest turn rate of the heading hold [rad/s]."""
+    speed_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
+    """Share of what two footsteps of a steady walk miss of its velocity that is made up for [1]."""
+    speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.02
+    """Most that is made up for, forward and sideways [m/s]."""
 
 
 @dataclass(frozen=True)

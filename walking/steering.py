@@ -68,13 +68,18 @@ class Steering:
         else:
             self._follow_velocity(command, share)
 
-    def wish(self, turn_rate: float) -> Strides:
-        """What the footsteps obey, turning by `turn_rate` [rad/s] more to hold the heading."""
-        slew, time = self._slew, self.timing.duration
+    def wish(self, correction: Velocity) -> Strides:
+        """What the footsteps obey.
+
+        Args:
+            correction: velocity that makes up for what the feet slip; of it, footsteps that are
+                commanded take only the turn.
+        """
+        time = self.timing.duration
         if self._state is None:
-            velocity = slew.forward, slew.left, slew.turn + turn_rate
-            return self._planner.strides(velocity, time)
-        return self._planner.explicit(self._state, turn_rate * time)[0]
+            a, b, c = (v + more for v, more in zip(self.velocity, correction, strict=True))
+            return self._planner.strides((a, b, c), time)
+        return self._planner.explicit(self._state, correction[2] * time)[0]
 
     def report(
         self, binding: list[Limit], given: Velocity, strides: Strides | None, timing: Timing

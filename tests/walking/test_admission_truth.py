@@ -121,7 +121,7 @@ def test_altered_is_reported_if_and_only_if_the_footsteps_are_not_as_asked(
     parameters = replace(
         usual,
         pattern=replace(usual.pattern, generator=generator),
-        stabilizer=replace(usual.stabilizer, heading_gain=0.0),
+        stabilizer=replace(usual.stabilizer, heading_gain=0.0, speed_gain=0.0),
     )
     engine = WalkingEngine(robot, parameters)
     observer = Observer(engine, parameters, robot.sole)

@@ -3,7 +3,7 @@
 import pytest
 
 from walking.command import VelocityCommand
-from walking.footsteps import FootstepPlanner
+from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
 from walking.parameters import WalkingParameters
 from walking.robot_model import Sole
@@ -37,7 +37,7 @@ def walk(velocity, stop_at):
             at_stop = gait.completed
         steering.follow(command, settled=True, balanced=True, share=1.0)
         gait.retime(steering.timing)
-        wish = steering.wish(0.0)
+        wish = steering.wish(STILL)
         if gait.adjustable:
             gait.aim(gait.nominal(wish))
         gait.plan(gait.landing, wish, moving=steering.moving)
