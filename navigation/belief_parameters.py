@@ -37,7 +37,7 @@ class LocalizationParameters:
 class TrackingParameters:
     """Obstacle tracks: filters, association, classification, birth and death."""
 
-    acceleration_noise: Positive = 0.01
+    acceleration_noise: Positive = 0.005
     """White acceleration of a mover [m/s^1.5]."""
     static_diffusion: Positive = 5e-7
     """Random walk of what stands still [m²/s]."""
@@ -53,6 +53,9 @@ class TrackingParameters:
     """Rate at which a mover stops for good [1/s]."""
     correlation_time: NonNegative = 0.03
     """Correlation time of the error of successive detections of one obstacle [s]."""
+    lasting_error: NonNegative = 0.25
+    """Share of the standard deviation of its best detection that all detections of what stands
+    still have in common, so that no number of them brings it down [1]."""
     gate: Positive = 13.8
     """Squared Mahalanobis distance above which no mode explains a detection [1]."""
     anywhere: Annotated[float, Gt(0.0), Lt(1.0)] = 0.2
@@ -61,6 +64,9 @@ class TrackingParameters:
     """Density of new obstacles where the floor was not seen yet [1/m²]."""
     intruder_density: Positive = 0.004
     """Density of new obstacles where the floor was seen empty: movers not met before [1/m²]."""
+    birth_range: Positive = 3.5
+    """Distance beyond which no track begins; below the range of vision, for of what is at its
+    limit only those sightings are reported that err short [m]."""
     birth_hits: Annotated[int, Ge(2)] = 2
     """Detections that make a track [1]."""
     birth_time: Positive = 0.5
@@ -69,10 +75,8 @@ class TrackingParameters:
     """Probability that a new track moves [1]."""
     intruder_moving: Annotated[float, Gt(0.0), Lt(1.0)] = 0.8
     """The same where the floor was seen empty before [1]."""
-    evidence: Positive = 3.0
+    evidence: Positive = 6.0
     """Largest logarithm of the ratio of the modes' likelihoods, per detection [1]."""
-    cut_evidence: Positive = 0.5
-    """The same for a detection cut by the border of the image [1]."""
     recognised: Annotated[float, Gt(0.5), Lt(1.0)] = 0.98
     """Probability of moving above which an undecided track moves [1]."""
     moving_speed: NonNegative = 0.02

@@ -82,10 +82,16 @@ def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
     weights = joint.sum(axis=1)
     share = (joint / weights[:, None, :])[..., None]
     from_states = modes.states[:, :, None] * _CHANGE
+    # It turned at any time since: on average half way, so that it now is where it was.
+    forth = dt * modes.states[:, ON:, 2:]
+    from_states[:, (ON, BACK), (BACK, ON), :2] += forth
     states = (share * from_states).sum(axis=1)
     spread = from_states - states[:, None]
     from_covariances = modes.covariances[:, :, None] * _CHANGE[..., None] * _CHANGE[..., None, :]
     from_covariances = from_covariances + spread[..., None] * spread[..., None, :]
+    from_covariances[:, (ON, BACK), (BACK, ON), :2, :2] += (
+        forth[..., None] * forth[..., None, :] / 3.0
+    )
     for axis in (2, 3):
         from_covariances[:, STILL, ON, axis, axis] += p.velocity_sigma**2
     covariances = (share[..., None] * from_covariances).sum(axis=1)
@@ -109,14 +115,14 @@ def innovation(modes: Modes, z: Array, R: Array) -> Innovation:
     )
 
 
-def update(modes: Modes, R: Array, seen: Innovation, limit: Array) -> Modes:
+def update(modes: Modes, R: Array, seen: Innovation, limit: float) -> Modes:
     """Correct the filters, and weigh the modes by their likelihoods.
 
     Args:
         modes: predicted.
         R: covariances of the positions measured (n, 2, 2) [m²].
         seen: their innovations with the same `R`.
-        limit: largest ratio of the modes' likelihoods per detection, logarithm (n,).
+        limit: largest ratio of the modes' likelihoods, logarithm [1].
     """
     n = len(modes.weights)
     states, covariances = track_filter.update(
@@ -131,7 +137,7 @@ def update(modes: Modes, R: Array, seen: Innovation, limit: Array) -> Modes:
         ),
     )
     gain = seen.log_likelihood - seen.log_likelihood.max(axis=1, keepdims=True)
-    weights = modes.weights * np.exp(np.maximum(gain, -limit[:, None]))
+    weights = modes.weights * np.exp(np.maximum(gain, -limit))
     weights = np.maximum(weights / weights.sum(axis=1, keepdims=True), FLOOR)
     return Modes(
         weights / weights.sum(axis=1, keepdims=True),

@@ -4,6 +4,10 @@ An extended Kalman filter of the pose and of every landmark together (Smith, Sel
 Cheeseman): the error of the pose at which a landmark was mapped is an error of the landmark
 too, and only their correlation tells how much seeing it again says about the pose. The pose
 at the start defines the frame.
+
+Several landmarks missing where they should be seen mean that the pose is wrong, unless others
+of their age are in their places. The map is then left alone until its arrangement is
+recognised.
 """
 
 from collections.abc import Mapping
@@ -18,6 +22,9 @@ from navigation.belief_parameters import BeliefParameters
 from navigation.correlated_noise import variance_inflation
 from navigation.localization import SHARED_LIMIT
 from navigation.observation import Frame, Observation
+from navigation.place_recognition import PlaceRecognition
+from navigation.sightings import in_world
+from navigation.visibility import Viewpoint
 
 Array = NDArray[np.float64]
 
@@ -46,7 +53,12 @@ class SelfMapping:
         self._labels: list[str] = []
         self._seen_at: list[float] = []
         self._previous: tuple[float, Array] | None = None
+        self._recognition = PlaceRecognition(self._localization.recovery_window)
+        self._mapped_at: list[float] = []
+        self._missing: dict[int, tuple[float, int]] = {}
+        self._lost = False
         self._faults = 0
+        self._recoveries = 0
 
     @property
     def pose(self) -> Array:
@@ -62,13 +74,16 @@ class SelfMapping:
 
     @property
     def landmarks(self) -> Mapping[int, Array]:
-        """Position in W of each landmark (2,) [m], by the number of its track."""
+        """Position in W of each landmark (2,) [m], by the number of its track.
+
+        A landmark whose track was lost with the pose has a negative number.
+        """
         return {k: self._x[3 + 2 * i : 5 + 2 * i].copy() for i, k in enumerate(self._ids)}
 
     @property
     def lost(self) -> bool:
-        """Never: nothing known beforehand could contradict the pose."""
-        return False
+        """Whether what is mapped has been missing where it should be seen."""
+        return self._lost
 
     @property
     def faults(self) -> int:
@@ -77,8 +92,8 @@ class SelfMapping:
 
     @property
     def recoveries(self) -> int:
-        """None, for it is never lost."""
-        return 0
+        """How often the pose was found again after being lost."""
+        return self._recoveries
 
     def update(self, frame: Frame) -> None:
         """Move by the odometry since the last frame, then correct by the landmarks in it.
@@ -91,27 +106,34 @@ class SelfMapping:
         self._predict(frame)
         sound = self._x[:3].copy(), self._P[:3, :3].copy()
         try:
-            self._correct(frame)
+            if self._lost:
+                self._recover(frame)
+            else:
+                self._judge(frame, self._correct(frame))
         except np.linalg.LinAlgError:
             self._P[0, 0] = np.nan
         if not (np.isfinite(self._x).all() and np.isfinite(self._P).all()):
             self._faults += 1
             self._x, self._P = sound
-            self._ids, self._labels, self._seen_at = [], [], []
+            self._ids, self._labels, self._seen_at, self._mapped_at = [], [], [], []
 
     def learn(self, frame: Frame, tracks: tuple[Track, ...]) -> None:
         """Map the static tracks seen in the frame, and forget what no longer stands still.
+
+        Nothing is learnt while lost, for the tracks stand where the wrong pose puts them.
 
         Args:
             frame: the one of the last update.
             tracks: after that frame.
         """
+        if self._lost:
+            return
         standing = {t.id: t for t in tracks if t.motion is Motion.STATIC}
-        for i in reversed([i for i, k in enumerate(self._ids) if k not in standing]):
+        for i in reversed([i for i, k in enumerate(self._ids) if k >= 0 and k not in standing]):
             self._forget(i)
         clear = [o for o in frame.observations if _clear(o)]
         for k, track in standing.items():
-            if k in self._ids or not track.visible:
+            if k in self._ids or not track.visible or self._adopted(k, track):
                 continue
             mine = [
                 o for o in clear if o.label == track.label and self._away(o, track.position) < NEAR
@@ -143,10 +165,11 @@ class SelfMapping:
         P[:3, :3] += to_world @ frame.motion_covariance @ to_world.T + unseen * np.eye(3)
         self._P = 0.5 * (P + P.T)
 
-    def _correct(self, frame: Frame) -> None:
+    def _correct(self, frame: Frame) -> list[int]:
+        """Take in all landmarks of a frame; return their indices."""
         found = self._associate(frame)
         if not found:
-            return
+            return []
         n = len(self._x)
         H = np.zeros((2 * len(found), n))
         R = np.zeros((2 * len(found), 2 * len(found)))
@@ -165,6 +188,72 @@ class SelfMapping:
         keep = np.eye(n) - K @ H
         P = keep @ self._P @ keep.T + K @ R @ K.T
         self._P = 0.5 * (P + P.T)
+        return list(found)
+
+    def _judge(self, frame: Frame, found: list[int]) -> None:
+        """Notice that the pose must be wrong.
+
+        A landmark that was mapped before another was seen last, and is found where it should
+        be, tells that the other one alone is gone. What was mapped after that may have been
+        mapped from a wrong pose, and is forgotten then.
+        """
+        for k, (seen_at, _) in list(self._missing.items()):
+            if any(self._mapped_at[i] <= seen_at for i in found):
+                del self._missing[k]
+        if not frame.observations or not self._ids:
+            return  # a camera that shows nothing at all says nothing
+        p = self._tracking
+        pose, covariance = self.pose, self.covariance
+        seen = in_world(frame.observations, pose, covariance, pose_sigma_limit=p.pose_sigma_limit)
+        expected = Viewpoint.of(frame.view, pose, p.sure_range).expects(
+            self._x[3:].reshape(-1, 2),
+            seen.positions,
+            seen.radii,
+            margin=p.view_margin,
+            slack=p.hiding_slack,
+        )
+        for i in np.flatnonzero(expected).tolist():
+            if i not in found:
+                _, count = self._missing.get(self._ids[i], (0.0, 0))
+                self._missing[self._ids[i]] = self._seen_at[i], count + 1
+        misses = sum(count for _, count in self._missing.values())
+        if len(self._missing) > 1 and misses >= self._localization.lost_run:
+            sound_until = max(seen_at for seen_at, _ in self._missing.values())
+            for i in reversed([i for i, t in enumerate(self._mapped_at) if t > sound_until]):
+                self._forget(i)
+            self._missing.clear()
+            self._recognition.begin()
+            self._lost = True
+            self._doubt_pose(self._localization.lost_sigma)
+
+    def _recover(self, frame: Frame) -> None:
+        """Recognise the arrangement of the landmarks in what was seen of late."""
+        self._recognition.remember([o for o in frame.observations if _clear(o)], frame)
+        pose = self._recognition.locate(frame, self._labels, self._x[3:].reshape(-1, 2))
+        if pose is None:
+            return
+        self._lost = False
+        self._recoveries += 1
+        self._x[:3] = pose
+        self._doubt_pose(self._localization.recovery_sigma)
+        # The tracks of the landmarks end with the wrong pose; new ones will adopt them.
+        self._ids = [-1 - i for i in range(len(self._ids))]
+        self._correct(frame)
+
+    def _doubt_pose(self, sigma: float) -> None:
+        """State a pose that has nothing to do with what was believed."""
+        self._P[:3, :] = 0.0
+        self._P[:, :3] = 0.0
+        self._P[:3, :3] = sigma * sigma * np.eye(3)
+
+    def _adopted(self, k: int, track: Track) -> bool:
+        """Give a landmark without a track to the new track that stands in its place."""
+        for i, number in enumerate(self._ids):
+            away = self._x[3 + 2 * i : 5 + 2 * i] - track.position
+            if number < 0 and self._labels[i] == track.label and hypot(*away.tolist()) < NEAR:
+                self._ids[i] = k
+                return True
+        return False
 
     def _associate(self, frame: Frame) -> dict[int, Observation]:
         """The detection of each landmark that has one beyond doubt, by the landmark's index."""
@@ -225,12 +314,13 @@ class SelfMapping:
         self._ids.append(k)
         self._labels.append(o.label)
         self._seen_at.append(time)
+        self._mapped_at.append(time)
 
     def _forget(self, i: int) -> None:
         gone = [3 + 2 * i, 4 + 2 * i]
         self._x = np.delete(self._x, gone)
         self._P = np.delete(np.delete(self._P, gone, axis=0), gone, axis=1)
-        for kept in (self._ids, self._labels, self._seen_at):
+        for kept in (self._ids, self._labels, self._seen_at, self._mapped_at):
             del kept[i]
 
 

@@ -32,6 +32,7 @@ class TrackedObject:
         first_time, last_time: first and latest detection [s].
         last_seen: where the latest detection put it (2,) [m].
         seen_covariance: of that (2, 2) [m²].
+        best_covariance: of the most precise detection (2, 2) [m²].
         motion: verdict.
         hits: number of detections.
         misses: detections that failed in a row although expected.
@@ -49,6 +50,7 @@ class TrackedObject:
     last_time: float
     last_seen: Array
     seen_covariance: Array
+    best_covariance: Array
     motion: Motion = Motion.UNKNOWN
     hits: int = 1
     misses: int = 0
@@ -71,18 +73,21 @@ class TrackedObject:
         """Speed if it moves [m/s]."""
         return hypot(*motion_modes.mean(self.modes)[2:].tolist())
 
-    def estimate(self) -> tuple[Array, Array]:
+    def estimate(self, p: TrackingParameters) -> tuple[Array, Array]:
         """Mean (4,) and covariance (4, 4) of x, y, vx, vy under the verdict."""
         if self.motion is not Motion.STATIC:
             return motion_modes.moments(self.modes)
         covariance = self.modes.covariances[STILL].copy()
+        covariance[:2, :2] += p.lasting_error**2 * self.best_covariance
         covariance[2, 2] = covariance[3, 3] = STANDING_SPEED_SIGMA**2
         return self.modes.states[STILL].copy(), covariance
 
     def reach(self, time: float, p: TrackingParameters) -> float:
         """Radius of the disc about its last sighting that it cannot have left [m]."""
-        (xx, _), (_, yy) = self.seen_covariance.tolist()
-        known: float = REACH_SIGMAS * max(xx, yy) ** 0.5
+        (xx, xy), (_, yy) = self.seen_covariance.tolist()
+        # The larger half axis of the sighting's ellipse.
+        largest = 0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
+        known: float = REACH_SIGMAS * largest**0.5
         moving = self.motion is not Motion.STATIC
         return known + moving * p.top_speed * (time - self.last_time)
 
@@ -109,7 +114,7 @@ class TrackedObject:
         if self.particles is not None:
             mean, covariance = track_particles.moments(self.particles)
         else:
-            mean, covariance = self.estimate()
+            mean, covariance = self.estimate(p)
         return Track(
             id=self.id,
             label=self.label,

@@ -142,8 +142,7 @@ class Tracker:
             moving = max(float(1.0 - modes.weights[i, STILL]), 0.5)
             begun = motion_modes.begun(z[i], raw[i], moving, p.velocity_sigma)
             modes.weights[i], modes.states[i], modes.covariances[i] = begun
-        limit = np.array([p.cut_evidence if o.cut else p.evidence for o in seen.chosen(columns)])
-        modes = motion_modes.update(modes, R, motion_modes.innovation(modes, z, R), limit)
+        modes = motion_modes.update(modes, R, motion_modes.innovation(modes, z, R), p.evidence)
         for i, (o, column) in enumerate(pairs):
             o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
             self._widen(o, seen.observations[column], inflation[i])
@@ -152,6 +151,8 @@ class Tracker:
             o.expected_for = 0.0
             o.last_time = time
             o.last_seen, o.seen_covariance = z[i].copy(), raw[i].copy()
+            if np.trace(raw[i]) < np.trace(o.best_covariance):
+                o.best_covariance = o.seen_covariance
             o.particles = None
             o.presence = 1.0
             o.classify(p)
@@ -171,6 +172,8 @@ class Tracker:
         p = self._parameters
         for j in columns:
             z, R, observation = seen.positions[j], seen.covariances[j], seen.observations[j]
+            if observation.distance > p.birth_range:
+                continue
             reach = p.overlap * observation.radius
             if any(
                 o.label == observation.label
@@ -191,6 +194,7 @@ class Tracker:
                     last_time=time,
                     last_seen=z.copy(),
                     seen_covariance=R.copy(),
+                    best_covariance=R.copy(),
                 )
             )
             self._next_id += 1
@@ -254,7 +258,7 @@ class Tracker:
         for o in refuted:
             if o.id in ended:
                 continue
-            velocity = o.estimate()[0][2:]
+            velocity = o.estimate(p)[0][2:]
             reach = p.line_width + REACH * o.speed * (time - o.last_time)
             cloud = track_particles.scatter(
                 o.last_seen, reach, velocity, SCATTER * p.particles, self._rng

@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 
 NEAR = 0.3
 """Distance up to which a track, or a particle, belongs to an obstacle [m]."""
+SIGHT_RANGE = 3.5
+"""Distance up to which a detection is a sight of a mover [m]."""
 CLEAR_RANGE = 2.2
 """Distance up to which an obstacle in clear view has to have a track [m]."""
 SETTLING = 0.5
@@ -303,7 +305,7 @@ def _detected(things: list[Thing], moment: Moment) -> set[int]:
     found = set()
     x, y, heading = moment.robot.tolist()
     for o in moment.frame.observations:
-        if o.kind != "obstacle":
+        if o.kind != "obstacle" or o.distance > SIGHT_RANGE:
             continue
         way = heading + o.bearing
         place = np.array([x + o.distance * np.cos(way), y + o.distance * np.sin(way)])

@@ -36,7 +36,7 @@ class VisionParameters:
     """Height of a beacon; its two colours meet in the middle [m]."""
     beacon_radius: Annotated[float, Gt(0.0)] = 0.05
     """Radius of a beacon [m]."""
-    obstacle_range: Annotated[float, Gt(0.0)] = 3.5
+    obstacle_range: Annotated[float, Gt(0.0)] = 4.5
     """Obstacles farther than this are not reported [m]."""
     beacon_range: Annotated[float, Gt(0.0)] = 5.5
     """Beacons farther than this are not reported [m]."""

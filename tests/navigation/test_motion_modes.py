@@ -21,7 +21,7 @@ def watch(modes, places, R=R, rng=None):
         modes = motion_modes.predict(modes, DT, P)
         z = np.array([place]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
         seen = motion_modes.innovation(modes, z, R[None])
-        modes = motion_modes.update(modes, R[None], seen, np.array([P.evidence]))
+        modes = motion_modes.update(modes, R[None], seen, P.evidence)
     return modes
 
 
@@ -51,13 +51,27 @@ def test_tells_what_stands_from_what_moves(seed):
     assert moving.moving[0] > 0.95
 
 
-def test_a_reversal_shows_within_four_frames():
+def test_a_reversal_shows_within_three_frames():
     before = watch(one(), line(2.0, (0.1, 0.0)))
     mean, _ = motion_modes.moments(Modes(*(a[0] for a in before)))
     assert mean[2] == pytest.approx(0.1, abs=0.01)
-    after = watch(before, line(4 * DT, (-0.1, 0.0), mean[:2]))
+    after = watch(before, line(3 * DT, (-0.1, 0.0), mean[:2]))
     mean, _ = motion_modes.moments(Modes(*(a[0] for a in after)))
     assert mean[2] < 0.0
+
+
+def test_what_turned_between_two_frames_may_have_turned_at_any_time():
+    """Turned at once it is as far behind as, turned just now, it is ahead."""
+    modes = motion_modes.begun(np.array([1.0, 0.0]), R, 0.9, P.velocity_sigma)
+    modes.states[ON, 2] = 0.1
+    modes.weights[BACK] = 0.0
+    modes.covariances[ON] = 1e-12 * np.eye(4)
+    dt = 0.5
+    p = TrackingParameters(reversal_rate=0.01, acceleration_noise=1e-9)
+    after = motion_modes.predict(Modes(*(a[None] for a in modes)), dt, p)
+    assert after.states[0, BACK] == pytest.approx([1.0, 0.0, -0.1, 0.0], abs=1e-6)
+    assert after.covariances[0, BACK, 0, 0] == pytest.approx((0.1 * dt) ** 2 / 3, rel=1e-3)
+    assert after.covariances[0, BACK, 1, 1] < 1e-9
 
 
 def test_a_reversal_out_of_sight_is_weighed_against_going_on():
@@ -100,7 +114,7 @@ def test_covariances_stay_positive_definite_over_100000_updates():
         noise = Q @ (sigma[:, :, None] ** 2 * np.eye(2)) @ np.swapaxes(Q, 1, 2)
         z = z + rng.normal(0, 0.03, (n, 2))
         seen = motion_modes.innovation(modes, z, noise)
-        modes = motion_modes.update(modes, noise, seen, np.full(n, P.evidence))
+        modes = motion_modes.update(modes, noise, seen, P.evidence)
         C = modes.covariances
         assert np.array_equal(C, np.swapaxes(C, 2, 3))
         assert np.linalg.eigvalsh(C[:, ON:]).min() > 0.0

@@ -124,6 +124,84 @@ def test_what_no_longer_stands_still_is_forgotten(observe, frame, track):
     assert np.array_equal(slam.covariance, covariance)
 
 
+PLACES = [  # no two arrangements of these are alike
+    (1.2, 0.1, "red"),
+    (1.5, 0.9, "green"),
+    (0.3, 1.4, "blue"),
+    (-0.9, 1.1, "red"),
+    (-1.5, 0.1, "violet"),
+    (-0.8, -0.9, "green"),
+    (0.2, -1.3, "violet"),
+    (1.3, -0.8, "blue"),
+]
+
+
+def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0), hidden=()):
+    """The robot turns about on the spot of its odometry, which stands at `where` in truth."""
+    for k in times:
+        turn = 0.05 * k
+        x, y, heading = where
+        pose = (x, y, heading + turn)
+        seen, numbers = [], []
+        for i, (px, py, label) in enumerate(PLACES):
+            distance, bearing = sighting(pose, (px, py))
+            if abs(bearing) < 0.7 and distance < 2.5 and i not in hidden:
+                seen.append(
+                    observe(pose, (px, py), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA)
+                )
+                numbers.append(i)
+        f = frame(DT * k, (0.0, 0.0, turn), seen)
+        slam.update(f)
+        slam.learn(f, tuple(
+            replace(track(PLACES[i][:2], id=i), label=PLACES[i][2]) for i in range(len(PLACES))
+            if i in numbers or i in slam.landmarks
+        ))  # fmt: skip
+        yield slam, np.array(pose)
+
+
+@pytest.fixture
+def mapped(observe, frame, track):
+    """A robot at the origin that has mapped all places, and what goes on with it."""
+    slam, rng = SelfMapping(BeliefParameters(), np.zeros(3)), np.random.default_rng(6)
+
+    def go_on(frames, **changes):
+        start = go_on.next
+        go_on.next += frames
+        times = range(start, go_on.next)
+        return list(look_around(slam, observe, frame, track, rng, times, **changes))
+
+    go_on.next = 0
+    go_on(130)
+    assert len(slam.landmarks) == len(PLACES)
+    assert not slam.lost
+    return slam, go_on
+
+
+def test_carried_away_it_notices_and_recognises_the_place(mapped):
+    slam, go_on = mapped
+    go_on(10, where=(0.4, -0.5, 1.9))
+    assert slam.lost or slam.recoveries
+    go_on(60, where=(0.4, -0.5, 1.9))
+    _, pose = go_on(1, where=(0.4, -0.5, 1.9))[-1]
+    assert slam.recoveries == 1
+    assert not slam.lost
+    assert np.hypot(*(slam.pose - pose)[:2]) < 0.05
+    assert abs(wrap(float(slam.pose[2] - pose[2]))) < 0.03
+
+
+def test_one_landmark_gone_is_no_reason_to_be_lost(mapped):
+    slam, go_on = mapped
+    go_on(130, hidden=(3,))
+    assert not slam.lost
+    assert slam.recoveries == 0
+
+
+def test_a_black_image_says_nothing(mapped):
+    slam, go_on = mapped
+    go_on(130, hidden=range(len(PLACES)))
+    assert not slam.lost
+
+
 def test_an_old_frame_is_refused(frame):
     slam = SelfMapping(BeliefParameters(), np.zeros(3))
     slam.update(frame(1.0, (0, 0, 0), []))

@@ -23,6 +23,7 @@ def make(moving=0.5, velocity=(0.03, 0.0), **changes):
         "last_time": 5.0,
         "last_seen": np.array([1.0, 2.0]),
         "seen_covariance": np.eye(2) * 1e-4,
+        "best_covariance": np.eye(2) * 1e-4,
         "hits": 50,
     }
     return TrackedObject(**(values | changes))
@@ -80,6 +81,24 @@ def test_the_worst_case_grows_with_age_unless_it_stands_still():
         o = make(motion=motion)
         assert o.track(5.0, P).reach == pytest.approx(3 * 0.01)
         assert o.track(8.0, P).reach == pytest.approx(3 * 0.01 + 3.0 * growth)
+
+
+def test_the_worst_case_does_not_depend_on_the_axes_of_the_world():
+    reach = []
+    for turn in (0.0, 0.4, 0.8, 2.0):
+        c, s = np.cos(turn), np.sin(turn)
+        Q = np.array([[c, -s], [s, c]])
+        o = make(seen_covariance=Q @ np.diag([9e-4, 1e-6]) @ Q.T)
+        reach.append(o.reach(5.0, P))
+    assert np.allclose(reach, 0.09)
+
+
+def test_no_number_of_detections_brings_the_lasting_error_down():
+    best = np.diag([4e-4, 1e-4])
+    o = make(motion=Motion.STATIC, best_covariance=best)
+    filtered = o.modes.covariances[0, :2, :2]
+    published = o.track(5.0, P).covariance[:2, :2]
+    assert np.allclose(published - filtered, P.lasting_error**2 * best)
 
 
 def test_a_cloud_is_published_by_its_moments():

@@ -11,6 +11,7 @@ from navigation.visibility import Viewpoint
 
 DT = 0.06
 EXACT = np.eye(3) * 1e-8
+P = TrackingParameters()
 
 
 class Stage:
@@ -67,6 +68,17 @@ def test_two_sightings_make_a_track_and_one_does_not(stage):
     assert track.motion is Motion.UNKNOWN
     assert track.visible
     assert track.hits == 2
+
+
+def test_far_away_no_track_begins_but_one_goes_on(stage):
+    far, near = P.birth_range + 0.3, P.birth_range - 0.2
+    stage.watch(0.6, (far, 0.0, 0.0, 0.0))
+    assert stage.tracks == ()
+    stage.watch(0.6, (near, 0.0, 0.0, 0.0))
+    (track,) = stage.watch(9.0, (near, 0.0, 0.06, 0.0))
+    assert track.position[0] == pytest.approx(near + 0.54, abs=0.05)
+    assert track.position[0] > P.birth_range
+    assert track.visible
 
 
 def test_single_false_blobs_leave_nothing(stage):
