@@ -105,6 +105,7 @@ def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0
         last_seen=np.array(place, float),
         visible=age == 0.0,
         particles=cloud,
+        reach=details.pop("reach", 0.0),
     )
 
 
