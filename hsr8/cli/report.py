@@ -49,12 +49,16 @@ ROWS: tuple[tuple[str, str, str], ...] = (
         "peak_torque_share",
         "{0:.0%} of the limit, {peak_torque_joint}; at it in {torque_saturated_ticks} ticks",
     ),
+    ("fastest joint", "peak_joint_speed_radps", "{0:.1f} rad/s, {peak_speed_joint}"),
+    ("set-points beyond range", "clipped_target_ticks", "in {} ticks{clipped}"),
+    ("joints at their stops", "joint_stop_ticks", "in {} ticks{stopped}"),
     ("walking tick", "walk_tick_mean_ms", "{0:.2f} ms, 99.9 % below {walk_tick_p999_ms:.2f} ms"),
     ("pushes", "pushes", "{}"),
     ("simulated time", "sim_time_s", "{:.1f} s"),
     ("wall time", "wall_time_s", "{:.1f} s, {real_time_factor:.1f}x real time"),
 )
-UNTOLD = (("pushes", 0),)  # what goes without saying
+# What goes without saying.
+UNTOLD = (("pushes", 0), ("clipped_target_ticks", 0), ("joint_stop_ticks", 0))
 TOLD_LIMITS = 3  # reasons of altered commands that are told
 
 
@@ -70,7 +74,12 @@ def show(
     """Print results, criteria, and what can be done with the run."""
     console = console or Console()
     table = Table(title=title, title_justify="left", show_header=False)
-    told = {**results, "binding": _binding(results)}
+    told = {
+        **results,
+        "binding": _binding(results),
+        "clipped": _joints(results.get("clipped_target_by")),
+        "stopped": _joints(results.get("joint_stop_by")),
+    }
     for label, key, form in ROWS:
         if results.get(key) is not None and (key, results[key]) not in UNTOLD:
             table.add_row(label, _say(form, results[key], told))
@@ -93,6 +102,11 @@ def _binding(results: Mapping[str, Any]) -> str:
     by = results.get("altered_by") or {}
     most = [f"{name.replace('_', ' ')} {share:.1%}" for name, share in by.items()][:TOLD_LIMITS]
     return f" of the ticks: {', '.join(most)}" if most else ""
+
+
+def _joints(ticks: Mapping[str, int] | None) -> str:
+    """Which joints, and in how many ticks."""
+    return f": {', '.join(f'{name} {n}' for name, n in ticks.items())}" if ticks else ""
 
 
 def _criteria(checks: Sequence[Check]) -> Table:

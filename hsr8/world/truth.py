@@ -72,6 +72,8 @@ class Saturation:
         torque_ticks: the same by joint (26,).
         stop_any: control ticks with any joint at the end of its range.
         stop_ticks: the same by joint (26,).
+        clip_any: control ticks with any set-point cut off at the end of a joint's range.
+        clip_ticks: the same by joint (26,).
         peak_torque: largest share of the largest torque (26,) [1].
         peak_speed: largest speed (26,) [rad/s].
     """
@@ -80,6 +82,8 @@ class Saturation:
     torque_ticks: NDArray[np.int64]
     stop_any: int
     stop_ticks: NDArray[np.int64]
+    clip_any: int
+    clip_ticks: NDArray[np.int64]
     peak_torque: Array
     peak_speed: Array
 

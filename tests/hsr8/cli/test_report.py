@@ -50,3 +50,20 @@ def test_a_path_with_spaces_can_be_typed_again(tmp_path):
     console = Console(file=stream, width=200)
     report.show("quick", results={}, checks=(), path=path, command=(), console=console)
     assert f"hsr8 render '{path}'" in stream.getvalue()
+
+
+def test_cut_off_set_points_are_told_only_when_there_are_any(tmp_path):
+    said = []
+    for ticks, by in ((0, {}), (3, {"l_knee": 3, "r_hip_pitch": 1})):
+        stream = io.StringIO()
+        report.show(
+            "walk",
+            results={"clipped_target_ticks": ticks, "clipped_target_by": by},
+            checks=(),
+            path=tmp_path,
+            command=(),
+            console=Console(file=stream, width=200),
+        )
+        said.append(stream.getvalue())
+    assert "beyond range" not in said[0]
+    assert "in 3 ticks: l_knee 3, r_hip_pitch 1" in said[1]

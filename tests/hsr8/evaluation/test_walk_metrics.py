@@ -113,11 +113,13 @@ def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
     tally.add(SimpleNamespace(limits=(), zmp_depth=0.01), 0.002)
     ticks, peak = np.zeros(26, dtype=np.int64), np.zeros(26)
     ticks[3], peak[3] = 7, 1.0
-    saturation = Saturation(7, ticks, 0, np.zeros(26, dtype=np.int64), peak, 5.0 * peak)
+    none = np.zeros(26, dtype=np.int64)
+    saturation = Saturation(7, ticks, 0, none, 7, ticks, peak, 5.0 * peak)
     push = PushActing(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
     record = fake.record(0.0, saturation=saturation, pushes=(push,))
     results = results_of([replace(record, tally=tally)])
-    assert results["torque_saturated_by"] == {"l_knee": 7}
+    assert results["torque_saturated_by"] == results["clipped_target_by"] == {"l_knee": 7}
+    assert (results["clipped_target_ticks"], results["joint_stop_by"]) == (7, {})
     assert (results["peak_torque_joint"], results["peak_joint_speed_radps"]) == ("l_knee", 5.0)
     assert results["walk_tick_mean_ms"] == pytest.approx(2.0)
     assert results["pushes"] == 5

@@ -52,3 +52,15 @@ def test_full_torque_a_stop_and_the_fastest_turn_are_seen_and_kept(watched):
     assert seen.peak_speed[KNEE] == 7.0
     assert before.torque_any == 0
     assert before.peak_speed[KNEE] == 0.0
+
+
+def test_a_set_point_beyond_a_joints_range_is_counted(watched):
+    model, data, index, watch = watched
+    low, high = model.actuator_ctrlrange[index.actuators[KNEE]]
+    for wanted in (low, high, high + 0.01, low - 0.01):
+        data.ctrl[index.actuators[KNEE]] = wanted
+        watch.watch(data)
+    seen = watch.so_far()
+    assert seen.clip_any == 2
+    assert np.flatnonzero(seen.clip_ticks).tolist() == [KNEE]
+    assert seen.clip_ticks[KNEE] == 2
