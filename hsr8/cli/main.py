@@ -26,6 +26,7 @@ CHECK_REPLAY = "check replay"  # a command of two words beside `check`
 COMMANDS: dict[str, tuple[type, str]] = {
     "run": (options.Run, "hsr8.cli.run"),
     "sweep": (options.Sweep, "hsr8.cli.sweep"),
+    "compare": (options.Compare, "hsr8.cli.compare"),
     "list": (options.List, "hsr8.cli.list"),
     "check": (options.Check, "hsr8.cli.check"),
     CHECK_REPLAY: (options.CheckReplay, "hsr8.cli.check_replay"),

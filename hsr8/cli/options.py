@@ -118,6 +118,22 @@ class Sweep:
 
 
 @dataclass(frozen=True)
+class Compare:
+    """Compare two sweeps, or two runs, on their common seeds: paired differences with tests."""
+
+    a: Positional[Annotated[Path, tyro.conf.arg(metavar="A", help="sweep's folder, or run folder")]]
+    b: Positional[Annotated[Path, tyro.conf.arg(metavar="B", help="the one compared with it")]]
+    metric: UseAppendAction[
+        Annotated[
+            tuple[str, ...],
+            _arg("NAME", "a number of metrics.json, else the usual ones; may be repeated"),
+        ]
+    ] = ()
+    json: bool = False
+    """Print one JSON object, else a page of Markdown."""
+
+
+@dataclass(frozen=True)
 class List:
     """List the scenarios that come with hsr8."""
 
@@ -295,6 +311,7 @@ class Colours:
 Command = (
     Run
     | Sweep
+    | Compare
     | List
     | Check
     | CheckReplay

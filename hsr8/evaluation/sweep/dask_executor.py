@@ -1,5 +1,6 @@
 """Runs on the workers of a Dask cluster; needs the extra ``hsr8[dask]``."""
 
+import logging
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -48,7 +49,7 @@ class DaskExecutor:
                 host="127.0.0.1",
                 dashboard_address=None,
                 memory_limit=None,
-                silence_logs="critical",
+                silence_logs=logging.CRITICAL,
             )
         try:
             self._client: Any = Client(
@@ -65,13 +66,8 @@ class DaskExecutor:
     def submit(self, job: Job) -> None:
         """Take a job; a retry goes to another worker if there is one."""
         others = [worker for worker in self._addresses() if worker != job.avoid]
-        future = self._client.submit(
-            work,
-            job,
-            pure=False,
-            workers=others if job.avoid and others else None,
-            allow_other_workers=True,
-        )
+        elsewhere = {"workers": others, "allow_other_workers": True} if job.avoid and others else {}
+        future = self._client.submit(work, job, pure=False, **elsewhere)
         self._futures.add(future)
         future.add_done_callback(lambda done: self._ended.put((job, done)))
 

@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from hsr8 import __version__
+from hsr8.errors import ScenarioError
 from hsr8.recorder.manifest import versions
+from hsr8.scenario.loader import dump, loads
 from hsr8.world.models import models_dir
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
@@ -91,7 +93,7 @@ class Definition:
 
 def differences(one: Definition, other: Definition) -> dict[str, tuple[str, str]]:
     """Keys of the scenarios whose values differ, with both values as JSON; absent is ``-``."""
-    tables = [dict(_flat(tomllib.loads(d.scenario), "")) for d in (one, other)]
+    tables = [dict(_flat(tomllib.loads(_resolved(d.scenario)), "")) for d in (one, other)]
     keys = [key for key in {**tables[0], **tables[1]} if key not in IGNORED]
     both = {key: (tables[0].get(key, "-"), tables[1].get(key, "-")) for key in keys}
     return {key: pair for key, pair in sorted(both.items()) if pair[0] != pair[1]}
@@ -129,6 +131,14 @@ def _files() -> Iterator[tuple[str, Path]]:
     for file in sorted(root.rglob("*")):
         if file.is_file() and file.suffix not in (".py", ".pyc", ".md"):
             yield f"models/{file.relative_to(root).as_posix()}", file
+
+
+def _resolved(text: str) -> str:
+    """A scenario of another version, with the keys that are new since then."""
+    try:
+        return dump(loads(text))
+    except ScenarioError:
+        return text
 
 
 def _flat(value: Any, path: str) -> Iterator[tuple[str, str]]:

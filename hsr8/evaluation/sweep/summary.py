@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from math import fsum
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,8 @@ class Spread:
     def of(cls, values: Sequence[float]) -> "Spread":
         """Of one or more values."""
         p10, median, p90 = np.quantile(values, (0.1, 0.5, 0.9)).tolist()
-        return cls(len(values), float(np.mean(values)), median, p10, p90, min(values), max(values))
+        mean = fsum(values) / len(values)
+        return cls(len(values), mean, median, p10, p90, min(values), max(values))
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +119,7 @@ def summarize(rows: Sequence[Row]) -> Summary:
         row["arrival_error_deg"] for row in good if row.get("arrival_error_deg") is not None
     ]
     collisions = sum(int(row.get("collisions", 0)) for row in whole)
-    metres = sum(float(row.get("path_length_m") or 0.0) for row in whole)
+    metres = fsum(float(row.get("path_length_m") or 0.0) for row in whole)
 
     def share(of: Sequence[Row], test: Callable[[Row], bool]) -> Share:
         return Share.counted(sum(map(test, of)), len(of))

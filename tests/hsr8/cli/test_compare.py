@@ -1,0 +1,50 @@
+import json
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder.run_reader import open_run
+
+FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--no-log", "--quiet"]
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Three short runs: one, the same of another length, another seed."""
+    out = tmp_path_factory.mktemp("runs")
+    for name, more in (
+        ("a", ["--seed", "2"]),
+        ("b", ["--seed", "2", "--set", "camera.period_ms=80"]),
+        ("c", ["--seed", "3"]),
+    ):
+        entry([*FAST, "--duration", "0.3", "--out", str(out / name), *more])
+    return [str(open_run(out / name).path) for name in "abc"]
+
+
+def test_two_runs_are_compared(runs, capsys):
+    assert entry(["compare", *runs[:2]]) == 0
+    printed = capsys.readouterr().out
+    assert "| `camera.period_ms` | 60 | 80 |" in printed
+    assert "| `success` | 1 |" in printed
+    assert "code" not in printed.split("| differs |")[1].split("\n\n")[0]
+
+
+def test_json_is_all_there_is_on_standard_output(runs, capsys):
+    assert entry(["compare", *runs[:2], "--json", "--metric", "sim_time_s"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["common_seeds"] == 1
+    assert told["settings"] == {"camera.period_ms": ["60", "80"]}
+    assert told["results"]["sim_time_s"]["difference"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("more", "word"), [([], "no seed is in both"), (["--metric", "x"], "no seed is in both")]
+)
+def test_runs_of_other_seeds_are_refused(runs, capsys, more, word):
+    assert entry(["compare", runs[0], runs[2], *more]) == 2
+    assert word in capsys.readouterr().err
+
+
+def test_a_folder_of_something_else_is_refused(tmp_path, runs, capsys):
+    assert entry(["compare", str(tmp_path), runs[0]]) == 2
+    assert "neither a sweep" in capsys.readouterr().err

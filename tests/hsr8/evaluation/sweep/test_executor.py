@@ -1,0 +1,86 @@
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from hsr8.errors import UsageError
+from hsr8.evaluation.sweep import executor as module
+from hsr8.evaluation.sweep.executor import LocalExecutor, open_executor
+from hsr8.evaluation.sweep.job import Job
+
+JOB = Job(0, "/nowhere", "", 10.0)
+
+
+@pytest.fixture
+def local():
+    executor = LocalExecutor(2)
+    yield executor
+    executor.close()
+
+
+def _all(executor, n):
+    ended = []
+    while len(ended) < n:
+        ended += executor.wait(5.0)
+    return ended
+
+
+def test_every_job_ends_once(local, monkeypatch):
+    monkeypatch.setattr(module, "run_job", lambda job, started: {"seed": job.seed})
+    for seed in range(20):
+        local.submit(replace(JOB, seed=seed))
+    ended = _all(local, 20)
+    assert sorted(row["seed"] for _, row in ended) == list(range(20))
+    assert all(job.seed == row["seed"] for job, row in ended)
+    assert local.wait(0.0) == []
+
+
+def test_a_job_that_cannot_begin_is_a_crash(local, monkeypatch):
+    def fail(job, started):
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(module, "run_job", fail)
+    local.submit(JOB)
+    ((_, row),) = _all(local, 1)
+    assert row["outcome"] == "crashed"
+    assert "No space left" in row["error"]
+
+
+@pytest.mark.parametrize("stubborn", [False, True])
+def test_closing_ends_what_runs(monkeypatch, stubborn):
+    monkeypatch.setattr(module, "GRACE", 0.3)
+    deaf = "signal.signal(signal.SIGTERM, signal.SIG_IGN);" if stubborn else ""
+    code = f"import signal, time; {deaf} print(flush=True); time.sleep(60)"
+    processes = []
+
+    def run(job, started):
+        process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+        process.stdout.readline()
+        processes.append(process)
+        started(process)
+        process.communicate()
+        return {"seed": job.seed}
+
+    monkeypatch.setattr(module, "run_job", run)
+    executor = LocalExecutor(1)
+    executor.submit(JOB)
+    executor.submit(JOB)  # waits, and never begins
+    while not processes:
+        executor.wait(0.01)
+    executor.close()
+    assert [p.returncode for p in processes] == [-9 if stubborn else -15]
+
+
+def test_other_names_are_refused():
+    for name in ("slurm", "local://here", ""):
+        with pytest.raises(UsageError, match="local, dask"):
+            open_executor(name, 1)
+
+
+@pytest.mark.parametrize(("name", "package"), [("dask", "distributed"), ("ray", "ray")])
+def test_a_missing_extra_says_what_to_install(monkeypatch, name, package):
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(UsageError, match=rf"pip install \"hsr8\[{name}\]\""):
+        open_executor(name, 1)

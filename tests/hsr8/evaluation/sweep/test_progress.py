@@ -1,0 +1,28 @@
+import io
+
+from hsr8.evaluation.sweep.job import Job
+from hsr8.evaluation.sweep.progress import SweepProgress, spell
+
+JOB = Job(0, "/nowhere", "", 10.0)
+
+
+def test_every_run_has_a_line_where_there_is_no_terminal(row):
+    stream = io.StringIO()
+    progress = SweepProgress(5, 2, stream)
+    progress.on_row(JOB, row(7))
+    progress.on_row(JOB, row(8, success=False, collisions=1))
+    progress.on_row(JOB, {"seed": 9, "outcome": "crashed", "error": "killed by SIGKILL"})
+    progress.tick()
+    progress.close()
+    lines = stream.getvalue().splitlines()
+    assert len(lines) == 3
+    assert lines[0].startswith("3/5 runs   1 succeeded, 0 not")
+    assert lines[0].endswith("seed 7: good")
+    assert "1 succeeded, 1 not, 1 crashed" in lines[2]
+    assert "killed by SIGKILL" in lines[2]
+
+
+def test_times_are_spelled():
+    assert spell(7.2) == "7 s"
+    assert spell(600) == "10 min"
+    assert spell(2 * 3600 + 5 * 60) == "2 h 05 min"

@@ -1,0 +1,129 @@
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from hsr8.errors import UsageError
+from hsr8.evaluation.comparison import Side, compare, open_side
+from hsr8.evaluation.comparison_page import page, to_json
+from hsr8.evaluation.sweep.definition import Definition
+from hsr8.evaluation.sweep.folder import SweepFolder
+
+SCENARIO = """
+name = "here"
+duration = 3.0
+[world]
+brightness = 1.0
+n_static = 3
+[mission]
+kind = "course"
+"""
+DEFINITION = Definition("here", ("hsr8", "run", "here"), "1", "abc", "x86_64", {}, SCENARIO)
+
+
+def _row(seed, success=True, time=50.0, **more):
+    time = time if success else None
+    return {"seed": seed, "outcome": "passed", "success": success, "time_to_goal_s": time, **more}
+
+
+def _side(rows, **change):
+    definition = replace(DEFINITION, **change)
+    return Side(Path("somewhere"), definition, {row["seed"]: row for row in rows})
+
+
+def test_success_is_compared_on_common_seeds():
+    a = _side([_row(s, success=s > 4) for s in range(10)])
+    b = _side([_row(s) for s in range(2, 12)])
+    comparison = compare(a, b)
+    assert comparison.seeds == tuple(range(2, 10))
+    success = comparison.results[0]
+    assert (success.metric, success.test, success.n) == ("success", "McNemar", 8)
+    assert success.only_b == (2, 3, 4)
+    assert success.only_a == ()
+    assert success.difference == pytest.approx(3 / 8)
+    assert success.p_value == pytest.approx(2 * 0.5**3)
+
+
+def test_times_count_where_both_arrived():
+    a = _side([_row(s, success=s != 1, time=50.0) for s in range(4)])
+    b = _side([_row(s, success=s != 2, time=52.0 + s) for s in range(4)])
+    time = next(r for r in compare(a, b).results if r.metric == "time_to_goal_s")
+    assert (time.test, time.n) == ("Wilcoxon", 2)
+    assert time.difference == pytest.approx(3.5)
+
+
+def test_a_crash_is_a_failure_and_says_nothing_else():
+    a = _side([_row(1, collisions=0), {"seed": 2, "outcome": "crashed"}])
+    b = _side([_row(1, collisions=2), _row(2, collisions=2)])
+    results = {r.metric: r for r in compare(a, b).results}
+    assert results["success"].only_b == (2,)
+    assert results["collisions"].n == 1
+
+
+def test_swapping_turns_every_difference_round():
+    a = _side([_row(s, success=s % 3 > 0, collisions=s % 2) for s in range(9)])
+    b = _side([_row(s, success=s % 4 > 0, collisions=s % 5) for s in range(9)])
+    for one, other in zip(compare(a, b).results, compare(b, a).results, strict=True):
+        assert one.difference == pytest.approx(-other.difference)
+        assert one.p_value == pytest.approx(other.p_value)
+        assert (one.low, one.high) == pytest.approx((-other.high, -other.low))
+
+
+def test_what_differs_between_the_two_is_told():
+    dark = SCENARIO.replace("brightness = 1.0", "brightness = 0.5") + "[camera]\nperiod_ms = 80\n"
+    b = _side([_row(1)], scenario=dark, hsr8="2", code="def")
+    comparison = compare(_side([_row(1)]), b)
+    assert comparison.settings["camera.period_ms"] == ("60", "80")
+    assert set(comparison.settings) == {"camera.period_ms", "world.brightness"}
+    assert comparison.versions == {"hsr8": ("1", "2"), "code": ("abc", "def")}
+    text = page(comparison, "hsr8 compare a b")
+    assert "| `camera.period_ms` | 60 | 80 |" in text
+    assert "| `hsr8` | 1 | 2 |" in text
+    assert to_json(comparison)["settings"]["world.brightness"] == ["1.0", "0.5"]
+
+
+def test_a_key_that_is_new_is_no_difference():
+    """What an older version did not know has its default."""
+    full = SCENARIO + '[navigation]\nprofile = "extended"\n'
+    assert compare(_side([_row(1)]), _side([_row(1)], scenario=full)).settings == {}
+
+
+def test_other_worlds_do_not_pair():
+    other = SCENARIO.replace("n_static = 3", "n_static = 4")
+    with pytest.raises(UsageError, match=r"world.n_static: 3 in A, 4 in B"):
+        compare(_side([_row(1)]), _side([_row(1)], scenario=other))
+
+
+def test_no_common_seed_and_unknown_metrics_are_told():
+    with pytest.raises(UsageError, match="A has 1 to 2, B has 5 to 5"):
+        compare(_side([_row(1), _row(2)]), _side([_row(5)]))
+    with pytest.raises(UsageError, match="did you mean 'success'"):
+        compare(_side([_row(1)]), _side([_row(1)]), ["sucess"])
+
+
+def test_one_metric_alone_and_its_page():
+    a = _side([_row(s, success=s > 1) for s in range(4)])
+    comparison = compare(a, _side([_row(s) for s in range(5)]), ["success"])
+    assert [r.metric for r in comparison.results] == ["success"]
+    text = page(comparison, "hsr8 compare a b --metric success")
+    assert "| `success` | 4 | 50.0 % | 100.0 % | +50.0 points |" in text
+    assert "`success` in B only: 0, 1" in text
+    assert "(0 more in A, 1 more in B)" in text
+
+
+def test_sweeps_are_opened_without_what_could_not_run(tmp_path):
+    folder = SweepFolder.open(tmp_path / "s", DEFINITION)
+    folder.lock()
+    folder.append([_row(1, mean={"vx": 0.1}), {"seed": 2, "outcome": "refused"}])
+    folder.close()
+    side = open_side(tmp_path / "s")
+    assert list(side.rows) == [1]
+    assert side.rows[1]["mean.vx"] == 0.1
+
+
+def test_other_folders_are_refused_and_parts_are_named(tmp_path):
+    with pytest.raises(UsageError, match="neither"):
+        open_side(tmp_path)
+    SweepFolder.open(tmp_path / "a=1", DEFINITION)
+    with pytest.raises(UsageError, match="one of its parts, a=1"):
+        open_side(tmp_path)
