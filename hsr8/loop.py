@@ -1,12 +1,15 @@
 """The closed loop: world, sensors, robot, and back, one control tick after the other."""
 
 import hashlib
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack, closing
+from collections.abc import Sequence
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
+from typing import Self
 
 from hsr8.body_builder import build_body, build_model
+from hsr8.decisions import Looks, Moves
 from hsr8.errors import SimulationDiverged
+from hsr8.event_watch import EventWatch
 from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.recorder.tape import TapeWriter
 from hsr8.robot import SensorFrame
@@ -17,8 +20,6 @@ from hsr8.world.analytic import AnalyticCamera
 from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
 from hsr8.world.camera_feed import CameraFeed, Picture
-from hsr8.world.episodes import Episodes
-from hsr8.world.falls import Falls
 from hsr8.world.generator import draw_layout
 from hsr8.world.index import ModelIndex
 from hsr8.world.physics import CONTROL_PERIOD
@@ -48,27 +49,51 @@ class RunOutcome:
 class Simulation:
     """One run of one scenario with one seed.
 
+    At once: ``outcome = Simulation(scenario, seed).run()``. Tick by tick:
+
+        with Simulation(scenario, seed) as simulation:
+            while simulation.exit_reason is None:
+                record = simulation.step()
+
     Args:
         scenario: what to run.
         seed: draws the world and every noise.
         listeners: told of every record; they never change the run.
+        planner: plans the motion instead of the scenario's planner.
+        gaze: chooses the gaze instead of the scenario's.
+
+    Attributes:
+        exit_reason: goal, timeout, completed, fall, diverged or interrupted once the run has
+            ended; None before.
+        tick: control ticks made so far.
 
     Raises:
         ScenarioError: the world cannot be drawn as asked.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
 
-    def __init__(self, scenario: Scenario, seed: int, listeners: Sequence[Listener] = ()) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int,
+        listeners: Sequence[Listener] = (),
+        *,
+        planner: Moves | None = None,
+        gaze: Looks | None = None,
+    ) -> None:
         self.scenario = scenario
         self.seed = seed
         self.listeners = list(listeners)
         self.tape: TapeWriter | None = None
         self.layout = draw_layout(scenario, seed)
         self.model = build_model(scenario, self.layout)
+        self.exit_reason: str | None = None
+        self.tick = 0
         self._body = build_body(scenario, seed, self.layout, self.model)
-        self._robot = build_robot(scenario, self.layout, seed)
-        self._watch = _EventWatch(self._tell)
+        self._robot = build_robot(scenario, self.layout, seed, planner=planner, gaze=gaze)
+        self._watch = EventWatch(self._tell)
         self._interrupted = False
+        self._open = False
         self._rendered: RenderedCamera | None = None
         self._analytic: AnalyticCamera | None = None
         self._camera_rng = named_rng(seed, "camera")
@@ -78,15 +103,44 @@ class Simulation:
                 self.layout, head_camera(scenario), self._camera_rng, scenario.camera
             )
         self._feed = CameraFeed(camera, self._take, named_rng(seed, "camera_feed"))
+        self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
+        self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
+        self._end: tuple[int, str] | None = None
+        self._published: FrameRecord | None = None
 
     @property
     def index(self) -> ModelIndex:
         """Addresses in the model."""
         return ModelIndex.of(self.model, len(self.layout.static), len(self.layout.movers))
 
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self._body.time
+
     def interrupt(self) -> None:
         """Ask the run to end after the present tick."""
         self._interrupted = True
+
+    def __enter__(self) -> Self:
+        if self._analytic is None:
+            self._rendered = RenderedCamera(self.model, self.scenario.camera, self._camera_rng)
+        self._open = True
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        """Close camera, tape and listeners; each is closed, also when another one fails."""
+        self._open = False
+        if self.exit_reason is None:
+            stopped = kind is None or issubclass(kind, KeyboardInterrupt)
+            self.exit_reason = "interrupted" if stopped else "error"
+        with ExitStack() as farewell:
+            if self._rendered is not None:
+                farewell.callback(self._rendered.close)
+            if self.tape is not None:
+                farewell.callback(self.tape.close)
+            for listener in reversed(self.listeners):
+                farewell.callback(listener.close, self.exit_reason)
 
     def run(self) -> RunOutcome:
         """Run to the end and close the listeners.
@@ -94,27 +148,40 @@ class Simulation:
         Raises:
             SimulationDiverged: the physics blew up; the listeners are closed first.
         """
-        reason = "error"
-        with ExitStack() as stack:
-            if self._analytic is None:
-                self._rendered = stack.enter_context(
-                    closing(RenderedCamera(self.model, self.scenario.camera, self._camera_rng))
-                )
-            try:
-                reason = self._ticks()
-            except SimulationDiverged as error:
-                reason = "diverged"
-                self._tell("diverged", str(error))
-                raise
-            except KeyboardInterrupt:
-                reason = "interrupted"
-            finally:
-                with ExitStack() as farewell:  # each is closed, also when another one fails
-                    if self.tape is not None:
-                        farewell.callback(self.tape.close)
-                    for listener in reversed(self.listeners):
-                        farewell.callback(listener.close, reason)
-        return RunOutcome(reason, self._body.time, self.state_hash())
+        with suppress(KeyboardInterrupt), self:
+            while self.exit_reason is None:
+                self.step()
+        return self.outcome()
+
+    def outcome(self) -> RunOutcome:
+        """How the run ended.
+
+        Raises:
+            RuntimeError: it has not.
+        """
+        if self.exit_reason is None:
+            raise RuntimeError("the run has not ended: step on until `exit_reason` is set")
+        return RunOutcome(self.exit_reason, self._body.time, self.state_hash())
+
+    def step(self) -> TickRecord | None:
+        """Make one control tick.
+
+        Returns:
+            What was published in it; None between two records.
+
+        Raises:
+            RuntimeError: the run has ended, or has not been entered by ``with``.
+            SimulationDiverged: the physics blew up.
+        """
+        if not self._open or self.exit_reason is not None:
+            state = "has ended" if self.exit_reason else "is entered by `with simulation:`"
+            raise RuntimeError(f"the run {state}")
+        try:
+            return self._step()
+        except SimulationDiverged as error:
+            self.exit_reason = "diverged"
+            self._tell("diverged", str(error))
+            raise
 
     def state_hash(self) -> str:
         """SHA-256 of the world's state and the robot's belief."""
@@ -135,37 +202,32 @@ class Simulation:
         if self.tape is not None:
             self.tape.mark(tick, self._body.state_bytes(), self._believed())
 
-    def _ticks(self) -> str:
-        scenario = self.scenario
-        record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
-        last = round(scenario.duration / CONTROL_PERIOD)
-        end: tuple[int, str] | None = None
-        published: FrameRecord | None = None
-        for tick in range(last + 1):
-            if tick % TICKS_A_SECOND == 0:
-                self._mark(tick)
-            sensed = self._sense(tick)
-            targets = self._robot.step(sensed)
-            if tick % record_ticks == 0:
-                truth = self._body.truth()
-                frame = self._robot.frame
-                self._publish(tick, truth, frame if frame is not published else None)
-                published = frame
-                end = end or self._ending(tick, truth)
-            if self._interrupted or (end is not None and tick >= end[0]):
-                break
-            if self.tape is not None:
-                self.tape.add(self._body.set_points(targets))
-            self._body.apply(targets)
-        else:
-            tick = last + 1
-        self._mark(tick)
+    def _step(self) -> TickRecord | None:
+        tick, record = self.tick, None
+        if tick % TICKS_A_SECOND == 0:
+            self._mark(tick)
+        targets = self._robot.step(self._sense(tick))
+        if tick % self._record_ticks == 0:
+            truth = self._body.truth()
+            record = self._publish(tick, truth)
+            self._end = self._end or self._ending(tick, truth)
         if self._interrupted:
-            return "interrupted"
-        if end is not None and tick >= end[0]:
-            return end[1]
-        finite = len(self.layout.waypoints) > 0 and not self.layout.endless
-        return "timeout" if finite else "completed"
+            return self._finish("interrupted", record)
+        if self._end is not None and tick >= self._end[0]:
+            return self._finish(self._end[1], record)
+        if self.tape is not None:
+            self.tape.add(self._body.set_points(targets))
+        self._body.apply(targets)
+        self.tick += 1
+        if self.tick == self._ticks:
+            finite = len(self.layout.waypoints) > 0 and not self.layout.endless
+            return self._finish("timeout" if finite else "completed", record)
+        return record
+
+    def _finish(self, reason: str, record: TickRecord | None) -> TickRecord | None:
+        self._mark(self.tick)
+        self.exit_reason = reason
+        return record
 
     def _sense(self, tick: int) -> SensorFrame:
         body, time = self._body.sense(), self._body.time
@@ -195,7 +257,9 @@ class Simulation:
             return True
         return self._robot.walking_state().phase is Phase.FALLEN
 
-    def _publish(self, tick: int, truth: Truth, frame: FrameRecord | None) -> None:
+    def _publish(self, tick: int, truth: Truth) -> TickRecord:
+        frame = self._robot.frame if self._robot.frame is not self._published else None
+        self._published = self._robot.frame
         self._watch.look(truth, frame)
         record = TickRecord(
             tick=tick,
@@ -209,45 +273,8 @@ class Simulation:
         )
         for listener in self.listeners:
             listener.on_record(record)
+        return record
 
     def _tell(self, kind: str, text: str, time: float | None = None) -> None:
         for listener in self.listeners:
             listener.on_event(self._body.time if time is None else time, kind, text)
-
-
-class _EventWatch:
-    """Turns records into events."""
-
-    def __init__(self, tell: Callable[..., None]) -> None:
-        self._tell = tell
-        self._pushes = 0
-        self._episodes = Episodes()
-        self._falls = Falls()
-        self._index = 0
-        self._lost = False
-        self._done = False
-
-    def look(self, truth: Truth, frame: FrameRecord | None) -> None:
-        """Tell what changed since the last record."""
-        for push in truth.pushes:
-            if push.number >= self._pushes:
-                self._pushes = push.number + 1
-                self._tell("push", push.text(), push.begin)
-        if self._falls.add(truth.time, fallen=truth.fallen):
-            self._tell("fall", "the robot has fallen")
-        for collision in self._episodes.add(truth.time, truth.contacts):
-            what = "mover" if collision.moving else "obstacle"
-            self._tell("collision", f"{collision.robot_geom} touches {what} {collision.obstacle}")
-        if frame is None:
-            return
-        if frame.task.index > self._index:
-            self._index = frame.task.index
-            self._tell("via_point", f"via point {self._index} passed")
-        if frame.task.done and not self._done:
-            self._done = True
-            self._tell("goal", "goal reached")
-        if frame.belief.lost != self._lost:
-            self._lost = frame.belief.lost
-            self._tell(
-                *(("lost", "localization is lost") if self._lost else ("found", "localized again"))
-            )

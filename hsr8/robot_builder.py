@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 
-from hsr8.decisions import Decisions, Goes, Moves
+from hsr8.decisions import Decisions, Goes, Looks, Moves
 from hsr8.robot import Robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
@@ -38,8 +38,18 @@ def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, flo
     return ALL_ROUND if scenario.camera.all_round else (camera.horizontal_fov, camera.vertical_fov)
 
 
-def build_robot(scenario: Scenario, layout: Layout, seed: int) -> Robot:
-    """The robot of `scenario`, placed by `layout`; `seed` draws its particles and commands."""
+def build_robot(
+    scenario: Scenario,
+    layout: Layout,
+    seed: int,
+    *,
+    planner: Moves | None = None,
+    gaze: Looks | None = None,
+) -> Robot:
+    """The robot of `scenario`, placed by `layout`; `seed` draws its particles and commands.
+
+    A `planner` or a `gaze` takes the place of the scenario's.
+    """
     camera = head_camera(scenario)
     body = RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
     script = build_script(scenario, named_rng(seed, "command"))
@@ -49,7 +59,7 @@ def build_robot(scenario: Scenario, layout: Layout, seed: int) -> Robot:
         vision=Detector(camera, scenario.vision_parameters(), arms()),
         pose=scenario.vision_parameters().pose,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
-        decisions=build_decisions(scenario, layout, camera, script, named_rng(seed, "planner")),
+        decisions=build_decisions(scenario, layout, seed, script, planner=planner, gaze=gaze),
         script=script,
     )
 
@@ -71,29 +81,28 @@ def build_script(scenario: Scenario, rng: np.random.Generator) -> CommandScript 
 def build_decisions(
     scenario: Scenario,
     layout: Layout,
-    camera: PinholeCamera,
+    seed: int,
     script: CommandScript | None,
-    rng: np.random.Generator,
+    *,
+    planner: Moves | None = None,
+    gaze: Looks | None = None,
 ) -> Decisions:
     """Mission, planner and gaze of the robot of `scenario`.
 
-    With a `script`, it is obeyed; `rng` is for a planner that draws samples.
+    With a `script`, it is obeyed; `seed` is for a planner that draws samples. A `planner` or a
+    `gaze` takes the place of the scenario's.
     """
     navigation, limits = scenario.navigation_parameters(), scenario.speed_limits()
     mission: Goes
-    planner: Moves
     if script is not None:
         mission, planner = ScriptedMission(), ScriptedPlanner(script)
     else:
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
-        planner = build_planner(navigation, limits, rng)
-    beacons = known_beacons(scenario, layout)
-    return Decisions(
-        mission=mission,
-        planner=planner,
-        gaze=GazePlanner(navigation, limits, beacons, *field_of_view(scenario, camera)),
-        footstep=limits.footstep,
-    )
+        planner = planner or build_planner(navigation, limits, named_rng(seed, "planner"))
+    if gaze is None:
+        fov = field_of_view(scenario, head_camera(scenario))
+        gaze = GazePlanner(navigation, limits, known_beacons(scenario, layout), *fov)
+    return Decisions(mission=mission, planner=planner, gaze=gaze, footstep=limits.footstep)
 
 
 def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, float]]:

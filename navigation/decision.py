@@ -1,6 +1,6 @@
 """What navigation decides: where to look and how to move."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,11 +61,11 @@ class GazeDecision:
 
     pan: float
     tilt: float
-    psi_lm: float
-    psi_sf: float
-    psi_ob: float
-    psi_way: float
-    gaze_map: Array
+    psi_lm: float = 0.0
+    psi_sf: float = 0.0
+    psi_ob: float = 0.0
+    psi_way: float = 0.0
+    gaze_map: Array = field(default_factory=lambda: np.zeros((1, 1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +98,8 @@ class MotionDecision:
     """
 
     velocity: Array
-    direction: float
-    speed: float
-    situation: str
-    virtual_obstacles: tuple[VirtualObstacle, ...]
-    extended_radii: tuple[tuple[int, float], ...]
+    direction: float = 0.0
+    speed: float = 0.0
+    situation: str = "free"
+    virtual_obstacles: tuple[VirtualObstacle, ...] = ()
+    extended_radii: tuple[tuple[int, float], ...] = ()

@@ -145,9 +145,9 @@ class Bench:
     def _watch(self, simulation: Simulation) -> None:
         """Watch every stage by the classes that this run has made."""
         robot = simulation._robot
-        parts = vars(robot)
+        parts = vars(robot) | vars(robot._decisions)
         stages = [
-            (type(simulation), "_ticks", "the rest of the loop"),
+            (type(simulation), "step", "the rest of the loop"),
             (type(simulation._body), "sense", "sense"),
             (type(parts["_walking"]), "step", "walking tick"),
             (type(parts["_walking"]), "state", "walking state"),

@@ -19,7 +19,7 @@ from hsr8.recorder.manifest import RUNNING
 from hsr8.recorder.measurements import Measured, read_measurements
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import HASH, Block, read_tape
-from hsr8.robot_builder import build_decisions, build_estimator, build_script, head_camera
+from hsr8.robot_builder import build_decisions, build_estimator, build_script
 from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
@@ -108,8 +108,7 @@ def _differences(run: Run, measured: list[Measured]) -> Iterator[tuple[str, int,
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
     script = build_script(scenario, named_rng(run.seed, "command"))
-    rng = named_rng(run.seed, "planner")
-    decisions = build_decisions(scenario, layout, head_camera(scenario), script, rng)
+    decisions = build_decisions(scenario, layout, run.seed, script)
     for index, recorded in enumerate(measured):
         try:
             estimate = estimator.update(recorded.frame)

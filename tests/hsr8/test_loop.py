@@ -1,49 +1,84 @@
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+import pytest
 
-from hsr8.loop import _EventWatch
-from hsr8.seeds import named_rng
-from hsr8.world.truth import Contact, Truth
+from hsr8.decisions import Looks, Moves
+from hsr8.loop import Simulation
+from hsr8.scenario.loader import load
+from navigation.decision import GazeDecision, MotionDecision
 
-
-@given(st.integers(0, 2**32 - 1))
-def test_a_subsystem_draws_the_same_for_the_same_seed(seed):
-    assert named_rng(seed, "body").random() == named_rng(seed, "body").random()
+STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
 
 
-@given(st.integers(0, 2**32 - 1))
-def test_subsystems_draw_independently(seed):
-    draws = {named_rng(seed, name).random() for name in ("body", "camera", "belief")}
-    assert len(draws) == 3
+def quick(duration=1.0):
+    return load("quick", [*STAND_INS, f"duration={duration}"])
 
 
-def truth_with(time, *obstacles):
-    contacts = tuple(Contact(o, False, "l_sole", 1.0, closing=False) for o in obstacles)
-    empty = np.zeros(0)
-    return Truth(
-        time=time,
-        qpos=empty,
-        robot=empty,
-        obstacle_positions=empty,
-        obstacle_velocities=empty,
-        contacts=contacts,
-        clearance=1.0,
-        joint_torque=empty,
-        foot_force=empty,
-        zmp=empty,
-        fallen=False,
-    )
+class Spin:
+    """Turns on the spot and sees nothing."""
+
+    def plan(self, belief, task):
+        return MotionDecision(velocity=np.array([0.0, 0.0, 0.8]))
 
 
-def test_a_contact_that_goes_on_is_one_event_and_a_later_one_another():
-    told = []
-    watch = _EventWatch(lambda kind, text: told.append(kind))
-    for time in np.arange(0.0, 1.0, 0.02):
-        watch.look(truth_with(time, 3), None)
-    assert told == ["collision"]
-    watch.look(truth_with(1.2, 3), None)
-    assert told == ["collision"]
-    watch.look(truth_with(1.9, 3), None)
-    watch.look(truth_with(1.9, 4), None)
-    assert told == ["collision"] * 3
+class Stare:
+    """Looks to the left whatever happens."""
+
+    def choose(self, belief, task, motion):
+        return GazeDecision(pan=0.7, tilt=-0.2)
+
+
+def test_tick_by_tick_is_the_same_run():
+    at_once = Simulation(quick(), 4).run()
+    records = []
+    with Simulation(quick(), 4) as simulation:
+        while simulation.exit_reason is None:
+            records.append(simulation.step())
+    assert simulation.outcome() == at_once
+    assert simulation.tick == len(records) == 201
+    published = [r for r in records if r is not None]
+    assert [r.tick for r in published] == list(range(0, 201, 4))
+
+
+def test_a_run_left_early_closes_its_listeners(fake):
+    class Closes:
+        def on_record(self, record):
+            pass
+
+        def on_event(self, time, kind, text):
+            pass
+
+        def close(self, exit_reason):
+            self.reason = exit_reason
+
+    listener = Closes()
+    with Simulation(quick(), 4, [listener]) as simulation:
+        simulation.step()
+    assert listener.reason == simulation.exit_reason == "interrupted"
+    listener = Closes()
+    with pytest.raises(ZeroDivisionError), Simulation(quick(), 4, [listener]):
+        raise ZeroDivisionError
+    assert listener.reason == "error"
+
+
+def test_a_run_is_stepped_between_its_beginning_and_its_end_alone():
+    simulation = Simulation(quick(0.05), 4)
+    with pytest.raises(RuntimeError, match="with simulation"):
+        simulation.step()
+    with pytest.raises(RuntimeError, match="has not ended"):
+        simulation.outcome()
+    simulation.run()
+    with pytest.raises(RuntimeError, match="has ended"):
+        simulation.step()
+
+
+def test_an_own_planner_and_gaze_take_their_places():
+    spin: Moves = Spin()
+    stare: Looks = Stare()
+    record = None
+    with Simulation(quick(4.0), 4, planner=spin, gaze=stare) as simulation:
+        while simulation.exit_reason is None:
+            record = simulation.step() or record
+    assert record.head.pan == 0.7
+    assert record.command.velocity == (0.0, 0.0, 0.8)
+    assert np.hypot(*(record.truth.robot[:2] - simulation.layout.start[:2])) < 0.15
+    assert abs(record.truth.robot[2] - simulation.layout.start[2]) > 1.0

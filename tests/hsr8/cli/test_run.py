@@ -91,14 +91,14 @@ def test_a_run_that_meets_its_criteria_passes(tmp_path, capsys):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys, number):
     """The signal comes while the run goes on; it ends after the present tick."""
-    publish = Simulation._publish
+    step = Simulation.step
 
-    def interrupting(self, tick, *rest):
-        publish(self, tick, *rest)
-        if tick == 100:
+    def interrupting(self):
+        if self.tick == 100:
             os.kill(os.getpid(), number)
+        return step(self)
 
-    monkeypatch.setattr(Simulation, "_publish", interrupting)
+    monkeypatch.setattr(Simulation, "step", interrupting)
     handler = signal.getsignal(number)
     assert _run(tmp_path, "--json") == 130
     assert signal.getsignal(number) is handler
