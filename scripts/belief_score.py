@@ -7,6 +7,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.evaluation.track_metrics import owners
 from navigation.angles import wrap
 from navigation.belief import Belief, Motion, Track
 from navigation.observation import Frame
@@ -146,18 +147,19 @@ class Score:
         watched: list[_Watched],
         dt: float,
     ) -> None:
-        owners = _owners(things, moment, [t for t in belief.tracks if t.particles is None])
-        taken = set(owners.values())
+        labels = [s.label for s in things]
+        tracks = [t for t in belief.tracks if t.particles is None]
+        by_owner = owners(tracks, labels, moment.positions)
+        owned, taken = {t.id for t in by_owner.values()}, set(by_owner)
         for t in belief.tracks:
             if t.particles is not None:
                 self.clouds += 1
                 self.stray += not _near_cloud(t, things, moment, taken)
-            elif t.id not in owners:
+            elif t.id not in owned:
                 away = np.hypot(*(moment.positions - t.position).T)
                 self.ghosts += not any(
                     a < NEAR and s.label == t.label for a, s in zip(away, things, strict=True)
                 )
-        by_owner = {i: next(t for t in belief.tracks if t.id == k) for k, i in owners.items()}
         seen = _detected(things, moment)
         clear = _in_clear_view(things, moment)
         for i, (thing, w) in enumerate(zip(things, watched, strict=True)):
@@ -207,7 +209,7 @@ class Score:
         if w.turn_seen is not None and float(track.velocity @ v) > 0.0:
             self.reversal.append(time - w.turn_seen)
             w.turned_at = w.turn_seen = None
-        if not (moving and track.visible and w.in_view > TURNING):
+        if not (moving and seen and track.visible and w.in_view > TURNING):
             return
         e = np.concatenate([track.position - moment.positions[i], track.velocity - v])
         self.mover_error.append(float(np.hypot(*e[:2])))
@@ -273,21 +275,6 @@ class Score:
             ),
             ("belief, CPU time per frame [ms]", f"{_mean(self.milliseconds):.2f}"),
         ]
-
-
-def _owners(things: list[Thing], moment: Moment, tracks: list[Track]) -> dict[int, int]:
-    """Index of the obstacle of each track that has one, by its id; the nearest first."""
-    pairs = sorted(
-        (float(np.hypot(*(t.position - moment.positions[i]))), t.id, i)
-        for t in tracks
-        for i, s in enumerate(things)
-        if s.label == t.label
-    )
-    owners: dict[int, int] = {}
-    for distance, k, i in pairs:
-        if distance < NEAR and k not in owners and i not in owners.values():
-            owners[k] = i
-    return owners
 
 
 def _near_cloud(t: Track, things: list[Thing], moment: Moment, taken: set[int]) -> bool:

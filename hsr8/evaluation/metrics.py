@@ -6,6 +6,7 @@ from math import degrees, hypot, inf, isfinite, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.evaluation.track_metrics import TrackMetrics
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.world.episodes import Episodes
@@ -66,6 +67,7 @@ class Metrics:
         self._gaze: tuple[float, float] | None = None
         self._saccades = 0
         self._walk = WalkMetrics()
+        self._tracks = TrackMetrics(layout.obstacles)
 
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
@@ -134,6 +136,7 @@ class Metrics:
             "lost_share": self._lost / n if n else None,
             "filter_faults": self._faults,
             "camera_frames": n,
+            **self._tracks.result(),
             **self._walk.result(),
         }
 
@@ -180,6 +183,7 @@ class Metrics:
         self._faults = belief.filter_faults
         for track in belief.tracks:
             self._match(track, truth)
+        self._tracks.add(frame, truth)
         gaze = (frame.gaze.pan, frame.gaze.tilt)
         if self._gaze is not None:
             pan, tilt = self._gaze

@@ -1,0 +1,141 @@
+"""How good the tracks of a run were: positions, velocities, honesty, and how soon."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.recorder.record import FrameRecord
+from hsr8.world.layout import Obstacle
+from hsr8.world.truth import Truth
+from navigation.belief import Motion, Track
+
+Array = NDArray[np.float64]
+
+NEAR = 0.3  # distance up to which a track belongs to an obstacle [m]
+SIGHT = 3.5  # distance up to which a detected mover is in view [m]
+SETTLED = 1.0  # time in view after which the errors of a mover that is known to move count [s]
+
+
+class TrackMetrics:
+    """Compares the tracks of every camera frame with the true obstacles.
+
+    Args:
+        obstacles: of the run's world, in the order of the truth.
+    """
+
+    def __init__(self, obstacles: Sequence[Obstacle]) -> None:
+        self._colours = [o.colour for o in obstacles]
+        self._movers = [_Mover() if o.motion is not None else None for o in obstacles]
+        self._static = _Errors()
+        self._moving = _Errors()
+        self._velocity = _Errors()
+        self._before: float | None = None
+
+    def add(self, frame: FrameRecord, truth: Truth) -> None:
+        """Take a frame and what was true when it was believed."""
+        time = frame.belief.time
+        dt = 0.0 if self._before is None else time - self._before
+        self._before = time
+        tracks = [t for t in frame.belief.tracks if t.particles is None]
+        owned = owners(tracks, self._colours, truth.obstacle_positions)
+        for i, track in owned.items():
+            mover = self._movers[i]
+            if mover is not None:
+                self._follow(mover, track, truth, i, dt=dt)
+            elif track.motion is Motion.STATIC:
+                error = track.position - truth.obstacle_positions[i]
+                self._static.add(error, track.covariance[:2, :2])
+
+    def result(self) -> dict[str, object]:
+        """Results by name, in the units their names end with; None if nothing was measured."""
+        return {
+            "static_track_rmse_m": self._static.rms,
+            "static_track_nees_mean": self._static.nees,
+            "mover_track_rmse_m": self._moving.rms,
+            "mover_track_nees_mean": self._moving.nees,
+            "mover_velocity_rmse_mps": self._velocity.rms,
+            "mover_velocity_nees_mean": self._velocity.nees,
+            "movers_recognised_after_s": [
+                m.recognised_after for m in self._movers if m is not None and m.recognised
+            ],
+        }
+
+    def _follow(self, mover: "_Mover", track: Track, truth: Truth, i: int, *, dt: float) -> None:
+        away = truth.obstacle_positions[i] - truth.robot[:2]
+        if not track.visible or hypot(*away.tolist()) > SIGHT:
+            return
+        if mover.first_seen is None:
+            mover.first_seen = truth.time
+        else:
+            mover.in_view += dt
+        if track.motion is not Motion.MOVING:
+            return
+        if not mover.recognised:
+            mover.recognised = True
+            mover.recognised_after = truth.time - mover.first_seen
+        if mover.in_view > SETTLED:
+            astray = track.position - truth.obstacle_positions[i]
+            self._moving.add(astray, track.covariance[:2, :2])
+            wrong = track.velocity - truth.obstacle_velocities[i]
+            self._velocity.add(wrong, track.covariance[2:, 2:])
+
+
+@dataclass(slots=True)
+class _Mover:
+    """What happened so far to one mover."""
+
+    first_seen: float | None = None
+    in_view: float = 0.0
+    recognised: bool = False
+    recognised_after: float = 0.0
+
+
+class _Errors:
+    """Sums over errors in the plane."""
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._squares = 0.0
+        self._normalised = 0.0
+
+    def add(self, error: Array, covariance: Array) -> None:
+        """Take an error (2,) with its covariance (2, 2)."""
+        self._count += 1
+        self._squares += float(error @ error)
+        self._normalised += float(error @ np.linalg.solve(covariance, error)) / 2.0
+
+    @property
+    def rms(self) -> float | None:
+        """Root mean square of the length, if there was an error."""
+        return sqrt(self._squares / self._count) if self._count else None
+
+    @property
+    def nees(self) -> float | None:
+        """Mean normalised error squared per degree of freedom: 1 is honest."""
+        return self._normalised / self._count if self._count else None
+
+
+def owners(tracks: Sequence[Track], colours: Sequence[str], places: Array) -> dict[int, Track]:
+    """The track of each obstacle that has one, by the obstacle's index; the nearest first.
+
+    Args:
+        tracks: to tell apart.
+        colours: of the obstacles (n).
+        places: of the obstacles in W (n, 2) [m].
+    """
+    pairs = sorted(
+        (distance, k, i)
+        for k, track in enumerate(tracks)
+        for i, distance in enumerate(np.hypot(*(places - track.position).T).tolist())
+        if distance < NEAR and colours[i] == track.label
+    )
+    found: dict[int, Track] = {}
+    taken: set[int] = set()
+    for _, k, i in pairs:
+        if i not in found and k not in taken:
+            found[i] = tracks[k]
+            taken.add(k)
+    return found
