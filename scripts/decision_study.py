@@ -38,6 +38,7 @@ from navigation.peers.choice import build_planner
 Array = NDArray[np.float64]
 
 HEAD_SPEED = 6.0  # [rad/s]
+CLOSE = 0.10  # [m]
 
 
 @dataclass
@@ -52,6 +53,10 @@ class Episode:
     clearance: float
     position_error: float
     heading_error: float
+    close: float
+    """Time with a mover nearer to the body than `CLOSE` [s]."""
+    travel: float
+    """Way of the head in pan [rad]."""
     cause: dict[str, object] = field(default_factory=dict)
     plan_ms: float = 0.0
     gaze_ms: float = 0.0
@@ -83,6 +88,7 @@ class Run:
             scenario.belief_parameters(), self.world.beacons, start, np.eye(3) * 4e-4, streams[3]
         )
         self.head, self.target = np.array([0.0, -0.45]), np.array([0.0, -0.45])
+        self.close = self.travel = 0.0
         self.times: dict[str, list[float]] = {"plan": [0.0], "gaze": [0.0]}
         self.motion: MotionDecision | None = None
         self.history: list[tuple[float, Array, Array, Belief]] = []
@@ -97,7 +103,9 @@ class Run:
             time = tick * TICK
             if self.sensing == "camera":
                 step = HEAD_SPEED * TICK
-                self.head += np.clip(self.target - self.head, -step, step)
+                turn = np.clip(self.target - self.head, -step, step)
+                self.head += turn
+                self.travel += abs(float(turn[0]))
             if tick % self.frame_ticks == 0:
                 belief = self._sense(time)
                 task = self.mission.update(belief.pose)
@@ -115,6 +123,8 @@ class Run:
             walker.step()
             gaps = world.gaps(time + TICK, walker.pose)
             clearance = min(clearance, float(gaps.min()))
+            movers = gaps[len(world.layout.static) :]
+            self.close += TICK * float(movers.min(initial=9.0) < CLOSE)
             if clearance < 0.0:
                 episode = self._end("contact", time, clearance, task)
                 episode.cause = self._cause(int(gaps.argmin()), belief, time)
@@ -183,6 +193,8 @@ class Run:
             round(clearance, 3),
             round(position, 3),
             round(degrees(heading), 1),
+            round(self.close, 2),
+            round(self.travel, 1),
             plan_ms=1e3 * float(np.mean(self.times["plan"])),
             gaze_ms=1e3 * float(np.mean(self.times["gaze"])),
         )
@@ -270,7 +282,9 @@ def main(
         f"arrival error mean {np.mean([e.position_error for e in good] or [0]):.3f} m, "
         f"{np.mean([e.heading_error for e in good] or [0]):.1f} deg; "
         f"plan {np.mean([e.plan_ms for e in episodes]):.2f} ms, "
-        f"gaze {np.mean([e.gaze_ms for e in episodes]):.2f} ms; "
+        f"gaze {np.mean([e.gaze_ms for e in episodes]):.2f} ms; movers close for "
+        f"{np.mean([e.close for e in episodes]):.1f} s a run; head "
+        f"{np.sum([e.travel for e in episodes]) / np.sum([e.time for e in episodes]):.2f} rad/s; "
         f"{(perf_counter() - begin) / n:.1f} s per run"
     )
 
