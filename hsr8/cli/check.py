@@ -15,8 +15,8 @@ from hsr8.scenario.command import Command
 from hsr8.scenario.loader import load
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
-from hsr8.world.certificate import Certificate, certify, straight_length
-from hsr8.world.generator import draw_layout
+from hsr8.world.certificate import Certificate, least_clearance, straight_length
+from hsr8.world.generator import FairWorld, draw_world
 from hsr8.world.layout import Layout
 from hsr8.world.plan_view import PlanView
 
@@ -31,14 +31,16 @@ def main(options: Check) -> int:
         UsageError: the picture cannot be written.
     """
     scenario = load(options.scenario, settings(options), options.seed)
-    layout = draw_layout(scenario, scenario.seed)
-    certificate = certify(layout)
-    if options.png is not None:
+    world = draw_world(scenario, scenario.seed)
+    layout = world.layout
+    if options.picture is not None:
         try:
-            write_png(options.png, PlanView(layout).draw())
+            write_png(options.picture, PlanView(layout, certificate=world.certificate).draw())
         except OSError as error:
-            raise UsageError(f"--png {options.png}: cannot be written: {error.strerror}") from None
-    summary = summarize(scenario, layout, certificate)
+            raise UsageError(
+                f"--picture {options.picture}: cannot be written: {error.strerror}"
+            ) from None
+    summary = summarize(scenario, world)
     if options.json:
         print(json.dumps(summary))
     else:
@@ -48,8 +50,10 @@ def main(options: Check) -> int:
     return 0
 
 
-def summarize(scenario: Scenario, layout: Layout, certificate: Certificate) -> Summary:
+def summarize(scenario: Scenario, world: FairWorld) -> Summary:
     """World, mission and cost of a scenario as plain values."""
+    layout, certificate = world.layout, world.certificate
+    clearance = _least_clearance(layout, certificate)
     cost = estimate(scenario)
     return {
         "name": scenario.name,
@@ -77,6 +81,9 @@ def summarize(scenario: Scenario, layout: Layout, certificate: Certificate) -> S
         "certified": certificate.solvable,
         "certified_points": certificate.points_reached,
         "certified_time_s": round(certificate.time, 1),
+        "certified_length_m": round(certificate.length, 2),
+        "certified_clearance_m": None if clearance is None else round(clearance, 3),
+        "rejected_worlds": world.rejected,
         "estimated_wall_time_s": round(cost.wall, 1),
         "estimated_log_mb": round(cost.disk, 1),
     }
@@ -164,12 +171,23 @@ def _certificate(summary: Summary, layout: Layout) -> str:
     points = summary["certified_points"]
     if len(layout.waypoints) == 0:
         return "nothing to reach"
-    if summary["certified"]:
-        return (
-            f"a robot that knows all reaches {points} points in {summary['certified_time_s']} s "
-            "at 0.05 m/s"
-        )
-    return f"no way found for a robot at 0.05 m/s after {points} points"
+    if not summary["certified"]:
+        return f"no way found, even for a robot that knows all, after {points} points"
+    clearance = summary["certified_clearance_m"]
+    room = "nothing in its way" if clearance is None else f"{clearance} m clear of everything"
+    said = (
+        f"a robot that knows all reaches {points} points in {summary['certified_time_s']} s, "
+        f"{summary['certified_length_m']} m, {room}"
+    )
+    rejected = summary["rejected_worlds"]
+    return f"{said}; worlds rejected before: {rejected}" if rejected else said
+
+
+def _least_clearance(layout: Layout, certificate: Certificate) -> float | None:
+    """Of the certificate's path [m]; None without a path or without obstacles."""
+    if len(certificate.path) == 0 or not layout.obstacles:
+        return None
+    return least_clearance(layout, certificate.path)
 
 
 def _obstacles(layout: Layout) -> Table:

@@ -200,7 +200,9 @@ class Check:
     scenario: Positional[ScenarioName]
     seed: Annotated[int | None, _arg("N", "seed of the world; else the scenario's")] = None
     set: Settings = ()
-    png: Annotated[Path | None, _arg("FILE", "draw the world from above")] = None
+    picture: Annotated[
+        Path | None, _arg("FILE", "draw the world and the certificate's way as a PNG")
+    ] = None
     json: bool = False
     """Print one JSON object."""
 

@@ -241,7 +241,7 @@ class Attempt:
         """Lanes do not touch; where they may cross, the movers are never there together."""
         room = LANE_TO_LANE + lane.obstacle.radius + other.obstacle.radius
         if lane.crosses or other.crosses:
-            return apart_at_all_times(lane, other, room, self._scenario.duration)
+            return apart_at_all_times(lane, other, room)
         return bool((distance(lane.path, other.path) >= room).all())
 
     def _draw_encounters(self, start: Point, points: Sequence[Point]) -> None:
@@ -250,7 +250,7 @@ class Attempt:
             return
         top_speed = self._scenario.robot.speed.forward
         walk = NominalWalk([start, *points], encounters.pace * top_speed)
-        share = min(walk.duration, self._scenario.duration) / encounters.n
+        share = walk.duration / encounters.n
         for k in range(encounters.n):
             for _ in range(LANE_TRIES):
                 time = share * (k + float(self._rng.random()))

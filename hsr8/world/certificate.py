@@ -1,32 +1,34 @@
-"""Proof that a world can be crossed: a slow robot that knows everything reaches the end.
+"""Proof that a world can be crossed: a robot that knows everything reaches the end.
 
-A disc of the robot's radius moves on a grid, one cell or none per layer of time, at less
-than the robot's slowest speed, so turning does not matter. A cell may be entered or kept
-only if it is free during the whole layer: movers are looked at so often that they cannot
-slip through in between, and what they do in between is added to their radius.
+All places that a disc can have come to without a contact are followed through time, at
+the speeds of the real robot, on the lattice of `hsr8.world.lattice`. What arrives is a
+proof, with a path to look at; that nothing arrives is none, for the robot is not bound to
+a lattice. Acceleration is left out.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
-from math import hypot
+from math import ceil, hypot, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.scenario.robot import SpeedEnvelope
 from hsr8.scenario.world import ROBOT_RADIUS
+from hsr8.world.lattice import HALF_MOVE, WAYS, Bits, Lattice
 from hsr8.world.layout import Layout
+from hsr8.world.reachable import EIGHTH, Reachable
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
-CELL = 0.06  # [m]
-LAYER = 1.2  # time for one cell: 0.05 m/s, less than the robot walks sideways [s]
-GLANCE = 0.2  # movers are looked at this often [s]
-REACHED = 0.15  # a via point is reached within this [m]
-LONGEST = 3600.0  # time after which the search gives up [s]
+CELLS = (0.10, 0.05)  # lattices, the finer one if the coarser finds no way [m]
+VIA_REACHED = 0.15  # a via point is passed within this [m]
+LONGEST = 400.0  # time after which the search gives up [s]
+MOST_POINTS = 8  # of a long tour the first ones are enough
+SAMPLE = 0.02  # between two looks at the clearance of a path [s]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Certificate:
     """What the search found.
 
@@ -34,92 +36,79 @@ class Certificate:
         solvable: every point was reached.
         points_reached: in order.
         points: how many there are.
-        time: when the slow robot reached the last [s]; when it gave up otherwise.
+        time: when the robot reached the last [s]; when it gave up otherwise.
+        path: time, x, y, heading (n, 4), straight and steady in between
+            [s, m, m, rad]; empty if there is none.
     """
 
     solvable: bool
     points_reached: int
     points: int
     time: float
+    path: Array = field(default_factory=lambda: np.zeros((0, 4)))
+
+    @property
+    def length(self) -> float:
+        """Length of the path [m]."""
+        return float(np.hypot(*np.diff(self.path[:, 1:3], axis=0).T).sum())
 
 
-def certify(layout: Layout, most_points: int = 12) -> Certificate:
+def certify(layout: Layout, speed: SpeedEnvelope, most_points: int = MOST_POINTS) -> Certificate:
     """Search a way through `layout`, for a long tour to the first `most_points` points.
 
-    The answer "solvable" is a proof for a disc with perfect knowledge; the other answer
-    is none, for the real robot is faster.
+    Args:
+        layout: the world.
+        speed: what the robot can do; the usual if left out.
+        most_points: to go to.
     """
     points = layout.waypoints[:most_points].tolist()
-    grid = _Grid(layout)
-    targets = [grid.near(point, REACHED) for point in points]
-    # One sheet of cells for each number of points reached; all are searched together, for
-    # the first to arrive may be the one that a mover traps.
-    begin = grid.near(layout.start[:2], CELL)
-    sheets = np.zeros((len(points) + 1, *begin.shape), dtype=bool)
-    sheets[0] = begin
-    layer, best = 0, 0
-    while not sheets[-1].any() and sheets.any() and layer * LAYER < LONGEST:
-        free = grid.free(layer * LAYER)
-        # The cell that is left must be free as well while the robot leaves it.
-        sheets = _grown(sheets & free) & free
-        for k, target in enumerate(targets):
-            sheets[k + 1] |= sheets[k] & target
-        layer += 1
-        best = max(best, int(np.flatnonzero(sheets.any(axis=(1, 2))).max(initial=0)))
-    return Certificate(bool(sheets[-1].any()), best, len(points), layer * LAYER)
+    if not points:
+        return Certificate(True, 0, 0, 0.0)
+    for cell in CELLS:
+        lattice = Lattice(layout, speed, cell)
+        targets = _targets(layout, lattice, points)
+        # A point behind walls needs no search.
+        connected = lattice.connected()
+        inside = [bool((target & connected).any()) for target in targets]
+        search = Reachable(lattice, targets[: (*inside, False).index(False)])
+        off = abs(layout.start[2] - EIGHTH * round(layout.start[2] / EIGHTH))
+        search.follow(layout.start[2], off / speed.turn, ceil(LONGEST / lattice.layer))
+        if search.passed == len(points):
+            path = _from_start(layout, search.path())
+            return Certificate(True, len(points), len(points), search.time, path)
+    return Certificate(False, search.passed, len(points), search.time)
 
 
-class _Grid:
-    """Which cells are free when."""
-
-    def __init__(self, layout: Layout) -> None:
-        half = 0.5 * np.asarray(layout.field_size)
-        self._x = np.arange(-half[0] + 0.5 * CELL, half[0], CELL)
-        self._y = np.arange(-half[1] + 0.5 * CELL, half[1], CELL)
-        self._movers = layout.motion()
-        self._mover_reach = np.array([self._reach(o.radius) for o in layout.movers])
-        speeds = np.hypot(*self._movers.velocities(0.0).T)
-        self._mover_reach += 0.5 * GLANCE * speeds
-        self._static = np.ones((len(self._x), len(self._y)), dtype=bool)
-        for obstacle in layout.static:
-            self._block(self._static, obstacle.position, self._reach(obstacle.radius))
-
-    @staticmethod
-    def _reach(radius: float) -> float:
-        """Distance a cell's centre keeps, so that the way to a neighbour's is free as well."""
-        return radius + ROBOT_RADIUS + 0.5 * CELL
-
-    def near(self, point: tuple[float, float] | list[float], distance: float) -> Mask:
-        """Cells whose centre is within `distance` [m] of `point`."""
-        mask: Mask = np.hypot((self._x - point[0])[:, None], (self._y - point[1])[None]) <= distance
-        return mask
-
-    def free(self, time: float) -> Mask:
-        """Cells free from `time` to one layer later."""
-        free = self._static.copy()
-        for instant in np.arange(time, time + LAYER + 1e-9, GLANCE).tolist():
-            for place, reach in zip(
-                self._movers.positions(instant).tolist(), self._mover_reach.tolist(), strict=True
-            ):
-                self._block(free, place, reach)
-        return free
-
-    def _block(self, free: Mask, place: tuple[float, float] | list[float], reach: float) -> None:
-        """Block the cells within `reach` [m] of `place`."""
-        i = np.searchsorted(self._x, (place[0] - reach, place[0] + reach))
-        j = np.searchsorted(self._y, (place[1] - reach, place[1] + reach))
-        x, y = self._x[i[0] : i[1]] - place[0], self._y[j[0] : j[1]] - place[1]
-        free[i[0] : i[1], j[0] : j[1]] &= x[:, None] ** 2 + y[None] ** 2 > reach**2
+def _from_start(layout: Layout, path: Array) -> Array:
+    """The path with the turn from the true heading to that of the lattice before it."""
+    path[:, 3] += 2.0 * pi * round((layout.start[2] - path[0, 3]) / (2.0 * pi))
+    start = np.array([[0.0, *layout.start]])
+    return np.vstack([start, path if path[0, 0] > 0.0 else path[1:]])
 
 
-def _grown(cells: Mask) -> Mask:
-    """Cells (..., n, m) and their four neighbours."""
-    grown = cells.copy()
-    grown[..., 1:, :] |= cells[..., :-1, :]
-    grown[..., :-1, :] |= cells[..., 1:, :]
-    grown[..., 1:] |= cells[..., :-1]
-    grown[..., :-1] |= cells[..., 1:]
-    return grown
+def _targets(layout: Layout, lattice: Lattice, points: list[list[float]]) -> list[Bits]:
+    """States that pass each point; the goal of a course is reached with its heading."""
+    targets = [lattice.near(point, VIA_REACHED) for point in points]
+    if not layout.endless and len(points) == len(layout.waypoints):
+        # Half a diagonal of a cell: the places next to the goal.
+        targets[-1] = lattice.near(points[-1], HALF_MOVE * lattice.cell + 1e-9)
+        if layout.goal_heading is not None:
+            targets[-1] &= np.uint8(1 << round(layout.goal_heading / EIGHTH) % len(WAYS))
+    return targets
+
+
+def least_clearance(layout: Layout, path: Array) -> float:
+    """Smallest distance between the robot's disc on `path` (n, 4) and any obstacle [m]."""
+    times = np.arange(path[0, 0], path[-1, 0] + SAMPLE, SAMPLE)
+    places = np.stack([np.interp(times, path[:, 0], path[:, k]) for k in (1, 2)], axis=1)
+    gaps = [
+        np.hypot(*(places - o.position).T).min() - o.radius - ROBOT_RADIUS for o in layout.static
+    ]
+    for mover in layout.movers:
+        assert mover.motion is not None
+        at = np.array([mover.motion.position(time) for time in times.tolist()])
+        gaps.append(np.hypot(*(places - at).T).min() - mover.radius - ROBOT_RADIUS)
+    return float(min(gaps, default=np.inf))
 
 
 def straight_length(layout: Layout) -> float:

@@ -7,19 +7,42 @@ The rules, with distances between surfaces unless a point is named:
 * via points and the goal are robot radius and 0.25 m from static obstacles;
 * lanes of movers keep 0.3 m from static obstacles, so that none pins the robot, keep
   clear of one another, and turn about robot radius and 0.3 m from the goal at least;
-* movers that wander or cross the field may cross lanes, but never meet another mover.
+* movers that wander or cross the field may cross lanes, but never meet another mover;
+* a robot that knows everything gets through: a world without a certificate is rejected,
+  and the next one is drawn.
 """
 
 import zlib
+from collections import Counter
+from dataclasses import dataclass
 
 import numpy as np
 
 from hsr8.errors import ScenarioError
+from hsr8.scenario.mission import Course, Tour
 from hsr8.scenario.schema import Scenario
 from hsr8.world.attempt import Attempt, CrowdedError
+from hsr8.world.certificate import Certificate, certify
 from hsr8.world.layout import Layout
 
 WORLDS = 20  # worlds begun before giving up
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FairWorld:
+    """A world that was drawn, and why it is fair.
+
+    Attributes:
+        layout: the world.
+        certificate: the way through it.
+        rejected: worlds drawn before it that had no way through [1].
+        crowded: attempts before it in which something found no place [1].
+    """
+
+    layout: Layout
+    certificate: Certificate
+    rejected: int
+    crowded: int
 
 
 def draw_layout(scenario: Scenario, seed: int) -> Layout:
@@ -28,18 +51,44 @@ def draw_layout(scenario: Scenario, seed: int) -> Layout:
     Raises:
         ScenarioError: what is asked for does not fit into the field.
     """
+    return draw_world(scenario, seed).layout
+
+
+def draw_world(scenario: Scenario, seed: int) -> FairWorld:
+    """The same world as `draw_layout`, with its certificate.
+
+    A world placed by hand in all its parts is never rejected: it is what it is.
+
+    Raises:
+        ScenarioError: what is asked for does not fit into the field.
+    """
     sequence = np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(b"layout"),))
     rng = np.random.default_rng(sequence)
-    reasons: dict[str, int] = {}
+    crowded: Counter[str] = Counter()
+    rejected = 0
     for _ in range(WORLDS):
         try:
-            return Attempt(scenario, rng).layout()
-        except CrowdedError as crowded:
-            reasons[str(crowded)] = reasons.get(str(crowded), 0) + 1
-    worst = max(reasons, key=lambda reason: reasons[reason])
+            layout = Attempt(scenario, rng).layout()
+        except CrowdedError as error:
+            crowded[str(error)] += 1
+            continue
+        certificate = certify(layout, scenario.robot.speed)
+        if certificate.solvable or not _draws(scenario):
+            return FairWorld(layout, certificate, rejected, crowded.total())
+        rejected += 1
     width, depth = scenario.world.size
+    reasons = [f"for want of room for {thing} {n} times" for thing, n in crowded.most_common()]
+    if rejected:
+        reasons.append(f"for want of a way through it {rejected} times")
     raise ScenarioError(
-        f"scenario {scenario.name!r}, seed {seed}: no fair world found in {WORLDS} attempts, "
-        f"most often for want of room for {worst} in a field of {width:g} m x {depth:g} m; "
+        f"scenario {scenario.name!r}, seed {seed}: no fair world found in {WORLDS} attempts "
+        f"in a field of {width:g} m x {depth:g} m, {', '.join(reasons)}; "
         "make world.size larger or world.n_static, world.n_moving or world.radius smaller"
     )
+
+
+def _draws(scenario: Scenario) -> bool:
+    """Whether another attempt gives another world."""
+    world = scenario.world
+    drawn = world.n_static + world.n_moving + world.encounters.n
+    return drawn > 0 or isinstance(scenario.mission, Course | Tour)

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 SAMPLES = 61  # points that stand for a lane
 GLANCE = 0.5  # crossing movers are looked at this often [s]
+FORESIGHT = 300.0  # for so long, whatever the duration of the run [s]
 OPEN_TIME = 60.0  # a lane without an end is followed for so long [s]
 
 
@@ -72,12 +73,12 @@ def motion_law(mover: Mover) -> MotionLaw:
     return Circle(mover.centre, mover.path_radius, speed, radians(mover.angle_deg))
 
 
-def apart_at_all_times(lane: Lane, other: Lane, room: float, duration: float) -> bool:
-    """Whether the axes of two movers keep `room` [m] from each other for `duration` [s]."""
+def apart_at_all_times(lane: Lane, other: Lane, room: float) -> bool:
+    """Whether the axes of two movers keep `room` [m] from each other, for `FORESIGHT`."""
     laws = lane.obstacle.motion, other.obstacle.motion
     assert laws[0] is not None
     assert laws[1] is not None
-    times = np.arange(0.0, duration + GLANCE, GLANCE).tolist()
+    times = np.arange(0.0, FORESIGHT, GLANCE).tolist()
     first, second = (np.array([law.position(time) for time in times]) for law in laws if law)
     gaps = np.hypot(*(first - second).T)
     # Between two glances each comes nearer by half the way it goes, at most.

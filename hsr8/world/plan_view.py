@@ -4,9 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.canvas import Canvas, Colour, Image, Point, framed
-from hsr8.world.layout import Layout
-from hsr8.world.motion import Circle, Line, Shuttle
+from hsr8.world.certificate import Certificate
+from hsr8.world.layout import Layout, Obstacle
+from hsr8.world.motion import Circle, Line, MotionLaw, Shuttle
 from hsr8.world.passage import Passage
 from hsr8.world.wander import Wander
 from vision.colour import COLOUR_CLASSES
@@ -15,10 +17,14 @@ INK = (60, 58, 55)
 PAPER = (246, 246, 244)
 FLOOR = (226, 225, 221)
 WHITE = (255, 255, 255)
+LANE = (150, 147, 142)
 ROUTE = (235, 125, 20)
+WAY = (20, 125, 160)
 ROBOT = (250, 250, 250)
 FEW = 12  # more way points than this are shown paler and without their numbers
 AHEAD = 60.0  # the lane of a mover that never turns is drawn so far ahead [s]
+BEAT = 10.0  # the certificate's way has a mark every so often [s]
+WAY_WIDTH, WAY_DOT = 2, 0.025  # of the certificate's way [pixel, m]
 
 
 class PlanView:
@@ -27,10 +33,14 @@ class PlanView:
     Args:
         layout: to draw.
         size: of the longer side of the picture [pixel].
+        certificate: whose way is drawn; None for none.
     """
 
-    def __init__(self, layout: Layout, size: int = 900) -> None:
+    def __init__(
+        self, layout: Layout, size: int = 900, certificate: Certificate | None = None
+    ) -> None:
         self._layout = layout
+        self._way = np.zeros((0, 4)) if certificate is None else certificate.path
         extent = framed(layout.field_size)
         width, height = np.ceil(extent * (size / extent.max())).astype(int).tolist()
         self._canvas = Canvas(layout.field_size, (width, height), PAPER)
@@ -39,19 +49,27 @@ class PlanView:
         """Picture (height, width, 3), RGB."""
         canvas = self._canvas
         canvas.field(FLOOR, INK, 2)
-        self._route()
         for obstacle in self._layout.obstacles:
             if obstacle.motion is not None:
                 self._lane(obstacle.motion)
+        self._route()
+        self._certificate()
         for i, obstacle in enumerate(self._layout.obstacles):
-            canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.colour))
-            if obstacle.motion is not None:
-                self._arrow(obstacle.position, obstacle.motion.velocity(0.0))
-            canvas.text(obstacle.position, str(i), WHITE, centred=True)
+            self._obstacle(i, obstacle)
         for beacon in self._layout.beacons:
             canvas.beacon(beacon.position, _rgb(beacon.top), _rgb(beacon.bottom))
         self._robot()
         return canvas.image
+
+    def _obstacle(self, number: int, obstacle: Obstacle) -> None:
+        self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.colour))
+        law = obstacle.motion
+        if law is not None:
+            # One that waits shows where it will go.
+            depart = law.depart if isinstance(law, Passage) else 0.0
+            self._arrow(obstacle.position, law.velocity(depart + 1e-6))
+            self._canvas.ring(obstacle.position, obstacle.radius, INK)
+        self._canvas.text(obstacle.position, str(number), WHITE, centred=True)
 
     def _route(self) -> None:
         places = [np.asarray(self._layout.start[:2]), *self._layout.waypoints]
@@ -59,6 +77,7 @@ class PlanView:
         colour = ROUTE if last < FEW else tuple((np.add(ROUTE, FLOOR) // 2).tolist())
         for leg in pairwise(places):
             self._canvas.line(leg, colour)
+        numbers: dict[tuple[float, float], list[str]] = {}
         for k, place in enumerate(places[1:], start=1):
             if k == last and not self._layout.endless:
                 self._canvas.ring(place, 0.10, ROUTE)
@@ -66,26 +85,37 @@ class PlanView:
                     heading = self._layout.goal_heading
                     self._arrow(place, (0.12 * np.cos(heading), 0.12 * np.sin(heading)), ROUTE)
             self._canvas.disc(place, 0.035, ROUTE)
-            if last <= FEW:
-                self._canvas.text(place, str(k), ROUTE)
+            x, y = place.tolist()
+            numbers.setdefault((x, y), []).append(str(k))
+        if last <= FEW:
+            for at, passed in numbers.items():
+                self._canvas.text(at, ",".join(passed), ROUTE)
 
-    def _lane(self, law: object) -> None:
-        if isinstance(law, Shuttle):
-            self._canvas.line((law.start, law.end), INK)
+    def _certificate(self) -> None:
+        """The way that was found, with a mark for every ten seconds."""
+        if len(self._way) == 0:
+            return
+        times = np.arange(0.0, self._way[-1, 0], BEAT)
+        self._canvas.line(self._way[:, 1:3], WAY, WAY_WIDTH)
+        marks = [np.interp(times, self._way[:, 0], self._way[:, k]) for k in (1, 2)]
+        for mark in np.stack(marks, axis=1):
+            self._canvas.disc(mark, WAY_DOT, WAY)
+
+    def _lane(self, law: MotionLaw) -> None:
+        if isinstance(law, Shuttle | Passage):
+            self._canvas.line((law.start, law.end), LANE)
         elif isinstance(law, Line):
             ahead = np.asarray(law.start) + AHEAD * np.asarray(law.rate)
-            self._canvas.line((law.start, ahead), INK)
+            self._canvas.line((law.start, ahead), LANE)
         elif isinstance(law, Circle):
-            self._canvas.ring(law.centre, law.radius, INK)
-        elif isinstance(law, Passage):
-            self._canvas.line((law.start, law.end), INK)
+            self._canvas.ring(law.centre, law.radius, LANE)
         elif isinstance(law, Wander):
-            self._canvas.outline(law.track, INK)
+            self._canvas.outline(law.track, LANE)
 
     def _robot(self) -> None:
         x, y, heading = self._layout.start
-        self._canvas.disc((x, y), 0.12, ROBOT)
-        self._canvas.ring((x, y), 0.12, INK)
+        self._canvas.disc((x, y), ROBOT_RADIUS, ROBOT)
+        self._canvas.ring((x, y), ROBOT_RADIUS, INK)
         self._arrow((x, y), (0.1 * np.cos(heading), 0.1 * np.sin(heading)))
 
     def _arrow(self, tail: Point, velocity: Point, colour: Colour = INK) -> None:

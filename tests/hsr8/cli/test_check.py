@@ -16,6 +16,9 @@ def test_json_tells_world_certificate_and_cost(capsys):
     assert len(summary["waypoints"]) == 5
     assert len(summary["beacons"]) == 6
     assert summary["certified"]
+    assert summary["certified_clearance_m"] >= 0.02
+    assert summary["certified_length_m"] > summary["straight_length_m"] - 5 * 0.15
+    assert summary["rejected_worlds"] == 0
     assert summary["straight_length_m"] > 5 * 1.2 - 0.1
 
 
@@ -32,13 +35,13 @@ def test_settings_are_obeyed(capsys):
 
 def test_a_picture_is_drawn(tmp_path, capsys):
     path = tmp_path / "world.png"
-    assert main(Check("quick", png=path)) == 0
+    assert main(Check("quick", picture=path)) == 0
     assert cv2.imread(str(path)).shape == (900, 900, 3)
 
 
 def test_a_picture_that_cannot_be_written_is_one_clear_error(tmp_path):
     with pytest.raises(UsageError, match="cannot be written"):
-        main(Check("quick", png=tmp_path / "no" / "world.png"))
+        main(Check("quick", picture=tmp_path / "no" / "world.png"))
 
 
 def test_a_wrong_scenario_is_one_clear_error():

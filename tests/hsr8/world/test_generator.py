@@ -7,7 +7,6 @@ import pytest
 from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load
 from hsr8.world import fairness
-from hsr8.world.certificate import certify
 from hsr8.world.generator import draw_layout
 
 SEEDS = range(1000, 1025)
@@ -91,11 +90,6 @@ def test_movers_turn_about_away_from_the_goal(worlds):
             for end in (o.motion.start, o.motion.end):
                 gap = apart(end, layout.waypoints[-1]) - o.radius
                 assert gap >= fairness.LANE_TO_GOAL - 1e-9
-
-
-def test_a_slow_robot_that_knows_all_gets_through():
-    scenario = load("course")
-    assert all(certify(draw_layout(scenario, seed)).solvable for seed in SEEDS[:6])
 
 
 def test_same_seed_same_world_other_seed_other_world():
