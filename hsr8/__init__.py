@@ -1,7 +1,41 @@
-"""hsr8: a full-body simulator of a small humanoid that sees, looks and walks."""
+"""hsr8: a full-body simulator of a small humanoid that sees, looks and walks.
+
+    import hsr8
+
+    result = hsr8.run("course", seed=7)
+    print(result.passed, result.metrics["time_to_goal_s"])
+
+`run` and `Result` make runs at once, `load` and `Simulation` tick by tick; `docs/python.md`
+shows how a planner or a gaze of one's own takes part.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from hsr8.gl import choose_backend
+from hsr8.version import VERSION
 
-__version__ = "0.1.0"
+if TYPE_CHECKING:
+    from hsr8.api import run
+    from hsr8.evaluation.recording import Result
+    from hsr8.loop import Simulation
+    from hsr8.scenario.loader import load
+
+__version__ = VERSION
+__all__ = ["Result", "Simulation", "load", "run"]
+
+# Imported when they are asked for: MuJoCo and SciPy take seconds.
+_PLACES = {
+    "Result": "hsr8.evaluation.recording",
+    "Simulation": "hsr8.loop",
+    "load": "hsr8.scenario.loader",
+    "run": "hsr8.api",
+}
 
 choose_backend()
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_PLACES[name]), name)

@@ -11,12 +11,12 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from hsr8 import __version__
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
 from hsr8.gl import APT_LINE, ASKED, BACKENDS, VULKAN_LINE, is_software
 from hsr8.recorder import atomic
 from hsr8.recorder.manifest import versions
+from hsr8.version import VERSION
 from hsr8.world.models import models_dir
 
 PROBE_LIMIT = 60.0  # an OpenGL that needs longer hangs [s]
@@ -53,7 +53,7 @@ def main(options: Doctor) -> int:
 def examine() -> list[Finding]:
     """Everything `hsr8` needs."""
     return [
-        Finding("hsr8", "ok", f"{__version__}, {sys.prefix}"),
+        Finding("hsr8", "ok", f"{VERSION}, {sys.prefix}"),
         Finding("Python", "ok", f"{platform.python_version()}, {platform.platform()}"),
         *(
             Finding(name, "missing" if version == "missing" else "ok", version)

@@ -10,13 +10,13 @@ from typing import Annotated, Any, TextIO
 
 import tyro
 
-from hsr8 import __version__
 from hsr8.cli import options
 from hsr8.cli.crash import CrashReport
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.suggestion import suggestion
+from hsr8.version import VERSION
 
-DESCRIPTION = f"""hsr8 {__version__}: a small humanoid walks among moving obstacles and sees \
+DESCRIPTION = f"""hsr8 {VERSION}: a small humanoid walks among moving obstacles and sees \
 only through its own camera.
 
 First steps: `hsr8 doctor`, `hsr8 run quick`, `hsr8 render runs/quick`, `hsr8 replay runs/quick`."""

@@ -4,7 +4,6 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -14,20 +13,14 @@ from hsr8.cli.cost import estimate
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run, Sweep
 from hsr8.cli.verify import Verified, verify
-from hsr8.errors import SimulationDiverged
-from hsr8.evaluation.metrics import Metrics
-from hsr8.evaluation.verdict import Check, exit_code, judge
-from hsr8.gl import require_gl
+from hsr8.evaluation.recording import folder_listeners, renderer_of, run_and_measure
+from hsr8.evaluation.verdict import Check, exit_code
 from hsr8.loop import Simulation
-from hsr8.recorder import atomic, run_folder
+from hsr8.recorder import atomic
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.progress import Progress
-from hsr8.recorder.record import Listener
-from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
-from hsr8.recorder.tape import TapeWriter
-from hsr8.recorder.walking_table import WalkingTableWriter
-from hsr8.scenario.loader import dump, load
+from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.generator import draw_layout
 
@@ -45,40 +38,27 @@ def main(options: Run) -> int:
     scenario = load(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
-    renderer = require_gl() if scenario.camera.source == "egl" else "analytic"
     command = run_command(options, scenario.seed)
     if options.dry_run:
         _tell_cost(options, scenario, command)
         return 0
+    manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
     simulation = Simulation(scenario, scenario.seed)
     path = RunFolder.create(options.out, scenario.name, scenario.seed)
-    manifest = Manifest.now(scenario.name, scenario.seed, command, renderer)
-    with CrashReport(path):
-        movers = len(simulation.layout.movers)
-        folder = RunFolder(path, manifest, dump(scenario), movers)
-        mission = scenario.navigation_parameters().mission
-        metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
-        message = ""
-        with _interruptible(simulation):
-            simulation.tape = TapeWriter(path / run_folder.TAPE)
-            simulation.listeners += [folder, metrics]
-            simulation.listeners += _extra_listeners(options, simulation, path)
-            try:
-                outcome = simulation.run()
-                reason, state_hash = outcome.exit_reason, outcome.state_hash
-            except SimulationDiverged as error:
-                reason, state_hash, message = "diverged", simulation.state_hash(), str(error)
-        results = metrics.result(reason, state_hash)
-        folder.write_metrics(results)
-    checks = judge(scenario.criteria, results)
-    code = exit_code(reason, checks)
+    with CrashReport(path), _interruptible(simulation):
+        listeners = folder_listeners(simulation, path, manifest, log=not options.no_log)
+        if not options.quiet:
+            listeners.append(Progress(scenario.duration))
+        result = run_and_measure(simulation, listeners, path)
+    results, checks = result.metrics, result.checks
+    code = exit_code(result.exit_reason, checks)
     if options.verify_determinism and code in ENDED:
         verified = verify(path)
         results["deterministic"] = verified.equal
         checks = (*checks, _deterministic(verified))
-        code = exit_code(reason, checks)
-    if message:
-        print(f"hsr8: {message}", file=sys.stderr)
+        code = exit_code(result.exit_reason, checks)
+    if result.diverged:
+        print(f"hsr8: {result.diverged}", file=sys.stderr)
     if options.json:
         print(atomic.dumps(results))
     elif not options.quiet:
@@ -133,28 +113,6 @@ def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
     if options.camera is not None:
         tables["--camera"] = {"camera": {"source": options.camera}}
     return tables
-
-
-def _extra_listeners(options: Run, simulation: Simulation, path: Path) -> list[Listener]:
-    """Those beside the folder and the results."""
-    scenario = simulation.scenario
-    listeners: list[Listener] = [
-        WalkingTableWriter(path / run_folder.WALKING, simulation.model, simulation.index)
-    ]
-    if not options.no_log:
-        camera = scenario.camera
-        listeners.append(
-            RerunLog(
-                path / run_folder.LOG,
-                simulation.model,
-                simulation.layout,
-                (camera.width, camera.height),
-                f"{scenario.name} {scenario.seed}",
-            )
-        )
-    if not options.quiet:
-        listeners.append(Progress(scenario.duration))
-    return listeners
 
 
 @contextmanager

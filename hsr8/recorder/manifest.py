@@ -8,8 +8,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from hsr8 import __version__
 from hsr8.recorder import atomic
+from hsr8.version import VERSION
 
 LIBRARIES = (
     "mujoco",
@@ -63,7 +63,7 @@ class Manifest:
             exit_reason=RUNNING,
             started=datetime.now(UTC).isoformat(timespec="seconds"),
             renderer=renderer,
-            hsr8=__version__,
+            hsr8=VERSION,
             python=platform.python_version(),
             machine=f"{platform.system()} {platform.release()} {platform.machine()}",
             libraries=versions(),

@@ -122,6 +122,7 @@ class RunFolder:
         self._events.close()
         self._manifest.ended(exit_reason).write(self.path / MANIFEST)
 
-    def write_metrics(self, metrics: Mapping[str, Any]) -> None:
-        """Write the results."""
-        atomic.write_json(self.path / METRICS, metrics)
+
+def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:
+    """Write the results into the run folder `path`."""
+    atomic.write_json(path / METRICS, metrics)

@@ -19,7 +19,7 @@ def write_toml(data: dict[str, Any]) -> str:
 def _table(table: dict[str, Any], path: tuple[str, ...]) -> list[str]:
     """Lines of a table: its plain values, its tables, its arrays of tables."""
     plain = {k: v for k, v in table.items() if not isinstance(v, dict) and not _of_tables(v)}
-    lines = [f"{_key(k)} = {_value(v)}" for k, v in plain.items()]
+    lines = [f"{_key(k)} = {toml_value(v)}" for k, v in plain.items()]
     for key, value in table.items():
         if isinstance(value, dict):
             header = ".".join(map(_key, (*path, key)))
@@ -44,15 +44,20 @@ def _string(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _value(value: Any) -> str:
+def toml_value(value: Any) -> str:
+    """TOML text of one value.
+
+    Raises:
+        TypeError: it has no TOML form.
+    """
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return _string(value)
     if isinstance(value, int | float):
         return repr(value)
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_value, value)) + "]"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(toml_value, value)) + "]"
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{_key(k)} = {toml_value(v)}" for k, v in value.items()) + "}"
     raise TypeError(f"no TOML form of {type(value).__name__}")

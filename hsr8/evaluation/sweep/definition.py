@@ -11,10 +11,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hsr8 import __version__
 from hsr8.errors import ScenarioError
 from hsr8.recorder.manifest import versions
 from hsr8.scenario.loader import dump, loads
+from hsr8.version import VERSION
 from hsr8.world.models import models_dir
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
@@ -51,7 +51,7 @@ class Definition:
         return cls(
             name=name,
             again=again,
-            hsr8=__version__,
+            hsr8=VERSION,
             code=code_digest(),
             processor=platform.machine(),
             libraries=versions(),

@@ -113,9 +113,10 @@ def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys, number):
 def test_ctrl_c_while_the_run_is_set_up_leaves_a_whole_folder(tmp_path, monkeypatch, capsys):
     def interrupted(*_):
         os.kill(os.getpid(), signal.SIGINT)
-        return []
 
-    monkeypatch.setattr("hsr8.cli.run._extra_listeners", interrupted)
+    monkeypatch.setattr("hsr8.evaluation.recording.WalkingTableWriter.__init__", interrupted)
+    monkeypatch.setattr("hsr8.evaluation.recording.WalkingTableWriter.on_record", lambda *_: None)
+    monkeypatch.setattr("hsr8.evaluation.recording.WalkingTableWriter.close", lambda *_: None)
     assert _run(tmp_path, "--quiet") == 130
     run = open_run(tmp_path)
     assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"

@@ -8,7 +8,7 @@ import pytest
 from hsr8.errors import UsageError
 from hsr8.recorder import run_folder
 from hsr8.recorder.manifest import Manifest
-from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run_folder import RunFolder, write_metrics
 from hsr8.recorder.run_reader import open_run
 
 
@@ -30,7 +30,7 @@ def test_a_finished_run_can_be_read_back(folder, walk, fake):
         folder.on_record(record)
     folder.on_event(0.5, "collision", "l_sole touches obstacle 0")
     folder.close("goal")
-    folder.write_metrics({"success": True, "time_to_goal_s": float("nan")})
+    write_metrics(folder.path, {"success": True, "time_to_goal_s": float("nan")})
     run = open_run(folder.path)
     assert run.seed == 7
     assert run.manifest["exit_reason"] == "goal"

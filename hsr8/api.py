@@ -1,0 +1,64 @@
+"""Runs from Python: a scenario, a seed, and perhaps a planner or a gaze of one's own."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from hsr8.decisions import Looks, Moves
+from hsr8.evaluation.recording import Result, folder_listeners, renderer_of, run_and_measure
+from hsr8.loop import Simulation
+from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.record import Listener
+from hsr8.recorder.run_folder import RunFolder
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from hsr8.scenario.toml_writer import toml_value
+
+
+def run(
+    scenario: str | Path | Scenario,
+    *,
+    seed: int | None = None,
+    settings: Sequence[str] | Mapping[str, Any] = (),
+    out: str | Path | None = None,
+    log: bool = True,
+    planner: Moves | None = None,
+    gaze: Looks | None = None,
+    listeners: Sequence[Listener] = (),
+) -> Result:
+    """Run a scenario.
+
+    Args:
+        scenario: name of a built-in one, a TOML file, or one that is loaded already.
+        seed: of the world and every noise; the scenario's by default.
+        settings: over the scenario's, as ``key=value`` or by key with dots.
+        out: folder for the run folder; by default nothing is written.
+        log: write the Rerun log into it too.
+        planner: plans the motion instead of the scenario's planner.
+        gaze: chooses the gaze instead of the scenario's.
+        listeners: told of every record.
+
+    Raises:
+        ScenarioError: the scenario or a setting is wrong, or its world cannot be drawn.
+        RenderingUnavailable: the camera needs OpenGL and there is none.
+        UsageError: the run folder cannot be made.
+    """
+    loaded = scenario if isinstance(scenario, Scenario) else load(str(scenario), _words(settings))
+    if isinstance(scenario, Scenario) and settings:
+        raise TypeError("settings go with a scenario's name or file, not with a loaded one")
+    loaded = loaded if seed is None else loaded.model_copy(update={"seed": seed})
+    simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze)
+    path, more = None, list(listeners)
+    if out is not None:
+        path = RunFolder.create(Path(out), loaded.name, loaded.seed)
+        command = ("hsr8.run",) if planner or gaze else ("hsr8", "run", loaded.name)
+        manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
+        more = folder_listeners(simulation, path, manifest, log=log) + more
+    return run_and_measure(simulation, more, path)
+
+
+def _words(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
+    """Settings as the command line has them."""
+    if not isinstance(settings, Mapping):
+        return tuple(settings)
+    return tuple(f"{key}={toml_value(value)}" for key, value in settings.items())

@@ -1,0 +1,53 @@
+import pytest
+
+import hsr8
+from hsr8.errors import ScenarioError
+from hsr8.recorder.run_reader import open_run
+
+STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 1.0}
+
+
+def test_nothing_is_written_unless_it_is_told_where(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = hsr8.run("quick", seed=3, settings=STAND_INS)
+    assert list(tmp_path.iterdir()) == []
+    assert result.folder is None
+    assert (result.exit_reason, result.passed) == ("timeout", False)
+
+
+def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
+    result = hsr8.run("quick", seed=3, settings=STAND_INS, out=tmp_path, log=False)
+    run = open_run(tmp_path)
+    assert result.folder == run.path
+    assert run.metrics()["state_hash"] == result.metrics["state_hash"]
+    again = hsr8.run(run.scenario_file)
+    assert again.metrics["state_hash"] == result.metrics["state_hash"]
+
+
+def test_settings_are_words_or_a_table():
+    words = [f'{k}="{v}"' if isinstance(v, str) else f"{k}={v}" for k, v in STAND_INS.items()]
+    table, listed = (
+        hsr8.run("quick", settings=s).metrics["state_hash"] for s in (STAND_INS, words)
+    )
+    assert table == listed
+
+
+def test_a_loaded_scenario_takes_no_settings():
+    scenario = hsr8.load("quick")
+    with pytest.raises(TypeError, match="settings"):
+        hsr8.run(scenario, settings=STAND_INS)
+
+
+def test_a_wrong_setting_is_named():
+    with pytest.raises(ScenarioError, match=r"world\.n_statics"):
+        hsr8.run("quick", settings={"world.n_statics": 3})
+
+
+def test_a_run_that_meets_its_criteria_passes():
+    settings = STAND_INS | {"criteria.goal_reached": False}
+    assert hsr8.run("quick", settings=settings).passed
+
+
+def test_an_unknown_name_is_no_part_of_the_package():
+    with pytest.raises(AttributeError, match="nonsense"):
+        hsr8.nonsense  # noqa: B018
