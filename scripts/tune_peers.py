@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 import tyro
-from decision_study import FRAME_TICKS, Run
+from decision_study import Run
 from decision_world import TICK, perfect_belief
 from numpy.typing import NDArray
 from wilson import wilson
@@ -88,7 +88,7 @@ class Blurred(Run):
         begin, planned, calls = process_time(), 0.0, 0
         reason, time = "timeout", self.duration
         for tick in range(round(self.duration / TICK)):
-            if tick % FRAME_TICKS == 0:
+            if tick % self.frame_ticks == 0:
                 clearance = min(clearance, float(self.world.gaps(tick * TICK, walker.pose).min()))
                 task = self.mission.update(walker.pose + self._pose)
                 if clearance < 0.0 or task.done:
@@ -166,15 +166,21 @@ def drawn(method: str, count: int) -> Iterator[Settings]:
 
 
 @cache
-def base(extra: tuple[str, ...], method: str) -> Scenario:
-    return load("course", (f"navigation.planner.method={method}", *extra))
+def base(scenario: str, settings: tuple[str, ...]) -> Scenario:
+    return load(scenario, settings)
 
 
-def walk(method: str, settings: Settings, seed: int, extra: tuple[str, ...] = TUNING) -> Row:
-    """One run of a peer with these settings."""
-    lines = tuple(f"navigation.planner.{section(method)}.{k}={v}" for k, v in settings.items())
-    scenario = base((*extra, *lines), method)
-    return {"method": method, "settings": settings, **Blurred(scenario, seed).outcome()}
+def walk(
+    method: str, seed: int, *, scenario: str = "course", settings: tuple[str, ...] = ()
+) -> Row:
+    """One run of a planner."""
+    chosen = (f"navigation.planner.method={method}", *settings)
+    return {"method": method, **Blurred(base(scenario, chosen), seed).outcome()}
+
+
+def lines(method: str, values: Settings) -> tuple[str, ...]:
+    """Settings of a scenario for these values of a peer's parameters."""
+    return tuple(f"navigation.planner.{section(method)}.{k}={v}" for k, v in values.items())
 
 
 def mean(rows: list[Row]) -> tuple[float, float]:
@@ -214,7 +220,8 @@ def tune(
         for seed in count:
             key = (method, json.dumps(settings), seed)
             if key not in done:
-                done[key] = walk(method, settings, seed)
+                found_now = walk(method, seed, settings=(*TUNING, *lines(method, settings)))
+                done[key] = {**found_now, "settings": settings}
                 with file.open("a") as stream:
                     stream.write(json.dumps(done[key]) + "\n")
             found.append(done[key])
@@ -242,51 +249,57 @@ def tune(
 def compare(
     *,
     out: Path,
+    scenarios: tuple[str, ...] = ("course", "crowd", "dense", "fast", "conflict", "behind"),
     methods: tuple[str, ...] = ("univector", "paper", *RANGES),
     first: int = 1000,
-    runs: int = 40,
-    movers: int = 4,
+    runs: int = 50,
 ) -> None:
     """Compare the planners with their defaults on held-out seeds; resumes.
 
     Args:
         out: folder of compare.jsonl.
+        scenarios: their worlds and missions.
         methods: planners; "univector" is the profile extended, "paper" the profile paper.
         first: first seed, 1000 or above.
-        runs: worlds.
-        movers: movers in each.
+        runs: worlds of each scenario.
     """
     out.mkdir(parents=True, exist_ok=True)
     file = out / "compare.jsonl"
-    done: dict[tuple[str, int, int], Row] = {}
+    done: dict[tuple[str, str, int], Row] = {}
     if file.exists():
         for row in map(json.loads, file.read_text().splitlines()):
-            done[row["method"], row["movers"], row["seed"]] = row
-    for seed in range(first, first + runs):
+            done[row["scenario"], row["method"], row["seed"]] = row
+    for scenario in scenarios:
+        for seed in range(first, first + runs):
+            for method in methods:
+                if (scenario, method, seed) in done:
+                    continue
+                name, settings = method, ()
+                if method == "paper":
+                    name, settings = "univector", ("navigation.profile=paper",)
+                row = walk(name, seed, scenario=scenario, settings=settings)
+                row |= {"method": method, "scenario": scenario}
+                done[scenario, method, seed] = row
+                with file.open("a") as stream:
+                    stream.write(json.dumps(row) + "\n")
         for method in methods:
-            if (method, movers, seed) in done:
-                continue
-            extra: tuple[str, ...] = (f"world.n_moving={movers}",)
-            if method == "paper":
-                extra = (*extra, "navigation.profile=paper")
-            name = "univector" if method == "paper" else method
-            row = walk(name, {}, seed, extra) | {"method": method, "movers": movers}
-            done[method, movers, seed] = row
-            with file.open("a") as stream:
-                stream.write(json.dumps(row) + "\n")
-    for method in methods:
-        rows = [done[method, movers, s] for s in range(first, first + runs)]
-        good = sum(r["success"] for r in rows)
-        low, high = wilson(good, runs)
-        times = [r["time"] for r in rows if r["success"]] or [0.0]
-        print(
-            f"| {method} | {good}/{runs} | {100 * good / runs:.1f} "
-            f"[{100 * low:.0f}, {100 * high:.0f}] | "
-            f"{sum(r['reason'] == 'contact' for r in rows)} | "
-            f"{sum(r['reason'] == 'timeout' for r in rows)} | {np.median(times):.0f} | "
-            f"{100 * float(np.percentile([r['clearance'] for r in rows], 50)):.1f} | "
-            f"{float(np.mean([r['plan_ms'] for r in rows])):.2f} |"
-        )
+            rows = [done[scenario, method, s] for s in range(first, first + runs)]
+            print(summary(scenario, method, rows), flush=True)
+
+
+def summary(scenario: str, method: str, rows: list[Row]) -> str:
+    """Line of the table of a planner in a scenario."""
+    n, good = len(rows), sum(r["success"] for r in rows)
+    low, high = wilson(good, n)
+    times = [r["time"] for r in rows if r["success"]] or [0.0]
+    count = {r: sum(row["reason"] == r for row in rows) for r in ("contact", "timeout")}
+    return (
+        f"| {scenario} | {method} | {good}/{n} | {100 * good / n:.0f} "
+        f"[{100 * low:.0f}, {100 * high:.0f}] | {count['contact']} | {count['timeout']} | "
+        f"{np.median(times):.0f} | "
+        f"{100 * float(np.median([r['clearance'] for r in rows])):.1f} | "
+        f"{float(np.mean([r['plan_ms'] for r in rows])):.2f} |"
+    )
 
 
 if __name__ == "__main__":

@@ -68,7 +68,7 @@ class NPosture:
         gap = np.minimum(gap, distance - self._s_robot - s.radii(self.margin))
         nearest = int(np.argmin(gap))
         over = max(0.0, float(gap[nearest]) - p.d_min)
-        weight = float(np.exp(-(over**2) / (2.0 * p.delta**2)))
+        weight = float(np.exp(-(over**2) / (2.0 * p.delta**2)) * s.yielding(gap)[nearest])
         out = normalized(s.pose[:2] - shifted[nearest])
         mixed: Array = weight * out + (1.0 - weight) * u_goal
         # Where the two cancel, the robot slips along the obstacle on the goal's side.

@@ -49,6 +49,7 @@ class PotentialField:
         braking = np.where(s.obstacles.speed > 0.0, braking, 0.0)
         effective = np.maximum(_LEAST_GAP, gap - braking)
         strength = p.gain * np.maximum(0.0, 1.0 / effective - 1.0 / p.influence)
+        strength = strength * s.yielding(effective)
         # The side: that of the wanted way; for a mover, away from where it goes.
         reference = s.wanted()[None] - s.obstacles.velocity
         side = np.sign(out[:, 0] * reference[:, 1] - out[:, 1] * reference[:, 0])

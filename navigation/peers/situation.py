@@ -83,6 +83,17 @@ class Situation:
         """Distances of the robot's centre not to go below (n,) [m], without its own radius."""
         return self.obstacles.radius + self.swelling + margin
 
+    def yielding(self, gap: Array) -> Array:
+        """Share of the repulsion of obstacles at `gap` (n,) [m] that is left (n,).
+
+        It falls when the destination is nearer than the obstacle: else a destination
+        beside an obstacle could not be reached (S. S. Ge, Y. J. Cui, "New potential
+        functions for mobile robot path planning", IEEE T-RA 16(5), 2000).
+        """
+        x, y = (self.task.target - self.pose[:2]).tolist()
+        share: Array = np.minimum(1.0, np.hypot(x, y) / np.maximum(gap, 1e-3))
+        return share
+
     def in_effect(self) -> "Situation":
         """The situation one footstep later, when the command has become motion."""
         dt = self.envelope.limits.footstep

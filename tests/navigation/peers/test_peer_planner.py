@@ -206,3 +206,17 @@ def test_each_peer_obeys_its_own_section(belief, task, track, limits):
             for p in (near, far)
         ]
         assert not np.allclose(*commands), method
+
+
+@EACH
+def test_a_goal_beside_an_obstacle_is_reached(method, belief, track, limits):
+    goal = np.array([0.9, 0.0])
+    mission = Mission(goal[None], 0.0, False, NavigationParameters().mission)
+    walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
+    for _ in range(60):
+        task = mission.update(walker.pose)
+        if task.done:
+            break
+        b = belief([track((0.9, 0.45))], walker.pose)
+        walker.step(planned.plan(b, task).velocity)
+    assert task.done
