@@ -220,3 +220,42 @@ def test_a_goal_beside_an_obstacle_is_reached(method, belief, track, limits):
         b = belief([track((0.9, 0.45))], walker.pose)
         walker.step(planned.plan(b, task).velocity)
     assert task.done
+
+
+@EACH
+def test_near_the_goal_the_body_turns_to_the_goals_heading(method, belief, task, limits):
+    """A via point at the same place leaves it on its way, which leads straight ahead."""
+    turned = []
+    for is_goal in (True, False):
+        walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
+        for _ in range(5):
+            aim = task((0.44, 0.0), 0.6 if is_goal else 0.0, is_goal=is_goal)
+            walker.step(planned.plan(belief(pose=walker.pose), aim).velocity)
+        turned.append(walker.pose[2])
+    assert turned[0] > abs(turned[1]) + 0.05
+
+
+def test_orca_looks_farther_ahead_for_movers_than_for_what_stands(belief, task, track, limits):
+    p = PlannerParameters(method="orca").orca
+    gap = 0.5 * (p.static_horizon + p.horizon) * limits.forward
+    place = (gap + 0.2 + p.margin, 0.0)
+    free, standing, coming = (
+        planner("orca", limits).plan(belief(tracks), task((4.0, 0.0))).velocity
+        for tracks in ([], [track(place)], [track(place, (-0.1, 0.0))])
+    )
+    assert standing == pytest.approx(free)
+    assert not np.allclose(coming, free)
+
+
+def test_the_plain_field_gives_a_fast_mover_more_room(belief, task, track, limits):
+    p = PlannerParameters().univector_plain
+    edge = 0.2 + p.margin + p.eta_vo * 0.02 + p.d_e + p.d_b + 0.34 * limits.forward
+    place = (edge + 0.01, 0.05)
+    slow, fast = (
+        planner("univector-plain", limits)
+        .plan(belief([track(place, (0.0, v))]), task((2.0, 0.0)))
+        .velocity
+        for v in (0.0, 0.2)
+    )
+    assert slow == pytest.approx([limits.forward, 0.0, 0.0])
+    assert abs(fast[2]) > 1e-3
