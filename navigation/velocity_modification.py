@@ -46,8 +46,8 @@ def modify_speed(
     """Choose a free speed by the roots of the quadratic.
 
     Keep the desired speed if it is free; else the lowest free speed above that can be
-    reached in time; else the highest free speed below, standing included; else give up
-    and let the path change.
+    reached in time; else the highest free speed below, standing included, unless a mover
+    sweeps over the robot if it waits; else give up and let the path change.
 
     Args:
         encounters: the movers, in axes of the line of motion.
@@ -69,9 +69,18 @@ def modify_speed(
             situation = "escape" if standing_hits else "accelerate"
             return ModifiedSpeed(min(v_max, above[0] + _TOUCH), situation)
     below = [high for _, high in intervals if high < desired]
-    if below:
+    if below and not trapped(encounters, desired, horizon):
         return ModifiedSpeed(max(0.0, below[-1] - _TOUCH), "brake")
     return ModifiedSpeed(desired, "path_change")
+
+
+def trapped(encounters: tuple[Encounter, ...], desired: float, horizon: float) -> bool:
+    """Whether the robot is in the way of a mover that `desired` [m/s] meets within `horizon` [s].
+
+    Inside the collision band the only way out is ahead. A lower speed seems free there when
+    it puts the contact off beyond the horizon.
+    """
+    return any(e.in_band() and e.collides(desired, horizon) for e in encounters)
 
 
 def sample_speed(
@@ -100,7 +109,8 @@ def sample_speed(
     for speed in speeds:
         if speed > desired and speed - now <= acceleration * acceleration_time and free(speed):
             return ModifiedSpeed(speed, "accelerate" if free(0.0) else "escape")
-    for speed in reversed(speeds):
-        if speed < desired and free(speed):
-            return ModifiedSpeed(speed, "brake")
+    if not trapped(encounters, desired, horizon):
+        for speed in reversed(speeds):
+            if speed < desired and free(speed):
+                return ModifiedSpeed(speed, "brake")
     return ModifiedSpeed(desired, "path_change")

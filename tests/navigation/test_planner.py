@@ -164,3 +164,28 @@ def test_sides_are_chosen_once_for_the_whole_field(name, belief, task, track, li
     first = planner.plan(belief(pair), task()).direction
     again = planner.plan(belief(pair, pose=(0.0, 0.03, 0.0)), task()).direction
     assert np.sign(first) == np.sign(again) != 0.0
+
+
+def test_a_mover_head_on_is_passed_with_the_printed_scheme_and_not_without(
+    belief, task, track, limits
+):
+    """Fig. 4 (c) in closed loop: lateral room grows at full speed until the bodies clear."""
+    off = replace(
+        PAPER, mover=replace(PAPER.mover, virtual_obstacle="off", velocity_modification="off")
+    )
+    least = {}
+    for p in (PAPER, off):
+        planner, pose = Planner(p, limits), np.zeros(3)
+        gaps = []
+        for step in range(30):
+            mover = track((2.4 - 0.034 * step, 0.02), (-0.1, 0.0), radius=0.1)
+            forward, left, turn = planner.plan(belief([mover], pose), task((3.8, 0.0))).velocity
+            h = pose[2] + 0.17 * turn
+            pose = pose + 0.34 * np.array(
+                [np.cos(h) * forward - np.sin(h) * left,
+                 np.sin(h) * forward + np.cos(h) * left, turn]
+            )  # fmt: skip
+            gaps.append(np.hypot(*(mover.position - pose[:2])) - 0.1 - p.univector.s_robot)
+        least[p] = min(gaps)
+    assert least[PAPER] > 0.0
+    assert least[off] < least[PAPER]

@@ -108,3 +108,15 @@ def test_the_speed_that_passes_first_does_not_jump_where_the_robot_enters_the_ba
             assert outside.speed == pytest.approx(inside.speed, abs=1e-5)
             found += 1
     assert found > 10
+
+
+@pytest.mark.parametrize("choose", [closed, sampled])
+def test_inside_the_band_nobody_waits_for_the_mover(choose):
+    """Slower is free only until the horizon: the contact is put off, not avoided."""
+    head_on = (Encounter(1.4, 0.0, -0.1, 0.0, 0.3),)
+    slow = head_on[0].contact_time(0.0)
+    assert 6.0 < slow < 12.0
+    choice = choose(head_on, horizon=6.0)
+    assert (choice.situation, choice.speed) == ("path_change", 0.2)
+    crossing = (Encounter(0.6, -0.8, 0.0, 0.1, 0.2),)
+    assert choose(crossing, desired=0.1, now=0.1).situation in {"brake", "accelerate"}
