@@ -133,6 +133,8 @@ class MoverParameters:
     """That margin [m]."""
     horizon: Positive = 6.0
     """Contacts later than this are ignored [s]."""
+    wait_in_band: bool = True
+    """Whether a robot in a mover's way may brake, which puts the contact off at best."""
     samples: Annotated[int, Ge(2)] = 21
     """Number of sampled speeds [1]."""
     acceleration_time: Positive = 0.8
@@ -285,7 +287,10 @@ class NavigationParameters:
                 memory=25.0,
             ),
             mover=MoverParameters(
-                virtual_obstacle="printed", velocity_modification="closed", radius="extended"
+                virtual_obstacle="printed",
+                velocity_modification="closed",
+                radius="extended",
+                wait_in_band=False,
             ),
             gate=GateParameters(enabled=False),
             filter=FilterParameters(enabled=False),

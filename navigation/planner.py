@@ -220,6 +220,7 @@ class Planner:
                 acceleration=limits.acceleration,
                 footstep=limits.footstep,
                 horizon=p.horizon,
+                wait_in_band=p.wait_in_band,
             )
         return sample_speed(
             movers,
@@ -230,6 +231,7 @@ class Planner:
             samples=p.samples,
             horizon=p.horizon,
             acceleration_time=p.acceleration_time,
+            wait_in_band=p.wait_in_band,
         )
 
     def _blocking(self, encounters: dict[int, Encounter], speed: ModifiedSpeed) -> tuple[int, ...]:

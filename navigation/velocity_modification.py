@@ -42,12 +42,13 @@ def modify_speed(
     acceleration: float,
     footstep: float,
     horizon: float,
+    wait_in_band: bool,
 ) -> ModifiedSpeed:
     """Choose a free speed by the roots of the quadratic.
 
     Keep the desired speed if it is free; else the lowest free speed above that can be
-    reached in time; else the highest free speed below, standing included, unless a mover
-    sweeps over the robot if it waits; else give up and let the path change.
+    reached in time; else the highest free speed below, standing included; else give up
+    and let the path change.
 
     Args:
         encounters: the movers, in axes of the line of motion.
@@ -57,6 +58,7 @@ def modify_speed(
         acceleration: largest [m/s²].
         footstep: duration of a footstep [s].
         horizon: later contacts are ignored [s].
+        wait_in_band: whether a robot that is in a mover's way may also brake.
     """
     if not any(e.collides(desired, horizon) for e in encounters):
         return ModifiedSpeed(desired, "free")
@@ -69,7 +71,7 @@ def modify_speed(
             situation = "escape" if standing_hits else "accelerate"
             return ModifiedSpeed(min(v_max, above[0] + _TOUCH), situation)
     below = [high for _, high in intervals if high < desired]
-    if below and not trapped(encounters, desired, horizon):
+    if below and (wait_in_band or not trapped(encounters, desired, horizon)):
         return ModifiedSpeed(max(0.0, below[-1] - _TOUCH), "brake")
     return ModifiedSpeed(desired, "path_change")
 
@@ -93,6 +95,7 @@ def sample_speed(
     samples: int,
     horizon: float,
     acceleration_time: float,
+    wait_in_band: bool,
 ) -> ModifiedSpeed:
     """The same choice among `samples` speeds from 0 to v_max.
 
@@ -109,7 +112,7 @@ def sample_speed(
     for speed in speeds:
         if speed > desired and speed - now <= acceleration * acceleration_time and free(speed):
             return ModifiedSpeed(speed, "accelerate" if free(0.0) else "escape")
-    if not trapped(encounters, desired, horizon):
+    if wait_in_band or not trapped(encounters, desired, horizon):
         for speed in reversed(speeds):
             if speed < desired and free(speed):
                 return ModifiedSpeed(speed, "brake")

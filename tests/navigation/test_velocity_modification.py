@@ -9,17 +9,17 @@ from navigation.velocity_modification import modify_speed, needed_acceleration, 
 V_MAX = 0.2
 
 
-def closed(encounters, desired=0.2, now=0.2, acceleration=0.3, horizon=6.0):
+def closed(encounters, desired=0.2, now=0.2, acceleration=0.3, horizon=6.0, wait=False):
     return modify_speed(
         encounters, desired, now, v_max=V_MAX, acceleration=acceleration, footstep=0.34,
-        horizon=horizon,
+        horizon=horizon, wait_in_band=wait,
     )  # fmt: skip
 
 
-def sampled(encounters, desired=0.2, now=0.2, samples=21, horizon=6.0):
+def sampled(encounters, desired=0.2, now=0.2, samples=21, horizon=6.0, wait=False):
     return sample_speed(
         encounters, desired, now, v_max=V_MAX, acceleration=10.0, samples=samples,
-        horizon=horizon, acceleration_time=0.8,
+        horizon=horizon, acceleration_time=0.8, wait_in_band=wait,
     )  # fmt: skip
 
 
@@ -52,15 +52,16 @@ def test_the_chosen_speed_is_free_or_the_path_must_change():
     assert seen == {"free", "accelerate", "brake", "escape", "path_change"}
 
 
-def test_closed_form_and_samples_agree_within_one_sample():
+@pytest.mark.parametrize("wait", [True, False])
+def test_closed_form_and_samples_agree_within_one_sample(wait):
     rng = np.random.default_rng(1)
     step = V_MAX / 200
     same = 0
     for _ in range(600):
         movers = scene(rng)
         desired = round(float(rng.uniform(0.02, V_MAX)) / step) * step
-        one = closed(movers, desired, desired, acceleration=inf)
-        other = sampled(movers, desired, desired, samples=201)
+        one = closed(movers, desired, desired, acceleration=inf, wait=wait)
+        other = sampled(movers, desired, desired, samples=201, wait=wait)
         if one.situation == other.situation:
             assert abs(one.speed - other.speed) <= step + 1e-8
             same += 1
@@ -118,5 +119,6 @@ def test_inside_the_band_nobody_waits_for_the_mover(choose):
     assert 6.0 < slow < 12.0
     choice = choose(head_on, horizon=6.0)
     assert (choice.situation, choice.speed) == ("path_change", 0.2)
+    assert choose(head_on, horizon=6.0, wait=True).situation == "brake"
     crossing = (Encounter(0.6, -0.8, 0.0, 0.1, 0.2),)
     assert choose(crossing, desired=0.1, now=0.1).situation in {"brake", "accelerate"}
