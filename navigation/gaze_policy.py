@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from math import atan2, hypot, pi, sin
 from typing import Protocol
 
@@ -130,33 +131,33 @@ def gaze_policy(
     if p.mode == "sweep":
         return SweepGaze(parameters)
     if p.mode == "deadline":
-
-        def deadline(moment: Moment) -> Votes:
-            way = way_bearing(moment)
-            return deadline_votes(moment.scene, moment.belief, way, limits.forward, parameters)
-
-        return VotingGaze(deadline, grid, p.deadline.switch_ratio)
+        votes = partial(_deadline, parameters, limits.forward)
+        return VotingGaze(votes, grid, p.deadline.switch_ratio)
     if p.mode == "urgency":
-        return VotingGaze(
-            lambda m: urgency_votes(
-                m.scene,
-                m.belief,
-                m.task,
-                way=way_bearing(m),
-                speed=limits.forward,
-                parameters=parameters,
-            ),
-            grid,
-            p.switch_ratio,
-        )
-    if p.mode == "info":
-        return VotingGaze(
-            lambda m: information_votes(m.scene, m.belief, parameters), grid, p.switch_ratio
-        )
-    weighed = replace(parameters, gaze=single_weight(p, p.mode))
-    return VotingGaze(
-        lambda m: integrated_votes(m.scene, m.belief, m.task, weighed), grid, p.switch_ratio
-    )
+        votes = partial(_urgency, parameters, limits.forward)
+    elif p.mode == "info":
+        votes = partial(_information, parameters)
+    else:
+        votes = partial(_integrated, replace(parameters, gaze=single_weight(p, p.mode)))
+    return VotingGaze(votes, grid, p.switch_ratio)
+
+
+# Functions with names, so that a gaze can be saved in the middle of a run.
+def _deadline(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
+    return deadline_votes(m.scene, m.belief, way_bearing(m), speed, parameters)
+
+
+def _urgency(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
+    way = way_bearing(m)
+    return urgency_votes(m.scene, m.belief, m.task, way=way, speed=speed, parameters=parameters)
+
+
+def _information(parameters: NavigationParameters, m: Moment) -> Votes:
+    return information_votes(m.scene, m.belief, parameters)
+
+
+def _integrated(parameters: NavigationParameters, m: Moment) -> Votes:
+    return integrated_votes(m.scene, m.belief, m.task, parameters)
 
 
 def single_weight(p: GazeParameters, mode: GazeMode) -> GazeParameters:
