@@ -190,7 +190,9 @@ class FilterParameters:
     particle_weight: NonNegative = 2.0
     """Weight of a lost mover's particles together [1]."""
     reversal_weight: NonNegative = 0.12
-    """Weight of the reversal of a visible mover [1]."""
+    """Weight of the reversal of a mover [1]."""
+    reversal_age: NonNegative = 0.0
+    """Time for which a mover out of sight still counts as its reversal [s]."""
     reachable: bool = False
     """Whether an unseen mover also counts as all it can have reached from its last place."""
     reachable_radius: NonNegative = 0.4
