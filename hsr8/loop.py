@@ -6,6 +6,8 @@ from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from typing import Self
 
+import cv2
+
 from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import Looks, Moves
 from hsr8.errors import SimulationDiverged
@@ -123,6 +125,7 @@ class Simulation:
         self._interrupted = True
 
     def __enter__(self) -> Self:
+        cv2.setNumThreads(1)  # threads only wait for one another over images so small
         if self._analytic is None:
             self._rendered = RenderedCamera(self.model, self.scenario.camera, self._camera_rng)
         self._open = True

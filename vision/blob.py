@@ -11,6 +11,8 @@ from vision.colour import Labels
 Mask = NDArray[np.bool_]
 Index = NDArray[np.signedinteger]
 
+SHORT = 1 << 16  # labels of 16 bits
+
 
 @dataclass(frozen=True, slots=True)
 class Blob:
@@ -64,13 +66,16 @@ def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:
         x0, y0, w0, h0 = cv2.boundingRect(mask)
         if w0 * h0 < smallest:
             continue
+        # Short labels make it several times faster; no two components share 2 x 2 pixels.
+        short = ((w0 + 1) // 2) * ((h0 + 1) // 2) < SHORT
         _, components, stats, _ = cv2.connectedComponentsWithStats(
-            mask[y0 : y0 + h0, x0 : x0 + w0], connectivity=8
+            mask[y0 : y0 + h0, x0 : x0 + w0],
+            connectivity=8,
+            ltype=cv2.CV_16U if short else cv2.CV_32S,
         )
-        for i in np.flatnonzero(stats[:, cv2.CC_STAT_AREA] >= smallest).tolist():
-            if i == 0:  # what is not of this colour
+        for i, (x, y, w, h, area) in enumerate(stats.tolist()):
+            if i == 0 or area < smallest:  # the first is what is not of this colour
                 continue
-            x, y, w, h, area = stats[i].tolist()
             left, top = x_all + x0 + x, y_all + y0 + y
             box = (left, top, left + w, top + h)
             blobs.append(

@@ -102,7 +102,8 @@ class ColourTable:
                 "an image must be an RGB array of uint8 of shape (height, width, 3), "
                 f"got {image.dtype} of shape {image.shape}"
             )
-        labels: Labels = np.take(self.labels, pack(image))
+        # A code has 15 bits: there is nothing to clip, and no check that takes time.
+        labels: Labels = np.take(self.labels, pack(image), mode="clip")
         return labels
 
 

@@ -25,6 +25,7 @@ ITERATIONS = 3
 MAX_RIMS = 3  # a beacon shows three
 SIDES = 2
 ROWS = SIDES + MAX_RIMS + 1  # two sides, the rims, the prior of the radius
+INDEX = np.arange(ROWS)
 NO_INFORMATION = 1e3  # standard deviation of what was not measured
 RIM_WIDTH = 0.75  # share of the half width within which points of a rim are used
 OUTER = 0.92  # share of the half width where a rim is too steep to predict
@@ -163,21 +164,19 @@ class _Problem:
             [pose.tilt_sigma, pose.roll_sigma, pose.yaw_sigma, pose.height_sigma]
         )
         sides = [side for c in candidates for side in (c.left, c.right)]
-        self.side = np.array([s.azimuth for s in sides]).reshape(n, SIDES)
         self.common = edge_correlation
-        side_count = np.array([s.count for s in sides]).reshape(n, SIDES)
-        self.side_sigma = np.array([s.sigma for s in sides]).reshape(n, SIDES)
-        self.side_sigma *= self._of_mean(side_count)
-        self.side_low = np.array([s.low for s in sides]).reshape(n, SIDES)
-        self.side_high = np.array([s.high for s in sides]).reshape(n, SIDES)
-        self.trusted = np.array([s.trusted for s in sides]).reshape(n, SIDES)
-        self.prior = np.array([c.radius for c in candidates])
-        self.prior_sigma = np.array([c.radius_sigma for c in candidates])
+        rows = [(s.azimuth, s.sigma, s.count, s.low, s.high, s.trusted) for s in sides]
+        columns = np.array(rows).T.reshape(6, n, SIDES)
+        self.side, sigma, count, self.side_low, self.side_high, trusted = columns
+        self.side_sigma = sigma * self._of_mean(count)
+        self.slack = 0.5 * self.side_sigma
+        self.trusted = trusted != 0.0
+        known = np.array([(c.radius, c.radius_sigma, c.height) for c in candidates])
+        self.prior, self.prior_sigma, self.top = known.T
         self.roundness = roundness_sigma
         self.rim_height = np.zeros((n, MAX_RIMS))
         self.rim_sign = np.ones((n, MAX_RIMS))
         self.rim_sigma = np.full((n, MAX_RIMS), NO_INFORMATION)
-        self.top = np.array([c.height for c in candidates])
         azimuths, slopes, owners = [], [], []
         x = np.empty((n, 3))
         for k, candidate in enumerate(candidates):
@@ -253,6 +252,9 @@ class _Problem:
         self.rim_mean_sigma = self.rim_sigma * self._of_mean(own)
         self.drop = self.rim_height.ravel()[self.rim] - self.h
         self.sign = self.rim_sign.ravel()[self.rim]
+        self.level = np.maximum(0.5 * (self.side_low + self.side_high), -3.0)
+        self.G = np.zeros((self.n, ROWS, 4))
+        self.G[:, :SIDES, 2] = 1.0
 
     def _span(self, size: int) -> Array:
         """Difference of the greatest and the smallest slope of each rim (3 n,)."""
@@ -311,7 +313,7 @@ class _Problem:
         d, r = self.x[:, 1], self.x[:, 2]
         reach = np.sqrt(d * d - r * r)
         foot, head = (-self.h / reach)[:, None], ((self.top - self.h) / reach)[:, None]
-        slack = 0.5 * self.side_sigma
+        slack = self.slack
         seen = (self.side_high >= foot - slack) & (self.side_low <= head + slack)
         lost = bool((self.trusted & ~seen).any())
         self.trusted &= seen
@@ -332,7 +334,7 @@ class _Problem:
 
     def _rims(self, H: Array, residual: Array) -> Array:
         """Fill the rows of the rims; return the residual of every point."""
-        theta, d, r = self.x[self.owner].T
+        theta, d, r = self.x.T.take(self.owner, axis=1)
         phi = self.azimuth - theta
         sine, cosine = np.sin(phi), np.cos(phi)
         t = np.minimum(np.maximum(d * sine / r, -OUTER), OUTER)
@@ -363,19 +365,16 @@ class _Problem:
         sigma[:, 5] = self.prior_sigma
         # Small rotations of the camera: tilt about its left, roll about its heading,
         # yaw; and an error of its height.
-        G = np.zeros((n, ROWS, 4))
+        G, level = self.G, self.level
         s, c = np.sin(theta)[:, None], np.cos(theta)[:, None]
-        level = np.maximum(0.5 * (self.side_low + self.side_high), -3.0)
         G[:, :SIDES, 0] = -level * s
         G[:, :SIDES, 1] = -level * c
-        G[:, :SIDES, 2] = 1.0
         lift = 1.0 + slope * slope
         G[:, SIDES:5, 0] = -lift * c
         G[:, SIDES:5, 1] = lift * s
         G[:, SIDES:5, 3] = -1.0 / d[:, None]
         R: Array = (G * self.pose_variance) @ G.swapaxes(1, 2)
-        index = np.arange(ROWS)
-        R[:, index, index] += sigma * sigma
+        R[:, INDEX, INDEX] += sigma * sigma
         return R
 
     def _astray(self, residual: Array, mean: Array, stray: float) -> Array:

@@ -252,7 +252,7 @@ class Detector:
         if distance > limit or covariance[0, 0] > (parameters.max_relative_sigma * distance) ** 2:
             return None
         blobs = sighting.blobs
-        boxes = [blob.box for blob in blobs]
+        lefts, tops, rights, bottoms = zip(*(blob.box for blob in blobs), strict=True)
         return Detection(
             kind=sighting.kind,
             label="/".join(self._table.classes[blob.label - 1].name for blob in blobs),
@@ -263,12 +263,7 @@ class Detector:
             radius_sigma=sqrt(float(cylinder.covariance[2, 2])),
             cut=any(blob.cut for blob in blobs),
             occluded=sighting.occluded,
-            box=(
-                min(b[0] for b in boxes),
-                min(b[1] for b in boxes),
-                max(b[2] for b in boxes),
-                max(b[3] for b in boxes),
-            ),
+            box=(min(lefts), min(tops), max(rights), max(bottoms)),
         )
 
 

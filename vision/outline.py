@@ -161,10 +161,12 @@ class _Edges:
         column_parts: list[Index] = []
         sizes: list[int] = []
         uprights: list[bool] = []
+        pixels = np.arange(max(padded.shape))
+        middles = pixels + 0.5
         for blob in blobs:
             left, top, right, bottom = blob.box
-            columns, rows = np.arange(left, right), np.arange(top, bottom)
-            u_middle, v_middle = columns + 0.5, rows + 0.5
+            columns, rows = pixels[left:right], pixels[top:bottom]
+            u_middle, v_middle = middles[left:right], middles[top:bottom]
             first, last = blob.row_extents()
             high, low = blob.column_extents()
             u_parts += (first, last, u_middle, u_middle)
@@ -181,6 +183,8 @@ class _Edges:
         self.stops = np.cumsum(size)
         self.starts = self.stops - size
         self.edge = np.repeat(np.arange(len(sizes)), size)
+        self.inside = self.outer != OUTSIDE
+        self.cut = self._count(~self.inside)
         self.across = np.where(self.edge % 4 < 2, u, v)
         middle = self.starts + size // 2
         au, av, su, sv = view.resolution(u[middle], v[middle])
@@ -215,7 +219,7 @@ class _Edges:
         bottom = np.minimum.reduceat(self.slope, starts)
         top = np.maximum.reduceat(self.slope, starts)
         low = self.slope <= (bottom + LOW_SHARE * (top - bottom))[edge]
-        covered = low & ~free & (self.outer != OUTSIDE)
+        covered = low & ~free & self.inside
         hidden = 2 * self._count(covered) > self._count(low)
         # The side is the median of the free points near the outermost of them.
         candidate = np.where(free, outwards, NOWHERE)
@@ -226,7 +230,7 @@ class _Edges:
         trusted = furthest <= outermost + MAX_OVERHANG * self.azimuth_pixel
         chosen = candidate >= (outermost - ENVELOPE * self.azimuth_pixel)[edge]
         n = self._count(chosen)
-        trusted &= CUT * n >= self._count(self.outer == OUTSIDE)
+        trusted &= CUT * n >= self.cut
         median = 0.5 * (ranked[last - (n - 1) // 2] + ranked[last - n // 2])
         azimuth = sign * np.where(trusted, median, furthest)
         bottom = np.minimum.reduceat(np.where(chosen, self.slope, np.inf), starts)
@@ -248,9 +252,9 @@ class _Edges:
         inner = (
             (self.azimuth > (right + margin)[blob])
             & (self.azimuth < (left - margin)[blob])
-            & (self.outer != OUTSIDE)
+            & self.inside
         )
-        inner &= (CUT * self._count(inner) >= self._count(self.outer == OUTSIDE))[self.edge]
+        inner &= (CUT * self._count(inner) >= self.cut)[self.edge]
         stops = np.cumsum(self._count(inner)).tolist()
         azimuth, slope, outer = self.azimuth[inner], self.slope[inner], self.outer[inner]
         sigma = (edge_sigma * self.slope_pixel).tolist()

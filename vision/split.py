@@ -135,22 +135,27 @@ class _Grid:
         self.azimuths = self.start + self.azimuth_step * (np.arange(n, dtype=np.float64) + 0.5)
         u, v, ahead = view.pixels(self.azimuths[None, :], self.slopes[:, None])
         width_px, height_px = view.camera.width, view.camera.height
-        column = np.clip(np.floor(u), -1, width_px).astype(np.intp)
-        row = np.clip(np.floor(v), -1, height_px).astype(np.intp)
-        labels = np.where(ahead, padded[row + 1, column + 1], OUTSIDE)
-        x, y = column - left, row - top
-        inside = ahead & (x >= 0) & (y >= 0) & (x < right - left) & (y < bottom - top)
-        inside[inside] = blob.mask[y[inside], x[inside]]
-        index = np.arange(n)
+        # Beyond the blob all is the same: a frame round its mask stands for it.
+        x = np.minimum(np.maximum(np.floor(u), left - 1), right).astype(np.intp)
+        y = np.minimum(np.maximum(np.floor(v), top - 1), bottom).astype(np.intp)
+        framed = np.zeros((bottom - top + 2, right - left + 2), np.bool_)
+        framed[1:-1, 1:-1] = blob.mask
+        inside = framed.ravel()[(y - (top - 1)) * (right - left + 2) + (x - (left - 1))]
+        inside &= ahead
         self.filled = inside.any(axis=0)
         first_cell = inside.argmax(axis=0)
         last_cell = inside.shape[0] - 1 - inside[::-1].argmax(axis=0)
         self.low = self.slopes[first_cell] - 0.5 * slope_step
         self.high = self.slopes[last_cell] + 0.5 * slope_step
-        below = labels[np.maximum(first_cell - 1, 0), index]
-        above = labels[np.minimum(last_cell + 1, len(self.slopes) - 1), index]
-        self.low_usable = self.filled & (below == 0)
-        self.high_usable = self.filled & (above != OUTSIDE)
+        beside = np.stack(
+            [np.maximum(first_cell - 1, 0), np.minimum(last_cell + 1, len(self.slopes) - 1)]
+        )
+        index = np.arange(n)
+        column = np.minimum(np.maximum(np.floor(u[beside, index]), -1), width_px).astype(np.intp)
+        row = np.minimum(np.maximum(np.floor(v[beside, index]), -1), height_px).astype(np.intp)
+        labels = np.where(ahead[beside, index], padded[row + 1, column + 1], OUTSIDE)
+        self.low_usable = self.filled & (labels[0] == 0)
+        self.high_usable = self.filled & (labels[1] != OUTSIDE)
 
     def pieces(
         self, envelope: Array, usable: NDArray[np.bool_], drop: float, step: float, nearest: bool
@@ -189,7 +194,7 @@ class _Grid:
                     left_true=self._ends(
                         envelope, usable, b - 1, b, nearest=nearest, outer=self.outer_left
                     ),
-                    run=float(np.quantile(drop / slopes, 0.1 if nearest else 0.9)),
+                    run=_quantile(drop / slopes, 0.1 if nearest else 0.9),
                     azimuth=self.azimuths[chosen],
                     slope=slopes,
                 )
@@ -214,6 +219,14 @@ class _Grid:
         # Slopes are negative: a farther rim has the greater one.
         farther = bool(envelope[beyond] > envelope[last])
         return farther if nearest else not farther
+
+
+def _quantile(values: Array, share: float) -> float:
+    """Value below which such a share of `values` lies, between two of them if need be."""
+    ranked: list[float] = np.sort(values).tolist()
+    whole, part = divmod(share * (len(ranked) - 1), 1.0)
+    low, high = ranked[int(whole)], ranked[min(int(whole) + 1, len(ranked) - 1)]
+    return low + part * (high - low)
 
 
 def _merge_narrow(starts: list[int], jumps: list[float], n: int) -> list[int]:

@@ -43,6 +43,20 @@ def test_a_part_behind_the_camera_is_not_seen() -> None:
     assert SHOULDER.outline(CAMERA, pose(0.0, 0.0, position=(0.0, 0.09, 0.39))) is None
 
 
+@given(pan=st.floats(-pi / 2, pi / 2), tilt=st.floats(-1.0, 0.3))
+def test_what_lies_beside_the_image_needs_no_outline(pan, tilt) -> None:
+    view = pose(pan, tilt, position=(0.0, 0.03, 0.47))
+    if SHOULDER.beside(CAMERA, view):
+        outline = SHOULDER.outline(CAMERA, view)
+        size = (CAMERA.width, CAMERA.height)
+        assert outline is None or (outline < 0.0).all(axis=0).any() or (outline > size).all(0).any()
+
+
+def test_a_part_in_the_image_is_not_beside_it() -> None:
+    assert not SHOULDER.beside(CAMERA, pose(pi / 2, -0.5))
+    assert SHOULDER.beside(CAMERA, pose(pi / 4, 0.0, position=(0.0, 0.03, 0.47)))
+
+
 def test_only_background_is_hidden() -> None:
     view = pose(pi / 2, -0.5)
     labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
