@@ -18,9 +18,9 @@ from hsr8.cli.command_line import run_words, settings
 from hsr8.cli.options import Sweep
 from hsr8.cli.run import option_tables
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.definition import Definition
+from hsr8.evaluation.sweep.definition import Definition, code_digest
 from hsr8.evaluation.sweep.driver import drive, pending
-from hsr8.evaluation.sweep.executor import open_executor
+from hsr8.evaluation.sweep.executor import open_executor, parse_executor
 from hsr8.evaluation.sweep.folder import REPORT, SweepFolder
 from hsr8.evaluation.sweep.job import Job, Row
 from hsr8.evaluation.sweep.progress import SweepProgress
@@ -37,6 +37,7 @@ SLOWEST = 20.0  # and so long for a simulated second [s]
 MOST_WORKERS = 1024
 MOST_VARIANTS = 1000
 INTERRUPTED = 130
+CHANGED = "hsr8: the program's files changed during the sweep: its runs are not of one version"
 
 
 def main(options: Sweep) -> int:
@@ -49,9 +50,10 @@ def main(options: Sweep) -> int:
     seeds = parse_seeds(options.seeds)
     shard = None if options.shard is None else parse_shard(options.shard)
     workers = _workers(options)
+    kind, _ = parse_executor(options.executor)
     variants = _variants(options)
     scenarios = {name: _scenario(options, more) for name, more in variants.items()}
-    if options.executor == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
+    if kind == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
         require_gl()
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
     sweeps: dict[str, SweepFolder] = {}
@@ -79,6 +81,8 @@ def main(options: Sweep) -> int:
             ]
         mine = len(seeds if shard is None else seeds[shard[0] - 1 :: shard[1]]) * len(sweeps)
         interrupted = _run(options, jobs, sweeps, workers, mine)
+        if jobs and code_digest() != definition.code:
+            print(CHANGED, file=sys.stderr)
         command = _command(options)
         summaries = {}
         for name, folder in zip(scenarios, sweeps.values(), strict=True):

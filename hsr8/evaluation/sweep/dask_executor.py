@@ -1,6 +1,7 @@
 """Runs on the workers of a Dask cluster; needs the extra ``hsr8[dask]``."""
 
 import logging
+from collections import deque
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -61,18 +62,16 @@ class DaskExecutor:
             raise UsageError(f"--executor dask://{address}: nobody answers ({error})") from None
         self._ended: SimpleQueue[tuple[Job, Any]] = SimpleQueue()
         self._futures: set[Any] = set()
+        self._waiting: deque[Job] = deque()
         self.workers = len(self._check_workers(address))
 
     def submit(self, job: Job) -> None:
-        """Take a job; a retry goes to another worker if there is one."""
-        others = [worker for worker in self._addresses() if worker != job.avoid]
-        elsewhere = {"workers": others, "allow_other_workers": True} if job.avoid and others else {}
-        future = self._client.submit(work, job, pure=False, **elsewhere)
-        self._futures.add(future)
-        future.add_done_callback(lambda done: self._ended.put((job, done)))
+        """Take a job."""
+        self._waiting.append(job)
 
     def wait(self, seconds: float) -> list[tuple[Job, Row]]:
         """What has ended."""
+        self._hand_out()
         ended = []
         try:
             ended.append(self._ended.get(timeout=seconds))
@@ -88,6 +87,21 @@ class DaskExecutor:
         if self._cluster is not None:
             self._cluster.close()
 
+    def _hand_out(self) -> None:
+        """Give every free thread of the cluster a job; a retry goes to another worker.
+
+        No job waits on a worker, so that the death of one loses nothing that has not begun.
+        """
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        free = sum(worker["nthreads"] for worker in workers.values()) - len(self._futures)
+        for _ in range(min(free, len(self._waiting))):
+            job = self._waiting.popleft()
+            others = [name for name in workers if name != job.avoid] if job.avoid else []
+            elsewhere = {"workers": others, "allow_other_workers": True} if others else {}
+            future = self._client.submit(work, job, pure=False, **elsewhere)
+            self._futures.add(future)
+            future.add_done_callback(lambda done, job=job: self._ended.put((job, done)))
+
     def _row(self, job: Job, future: Any) -> Row:
         self._futures.discard(future)
         if future.status == "finished":
@@ -96,13 +110,10 @@ class DaskExecutor:
         error = future.exception() if future.status == "error" else future.status
         return lost(job, f"the worker went away: {error}")
 
-    def _addresses(self) -> list[str]:
-        return list(self._client.scheduler_info(n_workers=-1)["workers"])
-
     def _check_workers(self, address: str) -> list[str]:
         """Addresses of the workers; all must run the code that is here."""
         if not address:
-            return self._addresses()
+            return list(self._client.scheduler_info(n_workers=-1)["workers"])
         try:
             digests: dict[str, str] = self._client.run(code_digest)
         except Exception as error:  # whatever a worker raises comes through

@@ -1,5 +1,6 @@
 """Who runs the jobs of a sweep: processes of this machine, or a cluster's workers."""
 
+import re
 import time as clock
 from concurrent.futures import ThreadPoolExecutor
 from queue import Empty, SimpleQueue
@@ -38,9 +39,7 @@ def open_executor(name: str, workers: int) -> Executor:
     Raises:
         UsageError: there is none of that name, its package is missing, or nobody answers.
     """
-    kind, _, address = name.partition("://")
-    if kind == "local" and not address:
-        return LocalExecutor(workers)
+    kind, address = parse_executor(name)
     if kind == "dask":
         from hsr8.evaluation.sweep.dask_executor import DaskExecutor  # noqa: PLC0415  an extra
 
@@ -49,7 +48,21 @@ def open_executor(name: str, workers: int) -> Executor:
         from hsr8.evaluation.sweep.ray_executor import RayExecutor  # noqa: PLC0415  an extra
 
         return RayExecutor(address, workers)
-    raise UsageError(f"--executor {name}: choose {NAMES}")
+    return LocalExecutor(workers)
+
+
+def parse_executor(name: str) -> tuple[str, str]:
+    """Kind and address of an executor; the address is empty for one of this machine.
+
+    Raises:
+        UsageError: there is none of that name.
+    """
+    match = re.fullmatch(
+        r"(local|dask|ray)|(dask|ray)://([\w.-]+:\d{1,5}|\[[\da-f:]+\]:\d{1,5})", name
+    )
+    if match is None:
+        raise UsageError(f"--executor {name}: choose {NAMES}")
+    return match[1] or match[2], match[3] or ""
 
 
 class LocalExecutor:

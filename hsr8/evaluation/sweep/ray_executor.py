@@ -1,10 +1,10 @@
 """Runs as Ray tasks; needs the extra ``hsr8[ray]``."""
 
 import os
-import time as clock
 from typing import Any
 
 from hsr8.errors import UsageError
+from hsr8.evaluation.sweep.definition import code_digest
 from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
 
 
@@ -43,6 +43,11 @@ class RayExecutor:
                 )
         except (OSError, ValueError, RuntimeError) as error:
             raise UsageError(f"--executor ray: the cluster does not start: {error}") from error
+        if address and ray.get(ray.remote(code_digest).remote()) != code_digest():
+            raise UsageError(
+                f"--executor ray://{address}: the cluster runs other code than here: install the "
+                "same version there"
+            )
         # A run whose worker died is ours to retry, and to mark.
         self._work: Any = ray.remote(max_retries=0, scheduling_strategy="SPREAD")(run_job)
         self._running: dict[Any, Job] = {}
@@ -54,9 +59,6 @@ class RayExecutor:
 
     def wait(self, seconds: float) -> list[tuple[Job, Row]]:
         """What has ended."""
-        if not self._running:
-            clock.sleep(seconds)
-            return []
         references = list(self._running)
         ended, _ = self._ray.wait(references, num_returns=len(references), timeout=seconds)
         return [self._row(reference) for reference in ended]

@@ -185,6 +185,14 @@ def test_wrong_options_are_told(tmp_path, monkeypatch, capsys, more, word):
     printed = capsys.readouterr()
     assert word in printed.err
     assert printed.out == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_program_that_changes_under_way_is_told(instant, monkeypatch, capsys):
+    monkeypatch.setattr("hsr8.cli.sweep.code_digest", lambda: "another")
+    instant()
+    entry([*FAST, "--seeds", "0:2"])
+    assert "changed during the sweep" in capsys.readouterr().err
 
 
 def test_progress_and_table_are_told(instant, capsys):

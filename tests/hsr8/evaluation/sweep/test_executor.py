@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep import executor as module
-from hsr8.evaluation.sweep.executor import LocalExecutor, open_executor
+from hsr8.evaluation.sweep.executor import LocalExecutor, open_executor, parse_executor
 from hsr8.evaluation.sweep.job import Job
 
 JOB = Job(0, "/nowhere", "", 10.0)
@@ -73,9 +73,16 @@ def test_closing_ends_what_runs(monkeypatch, stubborn):
 
 
 def test_other_names_are_refused():
-    for name in ("slurm", "local://here", ""):
+    for name in ("slurm", "local://here", "", "dask://", "dask://host", "ray://a b:3"):
         with pytest.raises(UsageError, match="local, dask"):
             open_executor(name, 1)
+
+
+def test_executors_have_addresses():
+    assert parse_executor("local") == ("local", "")
+    assert parse_executor("dask") == ("dask", "")
+    assert parse_executor("dask://node-1.lan:8786") == ("dask", "node-1.lan:8786")
+    assert parse_executor("ray://[::1]:10001") == ("ray", "[::1]:10001")
 
 
 @pytest.mark.parametrize(("name", "package"), [("dask", "distributed"), ("ray", "ray")])
