@@ -21,8 +21,8 @@ import tyro
 from belief_world import HFOV, VFOV, Camera, view
 from decision_world import TICK, Walker, World, perfect_belief
 from numpy.typing import NDArray
-from wilson import wilson
 
+from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.generator import draw_layout

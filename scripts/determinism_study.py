@@ -1,42 +1,50 @@
 """Run the same seeds with and without the log and compare the hashes of the final state.
 
-python scripts/determinism_study.py --seeds 1000-1004 --out docs/results/determinism.md
+python scripts/determinism_study.py --seeds 1000:1005 --out docs/results/determinism.md
 """
 
 import argparse
 import sys
+import tempfile
+from dataclasses import replace
 from pathlib import Path
 
-from run_study import environment, run
+from hsr8.evaluation.sweep.definition import Definition
+from hsr8.evaluation.sweep.job import Job, run_job
+from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.scenario.loader import dump, load
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scenario", default="course")
-    parser.add_argument("--seeds", default="1000-1004", help="first-last, both included")
+    parser.add_argument("--seeds", default="1000:1005", help="A:B for A to B-1, or a list")
     parser.add_argument("--duration", default="60", help="simulated time [s]")
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
-    first, last = (int(part) for part in arguments.seeds.split("-"))
-    limit = ["--duration", arguments.duration]
+    scenario = dump(load(arguments.scenario, [f"duration={arguments.duration}"]))
+    made_with = Definition.now(arguments.scenario, (), scenario).made_with()
     lines = [
         "# Same seed, same end",
         "",
         f"    python scripts/determinism_study.py {' '.join(sys.argv[1:])}",
         "",
-        environment(),
+        f"{made_with}.",
         "",
         f"`{arguments.scenario}`, full physics and rendered camera, {arguments.duration} s.",
         "",
         "| seed | with log | without log | equal |",
         "|---|---|---|---|",
     ]
-    for seed in range(first, last + 1):
-        logged = run(arguments.scenario, seed, limit)["state_hash"]
-        bare = run(arguments.scenario, seed, [*limit, "--no-log"])["state_hash"]
-        equal = "yes" if logged == bare else "NO"
-        lines.append(f"| {seed} | `{logged[:16]}` | `{bare[:16]}` | {equal} |")
-        print(lines[-1], flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in parse_seeds(arguments.seeds):
+            job = Job(seed, folder, scenario, timeout=7200.0, keep="none")
+            logged, bare = (
+                run_job(replace(job, log=log)).get("state_hash", "crashed") for log in (True, False)
+            )
+            equal = "yes" if logged == bare else "NO"
+            lines.append(f"| {seed} | `{logged[:16]}` | `{bare[:16]}` | {equal} |")
+            print(lines[-1], flush=True)
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     arguments.out.write_text("\n".join(lines) + "\n")
 

@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from wilson import wilson
 
+from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
 from hsr8.recorder.frame_summary import from_line, to_line
 from hsr8.recorder.record import FrameRecord, TickRecord

@@ -23,8 +23,8 @@ import tyro
 from decision_study import Run
 from decision_world import TICK, perfect_belief
 from numpy.typing import NDArray
-from wilson import wilson
 
+from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from navigation.angles import wrap

@@ -1,6 +1,9 @@
 import json
 import os
+import re
+import shlex
 import signal
+from pathlib import Path
 
 import pytest
 
@@ -202,3 +205,19 @@ def test_progress_and_table_are_told(instant, capsys):
     assert "2/2 runs" in printed.err
     assert "success" in printed.out
     assert "sweeps/quick/report.md" in printed.out
+
+
+def test_the_page_about_sweeps_is_right(instant, monkeypatch, capsys):
+    """Every command of it, in order, on runs that end at once; then its Python."""
+    page = (Path(__file__).parents[3] / "docs" / "sweeps.md").read_text()
+    monkeypatch.setattr("hsr8.cli.sweep.require_gl", lambda: "none")
+    monkeypatch.setattr("os.fsync", lambda _: None)  # thousands of runs
+    instant()
+    commands = re.findall(r"^(hsr8 (?:sweep|compare) .*)$", page, re.M)
+    assert len(commands) > 6
+    for command in commands:
+        words = shlex.split(command.replace("$SLURM_ARRAY_TASK_ID", "3"), comments=True)
+        assert entry(words[1:]) == 0, command
+    for example in re.findall(r"^```python\n(.*?)^```", page, re.M | re.S):
+        exec(example, {})
+    assert "Share(count=200" in capsys.readouterr().out
