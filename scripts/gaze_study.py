@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 from decision_study import Run
 from scipy.stats import binomtest
-from wilson import wilson
 
+from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
 
 SWEEP = (
