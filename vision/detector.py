@@ -248,6 +248,8 @@ class Detector:
         parameters = self._parameters
         beacon = sighting.kind == "beacon"
         limit = parameters.beacon_range if beacon else parameters.obstacle_range
+        if not beacon:
+            cylinder = _somewhere_within(cylinder, parameters.max_radius, self._radius[0])
         distance, bearing, covariance = polar_in_robot(cylinder, view)
         if distance > limit or covariance[0, 0] > (parameters.max_relative_sigma * distance) ** 2:
             return None
@@ -274,6 +276,21 @@ def _doubted(sighting: _Sighting, cylinder: Cylinder) -> tuple[_Sighting, Cylind
         replace(sighting, occluded=True),
         replace(cylinder, covariance=factor * cylinder.covariance),
     )
+
+
+def _somewhere_within(cylinder: Cylinder, thickest: float, typical: float) -> Cylinder:
+    """What is thicker than any obstacle is one with something else: it stands anywhere in it.
+
+    Args:
+        cylinder: as located.
+        thickest: largest radius of an obstacle [m].
+        typical: mean radius of an obstacle [m].
+    """
+    if cylinder.radius <= thickest + 2.0 * sqrt(float(cylinder.covariance[2, 2])):
+        return cylinder
+    slack = cylinder.radius - typical
+    spread = np.diag([(slack / cylinder.distance) ** 2, slack * slack, slack * slack])
+    return replace(cylinder, covariance=cylinder.covariance + spread)
 
 
 def _cut_by(blob: Blob, body: NDArray[np.bool_]) -> Blob:

@@ -6,7 +6,7 @@ each direction and the upper outline to the farthest. Where one ends, the outlin
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ Labels = NDArray[np.uint8]
 
 MAX_CELLS = 128  # of the grid in each direction
 MIN_COLUMNS = 3  # a piece of an outline needs so many columns
+MIN_INNER = 2  # of them must be left when those at its steps are not used
 EXTRA_RADIUS = 0.04  # a cylinder may seem thicker or thinner by so much when matched [m]
 SIDE_SIGMA = 1.0  # standard deviation of an end of a piece [column]
 SIDE_MATCH = 2.5  # columns by which the sides of matching pieces may differ
@@ -97,8 +98,9 @@ def split(
         tolerance=SIDE_MATCH * grid.azimuth_step,
         parameters=parameters,
     )
+    feet = [low for low, high in groups if low is not None and high is None]
     parts = [
-        _part(low, high, grid, view=view, parameters=parameters, radius=radius)
+        _part(low, _over(low, high, feet), grid, view=view, parameters=parameters, radius=radius)
         for low, high in groups
     ]
     return [part for part in parts if part is not None]
@@ -181,6 +183,9 @@ class _Grid:
             chosen = np.flatnonzero(usable[a:b]) + a
             if len(chosen) < MIN_COLUMNS or 2 * len(chosen) < b - a:
                 continue
+            # The column at a step shows part of what stands beside it.
+            inner = chosen[((chosen > a) | (a == 0)) & ((chosen < b - 1) | (b == len(envelope)))]
+            chosen = inner if len(inner) >= MIN_INNER else chosen
             slopes = envelope[chosen]
             if (slopes * drop <= 0.0).any():
                 continue
@@ -292,6 +297,32 @@ def _match(
         *((lower[i], None) for i in sorted(feet)),
         *((None, upper[j]) for j in sorted(heads)),
     ]
+
+
+def _over(low: _Piece | None, high: _Piece | None, feet: Sequence[_Piece]) -> _Piece | None:
+    """What of an upper piece stands over its own foot, if it also covers another's.
+
+    Two heads nearly as far as each other leave no step in the upper outline.
+    """
+    if low is None or high is None:
+        return high
+    if not any(
+        min(high.left, foot.left) - max(high.right, foot.right) > 0.5 * (foot.left - foot.right)
+        for foot in feet
+    ):
+        return high
+    over = (high.azimuth > low.right) & (high.azimuth < low.left)
+    if np.count_nonzero(over) < MIN_INNER:
+        return None
+    return replace(
+        high,
+        right=max(high.right, low.right),
+        left=min(high.left, low.left),
+        right_true=high.right_true and high.right >= low.right,
+        left_true=high.left_true and high.left <= low.left,
+        azimuth=high.azimuth[over],
+        slope=high.slope[over],
+    )
 
 
 def _rim(piece: _Piece, sigma: float) -> Rim:

@@ -50,3 +50,37 @@ def test_a_lone_cylinder_is_never_seen_as_two(
 def test_the_nearer_of_two_is_whole_and_the_farther_is_occluded(offset: float) -> None:
     parts = parts_of([at(0.9, 0.0, "red", 0.08), at(1.5, offset, "red", 0.07)])
     assert sorted(part.occluded for part in parts) == [False, True]
+
+
+def test_of_two_of_a_colour_the_hidden_one_is_placed_as_well_as_it_says() -> None:
+    """In all positions to each other; a column beside a step belongs to neither."""
+    rng = np.random.default_rng(0)
+    detector = Detector(CAMERA, VisionParameters())
+    errors = []
+    for _ in range(60):
+        near = rng.uniform(1.2, 2.6)
+        far = rng.uniform(near + 0.4, 3.6)
+        radii = rng.uniform(0.05, 0.12, 2)
+        apart = np.degrees(rng.uniform(-1.1, 1.1) * (radii[0] / near + radii[1] / far))
+        place = rng.uniform(-20, 20)
+        things = [at(near, place, "red", radii[0]), at(far, place + apart, "red", radii[1])]
+        view = pose(pan=rng.uniform(-0.3, 0.3), tilt=rng.uniform(-0.45, -0.1), sigma=0.0009)
+        distance, bearing = far, np.radians(place + apart)
+        for d in detector.detect(paint(things, view), view):
+            if abs(d.distance - far) < abs(d.distance - near):
+                error = np.array([d.distance - distance, d.bearing - bearing])
+                errors.append(error / np.sqrt(np.diag(d.covariance)))
+    assert len(errors) > 50
+    assert np.mean(np.square(errors), axis=0).max() < 1.0
+    assert np.abs(errors).max() < 3.5
+
+
+def test_what_is_thicker_than_any_obstacle_stands_anywhere_within() -> None:
+    """Two side by side at one distance leave no step in their outline."""
+    view = pose(tilt=-0.3, sigma=0.0009)
+    pair = [at(1.6, -2.7, "red", 0.08), at(1.6, 2.7, "red", 0.08)]
+    (blob,) = Detector(CAMERA, VisionParameters()).detect(paint(pair, view), view)
+    assert blob.radius > 0.13
+    sigma = np.sqrt(blob.covariance[1, 1])
+    assert abs(blob.bearing - np.radians(2.7)) < 1.5 * sigma
+    assert abs(blob.bearing + np.radians(2.7)) < 1.5 * sigma
