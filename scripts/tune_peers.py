@@ -29,7 +29,6 @@ from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from navigation.angles import wrap
 from navigation.belief import Belief
-from navigation.peers.parameters import PlannerParameters
 
 Array = NDArray[np.float64]
 
@@ -38,31 +37,44 @@ POSITION_SIGMA, VELOCITY_SIGMA, ERROR_TIME = 0.02, 0.02, 1.0  # [m], [m/s], [s]
 POSE_SIGMA = np.array([0.012, 0.012, 0.015])  # [m, m, rad]
 VELOCITY_LAG, SIGHT = 0.6, 2.5  # [s], [m]
 
-# Parameter: smallest and largest value, drawn uniformly in the logarithm.
-RANGES: dict[str, dict[str, tuple[float, float]]] = {
+# Parameter: smallest value, value by hand, largest; drawn uniformly in the logarithm.
+RANGES: dict[str, dict[str, tuple[float, float, float]]] = {
     "univector-plain": {
-        "margin": (0.02, 0.10), "eta_vo": (0.1, 1.5), "d_e": (0.08, 0.40),
-        "d_b": (0.10, 0.60), "k_r": (0.10, 0.50),
+        "margin": (0.02, 0.05, 0.1), "eta_vo": (0.1, 0.5, 1.5), "d_e": (0.08, 0.2, 0.4),
+        "d_b": (0.1, 0.25, 0.6), "k_r": (0.1, 0.3, 0.5),
     },
     "n-posture": {
-        "margin": (0.02, 0.10), "gain": (1.0, 8.0), "offset": (0.05, 0.40),
-        "lead": (0.2, 3.0), "d_min": (0.01, 0.15), "delta": (0.05, 0.30),
+        "margin": (0.02, 0.05, 0.1), "gain": (1.0, 2.0, 8.0), "offset": (0.05, 0.25, 0.4),
+        "lead": (0.2, 1.0, 3.0), "d_min": (0.01, 0.05, 0.15), "delta": (0.05, 0.15, 0.3),
     },
     "apf": {
-        "margin": (0.02, 0.10), "influence": (0.15, 0.80), "gain": (0.005, 0.2),
-        "reaction": (0.3, 3.0), "swirl": (0.1, 2.0),
+        "margin": (0.02, 0.05, 0.1), "influence": (0.15, 0.45, 0.8), "gain": (0.005, 0.02, 0.2),
+        "reaction": (0.3, 0.8, 3.0), "swirl": (0.1, 0.6, 2.0),
     },
-    "orca": {"margin": (0.02, 0.10), "horizon": (2.0, 10.0), "static_horizon": (0.8, 5.0)},
+    "orca": {
+        "margin": (0.02, 0.05, 0.1), "horizon": (2.0, 5.0, 10.0),
+        "static_horizon": (0.8, 2.0, 5.0),
+    },
     "dwa": {
-        "margin": (0.02, 0.10), "horizon": (1.5, 6.0), "heading_weight": (0.1, 1.0),
-        "clearance_weight": (0.1, 2.0), "clearance": (0.08, 0.40), "contact_weight": (2.0, 20.0),
+        "margin": (0.02, 0.05, 0.1), "horizon": (1.5, 3.0, 6.0),
+        "heading_weight": (0.1, 0.3, 1.0), "clearance_weight": (0.1, 0.4, 2.0),
+        "clearance": (0.08, 0.25, 0.4), "contact_weight": (2.0, 6.0, 20.0),
     },
     "mppi": {
-        "margin": (0.02, 0.10), "spread": (0.2, 1.0), "persistence": (0.5, 0.95),
-        "temperature": (0.01, 0.3), "heading_weight": (0.05, 1.0),
-        "clearance_weight": (0.1, 2.0), "clearance": (0.08, 0.40), "contact_weight": (2.0, 20.0),
+        "margin": (0.02, 0.05, 0.1), "spread": (0.2, 0.5, 1.0), "persistence": (0.5, 0.8, 0.95),
+        "temperature": (0.01, 0.05, 0.3), "heading_weight": (0.05, 0.2, 1.0),
+        "clearance_weight": (0.1, 0.5, 2.0), "clearance": (0.08, 0.15, 0.4),
+        "contact_weight": (2.0, 8.0, 20.0),
     },
 }  # fmt: skip
+
+TUNING_HEAD = """\
+| planner | score by hand | tuned | successes by hand | tuned | time by hand [s] | tuned | values |
+|---|---|---|---|---|---|---|---|"""
+COMPARISON_HEAD = """\
+| scenario | planner | successes | % [95 %] | contacts | time-outs | median time [s] | median \
+clearance [cm] | CPU per decision [ms] |
+|---|---|---|---|---|---|---|---|---|"""
 
 Settings = dict[str, float]
 Row = dict[str, Any]
@@ -148,20 +160,14 @@ def section(method: str) -> str:
     return method.replace("-", "_")
 
 
-def defaults(method: str) -> Settings:
-    """Present values of what is tuned."""
-    own = getattr(PlannerParameters(), section(method))
-    return {name: float(getattr(own, name)) for name in RANGES[method]}
-
-
 def drawn(method: str, count: int) -> Iterator[Settings]:
-    """The defaults, then `count` - 1 sets drawn from the ranges."""
-    yield defaults(method)
+    """The values by hand, then `count` - 1 sets drawn from the ranges."""
+    yield {name: hand for name, (_, hand, _) in RANGES[method].items()}
     rng = np.random.default_rng(np.random.SeedSequence([ord(c) for c in method]))
     for _ in range(count - 1):
         yield {
             name: float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3g}")
-            for name, (low, high) in RANGES[method].items()
+            for name, (low, _, high) in RANGES[method].items()
         }
 
 
@@ -193,17 +199,17 @@ def tune(
     *,
     out: Path,
     methods: tuple[str, ...] = tuple(RANGES),
-    candidates: int = 12,
-    seeds: int = 5,
-    finalists: int = 4,
+    candidates: int = 16,
+    seeds: int = 6,
+    finalists: int = 3,
     more: int = 10,
 ) -> None:
-    """Tune peers; resumes where it stopped.
+    """Tune peers and print a table; resumes where it stopped.
 
     Args:
         out: folder of tune.jsonl.
         methods: peers.
-        candidates: parameter sets per peer, the present defaults among them.
+        candidates: parameter sets per peer, the one by hand among them.
         seeds: worlds for each of them, seeds from 0.
         finalists: sets that go on.
         more: further worlds for those.
@@ -227,6 +233,7 @@ def tune(
             found.append(done[key])
         return found
 
+    print(TUNING_HEAD, flush=True)
     for method in methods:
         table = [(s, rows(method, s, range(seeds))) for s in drawn(method, candidates)]
         first = table[0][0]
@@ -238,10 +245,11 @@ def tune(
         final.sort(key=lambda pair: mean(pair[1]), reverse=True)
         before = next(r for s, r in final if s == first)
         best, after = final[0]
+        changes = ", ".join(f"`{k}` {first[k]:g} -> {best[k]:g}" for k in best)
+        good = [sum(r["success"] for r in rows) for rows in (before, after)]
         print(
-            f"{method}: score {mean(before)[0]:.3f} -> {mean(after)[0]:.3f}, success "
-            f"{sum(r['success'] for r in before)} -> {sum(r['success'] for r in after)} of "
-            f"{len(after)}; {best}",
+            f"| {method} | {mean(before)[0]:.3f} | {mean(after)[0]:.3f} | {good[0]} | {good[1]} | "
+            f"{-mean(before)[1]:.0f} | {-mean(after)[1]:.0f} | {changes} |",
             flush=True,
         )
 
@@ -254,7 +262,7 @@ def compare(
     first: int = 1000,
     runs: int = 50,
 ) -> None:
-    """Compare the planners with their defaults on held-out seeds; resumes.
+    """Compare the planners on held-out seeds and print a table; resumes.
 
     Args:
         out: folder of compare.jsonl.
@@ -269,6 +277,7 @@ def compare(
     if file.exists():
         for row in map(json.loads, file.read_text().splitlines()):
             done[row["scenario"], row["method"], row["seed"]] = row
+    print(COMPARISON_HEAD, flush=True)
     for scenario in scenarios:
         for seed in range(first, first + runs):
             for method in methods:

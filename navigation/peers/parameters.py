@@ -17,15 +17,15 @@ Method = Literal["univector", "univector-plain", "n-posture", "apf", "orca", "dw
 class PlainUnivectorParameters:
     """Univector field of static discs: no virtual obstacle, no speed, no filter."""
 
-    margin: NonNegative = 0.05
+    margin: NonNegative = 0.0508
     """Distance kept from the bodies of obstacles [m]."""
-    eta_vo: NonNegative = 0.5
+    eta_vo: NonNegative = 0.31
     """Growth of the radius of a mover with its speed [s]."""
-    d_e: Positive = 0.20
+    d_e: Positive = 0.125
     """Radius offset of the spiral (9) [m]."""
-    d_b: Positive = 0.25
+    d_b: Positive = 0.341
     """Width of the outer band of (9) [m]."""
-    k_r: Positive = 0.30
+    k_r: Positive = 0.105
     """Curvature of the outer spiral (9) [m]."""
 
 
@@ -33,17 +33,17 @@ class PlainUnivectorParameters:
 class NPostureParameters:
     """Posture field of Kim with the obstacle field of Lim."""
 
-    margin: NonNegative = 0.05
+    margin: NonNegative = 0.0368
     """Distance kept from the bodies of obstacles [m]."""
-    gain: Positive = 2.0
+    gain: Positive = 2.29
     """Winding n of the posture field [1]."""
-    offset: Positive = 0.25
+    offset: Positive = 0.0545
     """Distance d of the point behind the destination that bends the field [m]."""
-    lead: NonNegative = 1.0
+    lead: NonNegative = 1.03
     """Displacement K_o of an obstacle per velocity relative to the robot [s]."""
-    d_min: NonNegative = 0.05
+    d_min: NonNegative = 0.0278
     """Gap within which only the obstacle counts [m]."""
-    delta: Positive = 0.15
+    delta: Positive = 0.151
     """Width of the Gaussian over which it loses its weight [m]."""
 
 
@@ -51,15 +51,15 @@ class NPostureParameters:
 class ApfParameters:
     """Artificial potential field with moving obstacles."""
 
-    margin: NonNegative = 0.05
+    margin: NonNegative = 0.0258
     """Distance kept from the bodies of obstacles [m]."""
-    influence: Positive = 0.45
+    influence: Positive = 0.784
     """Gap within which an obstacle repels [m]."""
-    gain: Positive = 0.02
+    gain: Positive = 0.153
     """Repulsion, as a share of the largest speed [m]."""
-    reaction: NonNegative = 0.8
+    reaction: NonNegative = 0.489
     """Time of approach by which the gap counts as shorter [s]."""
-    swirl: NonNegative = 0.6
+    swirl: NonNegative = 0.979
     """Tangential part of the repulsion [1]."""
 
 
@@ -67,11 +67,11 @@ class ApfParameters:
 class OrcaParameters:
     """Optimal reciprocal collision avoidance, with full responsibility."""
 
-    margin: NonNegative = 0.05
+    margin: NonNegative = 0.0987
     """Distance kept from the bodies of obstacles [m]."""
-    horizon: Positive = 5.0
+    horizon: Positive = 9.52
     """Time for which movers are avoided [s]."""
-    static_horizon: Positive = 2.0
+    static_horizon: Positive = 2.13
     """Time for which static obstacles are avoided [s]."""
     responsibility: Annotated[float, Gt(0.0), Le(1.0)] = 1.0
     """Share of the avoidance taken by the robot; obstacles that never give way leave all [1]."""

@@ -249,11 +249,10 @@ def test_orca_looks_farther_ahead_for_movers_than_for_what_stands(belief, task, 
 
 def test_the_plain_field_gives_a_fast_mover_more_room(belief, task, track, limits):
     p = PlannerParameters().univector_plain
-    edge = 0.2 + p.margin + p.eta_vo * 0.02 + p.d_e + p.d_b + 0.34 * limits.forward
-    place = (edge + 0.01, 0.05)
+    edge = 0.2 + p.margin + p.d_e + p.d_b + p.eta_vo * 0.1
     slow, fast = (
         planner("univector-plain", limits)
-        .plan(belief([track(place, (0.0, v))]), task((2.0, 0.0)))
+        .plan(belief([track((edge, 0.02 - FOOTSTEP * v), (0.0, v))]), task((2.0, 0.0)))
         .velocity
         for v in (0.0, 0.2)
     )
