@@ -81,17 +81,17 @@ class OrcaParameters:
 class DwaParameters:
     """Dynamic window over velocities reachable in one footstep."""
 
-    margin: NonNegative = 0.05
+    margin: NonNegative = 0.0483
     """Distance kept from the bodies of obstacles [m]."""
-    horizon: Positive = 3.0
+    horizon: Positive = 1.88
     """Time a velocity is kept for when it is judged [s]."""
-    heading_weight: NonNegative = 0.3
+    heading_weight: NonNegative = 0.227
     """Weight of the heading left to turn [1]."""
-    clearance_weight: NonNegative = 0.4
+    clearance_weight: NonNegative = 0.989
     """Weight of the gap to the nearest obstacle [1]."""
-    clearance: Positive = 0.25
+    clearance: Positive = 0.188
     """Gap from which on it does not matter [m]."""
-    contact_weight: NonNegative = 6.0
+    contact_weight: NonNegative = 6.82
     """Weight of a contact, the sooner the more [1]."""
 
 

@@ -80,7 +80,7 @@ class Situation:
         return np.array([c * forward - s * left, s * forward + c * left])
 
     def radii(self, margin: float) -> Array:
-        """Distances of the robot's centre not to go below (n,) [m], without its own radius."""
+        """Radii of the obstacles with their uncertainty and a margin (n,) [m]."""
         return self.obstacles.radius + self.swelling + margin
 
     def yielding(self, gap: Array) -> Array:
