@@ -55,7 +55,9 @@ class Track:
         last_seen: where it was detected last (2,) [m].
         visible: detected in the latest frame.
         particles: hypotheses of a lost track that may move, else None.
-        reach: radius of the disc about `last_seen` that its axis cannot have left [m].
+        reach: radius of the disc about `last_seen` that its axis cannot have left by the time of
+            the frame: three standard deviations of that sighting and, unless it stands still,
+            the way of the fastest obstacle since [m].
     """
 
     id: int

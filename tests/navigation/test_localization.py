@@ -84,6 +84,39 @@ def test_is_honest_whatever_the_heading():
     assert 0.6 < np.mean(nees) < 1.6
 
 
+def updates(count):
+    """Random odometry, gaps, noise and beacons, outliers among them, for so many frames."""
+    rng = np.random.default_rng(7)
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    pose, time = np.zeros(3), 0.0
+    for _ in range(count):
+        time += float(rng.choice([0.06, 0.06, 0.5, 5.0]))
+        motion = 10.0 ** rng.uniform(-9, -3, 3)
+        step = rng.normal((0.01, 0.0, 0.02), np.sqrt(motion))
+        c, s = cos(pose[2]), sin(pose[2])
+        pose += [c * step[0] - s * step[1], s * step[0] + c * step[1], step[2]]
+        seen = []
+        for name in rng.choice(list(BEACONS), rng.integers(0, 4), replace=False).tolist():
+            sigma = 10.0 ** rng.uniform(-4, -0.5, 2)
+            scale = 1.0 if rng.random() > 0.02 else 100.0
+            observation = beacon(pose, name, noise=scale * rng.normal(0, sigma))
+            seen.append(replace(observation, covariance=np.diag(sigma**2)))
+        localizer.update(frame(time, pose, seen, motion))
+        covariance = localizer.covariance
+        assert np.array_equal(covariance, covariance.T)
+        assert np.linalg.eigvalsh(covariance)[0] > 0.0
+    assert localizer.faults == 0
+
+
+def test_covariance_stays_positive_definite_over_1000_random_updates():
+    updates(1000)
+
+
+@pytest.mark.slow
+def test_covariance_stays_positive_definite_over_100000_random_updates():
+    updates(100_000)
+
+
 def test_rotating_the_world_rotates_the_estimate():
     def final(turn):
         c, s = cos(turn), sin(turn)
