@@ -240,9 +240,9 @@ class Attempt:
     def _lanes_clear(self, lane: Lane, other: Lane) -> bool:
         """Lanes do not touch; where they may cross, the movers are never there together."""
         room = LANE_TO_LANE + lane.obstacle.radius + other.obstacle.radius
-        if lane.crosses or other.crosses:
-            return apart_at_all_times(lane, other, room)
-        return bool((distance(lane.path, other.path) >= room).all())
+        if (distance(lane.path, other.path) >= room).all():
+            return True
+        return (lane.crosses or other.crosses) and apart_at_all_times(lane, other, room)
 
     def _draw_encounters(self, start: Point, points: Sequence[Point]) -> None:
         encounters = self._world.encounters

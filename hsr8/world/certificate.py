@@ -111,7 +111,7 @@ def least_clearance(layout: Layout, path: Array) -> float:
     return float(min(gaps, default=np.inf))
 
 
-def straight_length(layout: Layout) -> float:
-    """Length of the straight lines from the start through all points [m]."""
-    places = [layout.start[:2], *layout.waypoints.tolist()]
+def straight_length(layout: Layout, most_points: int | None = None) -> float:
+    """Length of the straight lines from the start through all, or the first, points [m]."""
+    places = [layout.start[:2], *layout.waypoints[:most_points].tolist()]
     return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(places))

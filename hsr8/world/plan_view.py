@@ -59,6 +59,7 @@ class PlanView:
         for beacon in self._layout.beacons:
             canvas.beacon(beacon.position, _rgb(beacon.top), _rgb(beacon.bottom))
         self._robot()
+        self._numbers()
         return canvas.image
 
     def _obstacle(self, number: int, obstacle: Obstacle) -> None:
@@ -77,7 +78,6 @@ class PlanView:
         colour = ROUTE if last < FEW else tuple((np.add(ROUTE, FLOOR) // 2).tolist())
         for leg in pairwise(places):
             self._canvas.line(leg, colour)
-        numbers: dict[tuple[float, float], list[str]] = {}
         for k, place in enumerate(places[1:], start=1):
             if k == last and not self._layout.endless:
                 self._canvas.ring(place, 0.10, ROUTE)
@@ -85,11 +85,15 @@ class PlanView:
                     heading = self._layout.goal_heading
                     self._arrow(place, (0.12 * np.cos(heading), 0.12 * np.sin(heading)), ROUTE)
             self._canvas.disc(place, 0.035, ROUTE)
-            x, y = place.tolist()
+
+    def _numbers(self) -> None:
+        """Numbers of the points, side by side where the robot comes by again."""
+        numbers: dict[tuple[float, float], list[str]] = {}
+        for k, (x, y) in enumerate(self._layout.waypoints.tolist(), start=1):
             numbers.setdefault((x, y), []).append(str(k))
-        if last <= FEW:
+        if len(self._layout.waypoints) <= FEW:
             for at, passed in numbers.items():
-                self._canvas.text(at, ",".join(passed), ROUTE)
+                self._canvas.text(at, ",".join(passed), ROUTE, size=0.5)
 
     def _certificate(self) -> None:
         """The way that was found, with a mark for every ten seconds."""

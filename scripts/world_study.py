@@ -1,0 +1,138 @@
+"""How many drawn worlds are rejected, and what the certificates of the others are like.
+
+    python scripts/world_study.py --seeds 0-99 --write
+
+The nominal walk is that of ``world.encounters``: straight from point to point at a steady
+pace, blind. A world that it crosses without a contact asks nothing of navigation.
+"""
+
+import argparse
+import platform
+from importlib.metadata import version
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from hsr8.render.png import write_png
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from hsr8.scenario.world import ROBOT_RADIUS
+from hsr8.world.certificate import least_clearance, straight_length
+from hsr8.world.encounter import NominalWalk
+from hsr8.world.generator import draw_world
+from hsr8.world.layout import Layout
+from hsr8.world.plan_view import PlanView
+
+PICTURED = "course crowd dense fast conflict behind corridor crossing blind-corner"
+FAMILIES = f"{PICTURED} paper quick"
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "worlds.md"
+PICTURES = PAGE.parents[1] / "images" / "worlds"
+PICTURE = 640  # longer side [pixel]
+STEP = 0.05  # of the nominal walk [s]
+HEADER = (
+    "family | static + moving | rejected | crowded | nominal walk hits | way [m] | over straight | "
+    "time [s] | least clearance [m] | to draw and certify [s]"
+)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", default="0-99", help="first-last, both included")
+    parser.add_argument("--families", nargs="+", default=FAMILIES.split())
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} and pictures")
+    options = parser.parse_args()
+    first, last = (int(part) for part in options.seeds.split("-"))
+    table = [f"| {HEADER} |", "|---" * (HEADER.count("|") + 1) + "|"]
+    for name in options.families:
+        table.append(row(name, range(first, last + 1)))
+        print(table[-1], flush=True)
+    if options.write:
+        for name in PICTURED.split():
+            scenario = load(name)
+            world = draw_world(scenario, scenario.seed)
+            picture = PlanView(world.layout, PICTURE, world.certificate).draw()
+            write_png(PICTURES / f"{name}.png", picture)
+        PAGE.write_text(page(options.seeds, table))
+
+
+def row(name: str, seeds: range) -> str:
+    """One family."""
+    scenario = load(name)
+    rejected, crowded, hits, cost, ways = 0, 0, 0, [], []
+    for seed in seeds:
+        begin = perf_counter()
+        world = draw_world(scenario, seed)
+        cost.append(perf_counter() - begin)
+        rejected += world.rejected
+        crowded += world.crowded
+        hits += hits_blindly(scenario, world.layout)
+        certificate, n = world.certificate, world.certificate.points
+        straight = straight_length(world.layout, n)
+        clearance = least_clearance(world.layout, certificate.path)
+        ways.append(
+            (certificate.length, certificate.length / straight, certificate.time, clearance)
+        )
+    length, over, time, clearance = np.array(ways).T
+    cells = [
+        f"`{name}`",
+        f"{len(world.layout.static)} + {len(world.layout.movers)}",
+        f"{rejected} of {len(seeds) + rejected}",
+        f"{crowded}",
+        f"{hits / len(seeds):.0%}",
+        spread(length, ".1f"),
+        f"{np.median(over):.2f}",
+        spread(time, ".0f"),
+        f"{clearance.min():.3f}",
+        f"{np.mean(cost):.2f}, at most {np.max(cost):.2f}",
+    ]
+    return "| " + " | ".join(cells) + " |"
+
+
+def hits_blindly(scenario: Scenario, layout: Layout) -> bool:
+    """Whether a robot on the nominal walk touches anything; a tour is walked once round."""
+    start = layout.start[:2]
+    pace = scenario.world.encounters.pace * scenario.robot.speed.forward
+    walk = NominalWalk([start, *map(tuple, layout.waypoints.tolist())], pace)
+    times = np.arange(0.0, walk.duration, STEP).tolist()
+    places = np.array([walk.at(time)[0] for time in times])
+    for o in layout.obstacles:
+        at = np.array([o.motion.position(t) for t in times]) if o.motion else o.position
+        if np.hypot(*(places - at).T).min() < o.radius + ROBOT_RADIUS:
+            return True
+    return False
+
+
+def spread(values: np.ndarray, form: str) -> str:
+    """Median and the range of nine in ten."""
+    low, middle, high = np.quantile(values, (0.05, 0.5, 0.95))
+    return f"{middle:{form}} ({low:{form}} to {high:{form}})"
+
+
+def page(seeds: str, table: list[str]) -> str:
+    """The page of results."""
+    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "numpy"))
+    lines = [
+        "# Worlds: rejections and certificates",
+        "",
+        f"    python scripts/world_study.py --seeds {seeds} --write",
+        "",
+        f"{versions}; Python {platform.python_version()}, {platform.machine()}. Seeds {seeds}.",
+        "",
+        "Rejected: worlds drawn without a way through, of all drawn. Crowded: attempts in which "
+        "something found no place. Nominal walk hits: a blind robot that goes straight from point "
+        "to point at the nominal pace touches something. Way, its ratio to the straight lines, "
+        "time: of the certificates, median and the range of nine in ten worlds. Of `paper` the "
+        "certificate covers the first 8 points of the tour; its nominal walk is the whole tour "
+        "once. Least clearance: the smallest of all certificates, between the robot's circle and "
+        "any surface; 0.02 m is asked for. Time to draw and certify: wall time on a machine that "
+        "was busy with other work as well.",
+        "",
+        *table,
+        "",
+    ]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()
