@@ -1,14 +1,19 @@
 """Command lines taken apart, and put together again for people to type."""
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from hsr8.cli.options import Check, Run, Sweep
 
 
 def settings(options: Run | Check | Sweep) -> tuple[str, ...]:
     """Every ``key=value`` of every ``--set``."""
-    return tuple(setting for group in options.set for setting in group)
+    return flat(options.set)
+
+
+def flat(groups: Iterable[Iterable[str]]) -> tuple[str, ...]:
+    """Every value of an option that may be repeated."""
+    return tuple(value for group in groups for value in group)
 
 
 def run_words(options: Run | Check | Sweep, more: Sequence[str] = ()) -> tuple[str, ...]:

@@ -8,16 +8,17 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 
 from rich.console import Console
 from rich.table import Table
 
-from hsr8.cli.command_line import run_words, settings
+from hsr8.cli.command_line import flat, run_words, settings
 from hsr8.cli.options import Sweep
 from hsr8.cli.run import option_tables
-from hsr8.errors import UsageError
+from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, code_digest
 from hsr8.evaluation.sweep.driver import drive, pending
 from hsr8.evaluation.sweep.executor import open_executor, parse_executor
@@ -51,37 +52,32 @@ def main(options: Sweep) -> int:
     shard = None if options.shard is None else parse_shard(options.shard)
     workers = _workers(options)
     kind, _ = parse_executor(options.executor)
+    if options.timeout is not None and not options.timeout > 0.0:
+        raise UsageError(f"--timeout {options.timeout:g}: give a time above 0 s")
     variants = _variants(options)
     scenarios = {name: _scenario(options, more) for name, more in variants.items()}
     if kind == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
         require_gl()
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
+    common = Definition.now("", (), "")
     sweeps: dict[str, SweepFolder] = {}
+    jobs: list[Job] = []
     with ExitStack() as stack:
-        jobs: list[Job] = []
         for name, scenario in scenarios.items():
-            definition = Definition.now(
-                scenario.name, run_words(options, variants[name]), dump(scenario)
+            definition = replace(
+                common,
+                name=scenario.name,
+                again=run_words(options, variants[name]),
+                scenario=dump(scenario),
             )
             folder = SweepFolder.open(out / name, definition)
             folder.lock(shard)
             stack.callback(folder.close)
             sweeps[str(folder.path.resolve())] = folder
-            timeout = options.timeout or START + SLOWEST * scenario.duration
-            jobs += [
-                Job(
-                    seed,
-                    str(folder.path.resolve()),
-                    definition.scenario,
-                    timeout,
-                    log=options.log,
-                    keep=options.keep,
-                )
-                for seed in pending(seeds, folder.rows(), shard)
-            ]
-        mine = len(seeds if shard is None else seeds[shard[0] - 1 :: shard[1]]) * len(sweeps)
+            jobs += _jobs(options, folder, scenario, pending(seeds, folder.rows(), shard))
+        mine = len(pending(seeds, (), shard)) * len(sweeps)
         interrupted = _run(options, jobs, sweeps, workers, mine)
-        if jobs and code_digest() != definition.code:
+        if jobs and code_digest() != common.code:
             print(CHANGED, file=sys.stderr)
         command = _command(options)
         summaries = {}
@@ -90,9 +86,24 @@ def main(options: Sweep) -> int:
             folder.write_results(write_report(folder.definition, rows, command))
             summaries[name] = summarize(rows)
         if options.vary:
-            _write_values(options, out, summaries, next(iter(sweeps.values())), command)
+            _write_values(options, out, summaries, common.made_with(), command)
     _tell(options, out, summaries, command if interrupted else "")
     return INTERRUPTED if interrupted else _exit_code(list(summaries.values()))
+
+
+def _jobs(
+    options: Sweep, folder: SweepFolder, scenario: Scenario, seeds: Sequence[int]
+) -> list[Job]:
+    """One for each of the seeds."""
+    common = Job(
+        seed=0,
+        folder=str(folder.path.resolve()),
+        scenario=folder.definition.scenario,
+        timeout=options.timeout or START + SLOWEST * scenario.duration,
+        log=options.log,
+        keep=options.keep,
+    )
+    return [replace(common, seed=seed) for seed in seeds]
 
 
 def _run(
@@ -135,7 +146,7 @@ def _workers(options: Sweep) -> int:
 
 def _variants(options: Sweep) -> dict[str, tuple[str, ...]]:
     """Settings of every combination of varied values, by the name of its folder."""
-    varied = [parse_values(text) for text in settings_of(options.vary)]
+    varied = [parse_values(text) for text in flat(options.vary)]
     keys = [key for key, _ in varied]
     if len(set(keys)) < len(keys):
         raise UsageError("--vary names a key twice: give all its values in one")
@@ -144,11 +155,6 @@ def _variants(options: Sweep) -> dict[str, tuple[str, ...]]:
     if not 1 <= len(variants) <= MOST_VARIANTS:
         raise UsageError(f"--vary: at most {MOST_VARIANTS} combinations of values")
     return variants
-
-
-def settings_of(groups: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
-    """Every value of an option that may be repeated."""
-    return tuple(value for group in groups for value in group)
 
 
 def _folder_name(combination: Sequence[str]) -> str:
@@ -177,17 +183,16 @@ def _write_values(
     options: Sweep,
     out: Path,
     summaries: dict[str, Summary],
-    folder: SweepFolder,
+    made_with: str,
     command: str,
 ) -> None:
-    keys = ", ".join(parse_values(text)[0] for text in settings_of(options.vary))
-    made_with = folder.definition.made_with()
+    keys = ", ".join(parse_values(text)[0] for text in flat(options.vary))
     try:
         atomic.write_text(
             out / REPORT, write_comparison_of_values(keys, summaries, command, made_with)
         )
     except OSError as error:
-        raise UsageError(f"cannot write {out / REPORT}: {error.strerror}") from error
+        raise Hsr8Error(f"cannot write {out / REPORT}: {error.strerror}") from error
 
 
 def _tell(options: Sweep, out: Path, summaries: dict[str, Summary], go_on: str) -> None:

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Self, TextIO
 
-from hsr8.errors import UsageError
+from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, differences, version_differences
 from hsr8.evaluation.sweep.job import CRASHED, Row
 from hsr8.evaluation.sweep.table import write_table
@@ -127,7 +127,7 @@ class SweepFolder:
         """Write the results of runs that ended.
 
         Raises:
-            UsageError: the disk takes no more.
+            Hsr8Error: the disk takes no more.
         """
         assert self._ledger is not None, "lock comes first"
         try:
@@ -135,20 +135,20 @@ class SweepFolder:
             self._ledger.flush()
             os.fsync(self._ledger.fileno())
         except OSError as error:
-            raise UsageError(f"cannot write {self._ledger.name}: {error.strerror}") from error
+            raise Hsr8Error(f"cannot write {self._ledger.name}: {error.strerror}") from error
 
     def write_results(self, text: str) -> None:
         """Write the table of all rows, and `text` as the report.
 
         Raises:
-            UsageError: they cannot be written.
+            Hsr8Error: they cannot be written.
         """
         try:
             with _alone(self.path):
                 write_table(self.path / TABLE, self.rows())
                 atomic.write_text(self.path / REPORT, text)
         except OSError as error:
-            raise UsageError(f"cannot write in {self.path}: {error.strerror}") from error
+            raise Hsr8Error(f"cannot write in {self.path}: {error.strerror}") from error
 
     def close(self) -> None:
         """Let others write."""

@@ -174,6 +174,7 @@ def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_
         (["--seeds", "x"], "--seeds"),
         (["--seeds", "0:2", "--workers", "0"], "--workers"),
         (["--seeds", "0:2", "--shard", "3/2"], "--shard"),
+        (["--seeds", "0:2", "--timeout", "0"], "--timeout"),
         (["--seeds", "0:2", "--vary", "a"], "--vary"),
         (["--seeds", "0:2", "--vary", "seed=1,2", "seed=3"], "twice"),
         (["--seeds", "0:2", "--vary", "wrld.n=1,2"], "world"),
@@ -196,6 +197,22 @@ def test_a_program_that_changes_under_way_is_told(instant, monkeypatch, capsys):
     instant()
     entry([*FAST, "--seeds", "0:2"])
     assert "changed during the sweep" in capsys.readouterr().err
+
+
+def test_a_full_disk_is_told_and_results_stay(instant, tmp_path, monkeypatch, capsys):
+    instant()
+    entry([*FAST, "--seeds", "0:2"])
+
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("hsr8.evaluation.sweep.folder.os.fsync", full)
+    stopped = instant()
+    assert entry([*FAST, "--seeds", "0:4"]) == 3
+    assert "No space left on device" in capsys.readouterr().err
+    assert stopped.closed
+    rows = SweepFolder.read(tmp_path / "sweeps" / "quick").rows()
+    assert {r["seed"] for r in rows} >= {0, 1}
 
 
 def test_progress_and_table_are_told(instant, capsys):
