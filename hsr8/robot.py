@@ -100,6 +100,7 @@ class Robot:
         self._script = script
         self._frames = 0
         self._taken: deque[tuple[float, WalkingState]] = deque(maxlen=UNDER_WAY)
+        self._state: WalkingState | None = None  # after this tick, once it was asked for
         self._odometry: Odometry | None = None
         self.command: Command = VelocityCommand()
         self.tally = WalkTally()
@@ -112,17 +113,20 @@ class Robot:
             self.command = self._script.at(sensed.time)
         started = perf_counter()
         targets = self._walking.step(sensed.body, self.command, self.head)
+        self._state = None
         if not self._walking.down:
             self.tally.add(self._walking, perf_counter() - started)
         if sensed.shutter:
-            self._taken.append((sensed.time, self._walking.state()))
+            self._taken.append((sensed.time, self.walking_state()))
         if sensed.image is not None or sensed.detections is not None:
             self._perceive(sensed)
         return targets
 
     def walking_state(self) -> WalkingState:
         """What the walking engine knows of itself."""
-        return self._walking.state()
+        if self._state is None:
+            self._state = self._walking.state()
+        return self._state
 
     def _perceive(self, sensed: SensorFrame) -> None:
         then = self._state_at(sensed.captured)
@@ -136,7 +140,7 @@ class Robot:
             detections = self._vision.detect(sensed.image, camera_pose(then.camera, self._pose))
         measured = self._frame(sensed.captured, then, detections)
         estimate = self._belief.update(measured)
-        state = self._walking.state() if sensed.time > sensed.captured else then
+        state = self.walking_state() if sensed.time > sensed.captured else then
         now = Now(sensed.time, _odometry(state), self._view(state), state.step_count)
         decided = self._decisions.make(estimate, measured, now)
         if self._script is None:

@@ -1,6 +1,7 @@
 """Results of a run: a listener that compares what happened with what was believed."""
 
 import time as clock
+from collections.abc import Sequence
 from math import degrees, hypot, inf, isfinite, sqrt
 
 import numpy as np
@@ -181,8 +182,7 @@ class Metrics:
         self._nees += float(error @ np.linalg.solve(belief.pose_covariance, error)) / 3.0
         self._lost += belief.lost
         self._faults = belief.filter_faults
-        for track in belief.tracks:
-            self._match(track, truth)
+        self._match(belief.tracks, truth)
         self._tracks.add(frame, truth)
         gaze = (frame.gaze.pan, frame.gaze.tilt)
         if self._gaze is not None:
@@ -191,17 +191,19 @@ class Metrics:
         self._gaze = gaze
         self._follow_mission(frame, truth)
 
-    def _match(self, track: Track, truth: Truth) -> None:
-        if len(truth.obstacle_positions) == 0:
+    def _match(self, tracks: Sequence[Track], truth: Truth) -> None:
+        """Compare the velocity of every track with that of the obstacle next to it."""
+        if len(truth.obstacle_positions) == 0 or not tracks:
             return
-        away = truth.obstacle_positions - track.position
-        distance = np.hypot(away[:, 0], away[:, 1])
-        nearest = int(np.argmin(distance))
-        if distance[nearest] > MATCHED:
-            return
-        wrong = track.velocity - truth.obstacle_velocities[nearest]
-        self._speed_squares += float(wrong @ wrong)
-        self._speeds += 1
+        places = np.array([track.position for track in tracks])
+        away = truth.obstacle_positions - places[:, None]
+        distance = np.hypot(away[..., 0], away[..., 1])
+        nearest = distance.argmin(axis=1)
+        found = distance.min(axis=1) <= MATCHED
+        speeds = np.array([track.velocity for track in tracks])
+        wrong = (speeds - truth.obstacle_velocities[nearest])[found]
+        self._speed_squares += float(np.sum(wrong * wrong))
+        self._speeds += len(wrong)
 
     def _follow_mission(self, frame: FrameRecord, truth: Truth) -> None:
         """Check what the mission believes it has passed or reached against the truth."""

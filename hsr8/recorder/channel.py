@@ -33,6 +33,13 @@ class Channel:
         for name, values in components.items():
             self._components.setdefault(name, []).append(values)
 
+    def add_rows(self, times: Sequence[float], **components: np.ndarray) -> None:
+        """Add a row at each of `times`; components have as many rows of as many instances."""
+        for name, values in components.items():
+            self._components.setdefault(name, []).append(values.reshape(-1, *values.shape[2:]))
+        self._times += times
+        self._lengths += [next(iter(components.values())).shape[1]] * len(times)
+
     def flush(self) -> None:
         """Send the rows added since the last flush."""
         if not self._times:

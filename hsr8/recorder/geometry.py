@@ -205,9 +205,8 @@ class Scene:
         positions, quaternions = np.array(self._positions), np.array(self._quaternions)
         for batch, channel in zip(self._robot, self._channels, strict=True):
             position, quaternion = self._poses(batch, positions, quaternions)
-            turned = xyzw(quaternion)
-            for time, p, q in zip(self._times, position, turned, strict=True):
-                channel.add(time, **{batch.centre: p, "quaternions": q})
+            rows = {batch.centre: position, "quaternions": xyzw(quaternion)}
+            channel.add_rows(self._times, **rows)
             channel.flush()
         self._mover_channel.flush()
         self._times.clear()
