@@ -1,10 +1,10 @@
 """The closed loop: world, sensors, robot, and back, one control tick after the other."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import cv2
 
@@ -30,6 +30,17 @@ from walking.state import Phase
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
 TICKS_A_SECOND = round(1.0 / CONTROL_PERIOD)
+CHANGING = (
+    "tick",
+    "_body",
+    "_robot",
+    "_watch",
+    "_analytic",
+    "_camera_rng",
+    "_feed",
+    "_end",
+    "_published",
+)  # attributes of a simulation that change from tick to tick
 FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]
 
 
@@ -38,6 +49,7 @@ class RunOutcome:
     """How a run ended.
 
     Attributes:
+        each_second: called before the first tick of every simulated second.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted.
         time: simulated time at the end [s].
         state_hash: SHA-256 of the world's state and the robot's belief.
@@ -65,6 +77,7 @@ class Simulation:
         gaze: chooses the gaze instead of the scenario's.
 
     Attributes:
+        each_second: called before the first tick of every simulated second.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted once the run has
             ended; None before.
         tick: control ticks made so far.
@@ -87,6 +100,7 @@ class Simulation:
         self.seed = seed
         self.listeners = list(listeners)
         self.tape: TapeWriter | None = None
+        self.each_second: Callable[[], None] | None = None
         self.layout = draw_layout(scenario, seed)
         self.model = build_model(scenario, self.layout)
         self.exit_reason: str | None = None
@@ -190,6 +204,19 @@ class Simulation:
         """SHA-256 of the world's state and the robot's belief."""
         return hashlib.sha256(self._body.state_bytes() + self._believed()).hexdigest()
 
+    def snapshot(self) -> dict[str, Any]:
+        """Everything that changes in a run, between two control ticks; see `hsr8.snapshot`."""
+        return {name: getattr(self, name) for name in CHANGING} | {
+            "noise": None if self._rendered is None else self._rendered.noise
+        }
+
+    def restore(self, parts: Mapping[str, Any]) -> None:
+        """Go on where `snapshot` was taken, in a simulation entered by ``with``."""
+        for name in CHANGING:
+            setattr(self, name, parts[name])
+        if self._rendered is not None:
+            self._rendered.noise = parts["noise"]
+
     def _believed(self) -> bytes:
         """All numbers of the pose and the tracks the robot believes in."""
         if self._robot.frame is None:
@@ -208,6 +235,8 @@ class Simulation:
     def _step(self) -> TickRecord | None:
         tick, record = self.tick, None
         if tick % TICKS_A_SECOND == 0:
+            if self.each_second is not None:
+                self.each_second()
             self._mark(tick)
         targets = self._robot.step(self._sense(tick))
         if tick % self._record_ticks == 0:

@@ -36,7 +36,7 @@ class RenderedCamera:
     def __init__(self, model: mujoco.MjModel, settings: Camera, rng: np.random.Generator) -> None:
         require_gl()
         self._settings = settings
-        self._noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
+        self.noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
         self._renderer = mujoco.Renderer(model, height=settings.height, width=settings.width)
         self._lights = _Lights(model)
         self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)
@@ -50,7 +50,7 @@ class RenderedCamera:
     def capture(self, body: "Body") -> Image:
         """Image (height, width, 3) of the world as it is now."""
         body.update_kinematics()
-        settings, noise = self._settings, self._noise
+        settings, noise = self._settings, self.noise
         light, missed = noise.light(), noise.missed(len(self._things))
         if settings.black(body.time):
             return noise.spoil(np.zeros((settings.height, settings.width, 3), np.uint8))
