@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.decisions import Looks, Moves
-from hsr8.evaluation.recording import Result, folder_listeners, renderer_of, run_and_measure
+from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
@@ -48,13 +48,13 @@ def run(
         raise TypeError("settings go with a scenario's name or file, not with a loaded one")
     loaded = loaded if seed is None else loaded.model_copy(update={"seed": seed})
     simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze)
-    path, more = None, list(listeners)
+    recording = Recording(simulation, listeners)
     if out is not None:
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)
         command = ("hsr8.run",) if planner or gaze else ("hsr8", "run", loaded.name)
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
-        more = folder_listeners(simulation, path, manifest, log=log) + more
-    return run_and_measure(simulation, more, path)
+        recording.into(path, manifest, log=log)
+    return recording.run()
 
 
 def _words(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:

@@ -159,13 +159,18 @@ class Simulation:
             for listener in reversed(self.listeners):
                 farewell.callback(listener.close, self.exit_reason)
 
-    def run(self) -> RunOutcome:
+    def run(self, start: Mapping[str, Any] | None = None) -> RunOutcome:
         """Run to the end and close the listeners.
+
+        Args:
+            start: snapshot to go on from; the beginning by default.
 
         Raises:
             SimulationDiverged: the physics blew up; the listeners are closed first.
         """
         with suppress(KeyboardInterrupt), self:
+            if start is not None:
+                self.restore(start)
             while self.exit_reason is None:
                 self.step()
         return self.outcome()

@@ -51,7 +51,7 @@ def build_robot(
     A `planner` or a `gaze` takes the place of the scenario's.
     """
     camera = head_camera(scenario)
-    body = RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
+    body = robot_model()
     script = build_script(scenario, named_rng(seed, "command"))
     return Robot(
         walking=Walker(body, parameters_for(body, scenario.walking_parameters())),
@@ -62,6 +62,11 @@ def build_robot(
         decisions=build_decisions(scenario, layout, seed, script, planner=planner, gaze=gaze),
         script=script,
     )
+
+
+def robot_model() -> RobotModel:
+    """Everything the walking engine must know of HSR-VIII."""
+    return RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
 
 
 def head_camera(scenario: Scenario) -> PinholeCamera:

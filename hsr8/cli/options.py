@@ -28,7 +28,9 @@ RunPath = Annotated[
 class Run:
     """Run a scenario: physics, head camera, belief, gaze, walking; all of it logged."""
 
-    scenario: Positional[ScenarioName]
+    scenario: Positional[
+        Annotated[str, _arg("SCENARIO", "name (see `hsr8 list`) or TOML file; with --resume a run")]
+    ]
     seed: Annotated[int | None, _arg("N", "seed of world and noise; else the scenario's")] = None
     out: Path = Path("runs")
     """Folder for run folders."""
@@ -49,6 +51,14 @@ class Run:
     ] = None
     no_log: bool = False
     """Write no Rerun log."""
+    checkpoint: Annotated[
+        int,
+        tyro.conf.arg(
+            metavar="S", help="save the run every so many simulated seconds [s]; 0: never"
+        ),
+    ] = 0
+    resume: bool = False
+    """Go on with a run that was killed, from its last checkpoint, to the identical end."""
     verify_determinism: bool = False
     """Run twice, in processes of their own, and compare every bit."""
     dry_run: bool = False

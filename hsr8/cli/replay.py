@@ -18,11 +18,11 @@ def main(options: Replay) -> int:
         UsageError: there is no such run or log, or no display.
     """
     run = open_run(options.run)
-    if not run.log_file.exists():
+    if not run.log_files:
         raise UsageError(f"{run.path} has no log: it was run with --no-log")
     if options.screenshot is not None:
         time = options.time if options.time is not None else _middle(run)
-        picture = viewer.screenshot(run.log_file, time, parse_size(options.size))
+        picture = viewer.screenshot(run.log_files, time, parse_size(options.size))
         try:
             options.screenshot.write_bytes(picture)
         except OSError as error:
@@ -35,15 +35,17 @@ def main(options: Replay) -> int:
             print(f"picture     {options.screenshot} (at {time:.1f} s)")
         return 0
     if not viewer.has_display():
-        run_word, log_word = shlex.quote(str(run.path)), shlex.quote(str(run.log_file))
+        run_word = shlex.quote(str(run.path))
+        log_word = " ".join(shlex.quote(str(file)) for file in run.log_files)
+        names = " ".join(file.name for file in run.log_files)
         version = versions()["rerun-sdk"]
         raise UsageError(
             "there is no display to open the viewer on"
             f"\n  a picture of it:     hsr8 replay {run_word} --screenshot log.png"
             f"\n  on another machine:  copy {log_word}, then"
-            f"\n                       pip install rerun-sdk=={version} && rerun log.rrd"
+            f"\n                       pip install rerun-sdk=={version} && rerun {names}"
         )
-    code = viewer.show(run.log_file)
+    code = viewer.show(run.log_files)
     if code != 0:
         raise UsageError(f"the Rerun viewer ended with status {code}; try --screenshot PNG")
     return 0

@@ -4,6 +4,7 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -13,13 +14,15 @@ from hsr8.cli.cost import estimate
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run, Sweep
 from hsr8.cli.verify import Verified, verify
-from hsr8.evaluation.recording import folder_listeners, renderer_of, run_and_measure
+from hsr8.errors import UsageError
+from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import Check, exit_code
 from hsr8.loop import Simulation
 from hsr8.recorder import atomic
-from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.manifest import RUNNING, Manifest
 from hsr8.recorder.progress import Progress
 from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run_reader import open_run
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.generator import draw_layout
@@ -35,6 +38,10 @@ def main(options: Run) -> int:
         UsageError: the scenario, a setting or the output folder will not do.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
+    if options.checkpoint < 0:
+        raise UsageError(f"--checkpoint {options.checkpoint}: give seconds, 1 or more")
+    if options.resume:
+        return _resume(options)
     scenario = load(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
@@ -43,17 +50,53 @@ def main(options: Run) -> int:
         _tell_cost(options, scenario, command)
         return 0
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
-    simulation = Simulation(scenario, scenario.seed)
+    recording, simulation = _recording(options, scenario)
     path = RunFolder.create(options.out, scenario.name, scenario.seed)
     with CrashReport(path), _interruptible(simulation):
-        listeners = folder_listeners(simulation, path, manifest, log=not options.no_log)
-        if not options.quiet:
-            listeners.append(Progress(scenario.duration))
-        result = run_and_measure(simulation, listeners, path)
+        recording.into(path, manifest, log=not options.no_log, checkpoint=options.checkpoint)
+        result = recording.run()
+    return _told(options, result, manifest)
+
+
+def _resume(options: Run) -> int:
+    """Go on with a run that was killed."""
+    _alone(options)
+    run = open_run(Path(options.scenario))
+    reason = run.manifest.get("exit_reason")
+    if reason not in (RUNNING, "interrupted"):
+        raise UsageError(f"{run.path} has nothing to go on with: it ended by {reason!r}")
+    manifest = Manifest.read(run.manifest, run.path)
+    recording, simulation = _recording(options, load(str(run.scenario_file), seed=run.seed))
+    with CrashReport(run.path), _interruptible(simulation):
+        recording.resume(run)
+        log = bool(run.log_files) and not options.no_log
+        recording.into(run.path, manifest, log=log, checkpoint=options.checkpoint)
+        result = recording.run()
+    return _told(options, result, manifest)
+
+
+def _alone(options: Run) -> None:
+    """A run goes on as what it was."""
+    given = option_tables(options).keys() | ({"--set"} if options.set else set())
+    given |= {"--seed"} if options.seed is not None else set()
+    given |= {"--dry-run"} if options.dry_run else set()
+    if given:
+        raise UsageError(f"{', '.join(sorted(given))} cannot be given with --resume")
+
+
+def _recording(options: Run, scenario: Scenario) -> tuple[Recording, Simulation]:
+    simulation = Simulation(scenario, scenario.seed)
+    watchers = () if options.quiet else (Progress(scenario.duration),)
+    return Recording(simulation, watchers), simulation
+
+
+def _told(options: Run, result: Result, manifest: Manifest) -> int:
+    """Verify and report; the exit code."""
+    assert result.folder is not None
     results, checks = result.metrics, result.checks
     code = exit_code(result.exit_reason, checks)
     if options.verify_determinism and code in ENDED:
-        verified = verify(path)
+        verified = verify(result.folder)
         results["deterministic"] = verified.equal
         checks = (*checks, _deterministic(verified))
         code = exit_code(result.exit_reason, checks)
@@ -63,11 +106,11 @@ def main(options: Run) -> int:
         print(atomic.dumps(results))
     elif not options.quiet:
         report.show(
-            f"{scenario.name}, seed {scenario.seed}",
+            f"{manifest.scenario}, seed {manifest.seed}",
             results=results,
             checks=checks,
-            path=path,
-            command=command,
+            path=result.folder,
+            command=manifest.command.split(),
         )
     return code
 

@@ -3,6 +3,7 @@
 import time as clock
 from collections.abc import Sequence
 from math import degrees, hypot, inf, isfinite, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +70,13 @@ class Metrics:
         self._saccades = 0
         self._walk = WalkMetrics()
         self._tracks = TrackMetrics(layout.obstacles)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The wall time so far instead of when it began."""
+        return self.__dict__ | {"_started": clock.perf_counter() - self._started}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__ |= state | {"_started": clock.perf_counter() - state["_started"]}
 
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import SimulationDiverged
+from hsr8.evaluation.checkpoint import Checkpoint, Checkpoints, read_checkpoint
 from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Check, judge
 from hsr8.gl import require_gl
@@ -15,6 +16,7 @@ from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import TapeWriter
 from hsr8.recorder.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump
@@ -59,43 +61,69 @@ def renderer_of(scenario: Scenario) -> str:
     return require_gl() if scenario.camera.source == "egl" else scenario.camera.source
 
 
-def folder_listeners(
-    simulation: Simulation, path: Path, manifest: Manifest, *, log: bool
-) -> list[Listener]:
-    """Give a simulation its tape; what else writes into its run folder, the folder first."""
-    scenario, layout = simulation.scenario, simulation.layout
-    folder = RunFolder(path, manifest, dump(scenario), len(layout.movers))
-    simulation.tape = TapeWriter(path / run_folder.TAPE)
-    table = WalkingTableWriter(path / run_folder.WALKING, simulation.model, simulation.index)
-    listeners: list[Listener] = [folder, table]
-    if log:
-        size = (scenario.camera.width, scenario.camera.height)
-        name = f"{scenario.name} {scenario.seed}"
-        file = path / run_folder.LOG
-        listeners.append(RerunLog(file, simulation.model, layout, size, name))
-    return listeners
-
-
-def run_and_measure(
-    simulation: Simulation, listeners: Sequence[Listener], folder: Path | None
-) -> Result:
-    """Run a simulation to its end.
+class Recording:
+    """A simulation that is measured and, if it has a folder, recorded.
 
     Args:
         simulation: not yet begun.
-        listeners: told of everything beside those it has.
-        folder: where the results go too; None for nowhere.
+        listeners: told of everything beside the records' writers.
     """
-    mission = simulation.scenario.navigation_parameters().mission
-    metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
-    simulation.listeners += [metrics, *listeners]
-    diverged = ""
-    try:
-        simulation.run()
-    except SimulationDiverged as error:
-        diverged = str(error)
-    outcome = simulation.outcome()
-    results = metrics.result(outcome.exit_reason, outcome.state_hash)
-    if folder is not None:
-        run_folder.write_metrics(folder, results)
-    return Result(results, judge(simulation.scenario.criteria, results), folder, diverged)
+
+    def __init__(self, simulation: Simulation, listeners: Sequence[Listener] = ()) -> None:
+        mission = simulation.scenario.navigation_parameters().mission
+        self._simulation = simulation
+        self._listeners = list(listeners)
+        self._metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
+        self._folder: Path | None = None
+        self._checkpoint: Checkpoint | None = None
+
+    def into(self, path: Path, manifest: Manifest, *, log: bool, checkpoint: int = 0) -> None:
+        """Record into a folder.
+
+        Args:
+            path: of the run; new, or that of a run that goes on.
+            manifest: of the run.
+            log: write the Rerun log too.
+            checkpoint: simulated time between two checkpoints, 0 for none [s].
+        """
+        simulation, scenario = self._simulation, self._simulation.scenario
+        folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
+        table = WalkingTableWriter(path / run_folder.WALKING, simulation.model, simulation.index)
+        tape = TapeWriter(path / run_folder.TAPE)
+        self._folder, simulation.tape = path, tape
+        writers: list[Listener] = [folder, table]
+        if log:
+            size = (scenario.camera.width, scenario.camera.height)
+            name = f"{scenario.name} {scenario.seed}"
+            file = run_folder.next_log(path)
+            writers.append(RerunLog(file, simulation.model, simulation.layout, size, name))
+        self._listeners = writers + self._listeners
+        if checkpoint:
+            simulation.each_second = Checkpoints(
+                simulation, self._metrics, path, checkpoint, (folder, table, tape)
+            )
+
+    def resume(self, run: Run) -> None:
+        """Go on from the checkpoint of `run`; call it before `into`.
+
+        Raises:
+            UsageError: there is none, or it cannot be trusted.
+        """
+        self._checkpoint = read_checkpoint(run, self._simulation)
+        self._checkpoint.cut_back(run.path)
+        self._metrics = self._checkpoint.metrics
+
+    def run(self) -> Result:
+        """Run to the end and write the results."""
+        simulation = self._simulation
+        simulation.listeners += [self._metrics, *self._listeners]
+        diverged = ""
+        try:
+            parts = None if self._checkpoint is None else self._checkpoint.parts
+            outcome = simulation.run(parts)
+        except SimulationDiverged as error:
+            diverged, outcome = str(error), simulation.outcome()
+        results = self._metrics.result(outcome.exit_reason, outcome.state_hash)
+        if self._folder is not None:
+            run_folder.write_metrics(self._folder, results)
+        return Result(results, judge(simulation.scenario.criteria, results), self._folder, diverged)

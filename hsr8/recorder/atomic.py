@@ -9,9 +9,14 @@ from typing import Any
 
 def write_text(path: Path, text: str) -> None:
     """Replace the contents of `path`; a crash leaves the old or the new file, never a mix."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """As `write_text`."""
     draft = path.with_name(path.name + ".tmp")
-    with draft.open("w", encoding="utf-8") as file:
-        file.write(text)
+    with draft.open("wb") as file:
+        file.write(content)
         file.flush()
         os.fsync(file.fileno())
     draft.replace(path)

@@ -2,12 +2,13 @@
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from hsr8.errors import UsageError
 from hsr8.recorder import atomic
 from hsr8.version import VERSION
 
@@ -68,6 +69,19 @@ class Manifest:
             machine=f"{platform.system()} {platform.release()} {platform.machine()}",
             libraries=versions(),
         )
+
+    @classmethod
+    def read(cls, given: Mapping[str, Any], path: Path) -> "Manifest":
+        """Manifest of the run in `path` that goes on.
+
+        Raises:
+            UsageError: something is missing in `given`.
+        """
+        names = [field.name for field in fields(cls)]
+        missing = [name for name in names if name not in given]
+        if missing:
+            raise UsageError(f"the manifest of {path} lacks {', '.join(missing)}")
+        return replace(cls(**{name: given[name] for name in names}), exit_reason=RUNNING)
 
     def ended(self, exit_reason: str) -> "Manifest":
         """The same run, ended."""

@@ -60,12 +60,13 @@ class MeasurementWriter:
     """Appends the measurements of every camera frame to a file.
 
     Args:
-        path: file to create.
+        path: file to create, or to go on with.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("wb")
-        self._file.write(MAGIC)
+        self._file = path.open("ab")
+        if not self._file.tell():
+            self._file.write(MAGIC)
 
     def on_record(self, record: TickRecord) -> None:
         """Append the camera frame, if there is one."""

@@ -11,6 +11,7 @@
     frames.jsonl     belief and decisions, one camera frame a line
     log.rrd          everything, for the Rerun viewer
     video.mp4        after ``hsr8 render``
+    checkpoint.bin   where the run can go on, with ``--checkpoint``
     crash.txt        traceback of an internal error, if there was one
 
 Everything is written as it happens, so a killed run leaves a folder that can be read.
@@ -41,6 +42,7 @@ LOG = "log.rrd"
 VIDEO = "video.mp4"
 CRASH = "crash.txt"
 
+MOST_PARTS = 1000  # of a run that is resumed again and again
 FLUSH_PERIOD = 1.0  # a killed run loses so much of its motion at most [s]
 
 
@@ -48,7 +50,7 @@ class RunFolder:
     """Listener that writes the folder of one run.
 
     Args:
-        path: new folder, see `create`.
+        path: new folder, see `create`, or that of a run that goes on.
         manifest: of the run; written at once.
         scenario: the resolved scenario as TOML.
         movers: number of movers; they are the last of the obstacles.
@@ -62,9 +64,9 @@ class RunFolder:
         self._flushed_at = 0.0
         manifest.write(path / MANIFEST)
         atomic.write_text(path / SCENARIO, scenario)
-        self._events: TextIO = (path / EVENTS).open("w", encoding="utf-8", buffering=1)
+        self._events: TextIO = (path / EVENTS).open("a", encoding="utf-8", buffering=1)
         self._measurements = MeasurementWriter(path / MEASUREMENTS)
-        self._frames: TextIO = (path / FRAMES).open("w", encoding="utf-8")
+        self._frames: TextIO = (path / FRAMES).open("a", encoding="utf-8")
 
     @staticmethod
     def create(out: Path, scenario: str, seed: int) -> Path:
@@ -103,15 +105,20 @@ class RunFolder:
             self._frames.write(frame_summary.to_line(record.frame, truth) + "\n")
         if record.time - self._flushed_at >= FLUSH_PERIOD:
             self._flushed_at = record.time
-            self._trajectory.flush()
-            self._frames.flush()
-            self._measurements.flush()
+            self.flush()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Write one line."""
         self._events.write(
             atomic.dumps({"time": round(time, 4), "kind": kind, "text": text}) + "\n"
         )
+
+    def flush(self) -> None:
+        """Hand everything to the operating system."""
+        if self._trajectory is not None:
+            self._trajectory.flush()
+        self._frames.flush()
+        self._measurements.flush()
 
     def close(self, exit_reason: str) -> None:
         """Finish the files and note how the run ended."""
@@ -126,3 +133,16 @@ class RunFolder:
 def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:
     """Write the results into the run folder `path`."""
     atomic.write_json(path / METRICS, metrics)
+
+
+def logs(path: Path) -> list[Path]:
+    """Rerun logs in the run folder `path`; a run that was resumed has one for each part."""
+    first = path / LOG
+    later = [path / f"{first.stem}-{k}{first.suffix}" for k in range(2, MOST_PARTS)]
+    return [file for file in (first, *later) if file.exists()]
+
+
+def next_log(path: Path) -> Path:
+    """Log of the part of the run in `path` that begins now."""
+    part = len(logs(path)) + 1
+    return path / LOG if part == 1 else path / f"log-{part}.rrd"

@@ -36,9 +36,9 @@ class Run:
         return self.path / run_folder.SCENARIO
 
     @property
-    def log_file(self) -> Path:
-        """The Rerun log, which a run with ``--no-log`` lacks."""
-        return self.path / run_folder.LOG
+    def log_files(self) -> list[Path]:
+        """The Rerun log; a run with ``--no-log`` has none, one that was resumed several."""
+        return run_folder.logs(self.path)
 
     def metrics(self) -> dict[str, Any]:
         """Results; empty if the run did not get there."""

@@ -48,12 +48,13 @@ class TapeWriter:
     """Writes the tape of a run.
 
     Args:
-        path: file to create.
+        path: file to create, or to go on with.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("wb")
-        self._file.write(MAGIC)
+        self._file = path.open("ab")
+        if not self._file.tell():
+            self._file.write(MAGIC)
         self._payload = b""
         self._rows: list[bytes] = []
 
@@ -65,8 +66,7 @@ class TapeWriter:
             world: everything that determines the world's future.
             robot: digest of what the robot believes.
         """
-        if self._rows:
-            self._write()
+        self.flush()
         state = hashlib.blake2b(world, digest_size=HASH)
         self._payload = _FIRST.pack(tick) + state.digest()
         state.update(robot)
@@ -75,6 +75,11 @@ class TapeWriter:
     def add(self, set_points: Array) -> None:
         """Append one control tick (26,) [rad]."""
         self._rows.append(set_points.tobytes())
+
+    def flush(self) -> None:
+        """End the block, if it has any ticks, and hand it to the operating system."""
+        if self._rows:
+            self._write()
 
     def close(self) -> None:
         """Finish the file."""

@@ -44,7 +44,7 @@ class TrajectoryWriter:
     """Appends rows to a trajectory file.
 
     Args:
-        path: file to create.
+        path: file to create, or to go on with.
         nq: length of qpos.
         movers: number of movers.
     """
@@ -52,8 +52,9 @@ class TrajectoryWriter:
     def __init__(self, path: Path, nq: int, movers: int) -> None:
         header = json.dumps({"nq": nq, "movers": movers}).encode()
         header += b" " * (-len(header) % 8)
-        self._file = path.open("wb")
-        self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
+        self._file = path.open("ab")
+        if not self._file.tell():
+            self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
 
     def append(self, time: float, qpos: Array, movers: Array) -> None:
         """Add one row."""

@@ -100,7 +100,7 @@ class WalkingTableWriter:
     """Listener that writes the table of a run.
 
     Args:
-        path: file to create.
+        path: file to create, or to go on with.
         model: compiled world.
         index: addresses in it.
     """
@@ -116,8 +116,9 @@ class WalkingTableWriter:
         ).encode()
         header += b" " * (-len(header) % 8)
         self._flushed_at = 0.0
-        self._file = path.open("wb")
-        self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
+        self._file = path.open("ab")
+        if not self._file.tell():
+            self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
 
     def on_record(self, record: TickRecord) -> None:
         """Append one row."""
@@ -129,6 +130,10 @@ class WalkingTableWriter:
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Events have a file of their own."""
+
+    def flush(self) -> None:
+        """Hand everything to the operating system."""
+        self._file.flush()
 
     def close(self, exit_reason: str) -> None:
         """Finish the file."""

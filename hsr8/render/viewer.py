@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time as clock
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -43,29 +43,29 @@ def has_display() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def show(log: Path) -> int:
-    """Open `log` in a window and wait until it is closed; the viewer's exit status."""
-    return subprocess.run(_command(log, _free_port()), check=False).returncode
+def show(logs: Sequence[Path]) -> int:
+    """Open the `logs` of a run in a window and wait until it is closed; its exit status."""
+    return subprocess.run(_command(logs, _free_port()), check=False).returncode
 
 
-def screenshot(log: Path, time: float, size: tuple[int, int]) -> bytes:
-    """Picture (PNG) of the viewer with `log` at simulated `time` [s].
+def screenshot(logs: Sequence[Path], time: float, size: tuple[int, int]) -> bytes:
+    """Picture (PNG) of the viewer with the `logs` of a run at simulated `time` [s].
 
     Args:
-        log: file of a run.
+        logs: files of a run.
         time: [s].
         size: width and height of the window [pixel].
 
     Raises:
-        UsageError: the viewer did not start, for example for want of Vulkan, or `log` holds
+        UsageError: the viewer did not start, for example for want of Vulkan, or `logs` hold
             no recording.
     """
     port = _free_port()
     window = ("--headless", "--window-size", f"{size[0]}x{size[1]}")
-    with _running([*_command(log, port), *window]) as viewer:
+    with _running([*_command(logs, port), *window]) as viewer:
         try:
             client = _connect(viewer, port)
-            _wait_for_recording(client, viewer, log)
+            _wait_for_recording(client, viewer, logs[0])
             client.set_time(TIMELINE, duration=time, play_state="paused")
             clock.sleep(SETTLE)
             return bytes(client.take_screenshot())
@@ -73,8 +73,8 @@ def screenshot(log: Path, time: float, size: tuple[int, int]) -> bytes:
             raise _failed(viewer) from None
 
 
-def _command(log: Path, port: int) -> list[str]:
-    return [executable(), str(log), "--bind", "127.0.0.1", "--port", str(port)]
+def _command(logs: Sequence[Path], port: int) -> list[str]:
+    return [executable(), *map(str, logs), "--bind", "127.0.0.1", "--port", str(port)]
 
 
 def _free_port() -> int:

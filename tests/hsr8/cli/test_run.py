@@ -29,7 +29,7 @@ def test_json_is_all_there_is_on_standard_output(tmp_path, capsys):
     assert run.metrics() == results
     assert run.manifest["exit_reason"] == results["exit_reason"] == "timeout"
     assert run.manifest["renderer"] == "analytic"
-    assert not run.log_file.exists()
+    assert run.log_files == []
 
 
 def test_the_log_changes_nothing(tmp_path, capsys):
@@ -38,7 +38,8 @@ def test_the_log_changes_nothing(tmp_path, capsys):
         _run(tmp_path, "--seed", "5", *more)
         hashes.add(open_run(tmp_path).metrics()["state_hash"])
     assert len(hashes) == 1
-    assert open_run(tmp_path).log_file.stat().st_size > 10_000
+    (log,) = open_run(tmp_path).log_files
+    assert log.stat().st_size > 10_000
 
 
 def test_the_folder_says_how_to_repeat_the_run(tmp_path, capsys):

@@ -1,0 +1,147 @@
+"""A run that was killed goes on from its checkpoint, to the identical end."""
+
+import json
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.evaluation.difference import motion, results
+from hsr8.recorder.run_reader import open_run
+
+STAND_INS = ["--body", "kinematic", "--camera", "analytic"]
+QUICK = [
+    "run",
+    "quick",
+    "--seed",
+    "6",
+    "--duration",
+    "5",
+    "--quiet",
+    "--set",
+    "camera.latency_ms=60",
+]
+KILLED = """
+import os, sys
+from hsr8.cli.main import entry
+from hsr8.loop import Simulation
+step, tick = Simulation.step, int(sys.argv[1])
+def until(self):
+    if self.tick == tick:
+        os._exit(9)
+    return step(self)
+Simulation.step = until
+entry(sys.argv[2:])
+"""
+
+
+def killed(out, tick, *more):
+    """A run that dies without a word before control tick `tick`."""
+    words = [*QUICK, *more, "--checkpoint", "1", "--out", str(out)]
+    command = [sys.executable, "-c", KILLED, str(tick), *words]
+    assert subprocess.run(command, check=False, timeout=100).returncode == 9
+    return open_run(out)
+
+
+def check_the_same(run, whole):
+    assert motion(run, whole) == []
+    assert list(results(run, whole)) == []
+    for name in ("trajectory.bin", "walking.bin", "measurements.bin", "tape.bin", "frames.jsonl"):
+        assert (run.path / name).read_bytes() == (whole.path / name).read_bytes()
+    assert run.events() == whole.events()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    out = tmp_path_factory.mktemp("whole")
+    entry([*QUICK, *STAND_INS, "--no-log", "--out", str(out)])
+    return open_run(out)
+
+
+@pytest.fixture(scope="module")
+def cut_short(tmp_path_factory):
+    """Killed at 3.085 s, its last checkpoint at 3 s."""
+    return killed(tmp_path_factory.mktemp("cut"), 617, *STAND_INS, "--no-log")
+
+
+@pytest.fixture
+def cut(cut_short, tmp_path):
+    return open_run(shutil.copytree(cut_short.path, tmp_path / "run"))
+
+
+def test_a_killed_run_comes_to_the_identical_end(cut, whole, capsys):
+    assert cut.manifest["exit_reason"] == "running"
+    assert entry(["run", str(cut.path), "--resume", "--quiet"]) == 1  # no goal in 5 s
+    check_the_same(open_run(cut.path), whole)
+    assert entry(["check", "replay", str(cut.path)]) == 0
+
+
+@pytest.mark.gl
+def test_physics_pixels_and_log_go_on_too(tmp_path):
+    words = [word for word in QUICK if word != "5"]
+    words.insert(words.index("--duration") + 1, "2.5")
+    entry([*words, "--no-log", "--out", str(tmp_path / "whole")])
+    run = killed(tmp_path / "cut", 333, "--duration", "2.5")
+    assert entry(["run", str(run.path), "--resume", "--quiet"]) == 1
+    check_the_same(run, open_run(tmp_path / "whole"))
+    assert [file.name for file in run.log_files] == ["log.rrd", "log-2.rrd"]
+
+
+def test_a_run_that_ended_has_nothing_to_go_on_with(whole, capsys):
+    assert entry(["run", str(whole.path), "--resume"]) == 2
+    assert "ended by 'timeout'" in capsys.readouterr().err
+
+
+def test_without_a_checkpoint_there_is_nothing_to_go_on_from(cut, capsys):
+    (cut.path / "checkpoint.bin").unlink()
+    assert entry(["run", str(cut.path), "--resume"]) == 2
+    assert "no checkpoint" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", [["--seed", "3"], ["--duration", "9"], ["--set", "seed=1"]])
+def test_a_run_goes_on_as_what_it_was(cut, option, capsys):
+    assert entry(["run", str(cut.path), "--resume", *option]) == 2
+    assert f"{option[0]} cannot be given with --resume" in capsys.readouterr().err
+
+
+def test_a_damaged_checkpoint_is_reported_and_leaves_the_run_as_it_was(cut, capsys):
+    file = cut.path / "checkpoint.bin"
+    content = file.read_bytes()
+    before = {f.name: f.read_bytes() for f in cut.path.iterdir()} | {}
+    for wrong, text in (
+        (content[:1000], "is cut off"),
+        (content[:5000] + b"?" + content[5001:], "is damaged"),
+        (b"something else", "is no snapshot"),
+    ):
+        file.write_bytes(wrong)
+        assert entry(["run", str(cut.path), "--resume"]) == 2
+        assert text in capsys.readouterr().err
+    del before[file.name]
+    assert before == {f.name: f.read_bytes() for f in cut.path.iterdir() if f != file}
+
+
+def test_another_scenario_is_not_mixed_in(cut, capsys):
+    scenario = cut.scenario_file
+    scenario.write_text(scenario.read_text().replace("duration = 5.0", "duration = 6.0"))
+    assert entry(["run", str(cut.path), "--resume"]) == 2
+    assert "is another one than at the checkpoint" in capsys.readouterr().err
+
+
+def test_a_file_that_lost_its_end_is_found_out(cut, capsys):
+    file = cut.path / "tape.bin"
+    file.write_bytes(file.read_bytes()[:500])
+    assert entry(["run", str(cut.path), "--resume"]) == 2
+    assert "is shorter than at the checkpoint" in capsys.readouterr().err
+
+
+def test_checkpoints_change_nothing(whole, tmp_path, capsys):
+    entry([*QUICK, *STAND_INS, "--no-log", "--checkpoint", "2", "--out", str(tmp_path)])
+    check_the_same(open_run(tmp_path), whole)
+
+
+def test_a_period_is_seconds(tmp_path, capsys):
+    assert entry(["run", "quick", "--checkpoint", "-1", "--out", str(tmp_path)]) == 2
+    assert "give seconds" in capsys.readouterr().err
+    assert json.dumps(list(tmp_path.iterdir())) == "[]"

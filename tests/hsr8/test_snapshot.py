@@ -1,0 +1,95 @@
+import os
+import pickle
+import struct
+from hashlib import sha256
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.errors import UsageError
+from hsr8.loop import Simulation
+from hsr8.scenario.loader import load
+from hsr8.snapshot import MAGIC, decode, encode
+
+ANCHORS = {"owner": None, "model": None, "robot model": None}
+
+
+def forged(payload):
+    """A snapshot whose checksum is right."""
+    return MAGIC + struct.pack("<Q", len(payload)) + sha256(payload).digest() + payload
+
+
+def test_shared_things_stay_shared():
+    rng = np.random.default_rng(3)
+    back = decode(encode({"a": rng, "b": [rng]}, None), ANCHORS, "x")
+    assert back["a"] is back["b"][0]
+    assert back["a"].random() == np.random.default_rng(3).random()
+
+
+@pytest.mark.parametrize("tick", [1, 77, 260])
+def test_a_run_goes_on_from_any_tick(tick):
+    settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=2.0"]
+    scenario = load("quick", settings)
+    with Simulation(scenario, 5) as first:
+        while first.tick < tick:
+            first.step()
+        content = encode(first.snapshot(), first)
+        while first.exit_reason is None:
+            first.step()
+    with Simulation(scenario, 5) as second:
+        anchors = ANCHORS | {"owner": second, "model": second.model}
+        anchors["robot model"] = first._robot._walking._robot
+        second.restore(decode(content, anchors, "x"))
+        assert second.tick == tick
+        while second.exit_reason is None:
+            second.step()
+    assert second.outcome() == first.outcome()
+
+
+class Evil:
+    def __reduce__(self):
+        return os.system, ("touch evil",)
+
+
+class Reads:
+    def __reduce__(self):
+        return open, ("/etc/hostname",)
+
+
+class Gets:
+    def __reduce__(self):
+        return getattr, (ANCHORS, "clear")
+
+
+class Loads:
+    """A function of the project that opens a file."""
+
+    def __reduce__(self):
+        return load, ("/etc/hostname",)
+
+
+@pytest.mark.parametrize("what", [Evil, Reads, Gets, Loads])
+def test_nothing_but_data_is_read(what, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UsageError, match="is refused: it asks for"):
+        decode(forged(pickle.dumps({"a": what()}, 5)), ANCHORS, "x")
+    assert list(tmp_path.iterdir()) == []
+
+
+@given(place=st.integers(0, 200), value=st.integers(1, 255))
+def test_damage_is_told(place, value):
+    content = bytearray(encode({"a": np.arange(20.0)}, None))
+    content[place % len(content)] ^= value
+    with pytest.raises(UsageError, match=r"is damaged|is cut off|is no snapshot"):
+        decode(bytes(content), ANCHORS, "x")
+
+
+@given(payload=st.binary(max_size=60))
+def test_whatever_is_forged_is_one_clear_error(payload):
+    try:
+        parts = decode(forged(payload), ANCHORS, "x")
+    except UsageError:
+        return
+    assert isinstance(parts, dict)
