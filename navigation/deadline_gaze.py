@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.belief import Belief, Motion
+from navigation.belief import Belief
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
 from navigation.gaze_scene import GazeScene, relative, to_field
@@ -28,8 +28,6 @@ _CLEARANCE = 0.05
 """Distance from contact at which it is too late [m]."""
 _AGE_LIMIT = 8.0
 """Age of ground from which nothing grows worse [s]."""
-_GLANCE = 0.35
-"""Time after which something can have come to stand on ground that was seen empty [s]."""
 _RAYS = np.radians(np.linspace(-120.0, 120.0, 17))
 _RINGS = np.array([0.45, 0.8, 1.2, 1.7])
 _MAP_SPEED = 0.7
@@ -126,30 +124,6 @@ def obstacle_deadlines(
     return Votes(bearing, tilt, value)
 
 
-def reachable_share(points: Array, age: Array, belief: Belief) -> Array:
-    """Lost movers that can be at each point, each shared among all points where it can be.
-
-    Unlike its particles, the disc that a mover can have reached forgets neither a reversal
-    nor a turn; ground seen empty since leaves it.
-
-    Args:
-        points: in W (n, 2) [m].
-        age: time since each was seen (n,) [s].
-        belief: what the robot believes.
-
-    Returns:
-        (n,) [1].
-    """
-    share = np.zeros(len(points))
-    for track in belief.tracks:
-        if track.particles is None or track.motion is Motion.STATIC:
-            continue
-        offset = points - track.last_seen
-        there = (np.hypot(offset[:, 0], offset[:, 1]) <= track.reach) & (age > _GLANCE)
-        share[there] += 1.0 / max(1, int(there.sum()))
-    return share
-
-
 def map_deadlines(
     scene: GazeScene,
     belief: Belief,
@@ -157,21 +131,16 @@ def map_deadlines(
     speed: float,
     parameters: NavigationParameters,
 ) -> Votes:
-    """Votes of ground not seen for long, more where a lost mover can be.
-
-    Arguments as for `deadline_votes`.
-    """
+    """Votes of ground not seen for long; arguments as `deadline_votes`."""
     p, d = parameters.gaze, parameters.gaze.deadline
     reach = p.pan_limit + p.box_share * belief.view.horizontal_fov
     rays = _RAYS[np.abs(_RAYS) <= reach]
     distance, bearing = (a.ravel() for a in np.meshgrid(_RINGS, rays, indexing="ij"))
     points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
-    points = to_field(points, belief.pose)
-    age = np.minimum(_AGE_LIMIT, belief.local_map.age_at(points))
+    age = np.minimum(_AGE_LIMIT, belief.local_map.age_at(to_field(points, belief.pose)))
     approach = speed * (_MAP_SPEED + np.maximum(0.1, np.cos(bearing - way)))
     room = distance - 2.0 * parameters.univector.s_robot
     contact = np.maximum(_LEAST_TIME, room / approach)
-    weight = d.map_weight + d.reach_weight * reachable_share(points, age, belief)
-    value = weight * np.minimum(d.urgency_limit, age / contact) ** d.exponent
+    value = d.map_weight * np.minimum(d.urgency_limit, age / contact) ** d.exponent
     tilt = -np.arctan2(scene.camera_height, distance)
     return Votes(wrap_array(bearing), tilt, value)

@@ -190,9 +190,7 @@ class FilterParameters:
     particle_weight: NonNegative = 2.0
     """Weight of a lost mover's particles together [1]."""
     reversal_weight: NonNegative = 0.12
-    """Weight of the reversal of a mover [1]."""
-    reversal_age: NonNegative = 0.0
-    """Time for which a mover out of sight still counts as its reversal [s]."""
+    """Weight of the reversal of a visible mover [1]."""
     reachable: bool = False
     """Whether an unseen mover also counts as all it can have reached from its last place."""
     reachable_radius: NonNegative = 0.4
@@ -201,8 +199,9 @@ class FilterParameters:
     """Time unseen before it grows [s]."""
     reachable_age: Positive = 6.0
     """Time unseen after which it is dropped [s]."""
-    margin: NonNegative = 0.025
-    """Distance kept from the bodies of obstacles [m]."""
+    margin: NonNegative = 0.045
+    """Distance kept from the bodies of obstacles: a stepping foot reaches out so far beyond
+    `univector.s_robot` [m]."""
     sigma_limit: NonNegative = 0.06
     """Largest part of a mover's position uncertainty added to that [m]."""
 

@@ -79,8 +79,6 @@ class DeadlineParameters:
     """Weight of votes of static obstacles [1]."""
     map_weight: NonNegative = 0.05
     """Weight of votes of the local map [1]."""
-    reach_weight: NonNegative = 0.0
-    """Weight of a lost mover on the ground that it can have reached [1]."""
     way_weight: NonNegative = 0.2
     """Weight of the vote of the way [1]."""
     beacon_weight: NonNegative = 1.6

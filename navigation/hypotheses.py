@@ -62,7 +62,7 @@ def collision_hypotheses(
 ) -> Hypotheses:
     """Build the hypotheses of all tracks.
 
-    A lost mover counts as its particles; one seen lately also as its own reversal.
+    A lost mover counts as its particles; a visible one also as its own reversal.
 
     Args:
         tracks: of the belief.
@@ -85,7 +85,7 @@ def collision_hypotheses(
             np.ones(int(seen.sum())),
         )
     ]
-    reversing = obstacles.moving & (seen | (obstacles.age <= parameters.reversal_age))
+    reversing = seen & obstacles.moving
     if parameters.reversal_weight > 0.0 and reversing.any():
         n = int(reversing.sum())
         parts.append(

@@ -62,7 +62,6 @@ def track(place: tuple[float, float], motion: Motion, age: float, **details: obj
         last_seen=position,
         visible=age == 0.0,
         particles=cloud,
-        reach=0.2 * age,
     )
 
 
@@ -143,7 +142,6 @@ def _draw_world(axes: Axes, belief: Belief, pan: float, bearings: Array, values:
         colour = COLOUR[t.motion]
         if t.particles is not None:
             axes.plot(-t.particles.positions[:, 1], t.particles.positions[:, 0], ".", color=colour)
-            axes.add_patch(Circle((-y, x), t.reach + t.radius, fill=False, ls="--", ec=colour))
         axes.add_patch(Circle((-y, x), t.radius, color=colour, alpha=0.3 if t.age > 0.0 else 0.9))
         axes.annotate(f"{t.motion}, {t.age:.1f} s", (-y + 0.12, x), fontsize=8)
     sectors = np.round(bearings / np.radians(15.0))

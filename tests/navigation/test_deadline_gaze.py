@@ -1,15 +1,8 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from navigation.belief import Motion
-from navigation.deadline_gaze import (
-    map_deadlines,
-    obstacle_deadlines,
-    reachable_share,
-    self_urgency,
-)
+from navigation.deadline_gaze import map_deadlines, obstacle_deadlines, self_urgency
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_scene import gaze_scene
 from navigation.partial_evaluation import SamplePoints
@@ -92,36 +85,3 @@ def test_self_urgency_hears_position_and_heading(belief):
     assert self_urgency(belief(sigma=0.025, turn_sigma=0.0), P) == pytest.approx(0.5)
     assert self_urgency(belief(sigma=0.0, turn_sigma=0.03), P) == pytest.approx(0.5)
     assert self_urgency(belief(sigma=1.0), P) == 1.0
-
-
-def lost(track, reach, place=(0.0, -0.6), motion=None):
-    cloud = ([place, place], np.zeros((2, 2)), [0.5, 0.5])
-    return track(place, (0.1, 0.0), motion, age=2.0, particles=cloud, reach=reach)
-
-
-def test_a_lost_mover_is_shared_among_the_unseen_points_it_can_have_reached(belief, track):
-    points = np.random.default_rng(0).uniform(-1.5, 1.5, (200, 2))
-    age = np.where(points[:, 0] > 0.0, 3.0, 0.0)
-    share = reachable_share(points, age, belief([lost(track, 0.7)]))
-    assert share.sum() == pytest.approx(1.0)
-    inside = (np.hypot(*(points - [0.0, -0.6]).T) <= 0.7) & (age > 0.0)
-    np.testing.assert_array_equal(share > 0.0, inside)
-    both = belief([lost(track, 0.7), lost(track, 0.5, (0.8, 0.5))])
-    assert reachable_share(points, age, both).sum() == pytest.approx(2.0)
-
-
-def test_only_lost_movers_can_be_elsewhere(belief, track):
-    points, age = np.zeros((1, 2)), np.ones(1)
-    seen = track((0.1, 0.0), (0.1, 0.0), reach=1.0)
-    still = lost(track, 1.0, motion=Motion.STATIC)
-    assert reachable_share(points, age, belief([seen, still])) == pytest.approx([0.0])
-
-
-def test_ground_that_a_lost_mover_can_have_reached_is_looked_at(belief, track):
-    p = replace(P, gaze=replace(P.gaze, deadline=replace(P.gaze.deadline, reach_weight=1.0)))
-    b = belief([lost(track, 0.8)], age=lambda x, y: 2.0)
-    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), p)
-    with_reach, without = map_deadlines(scene, b, 0.0, 0.2, p), map_deadlines(scene, b, 0.0, 0.2, P)
-    more = with_reach.value - without.value
-    assert more[with_reach.pan > 0.5].max() == 0.0
-    assert more.max() > 0.0

@@ -78,15 +78,3 @@ def test_an_unseen_mover_can_have_gone_anywhere_near_until_its_place_is_looked_a
             assert not h.velocity[-1].any()
         assert len(build(mover, p=p, looked=0.1)) == len(without)
     assert len(build(track((1, 0), age=2.0), p=p)) == 1
-
-
-def test_a_mover_lost_lately_may_have_reversed_and_one_lost_long_ago_is_its_particles(track):
-    p = replace(P, reversal_age=2.0)
-    cloud = ([[1, 0]], [[0.1, 0]], [1.0])
-
-    def reversals(age):
-        h = build(track((1, 0), (0.1, 0), age=age, particles=cloud), p=p)
-        return h.weight[h.velocity[:, 0] < 0.0].tolist()
-
-    assert reversals(1.0) == [p.reversal_weight]
-    assert reversals(3.0) == []
