@@ -170,12 +170,18 @@ def _command(options: Sweep) -> str:
     words = ["hsr8", "sweep", *run_words(options)[2:], "--seeds", options.seeds]
     for group in options.vary:
         words += ["--vary", *group]
-    if options.out is not None:
-        words += ["--out", str(options.out)]
-    if options.executor != "local":
-        words += ["--executor", options.executor]
-    if options.shard is not None:
-        words += ["--shard", options.shard]
+    for flag, value, default in (
+        ("--out", options.out, None),
+        ("--workers", options.workers, None),
+        ("--executor", options.executor, "local"),
+        ("--shard", options.shard, None),
+        ("--timeout", options.timeout, None),
+        ("--keep", options.keep, "all"),
+    ):
+        if value != default:
+            words += [flag, str(value)]
+    if options.log:
+        words.append("--log")
     return shlex.join(words)
 
 

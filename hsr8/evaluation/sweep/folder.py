@@ -19,7 +19,8 @@ from typing import Self, TextIO
 
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, differences, version_differences
-from hsr8.evaluation.sweep.job import CRASHED, Row
+from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, Row
+from hsr8.evaluation.sweep.summary import NUMBERS
 from hsr8.evaluation.sweep.table import write_table
 from hsr8.recorder import atomic
 from hsr8.recorder.json_lines import read_lines
@@ -188,7 +189,15 @@ def _cut_torn_line(ledger: TextIO) -> None:
 
 
 def _row(line: str) -> Row:
-    row = json.loads(line)
-    if not isinstance(row, dict) or not isinstance(row["seed"], int) or "outcome" not in row:
+    try:
+        row = json.loads(line)
+    except RecursionError as error:
+        raise ValueError("nested too deeply") from error
+    if not isinstance(row, dict) or type(row["seed"]) is not int:
         raise ValueError("no result of a run")
+    if row["outcome"] not in (*OUTCOMES.values(), CRASHED, REFUSED):
+        raise ValueError(f"no outcome: {row['outcome']!r}")
+    for key in NUMBERS:
+        if not isinstance(row.get(key), int | float | None):
+            raise ValueError(f"{key} is no number: {row[key]!r}")
     return row

@@ -30,6 +30,16 @@ QUANTITIES: tuple[tuple[str, bool], ...] = (
     ("saccades_per_s", False),
     ("real_time_factor", False),
 )
+COUNTS = (
+    "collisions",
+    "collisions_moving",
+    "collisions_static",
+    "collisions_closing",
+    "falls",
+    "attempts",
+    "via_points_missed",
+)
+NUMBERS = (*COUNTS, *(key for key, _ in QUANTITIES))  # what is reckoned with
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,3 @@
-import os
 import subprocess
 import sys
 
@@ -32,14 +31,3 @@ def test_it_does_not_begin_without_its_parent():
     )
     assert done.returncode == 130
     assert done.stdout == ""
-
-
-def test_it_is_the_command_line_otherwise():
-    done = subprocess.run(
-        [sys.executable, "-m", "hsr8.cli.attended", str(os.getpid()), "list", "--json"],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=60,
-    )
-    assert '"quick"' in done.stdout

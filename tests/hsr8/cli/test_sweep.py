@@ -125,11 +125,13 @@ def test_a_crashed_run_is_run_again_by_the_next_sweep(instant):
 
 def test_ctrl_c_leaves_a_folder_that_goes_on(instant, capsys):
     stopped = instant({1: KeyboardInterrupt()})
-    assert entry([*FAST, "--seeds", "0:3"]) == 130
+    more = ["--seeds", "0:3", "--workers", "3", "--keep", "failed", "--log", "--out", "a b"]
+    assert entry([*FAST, *more]) == 130
     assert stopped.closed
-    assert "go on with: hsr8 sweep quick" in capsys.readouterr().err
+    (said,) = re.findall("go on with: hsr8 (.*)", capsys.readouterr().err)
     again = instant()
-    assert entry([*FAST, "--seeds", "0:3"]) == 0
+    assert entry(shlex.split(said)) == 0
+    assert all(job.keep == "failed" and job.log for job in again.ran)
     assert [job.seed for job in again.ran] == [1, 2]
 
 

@@ -35,8 +35,22 @@ def test_a_line_that_a_kill_cut_off_is_dropped(folder, row):
     assert [r["seed"] for r in folder.rows()] == [1, 5]
 
 
-def test_a_damaged_line_is_named(folder):
-    (folder.path / LEDGER).write_text("[]\n")
+@pytest.mark.parametrize(
+    "line",
+    [
+        "[]",
+        "{}",
+        "no",
+        '{"seed": true, "outcome": "passed"}',
+        '{"seed": 1, "outcome": "splendid"}',
+        '{"seed": 1, "outcome": []}',
+        '{"seed": 1, "outcome": "passed", "falls": "two"}',
+        '{"seed": 1, "outcome": "passed", "min_clearance_m": {}}',
+        "[" * 100_000,
+    ],
+)
+def test_a_damaged_line_is_named(folder, line):
+    (folder.path / LEDGER).write_text(line + "\n")
     with pytest.raises(UsageError, match=r"runs.jsonl:1"):
         folder.rows()
 
