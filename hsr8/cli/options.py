@@ -118,7 +118,7 @@ class Sweep:
         _arg("S", "wall time after which a run hangs [s]; by default 60 s + 20 x its duration"),
     ] = None
     keep: Literal["all", "failed", "none"] = "all"
-    """Run folders that stay; one takes about 45 kB per simulated second."""
+    """Run folders that stay; one takes about 100 kB per simulated second."""
     log: bool = False
     """Write the Rerun log of every run."""
     json: bool = False

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -204,7 +205,7 @@ def _value(row: Row, metric: str) -> Any:
     if metric == "success" and row.get("outcome") == CRASHED:
         return False
     value = row.get(metric)
-    return value if isinstance(value, bool | int | float) else None
+    return value if isinstance(value, bool | int | float) and isfinite(value) else None
 
 
 def _must_know(metric: str, rows: Sequence[Row]) -> None:

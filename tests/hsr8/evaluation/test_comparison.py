@@ -60,6 +60,12 @@ def test_a_crash_is_a_failure_and_says_nothing_else():
     assert results["collisions"].n == 1
 
 
+def test_what_is_no_finite_number_was_not_measured():
+    a = _side([_row(1, min_clearance_m=float("nan")), _row(2, min_clearance_m="near")])
+    b = _side([_row(1, min_clearance_m=1.0), _row(2, min_clearance_m=1.0)])
+    assert [r.metric for r in compare(a, b).results] == ["success", "time_to_goal_s"]
+
+
 def test_swapping_turns_every_difference_round():
     a = _side([_row(s, success=s % 3 > 0, collisions=s % 2) for s in range(9)])
     b = _side([_row(s, success=s % 4 > 0, collisions=s % 5) for s in range(9)])

@@ -1,0 +1,41 @@
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hsr8.evaluation.sweep.table import flat, write_table
+
+VALUES = (
+    st.none() | st.booleans() | st.integers(-(2**60), 2**60) | st.floats() | st.text(max_size=3)
+)
+ROWS = st.lists(st.dictionaries(st.sampled_from("abc"), VALUES, min_size=1), min_size=1, max_size=4)
+
+
+@settings(max_examples=25, deadline=None)
+@given(rows=ROWS)
+def test_any_mixture_of_values_has_a_table(rows, tmp_path_factory):
+    file = tmp_path_factory.mktemp("table") / "runs.parquet"
+    write_table(file, rows)
+    table = pq.read_table(file)
+    assert table.num_rows == len(rows)
+    for name in table.column_names:
+        told = [value is None for value in table[name].to_pylist()]
+        assert told == [row.get(name) is None for row in rows]
+
+
+@pytest.mark.parametrize(
+    ("values", "back"),
+    [
+        ([1, 2], [1, 2]),
+        ([1, 0.5, None], [1.0, 0.5, None]),
+        ([True, None], [True, None]),
+        ([1, "a"], ["1", "a"]),
+    ],
+)
+def test_a_column_has_one_type(tmp_path, values, back):
+    write_table(tmp_path / "t", [{"x": value} for value in values])
+    assert pq.read_table(tmp_path / "t")["x"].to_pylist() == back
+
+
+def test_nested_results_are_flat():
+    assert flat({"a": {"b": 1, "c": {"d": 2}}, "e": 3}) == {"a.b": 1, "a.c.d": 2, "e": 3}
