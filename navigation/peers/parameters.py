@@ -99,25 +99,25 @@ class DwaParameters:
 class MppiParameters:
     """Model predictive path integral control."""
 
-    margin: NonNegative = 0.05
+    margin: NonNegative = 0.0238
     """Distance kept from the bodies of obstacles [m]."""
     samples: Annotated[int, Ge(8), Le(8192)] = 256
     """Sampled sequences of footsteps, half of them mirrored [1]."""
     steps: Annotated[int, Ge(1), Le(200)] = 18
     """Footsteps per sequence [1]."""
-    spread: Positive = 0.5
+    spread: Positive = 0.975
     """Standard deviation of the samples, share of the speed limits [1]."""
-    persistence: Annotated[float, Ge(0.0), Lt(1.0)] = 0.8
+    persistence: Annotated[float, Ge(0.0), Lt(1.0)] = 0.525
     """Correlation of a sample from footstep to footstep [1]."""
-    temperature: Positive = 0.05
+    temperature: Positive = 0.0628
     """Cost over which a sample's weight falls to 1/e [1]."""
-    heading_weight: NonNegative = 0.2
+    heading_weight: NonNegative = 0.0653
     """Weight of the heading left to turn [1]."""
-    clearance_weight: NonNegative = 0.5
+    clearance_weight: NonNegative = 1.26
     """Weight of the gap to the nearest obstacle [1]."""
-    clearance: Positive = 0.15
+    clearance: Positive = 0.165
     """Gap from which on it does not matter [m]."""
-    contact_weight: NonNegative = 8.0
+    contact_weight: NonNegative = 4.41
     """Weight of a contact, the sooner the more [1]."""
 
 
