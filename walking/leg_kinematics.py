@@ -9,6 +9,8 @@ a leg costs a few microseconds.
 from dataclasses import dataclass
 from math import acos, asin, atan2, cos, hypot, sin
 
+from walking.value import value
+
 LegAngles = tuple[float, float, float, float, float, float]
 Vector = tuple[float, float, float]
 
@@ -37,7 +39,7 @@ class LegDimensions:
         return self.thigh + self.shank + self.ankle_height
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class FootPose:
     """Pose of a foot frame in the base frame, R = Rz(yaw) Ry(pitch) Rx(roll).
 

@@ -1,6 +1,5 @@
 """One reading of the sensors, put into the level frame of the trunk's heading."""
 
-from dataclasses import dataclass
 from math import cos, sin
 
 from walking.joints import LEFT_LEG, RIGHT_LEG
@@ -8,11 +7,12 @@ from walking.leg_kinematics import Vector, foot_pose
 from walking.parameters import GRAVITY
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
+from walking.value import value
 
 LIGHT_LOAD = 0.074  # noise of a foot's pads stays below this share of the weight [1]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class FootMeasurement:
     """A foot seen from the hips: origin in base_link, z up, x along the heading.
 
@@ -29,7 +29,7 @@ class FootMeasurement:
     force: float
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class BodyMeasurement:
     """Body as measured, in the level frame at base_link, x along the heading.
 

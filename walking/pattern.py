@@ -12,9 +12,10 @@ from walking.parameters import PatternParameters
 from walking.preview import preview_gains
 from walking.state import Footstep
 from walking.support import SupportRegion
+from walking.value import value
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class ZmpRamp:
     """A stretch of the ZMP reference, linear in time.
 

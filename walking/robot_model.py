@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import asin, atan2, sqrt
 from os import PathLike, fspath
 from typing import Any
@@ -170,8 +170,10 @@ class RobotModel:
             height = BENT * leg.length - leg.hip_z
             foot = FootPose(leg.hip_x, leg.hip_y, -height, 0.0, 0.0, 0.0)
             q[part] = leg_angles(leg, foot)[0]
-            ahead = leg_angles(leg, replace(foot, x=foot.x - SMALL))[0]
-            behind = leg_angles(leg, replace(foot, x=foot.x + SMALL))[0]
+            ahead, behind = (
+                leg_angles(leg, FootPose(foot.x + way, foot.y, foot.z, 0.0, 0.0, 0.0))[0]
+                for way in (-SMALL, SMALL)
+            )
             motion[part] = (np.array(ahead) - behind) / (2.0 * SMALL)
         _, still = self.inverse_dynamics(q, rest, rest, (0.0, 0.0))
         _, moved = self.inverse_dynamics(q, rest, motion, (1.0, 0.0))

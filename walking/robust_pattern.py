@@ -16,20 +16,19 @@ equations and bounds. Its dual has two unknowns, found by Newton's method; witho
 bounds that is one division.
 """
 
-from dataclasses import dataclass
-
 from walking.lipm import Lipm
 from walking.parameters import PatternParameters
 from walking.pattern import DcmTracker, PendulumState, ZmpRamp, dcm_reference
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.support import SupportRegion
+from walking.value import value
 from walking.zmp_program import Knot, ZmpProgram
 
 Feet = tuple[Footstep, Footstep]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class ZmpPlan:
     """Knots from now on, and what they were made for.
 

@@ -1,6 +1,5 @@
 """Balance: what the ankles can do now and what only the next foothold can."""
 
-from dataclasses import dataclass
 from math import cos, exp, sin
 
 from walking.footsteps import FootstepPlanner
@@ -10,11 +9,12 @@ from walking.saturation import beyond
 from walking.state import Footstep
 from walking.step_timing import catching_time
 from walking.support import SupportRegion
+from walking.value import value
 
 ROUNDING = 1e-6  # ticks that a time divided into them may lack
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class AnkleOffsets:
     """Change of the set-points of one ankle.
 
@@ -26,7 +26,7 @@ class AnkleOffsets:
     roll: float
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Capture:
     """The foothold that catches the body, and when it is needed.
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from walking.admission import AdmissionReport
+from walking.value import value
 
 Array = NDArray[np.float64]
 
@@ -27,7 +28,7 @@ class Phase(StrEnum):
         return self in (Phase.GETTING_UP, Phase.FALLEN)
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Footstep:
     """A foothold in the odometry frame.
 

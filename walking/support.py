@@ -1,10 +1,10 @@
 """The region where the floor can push: the convex hull of one or two soles."""
 
-from dataclasses import dataclass
 from math import cos, hypot, inf, sin
 
 from walking.robot_model import Sole
 from walking.state import Footstep
+from walking.value import value
 
 Polygon = tuple[tuple[float, float], ...]
 """Corners of a convex polygon, counter-clockwise [m]."""
@@ -12,7 +12,7 @@ Polygon = tuple[tuple[float, float], ...]
 COLLINEAR = 1e-12  # twice the area under which three corners are taken for a line [m²]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class SupportRegion:
     """Convex family of rectangles between two soles; with equal ends, one sole.
 

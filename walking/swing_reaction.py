@@ -28,6 +28,7 @@ from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.robot_model import RobotModel
 from walking.state import Footstep
+from walking.value import value
 
 Point = tuple[float, float]
 SMALL = 1e-4  # of a foot's move in finite differences [m]
@@ -88,7 +89,7 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Swing:
     """A swing of the plan.
 

@@ -1,14 +1,14 @@
 """What walking asks of the servos."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+
+from walking.value import value
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class JointTargets:
     """Set-points of the 26 position servos for one control tick.
 

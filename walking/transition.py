@@ -1,18 +1,17 @@
 """From the plan of the last tick to the one now wanted, as far as the ZMP allows."""
 
-from dataclasses import dataclass
-
 from walking.footstep_clock import Clock
 from walking.gait import Gait
 from walking.pattern import PatternGenerator, PendulumState, ZmpRamp
 from walking.state import Footstep
 from walking.stride import Strides
 from walking.support import SupportRegion
+from walking.value import value
 
 BISECTIONS = 4  # an admitted change is at least 1/16 short of the largest possible
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Course:
     """All that a plan is made of.
 
