@@ -1,0 +1,156 @@
+"""Fig. 3: the univector field, its parts, and the ways that follow it."""
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+from figure_style import GOAL, MOVER, ROBOT, STILL, disc, figure, square, styled
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from navigation.avoid_obstacle import avoid_obstacle
+from navigation.belief import Motion, Track
+from navigation.decision_parameters import NavigationParameters
+from navigation.extended_radius import extended_radius, physical_radius
+from navigation.motion_field import FieldScene, MotionField
+from navigation.move_to_goal import muf
+from navigation.obstacle_set import ObstacleSet
+from navigation.univector import normalized
+
+Array = NDArray[np.float64]
+
+GOAL_HEADING = pi / 6  # printed in the caption of Fig. 3
+TARGET = np.array([1.2, 0.0])
+OBSTACLE, RADIUS = (0.0, 0.05), 0.10  # [m]
+STARTS = np.array([(-1.6, y) for y in np.linspace(-1.2, 1.2, 13)])
+REACH = 0.05  # of the goal, where a way ends [m]
+STEP = 0.01  # of a way [m]
+
+
+@dataclass(frozen=True)
+class FieldPanel:
+    """One field.
+
+    Attributes:
+        name: what it is.
+        parameters: that make it.
+        arrows: unit vectors or zeros at the points of the grid (n, 2).
+        ways: one from each start (m, steps, 2) [m].
+        arrived: which of them end at the goal (m,).
+        clearance: least distance of each way from the obstacle's surface for a robot (m,) [m].
+    """
+
+    name: str
+    parameters: NavigationParameters
+    arrows: Array
+    ways: Array
+    arrived: NDArray[np.bool_]
+    clearance: Array
+
+
+def obstacle() -> ObstacleSet:
+    """The obstacle of the figure."""
+    still = Track(
+        id=0,
+        label="red",
+        position=np.array(OBSTACLE),
+        velocity=np.zeros(2),
+        covariance=np.eye(4) * 1e-8,
+        radius=RADIUS,
+        radius_sigma=0.0,
+        motion=Motion.STATIC,
+        hits=99,
+        age=0.0,
+        last_seen=np.array(OBSTACLE),
+        visible=True,
+    )
+    return ObstacleSet.from_tracks([still])
+
+
+def grid() -> Array:
+    """Points of the arrows (n, 2) [m]."""
+    x, y = np.meshgrid(np.linspace(-1.6, 1.8, 28), np.linspace(-1.2, 1.2, 20))
+    return np.stack([x.ravel(), y.ravel()], axis=1)
+
+
+def panels() -> list[FieldPanel]:
+    """Move-to-goal alone, avoid-obstacle alone, their sum as printed, and ours."""
+    paper, extended = NavigationParameters.paper(), NavigationParameters.extended()
+    made = []
+    for name, p in (("printed sum, 0.75 and 0.25", paper), ("blend by distance (ours)", extended)):
+        u, obstacles = p.univector, obstacle()
+        s_oe = extended_radius(obstacles, 0.0, np.zeros(1), u)
+        scene = FieldScene(obstacles, s_oe, np.zeros(1), TARGET, GOAL_HEADING)
+        field = MotionField(u, p.mover)
+        if p is paper:
+            made.append(
+                _panel(
+                    "move-to-goal, eq. (8)",
+                    p,
+                    lambda x: muf(x, 0.0, TARGET, GOAL_HEADING, paper.univector),
+                )
+            )
+            made.append(_panel("avoid-obstacle, eq. (9)", p, lambda x, s=s_oe: avoid_obstacle(
+                x, TARGET, np.array([OBSTACLE]), s, d_e=paper.univector.d_e,
+                d_b=paper.univector.d_b, k_r=paper.univector.k_r, inside=paper.univector.inside,
+            )[..., 0, :]))  # fmt: skip
+        made.append(_panel(name, p, lambda x, f=field, s=scene: f.at(x, 0.0, s, ())))
+    return made
+
+
+def _panel(name, parameters, at) -> FieldPanel:
+    place, trace = STARTS.copy(), [STARTS.copy()]
+    arrived = np.zeros(len(place), bool)
+    for _ in range(round(5.0 / STEP)):
+        place = place + STEP * normalized(at(place)) * ~arrived[:, None]
+        arrived |= np.hypot(*(place - TARGET).T) < REACH
+        trace.append(place.copy())
+    ways = np.stack(trace, axis=1)
+    reach = physical_radius(obstacle(), parameters.univector)[0]
+    gap = np.hypot(*(ways - np.array(OBSTACLE)).transpose(2, 0, 1)).min(axis=1) - reach
+    return FieldPanel(name, parameters, normalized(at(grid())), ways, arrived, gap)
+
+
+def draw() -> Figure:
+    """The figure."""
+    with styled():
+        made = figure(11.0, 7.6, "Fig. 3  Univector field, arrival heading π/6")
+        points = grid()
+        for axes, panel in zip(made.subplots(2, 2).ravel(), panels(), strict=True):
+            p = panel.parameters.univector
+            axes.set_title(panel.name)
+            u = panel.arrows
+            acts = np.abs(u).sum(axis=1) > 0.0
+            axes.quiver(
+                *points[acts].T, *u[acts].T, color="#9AA4AE", scale=42, width=0.0019, pivot="mid"
+            )
+            if "avoid" not in panel.name:
+                for way, arrived in zip(panel.ways, panel.arrived, strict=True):
+                    axes.plot(*way.T, color=ROBOT if arrived else MOVER, linewidth=1.0)
+                axes.plot(*STARTS.T, "o", color=ROBOT, markersize=2.5)
+            disc(axes, OBSTACLE, RADIUS, facecolor=STILL, edgecolor="none")
+            if "move" not in panel.name:
+                s_oe = RADIUS + p.s_robot + p.margin
+                for r, style in ((s_oe, "-"), (s_oe + p.d_e, "--"), (s_oe + p.d_e + p.d_b, ":")):
+                    disc(
+                        axes,
+                        OBSTACLE,
+                        r,
+                        fill=False,
+                        edgecolor=MOVER,
+                        linewidth=0.8,
+                        linestyle=style,
+                    )
+            axes.annotate(
+                "", TARGET + 0.3 * np.array([cos(GOAL_HEADING), sin(GOAL_HEADING)]), TARGET,
+                arrowprops={"arrowstyle": "-|>", "color": GOAL, "linewidth": 1.8},
+            )  # fmt: skip
+            axes.plot(*TARGET, "o", color=GOAL, markersize=5)
+            square(axes, (-1.7, 1.9), (-1.25, 1.25))
+            axes.grid(False)
+        made.supxlabel(
+            "circles: S_oe (solid), S_oe + d_e (dashed), S_oe + d_e + d_b (dotted); "
+            "grey: the obstacle; blue: ways from equally spaced starts; orange: goal",
+            fontsize=8,
+        )
+    return made

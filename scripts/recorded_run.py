@@ -1,0 +1,74 @@
+"""A short run of the real loop, kept in memory."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.loop import Simulation
+from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+
+Array = NDArray[np.float64]
+
+FAST = ("robot.body=kinematic", "camera.source=analytic")
+
+
+@dataclass
+class RecordedRun:
+    """Listener that keeps what the figures show.
+
+    Attributes:
+        time: of every record [s].
+        robot: true x, y, heading of every record [m, m, rad].
+        movers: true positions of every record (m, 2) [m].
+        contact: whether anything touched, of every record.
+        frames: every camera frame.
+    """
+
+    n_movers: int
+    scenario: Scenario
+    time: list[float] = field(default_factory=list)
+    robot: list[Array] = field(default_factory=list)
+    movers: list[Array] = field(default_factory=list)
+    contact: list[bool] = field(default_factory=list)
+    frames: list[FrameRecord] = field(default_factory=list)
+
+    def on_record(self, record: TickRecord) -> None:
+        """Keep a record."""
+        truth = record.truth
+        self.time.append(record.time)
+        self.robot.append(np.array(truth.robot))
+        places = np.reshape(truth.obstacle_positions, (-1, 2))
+        self.movers.append(places[len(places) - self.n_movers :].copy())
+        self.contact.append(bool(truth.contacts))
+        if record.frame is not None:
+            self.frames.append(record.frame)
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Nothing depends on events."""
+
+    def close(self, exit_reason: str) -> None:
+        """Nothing is left open."""
+
+    def at(self, time: float) -> int:
+        """Number of the last record not after `time` [s]."""
+        return max(0, int(np.searchsorted(self.time, time + 1e-9)) - 1)
+
+
+def run(name: str, settings: tuple[str, ...], seed: int, duration: float) -> RecordedRun:
+    """Run a scenario for at most `duration` [s].
+
+    Args:
+        name: of the scenario.
+        settings: like ``--set`` of `hsr8 run`.
+        seed: of world and noise.
+        duration: simulated time [s].
+    """
+    scenario = load(name, [*settings, f"duration={duration}"])
+    simulation = Simulation(scenario, seed)
+    kept = RecordedRun(len(simulation.layout.movers), scenario)
+    simulation.listeners.append(kept)
+    simulation.run()
+    return kept

@@ -1,0 +1,231 @@
+"""Fig. 9: the paper's run in snapshots, read from run folders."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import atan2, cos, hypot, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from figure_style import (
+    GOAL,
+    MOVER,
+    ROBOT,
+    STILL,
+    VIEW,
+    VIRTUAL,
+    disc,
+    figure,
+    placed,
+    robot,
+    square,
+    styled,
+    window,
+)  # fmt: skip
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Polygon
+from numpy.typing import NDArray
+
+from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.recorder.measurements import read_measurements
+from hsr8.recorder.run_folder import MEASUREMENTS
+from hsr8.recorder.run_reader import Run, open_run
+from hsr8.recorder.trajectory import Trajectory, rows_at
+from hsr8.recorder.walking_table import WalkingTable
+from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from hsr8.world.generator import draw_layout
+from hsr8.world.layout import Layout
+from navigation.belief import Motion, Track
+from navigation.extended_radius import extended_radius
+from navigation.obstacle_set import ObstacleSet
+from navigation.partial_evaluation import psi_obstacle
+
+Array = NDArray[np.float64]
+
+COLUMNS = 4
+TRAIL, STEPS = 45.0, 12.0  # of the path and of the footprints shown [s]
+NEAR = 0.8  # a virtual obstacle so near is worth a snapshot [m]
+
+
+@dataclass(frozen=True)
+class Tour:
+    """A run as the figure needs it.
+
+    Attributes:
+        name: of the row.
+        scenario: that was run.
+        layout: its world.
+        frames: belief and decisions.
+        motion: of robot and movers.
+        walked: how it walked.
+        height: of the camera [m].
+        events: kinds and times.
+    """
+
+    name: str
+    scenario: Scenario
+    layout: Layout
+    frames: tuple[FrameSummary, ...]
+    motion: Trajectory
+    walked: WalkingTable
+    height: float
+    events: tuple[dict[str, Any], ...]
+
+
+def tour(path: Path) -> Tour:
+    """Read a run folder; the row is named by its profile."""
+    run: Run = open_run(path)
+    scenario = load(str(run.scenario_file), [])
+    measured = next(iter(read_measurements(run.path / MEASUREMENTS, whole=False)))
+    return Tour(
+        f"profile {scenario.navigation.profile}",
+        scenario,
+        draw_layout(scenario, run.seed),
+        run.frames(),
+        run.trajectory(),
+        run.walking(),
+        float(measured.frame.view.position[2]),
+        run.events(),
+    )
+
+
+def moments(shown: Tour) -> list[FrameSummary]:
+    """One frame of each stretch of the run, if possible with a large virtual obstacle at hand."""
+    edges = np.linspace(0.0, shown.frames[-1].time, COLUMNS + 1)
+    return [
+        max((f for f in shown.frames if a + 5.0 <= f.time < b), key=lambda f: _interest(f, a, b))
+        for a, b in pairwise(edges.tolist())
+    ]
+
+
+def _interest(frame: FrameSummary, start: float, stop: float) -> tuple[float, float]:
+    x, y, _ = frame.pose
+    near = [r for vx, vy, r in frame.virtual_obstacles if hypot(vx - x, vy - y) < NEAR]
+    return round(max(near, default=0.0), 2), -abs(frame.time - 0.5 * (start + stop))
+
+
+def shapes(shown: Tour, frame: FrameSummary) -> list[tuple[tuple[float, float], float]]:
+    """Centre and S_oe of the obstacles as believed."""
+    tracks = [
+        Track(
+            id=t.id,
+            label=t.label,
+            position=np.array(t.position),
+            velocity=np.array(t.velocity),
+            covariance=_covariance(t.covariance),
+            radius=t.radius,
+            radius_sigma=0.0,
+            motion=Motion(t.motion),
+            hits=1,
+            age=0.0,
+            last_seen=np.array(t.position),
+            visible=t.visible,
+        )
+        for t in frame.tracks
+    ]
+    obstacles, p = ObstacleSet.from_tracks(tracks), shown.scenario.navigation_parameters()
+    x, y, yaw = frame.pose
+    forward, left, _ = frame.velocity
+    velocity = np.array(
+        [cos(yaw) * forward - sin(yaw) * left, sin(yaw) * forward + cos(yaw) * left]
+    )
+    psi_ob = psi_obstacle(obstacles, np.array([x, y]), velocity, p.evaluation)
+    radii = extended_radius(obstacles, frame.psi[1], psi_ob, p.univector)
+    return list(zip([t.position for t in frame.tracks], radii.tolist(), strict=True))
+
+
+def _covariance(values: tuple[float, float, float]) -> Array:
+    whole = np.zeros((4, 4))
+    xx, xy, yy = values
+    whole[:2, :2] = [[xx, xy], [xy, yy]]
+    return whole
+
+
+def draw(tours: list[Tour]) -> Figure:
+    """The figure: a row for each run."""
+    with styled():
+        made = figure(11.0, 3.0 * len(tours) + 0.9, "Fig. 9  Snapshots of the 560.2 s tour")
+        rows = made.subplots(len(tours), COLUMNS, squeeze=False, sharex=True, sharey=True)
+        for row, shown in zip(rows, tours, strict=True):
+            for axes, frame in zip(row, moments(shown), strict=True):
+                _snapshot(axes, shown, frame)
+            row[0].set_ylabel(f"{shown.name}\ny [m]")
+            for axes in row[1:]:
+                axes.set_ylabel("")
+        for axes in rows[:-1].ravel():
+            axes.set_xlabel("")
+        made.legend(handles=_legend(), loc="outside lower center", ncols=5)
+    return made
+
+
+def _snapshot(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
+    row = int(rows_at(shown.motion.time, [frame.time])[0])
+    fov = frame.fov, float(np.radians(shown.scenario.camera.vertical_fov_deg))
+    seen = placed(window(*frame.gaze, fov, shown.height), frame.truth)
+    axes.add_patch(Polygon(seen, closed=True, facecolor=VIEW, alpha=0.35, edgecolor="none"))
+    for obstacle in shown.layout.static:
+        disc(axes, obstacle.position, obstacle.radius, facecolor=STILL, edgecolor="none")
+    for obstacle, at in zip(shown.layout.movers, shown.motion.movers[row], strict=True):
+        disc(axes, at, obstacle.radius, facecolor=MOVER, edgecolor="none")
+        earlier = rows_at(shown.motion.time, np.linspace(frame.time - 8.0, frame.time, 20))
+        k = shown.layout.movers.index(obstacle)
+        axes.plot(*shown.motion.movers[earlier, k].T, color=MOVER, linewidth=0.8)
+    for at, radius in shapes(shown, frame):
+        disc(axes, at, radius, fill=False, edgecolor=INK, linewidth=0.6)
+    for x, y, radius in frame.virtual_obstacles:
+        disc(
+            axes,
+            (x, y),
+            radius,
+            fill=False,
+            edgecolor=VIRTUAL,
+            linewidth=1.6,
+            linestyle=(0, (3, 1.5)),
+        )
+    first = int(rows_at(shown.motion.time, [frame.time - TRAIL])[0])
+    axes.plot(*shown.motion.qpos[first : row + 1 : 10, :2].T, color=ROBOT, linewidth=0.8, alpha=0.6)
+    _footprints(axes, shown, frame.time)
+    _way_points(axes, shown, frame)
+    robot(axes, frame.truth, facecolor=ROBOT)
+    half = 0.5 * np.array(shown.layout.field_size)
+    square(axes, (-half[0], half[0]), (-half[1], half[1]))
+    axes.grid(False)
+    hits = sum(e["kind"] == "collision" and e["time"] <= frame.time for e in shown.events)
+    axes.set_title(f"{frame.time:.1f} s, {frame.passed} via points, {hits} contacts", fontsize=8)
+
+
+def _footprints(axes: Axes, shown: Tour, time: float) -> None:
+    table = shown.walked.window(time - STEPS, time)
+    for foot, colour in (("left", LEFT), ("right", RIGHT)):
+        soles = [outline(table, foot, rows) for rows in contacts(table, foot)]
+        axes.add_collection(
+            PolyCollection(soles, facecolor=colour, edgecolor="none", alpha=0.8, zorder=4)
+        )
+
+
+def _way_points(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
+    points = np.reshape(shown.layout.waypoints, (-1, 2))
+    here, ahead = points[frame.passed % len(points)], points[(frame.passed + 1) % len(points)]
+    turn = atan2(*(ahead - here)[::-1].tolist())
+    axes.annotate("", here + 0.38 * np.array([cos(turn), sin(turn)]), here,
+                  arrowprops={"arrowstyle": "-|>", "color": GOAL, "linewidth": 1.2})  # fmt: skip
+    axes.plot(*here, "o", color=GOAL, markersize=4, zorder=5)
+
+
+def _legend() -> list[object]:
+    return [
+        Line2D([], [], color=ROBOT, label=f"robot, path of the last {TRAIL:.0f} s"),
+        Patch(color=STILL, label="still obstacle"),
+        Patch(color=MOVER, label="mover, path of the last 8 s"),
+        Line2D([], [], color=INK, linewidth=0.6, label=r"extended shape as believed, $S_{oe}$"),
+        Line2D([], [], color=VIRTUAL, linestyle="--", label="dynamic virtual obstacle"),
+        Patch(color=VIEW, alpha=0.5, label="gaze window (up to 1.6 m)"),
+        Patch(color=LEFT, label="left footprints"),
+        Patch(color=RIGHT, label="right footprints"),
+        Line2D([], [], color=GOAL, marker="o", label="via point, arrival heading"),
+    ]

@@ -1,0 +1,49 @@
+"""docs/equations.md names functions and tests that exist."""
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TEXT = (ROOT / "docs" / "equations.md").read_text(encoding="utf-8")
+NAMES = sorted(set(re.findall(r"`([\w/]+\.py)::([\w.]+)`", TEXT)))
+
+
+@cache
+def defined(file: Path) -> set[str]:
+    """Names of functions, classes and methods in a file."""
+    names = set()
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef | ast.FunctionDef):
+            names.add(node.name)
+            if isinstance(node, ast.ClassDef):
+                methods = (n for n in node.body if isinstance(n, ast.FunctionDef))
+                names |= {f"{node.name}.{n.name}" for n in methods}
+    return names
+
+
+@pytest.mark.parametrize(("file", "name"), NAMES)
+def test_what_the_table_names_exists(file, name):
+    if "/" not in file:
+        file = f"{'tests/navigation' if file.startswith('test_') else 'navigation'}/{file}"
+    assert name in defined(ROOT / file)
+
+
+def test_every_equation_has_a_function_and_a_test():
+    for number in range(1, 12):
+        rows = [line for line in TEXT.splitlines() if line.startswith(f"| ({number})")]
+        assert rows, number
+        for row in rows:
+            cells = row.split(" | ")
+            assert re.search(r"`[\w/]+\.py::\w", cells[2]), row
+            assert re.search(r"`[\w/]*test_\w+\.py::test_\w+`", cells[3]), row
+
+
+def test_keys_in_the_tables_are_keys_of_a_scenario():
+    reference = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
+    for section, key in set(re.findall(r"\(`(evaluation|univector|gaze|mover)\.(\w+)`", TEXT)):
+        assert f"## `[navigation.{section}]`" in reference
+        assert f"| `{key}` |" in reference, key
