@@ -152,8 +152,9 @@ class OdometryParameters:
 class StabilizerParameters:
     """Feedback and feed-forward on the servos' set-points."""
 
-    dcm_gain: Annotated[float, Ge(0.0), NUMBER] = 1.5
-    """ZMP moved by the ankles per error of the measured DCM [1]."""
+    dcm_rate: Annotated[float, Ge(0.0), RATE] = 4.24
+    """Pole at which the ankles make an error of the measured DCM fade; the gain follows from it,
+    the pendulum and the servos, see `pole_placement.dcm_gain` [1/s]."""
     sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.010
     """Distance that the ZMP moved by the ankles keeps from the edge of the sole [m]."""
     gyro_gain: Annotated[float, Ge(0.0), ANKLE_TIME] = 0.02

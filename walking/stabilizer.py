@@ -4,6 +4,7 @@ from math import cos, exp, sin
 
 from walking.footsteps import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
+from walking.pole_placement import dcm_gain
 from walking.robot_model import RobotModel
 from walking.saturation import beyond
 from walking.state import Footstep
@@ -43,7 +44,7 @@ class Stabilizer:
     """Feedback of the DCM error on ZMP and footholds.
 
     Args:
-        robot: mass and sole.
+        robot: mass, sole and ankle servos.
         parameters: gains.
         omega: of the pendulum [1/s].
     """
@@ -52,6 +53,8 @@ class Stabilizer:
         self._parameters = parameters
         self._omega = omega
         self._weight = robot.mass * GRAVITY
+        lag = float((robot.damping[4:6] / robot.stiffness[4:6]).max())
+        self._gain = dcm_gain(omega, lag, parameters.dcm_rate)
         pitch, roll = robot.stiffness[4:6].tolist()
         self._stiffness: tuple[float, float] = pitch, roll
         sole = robot.sole
@@ -64,7 +67,7 @@ class Stabilizer:
         self, zmp: tuple[float, float], error: tuple[float, float], region: SupportRegion
     ) -> tuple[float, float]:
         """By how much the ankles move the ZMP against a DCM error, inside the region [m]."""
-        gain = self._parameters.dcm_gain
+        gain = self._gain
         x, y = region.clip(zmp[0] + gain * error[0], zmp[1] + gain * error[1])
         return x - zmp[0], y - zmp[1]
 
