@@ -143,9 +143,9 @@ class Study:
         walk.standing = engine.state().phase == "standing"
         return walk
 
-    def straight(self, seeds: list[int], duration: float) -> None:
+    def straight(self, seeds: list[int], duration: float, names: list[str]) -> None:
         """Fast walks in one direction."""
-        for name, velocity in FAST.items():
+        for name, velocity in ((name, FAST[name]) for name in names):
             script = steady_script(VelocityCommand(*velocity))
             walks = [self.walk(script, seed, duration) for seed in seeds]
             speed = np.mean([walk.velocity() for walk in walks if not walk.fallen], axis=0)
@@ -249,6 +249,7 @@ def main() -> None:
     parser.add_argument("study", choices=("straight", "box", "stop", "odometry"))
     parser.add_argument("--seeds", type=int, nargs="+", default=[0])
     parser.add_argument("--duration", type=float, default=30.0)
+    parser.add_argument("--only", nargs="+", choices=FAST, default=list(FAST), help="fast walks")
     parser.add_argument("--count", type=int, default=50, help="of stops")
     parser.add_argument("--friction", type=float, default=0.8)
     parser.add_argument("--set", nargs="*", default=[], help="parameters, group.name=value")
@@ -256,6 +257,8 @@ def main() -> None:
     study = Study(parameters_of(options.set), options.friction)
     if options.study == "stop":
         study.stop(options.seeds[0], options.count)
+    elif options.study == "straight":
+        study.straight(options.seeds, options.duration, options.only)
     else:
         getattr(study, options.study)(options.seeds, options.duration)
 

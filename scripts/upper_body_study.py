@@ -32,7 +32,7 @@ def measured(
     duration: float,
     **made: bool,
 ) -> list[np.ndarray]:
-    """Rows of yaw rate [rad/s], tilt [deg]; heading [rad]; turns of the support foot [rad]; CoP error."""
+    """Yaw rate and tilt; heading; turns of the support foot; CoP error [rad/s, °, rad, m]."""
     usual = WalkingParameters()
     parameters = replace(
         usual,

@@ -24,6 +24,7 @@ from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import PendulumState
 from walking.posture import ready_stance
+from walking.pressure_hold import PressureHold
 from walking.robot_model import RobotModel
 from walking.rotation import roll_pitch_yaw
 from walking.sensing import BodySensors
@@ -89,6 +90,7 @@ class WalkingEngine:
         self._cycle = Cycle()
         self._heading = HeadingHold(parameters.stabilizer)
         self._speed = SpeedHold(parameters.stabilizer)
+        self._pressure = PressureHold(parameters.stabilizer)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
@@ -154,7 +156,7 @@ class WalkingEngine:
         error = self._error.update(body, gait, whole_body.com, slip, self._zmp_shift)
         placement.remember()
         self._command(command, error)
-        wish = self._wish()
+        wish = self._wish(body)
         if not gait.stepping:
             self._maybe_start(error)
         self._feel_floor(body)
@@ -170,7 +172,14 @@ class WalkingEngine:
         if not gait.double and abs(gait.lift - gait.timing.lift) > SAME_LIFT:
             self._bound.append(Limit.SWING_HEIGHT)
         self._catching.touch_down()
-        return whole_body.follow(body, zmp, self._zmp_shift, load, self._head.advance(head))
+        return whole_body.follow(
+            body,
+            zmp,
+            self._zmp_shift,
+            load,
+            self._head.advance(head),
+            offset=self._pressure.offset,
+        )
 
     def observe(self, sensors: BodySensors) -> None:
         """A tick in which something else moves the joints: only the attitude is followed."""
@@ -239,7 +248,16 @@ class WalkingEngine:
         retimed = self._gait.retime(self._steering.timing)
         self._bound = [] if retimed else [Limit.TIMING]
 
-    def _wish(self) -> Strides:
+    def _pressure_error(self, body: BodyMeasurement) -> tuple[float, float]:
+        """Centre of pressure less planned ZMP, along and across the heading [m]."""
+        found, pendulum = body.pressure(self._gait.feet), self._pendulum
+        if found is None:
+            return 0.0, 0.0
+        x, y = found[0] - pendulum.zmp_x, found[1] - pendulum.zmp_y
+        c, s = cos(self._whole_body.pelvis.yaw), sin(self._whole_body.pelvis.yaw)
+        return c * x + s * y, c * y - s * x
+
+    def _wish(self, body: BodyMeasurement) -> Strides:
         """What the footsteps obey, making up for what the feet slip."""
         odometry, gait, steering = self._odometry, self._gait, self._steering
         ahead = self._whole_body.pelvis.yaw - odometry.yaw
@@ -250,13 +268,16 @@ class WalkingEngine:
         if not (gait.stepping and steering.moving):
             # The last footsteps only close the stance.
             self._speed.rest()
+            self._pressure.rest()
             return steering.wish(STILL)
         begins = self._cycle.begins(gait.support)
+        disturbed = gait.hurried or self._placement.moved != (0.0, 0.0)
+        self._pressure.update(self._pressure_error(body), begins=begins, disturbed=disturbed)
         forward, left = self._speed.correction(
             (odometry.x, odometry.y, odometry.yaw),
             steering.velocity,
             begins=begins,
-            disturbed=gait.hurried or self._placement.moved != (0.0, 0.0),
+            disturbed=disturbed,
         )
         return steering.wish((forward, left, self._heading.rate(ahead, begins=begins)))
 

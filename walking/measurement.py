@@ -7,6 +7,7 @@ from walking.leg_kinematics import Vector, foot_pose
 from walking.parameters import GRAVITY
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
+from walking.swing import FootReference
 from walking.value import value
 
 LIGHT_LOAD = 0.074  # noise of a foot's pads stays below this share of the weight [1]
@@ -20,6 +21,7 @@ class FootMeasurement:
         x, y, z: position of the foot frame [m].
         yaw: its direction [rad].
         force: load under the sole [N].
+        pressure: centre of that load in the foot frame (2,) [m].
     """
 
     x: float
@@ -27,6 +29,7 @@ class FootMeasurement:
     z: float
     yaw: float
     force: float
+    pressure: tuple[float, float]
 
 
 @value
@@ -50,6 +53,17 @@ class BodyMeasurement:
     com: Vector
     right_load: float
 
+    def pressure(self, feet: tuple[FootReference, FootReference]) -> tuple[float, float] | None:
+        """Centre of pressure under feet that stand where `feet` are; None in the air (2,) [m]."""
+        x = y = load = 0.0
+        for measured, foot in zip(self.feet, feet, strict=True):
+            (u, v), yaw, force = measured.pressure, foot.yaw.position, measured.force
+            c, s = cos(yaw), sin(yaw)
+            x += force * (foot.x.position + c * u - s * v)
+            y += force * (foot.y.position + s * u + c * v)
+            load += force
+        return (x / load, y / load) if load > 0.0 else None
+
 
 def measure(
     robot: RobotModel, sensors: BodySensors, roll: float, pitch: float, heading: float
@@ -68,7 +82,17 @@ def measure(
         a, b, c, d, e, f = sensors.joint_position[part].tolist()
         foot = foot_pose(leg, (a, b, c, d, e, f))
         x, y, z = level(foot.x, foot.y, foot.z)
-        feet.append(FootMeasurement(x, y, z, foot.yaw, sum(pads)))
+        front_left, front_right, back_left, back_right = pads
+        force = sum(pads)
+        pressure = robot.sole.centre, 0.0
+        if force > 0.0:
+            # The floor pushes at the soles' corners.
+            length, width = robot.sole.half_length / force, robot.sole.half_width / force
+            pressure = (
+                robot.sole.centre + length * (front_left + front_right - back_left - back_right),
+                width * (front_left + back_left - front_right - back_right),
+            )
+        feet.append(FootMeasurement(x, y, z, foot.yaw, force, pressure))
     light = LIGHT_LOAD * robot.mass * GRAVITY
     on_left, on_right = (max(0.0, foot.force - light) for foot in feet)
     both = on_left + on_right

@@ -205,6 +205,13 @@ class StabilizerParameters:
     """Share of what two footsteps of a steady walk miss of its velocity that is made up for [1]."""
     speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.02
     """Most that is made up for, forward and sideways [m/s]."""
+    pressure_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
+    """Share of the centre of pressure's mean error over two footsteps by which the body moves
+    against it [1]."""
+    pressure_offset: Annotated[float, Ge(0.0), LENGTH] = 0.015
+    """Farthest that the body moves for it, forward and sideways [m]."""
+    pressure_speed: Annotated[float, Ge(0.0), SPEED] = 0.01
+    """Fastest that it does [m/s]."""
 
 
 @dataclass(frozen=True)

@@ -73,6 +73,8 @@ class WholeBody:
         zmp_shift: Point,
         right_load: float,
         head: Point,
+        *,
+        offset: Point,
     ) -> JointTargets:
         """One tick.
 
@@ -82,12 +84,16 @@ class WholeBody:
             zmp_shift: by how much the ankles move the ZMP [m].
             right_load: planned share of the weight on the right foot [1].
             head: pan and tilt [rad].
+            offset: of the body from the pendulum, forward and left [m].
         """
         gait, pendulum = self._gait, self._pendulum
         before = self.pelvis.yaw
         compensation = self.compensation
         compensation.advance(gait.swings())
         (ox, oy), (ex, ey) = compensation.offset, compensation.acceleration
+        c, s = cos(before), sin(before)
+        ox += c * offset[0] - s * offset[1]
+        oy += s * offset[0] + c * offset[1]
         self.pelvis = pelvis = self._posture.pelvis(gait, (pendulum.x + ox, pendulum.y + oy))
         self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
         angles, legs = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
@@ -101,11 +107,11 @@ class WholeBody:
             soles.append((c * dx + s * dy, c * dy - s * dx))
         w2 = self._lipm.omega**2
         ax, ay = w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey
-        offset = self._feedforward.offsets(
+        set_points = self._feedforward.offsets(
             position, legs, (soles[0], soles[1]), right_load, (c * ax + s * ay, c * ay - s * ax)
         )
         for index, load in ((0, 1.0 - right_load), (1, right_load)):
             ankle = self._stabilizer.ankles(gait.footholds[index], load, zmp_shift, body.gyro)
-            offset[6 * index + 4] += ankle.pitch
-            offset[6 * index + 5] += ankle.roll
-        return JointTargets(position=position, offset=offset)
+            set_points[6 * index + 4] += ankle.pitch
+            set_points[6 * index + 5] += ankle.roll
+        return JointTargets(position=position, offset=set_points)

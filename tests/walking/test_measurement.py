@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from walking.measurement import measure
+from walking.state import Footstep
+from walking.swing import FootReference
 
 
 def test_a_tilted_body_over_flat_feet_is_seen_level(robot, ideal_body):
@@ -30,3 +32,22 @@ def test_light_pad_noise_is_no_load(robot, ideal_body):
     assert body.right_load == 1.0
     airborne = measure(robot, replace(sensors, foot_force=np.zeros((2, 4))), 0.0, 0.0, 0.0)
     assert airborne.right_load == 0.5
+
+
+def test_the_centre_of_pressure_is_under_the_loaded_corner_and_between_loaded_feet(
+    robot, ideal_body
+):
+    sensors, sole = ideal_body.sense(), robot.sole
+    feet = tuple(FootReference(Footstep(side == 0, 0.1 * side, 0.0, 0.3)) for side in (0, 1))
+    force = np.zeros((2, 4))
+    force[0, 1] = 10.0
+    body = measure(robot, replace(sensors, foot_force=force), 0.0, 0.0, 0.0)
+    corner = np.array([sole.centre + sole.half_length, -sole.half_width])
+    assert body.feet[0].pressure == pytest.approx(tuple(corner))
+    R = np.array([[np.cos(0.3), -np.sin(0.3)], [np.sin(0.3), np.cos(0.3)]])
+    assert body.pressure(feet) == pytest.approx(tuple(R @ corner))
+    force[1, 1] = 10.0
+    body = measure(robot, replace(sensors, foot_force=force), 0.0, 0.0, 0.0)
+    assert body.pressure(feet) == pytest.approx(tuple(R @ corner + [0.05, 0.0]))
+    airborne = measure(robot, replace(sensors, foot_force=np.zeros((2, 4))), 0.0, 0.0, 0.0)
+    assert airborne.pressure(feet) is None

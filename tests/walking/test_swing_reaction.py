@@ -1,5 +1,7 @@
 """The pelvis makes up for what the swinging legs do to the ZMP."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -113,7 +115,9 @@ def test_the_reaction_is_read_off_the_model(robot):
 
 def zmp_errors(robot, body, reaction):
     """Multibody ZMP of the planned motion less the planned one, forward at 0.2 m/s [m]."""
-    parameters = WalkingParameters()
+    usual = WalkingParameters()
+    # The pads of a body without dynamics know nothing of its centre of pressure.
+    parameters = replace(usual, stabilizer=replace(usual.stabilizer, pressure_gain=0.0))
     engine = WalkingEngine(robot, parameters)
     engine._whole_body.compensation = SwingCompensation(engine._lipm, reaction)
     rows = []
