@@ -279,7 +279,7 @@ class WalkingEngine:
             begins=begins,
             disturbed=disturbed,
         )
-        return steering.wish((forward, left, self._heading.rate(ahead, begins=begins)))
+        return steering.wish((forward, left, self._heading.rate(ahead, renew=begins or disturbed)))
 
     def _maybe_start(self, error: tuple[float, float]) -> None:
         """Take a first footstep if the command asks for it, or balance."""

@@ -23,17 +23,18 @@ class HeadingHold:
         """Take the plan's heading `ahead` of the body's as it is [rad]."""
         self._held = ahead
 
-    def rate(self, ahead: float, *, begins: bool) -> float:
+    def rate(self, ahead: float, *, renew: bool) -> float:
         """Turn rate of this tick.
 
         Args:
             ahead: of the body's heading, that of the plan [rad].
-            begins: whether a cycle of two footsteps does.
+            renew: whether to decide anew: as a cycle of two footsteps begins, and at any time
+                while balance has a say in the footsteps.
 
         Returns:
             the rate [rad/s].
         """
-        if begins:
+        if renew:
             wanted = self._gain * (ahead - self._held)
             self._rate = min(self._limit, max(-self._limit, wanted))
         self._held += self._rate * CONTROL_PERIOD
