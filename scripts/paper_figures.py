@@ -18,20 +18,18 @@ import sequence_figure
 import tyro
 from figure_style import styled
 from matplotlib.figure import Figure
-from PIL import Image
 
-DPI = 110
-LARGEST = 300_000  # of a picture with all its colours [byte]
+DPI = (110, 100, 90, 80)
+LARGEST = 300_000  # of a picture [byte]
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Write a figure as a PNG, with a palette of colours if it is large."""
+    """Write a figure as a PNG, as fine as the largest file allows."""
     with styled():
-        figure.savefig(file, dpi=DPI)
-    if file.stat().st_size > LARGEST:
-        with Image.open(file) as picture:
-            small = picture.convert("RGB").quantize(method=Image.Quantize.MAXCOVERAGE)
-        small.save(file, optimize=True)
+        for dpi in DPI:
+            figure.savefig(file, dpi=dpi)
+            if file.stat().st_size <= LARGEST:
+                break
     print(f"{file}  {file.stat().st_size / 1000:.0f} kB", flush=True)
 
 
@@ -53,8 +51,10 @@ def main(
         save(field_figure.draw(), out / "fig3.png")
     if 1 in only or 7 in only:
         looks = gaze_figures.looks(gaze_figures.recorded())
-        save(gaze_figures.draw_map(gaze_figures.most_divided(looks)), out / "fig1.png")
-        save(gaze_figures.draw_choice(looks[0]), out / "fig7.png")
+        if 1 in only:
+            save(gaze_figures.draw_map(gaze_figures.most_divided(looks)), out / "fig1.png")
+        if 7 in only:
+            save(gaze_figures.draw_choice(looks[0]), out / "fig7.png")
     if 4 in only:
         cases = [encounter_figure.case(letter) for letter in encounter_figure.CASES]
         save(encounter_figure.draw(cases), out / "fig4.png")
