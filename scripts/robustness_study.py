@@ -33,6 +33,7 @@ ERRORS = {
     "servo delay 10 ms": Plant(delay=2),
     "floor tilted 2 degrees": Plant(slope=radians(2.0)),
     "bumps of 5 mm": Plant(bump=0.005),
+    "ditches of 5 mm": Plant(ditch=0.005),
 }
 
 

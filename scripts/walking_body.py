@@ -18,6 +18,8 @@ SUBSTEPS = 2
 BUMP_FIELD = 2.5  # half of the side of the square with bumps [m]
 BUMP_FREE = 0.25  # half of the side of the square without, in its middle [m]
 BUMPS = 500
+DITCH = 0.2  # width of a ditch and of the board beside it [m]
+DITCH_FIELD = 4.0  # half of the side of the square with ditches [m]
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class Plant:
         slope: of the floor, uphill in the direction `uphill` [rad].
         uphill: that direction [rad].
         bump: height of the boxes strewn on the floor [m].
+        ditch: depth of the ditches across the floor, 0.2 m wide and 0.2 m apart [m].
         self_contact: whether trunk, head and arms touch the rest of the body, too; the model
             leaves that out.
     """
@@ -48,6 +51,7 @@ class Plant:
     slope: float = 0.0
     uphill: float = 0.0
     bump: float = 0.0
+    ditch: float = 0.0
     self_contact: bool = False
 
     @property
@@ -64,7 +68,9 @@ def build(plant: Plant, rng: np.random.Generator) -> mujoco.MjModel:
         name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], quat=plant.floor_quaternion
     )
     bumps = [_bump(spec, plant.bump, rng) for _ in range(BUMPS)] if plant.bump > 0.0 else []
-    for geom in (floor, *bumps):
+    slats = _slats(spec, plant.ditch) if plant.ditch > 0.0 else []
+    floor.pos = [0.0, 0.0, -plant.ditch]
+    for geom in (floor, *bumps, *slats):
         geom.condim = 4
         geom.contype = geom.conaffinity = 3
         geom.friction = [plant.friction, 0.01, 0.001]
@@ -106,6 +112,18 @@ def _bump(spec: mujoco.MjSpec, height: float, rng: np.random.Generator) -> mujoc
         size=[*rng.uniform(0.02, 0.07, 2), height],
         quat=[np.cos(0.5 * turn), 0.0, 0.0, np.sin(0.5 * turn)],
     )
+
+
+def _slats(spec: mujoco.MjSpec, depth: float) -> list[mujoco.MjsGeom]:
+    """Boards across the way, their tops where the floor was; the robot begins on one."""
+    return [
+        spec.worldbody.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            pos=[x, 0.0, -0.5 * depth],
+            size=[0.5 * DITCH, DITCH_FIELD, 0.5 * depth],
+        )
+        for x in np.arange(-DITCH_FIELD, DITCH_FIELD, 2.0 * DITCH)
+    ]
 
 
 class Body:
