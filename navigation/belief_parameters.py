@@ -53,7 +53,7 @@ class TrackingParameters:
     """Rate at which a mover stops for good [1/s]."""
     correlation_time: NonNegative = 0.03
     """Correlation time of the error of successive detections of one obstacle [s]."""
-    lasting_error: NonNegative = 0.25
+    lasting_error: NonNegative = 0.2
     """Share of the standard deviation of its best detection that all detections of what stands
     still have in common, so that no number of them brings it down [1]."""
     gate: Positive = 13.8

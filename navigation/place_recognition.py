@@ -21,11 +21,11 @@ Array = NDArray[np.float64]
 
 LEAST = 3
 """Sightings that must fall on landmarks [1]."""
-SHARE = 0.6
-"""Share of all sightings that must; the others move, or are new [1]."""
+SHARE = 0.5
+"""Share of the sightings, or of the landmarks if they are fewer, that must meet [1]."""
 TOLERANCE = 0.06
 """Distance up to which a sighting falls on a landmark [m]."""
-COARSE = 0.03
+COARSE = 0.02
 """Standard deviation of a distance from which on a sighting is of no use [m]."""
 APART = 0.4
 """Distance of two sightings without which they tell no heading [m]."""
@@ -82,7 +82,7 @@ class PlaceRecognition:
             x, y, heading of R in W (3,) [m, m, rad], or None.
         """
         seen = self._sightings
-        wanted = max(LEAST, SHARE * len(seen))
+        wanted = max(LEAST, SHARE * min(len(seen), len(labels)))
         if len(labels) < LEAST or len(seen) < LEAST:
             return None
         x, y, yaw = frame.odometry.tolist()
