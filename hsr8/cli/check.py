@@ -113,11 +113,13 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     if not scenario.disturbance.empty:
         facts.add_row("pushes", _pushes(scenario))
     facts.add_row("certificate", _certificate(summary, layout))
-    facts.add_row(
-        "camera",
-        f"{camera.source}, {camera.width} x {camera.height}, {camera.horizontal_fov_deg:.0f} x "
-        f"{camera.vertical_fov_deg:.0f} deg, every {camera.period_ms} ms",
+    wide, high = camera.horizontal_fov_deg, camera.vertical_fov_deg
+    view = (
+        ""
+        if camera.all_round
+        else f" {camera.width} x {camera.height}, {wide:.0f} x {high:.0f} deg,"
     )
+    facts.add_row("camera", f"{camera.source},{view} every {camera.period_ms} ms")
     facts.add_row("profile", scenario.navigation.profile)
     facts.add_row(
         "time",

@@ -1,0 +1,34 @@
+import numpy as np
+
+from hsr8.loop import Simulation
+from hsr8.scenario.loader import load
+
+SEED = 3  # two obstacles stand behind the robot at 1.1 and 1.3 m
+
+
+class Last:
+    def on_record(self, record):
+        if record.frame is not None:
+            self.frame = record.frame
+
+    def on_event(self, time, kind, text):
+        pass
+
+    def close(self, exit_reason):
+        pass
+
+
+def test_an_all_round_camera_knows_what_stands_behind_without_looking():
+    settings = ["robot.body=kinematic", "camera.source=all-round", "duration=1.2"]
+    settings.append("navigation.gaze.mode=fixed")
+    last = Last()
+    simulation = Simulation(load("course", settings, SEED), SEED, [last])
+    simulation.run()
+    belief = last.frame.belief
+    offset = np.array([t.position for t in belief.tracks]) - belief.pose[:2]
+    bearing = np.angle(np.exp(1j * (np.arctan2(offset[:, 1], offset[:, 0]) - belief.pose[2])))
+    assert np.sum(np.abs(bearing) > np.radians(135.0)) >= 2
+    assert belief.view.horizontal_fov == 2.0 * np.pi
+    assert abs(belief.view.pan) < 0.05
+    behind = belief.pose[:2] - 0.8 * np.array([np.cos(belief.pose[2]), np.sin(belief.pose[2])])
+    assert belief.local_map.age_at(behind[None])[0] < 0.5
