@@ -35,6 +35,7 @@ from hsr8.world.image_noise import ImageNoise
 from hsr8.world.physics import CONTROL_PERIOD
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "loop-time.md"
+EARLIER = "\n## Earlier states\n"  # what the page says from here on is not measured anew
 FLOOR = ("floor: physics", "floor: images")
 SECOND = 1.0  # the floor has its turn after so much simulated time [s]
 MOST_OF_A_KIND = 64  # obstacles of one kind that a world may have
@@ -222,7 +223,8 @@ def main() -> None:
         command = " ".join(["python scripts/bench.py", *sys.argv[1:]])
         text = ["# Time of the closed loop", "", environment(), "", f"    {command}", ""]
         intro = (__doc__ or "").split("\n\n")[2].split("\n")
-        PAGE.write_text("\n".join([*text, *intro, "", *lines, ""]))
+        _, earlier, kept = (PAGE.read_text() if PAGE.exists() else "").partition(EARLIER)
+        PAGE.write_text("\n".join([*text, *intro, "", *lines, ""]) + earlier + kept)
 
 
 if __name__ == "__main__":
