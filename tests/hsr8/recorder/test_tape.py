@@ -39,10 +39,12 @@ def test_round_trip_is_exact(tmp_path_factory, blocks):
 
 def test_world_and_robot_have_hashes_of_their_own(tmp_path):
     def hashes(world, robot):
-        tape = TapeWriter(tmp_path / "t")
+        file = tmp_path / f"{world!r}{robot!r}"
+        file.unlink(missing_ok=True)
+        tape = TapeWriter(file)
         tape.mark(0, world, robot)
         tape.close()
-        (block,) = read_tape(tmp_path / "t", whole=True)
+        (block,) = read_tape(file, whole=True)
         return block.world, block.robot
 
     first = hashes(b"a", b"b")
@@ -58,6 +60,18 @@ def test_a_second_mark_without_ticks_replaces_the_first(tmp_path):
     tape.mark(0, b"b", b"")
     tape.close()
     assert len(read_tape(tmp_path / "t", whole=True)) == 1
+
+
+def test_a_tape_is_gone_on_with(tmp_path):
+    rows = np.arange(52.0).reshape(2, 26)
+    for tick in (0, 1):
+        tape = TapeWriter(tmp_path / "t")
+        tape.mark(tick, b"w", b"r")
+        tape.add(rows[tick])
+        tape.close()
+    back = read_tape(tmp_path / "t", whole=True)
+    assert np.array_equal(np.concatenate([b.set_points for b in back]), rows)
+    assert [b.tick for b in back] == [0, 1]
 
 
 @given(cut=st.integers(9, 1000), whole=st.booleans())
