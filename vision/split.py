@@ -231,7 +231,8 @@ def _quantile(values: Array, share: float) -> float:
     ranked: list[float] = np.sort(values).tolist()
     whole, part = divmod(share * (len(ranked) - 1), 1.0)
     low, high = ranked[int(whole)], ranked[min(int(whole) + 1, len(ranked) - 1)]
-    return low + part * (high - low)
+    gap = high - low
+    return low + part * gap if part < 0.5 else high - (1.0 - part) * gap
 
 
 def _merge_narrow(starts: list[int], jumps: list[float], n: int) -> list[int]:
