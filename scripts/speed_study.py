@@ -63,8 +63,14 @@ class Walk:
     beyond: int = 0
 
     def velocity(self) -> np.ndarray:
-        """Mean of forward, left, turn once settled [m/s, m/s, rad/s] (3,)."""
-        rows = np.array(self.poses)[round(SETTLED / CONTROL_PERIOD) :]
+        """Mean of forward, left, turn once settled, pairs of footsteps [m/s, m/s, rad/s] (3,).
+
+        In a part of a pair the body sways and turns as it does not on the whole.
+        """
+        first = round(SETTLED / CONTROL_PERIOD)
+        landed = first + np.flatnonzero(np.diff(self.steps[first:]))
+        pairs = (len(landed) - 1) // 2
+        rows = np.array(self.poses)[landed[0] : landed[2 * pairs] + 1]
         rows[:, 2] = np.unwrap(rows[:, 2])
         d = np.diff(rows, axis=0)
         middle = 0.5 * (rows[1:, 2] + rows[:-1, 2])
