@@ -5,8 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.decisions import Looks, Moves
+from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
+from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
 from hsr8.recorder.run_folder import RunFolder
@@ -21,7 +23,7 @@ def run(
     seed: int | None = None,
     settings: Sequence[str] | Mapping[str, Any] = (),
     out: str | Path | None = None,
-    log: bool = True,
+    log: bool | str = True,
     planner: Moves | None = None,
     gaze: Looks | None = None,
     listeners: Sequence[Listener] = (),
@@ -33,7 +35,7 @@ def run(
         seed: of the world and every noise; the scenario's by default.
         settings: over the scenario's, as ``key=value`` or by key with dots.
         out: folder for the run folder; by default nothing is written.
-        log: write the Rerun log into it too.
+        log: write the Rerun log into it too; ``"minimal"``, ``"standard"`` or ``"full"``.
         planner: plans the motion instead of the scenario's planner.
         gaze: chooses the gaze instead of the scenario's.
         listeners: told of every record.
@@ -41,7 +43,7 @@ def run(
     Raises:
         ScenarioError: the scenario or a setting is wrong, or its world cannot be drawn.
         RenderingUnavailable: the camera needs OpenGL and there is none.
-        UsageError: the run folder cannot be made.
+        UsageError: the run folder cannot be made, or there is no such level of `log`.
     """
     loaded = scenario if isinstance(scenario, Scenario) else load(str(scenario), _words(settings))
     if isinstance(scenario, Scenario) and settings:
@@ -53,8 +55,17 @@ def run(
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)
         command = ("hsr8.run",) if planner or gaze else ("hsr8", "run", loaded.name)
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
-        recording.into(path, manifest, log=log)
+        recording.into(path, manifest, log=_level(log))
     return recording.run()
+
+
+def _level(log: bool | str) -> LogLevel | None:
+    """How much is logged."""
+    if isinstance(log, bool):
+        return LogLevel.STANDARD if log else None
+    if log not in tuple(LogLevel):
+        raise UsageError(f"log={log!r}: give True, False or one of {', '.join(LogLevel)}")
+    return LogLevel(log)
 
 
 def _words(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:

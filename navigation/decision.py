@@ -1,6 +1,8 @@
 """What navigation decides: where to look and how to move."""
 
-from dataclasses import dataclass, field
+import dataclasses
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +67,7 @@ class GazeDecision:
     psi_sf: float = 0.0
     psi_ob: float = 0.0
     psi_way: float = 0.0
-    gaze_map: Array = field(default_factory=lambda: np.zeros((1, 1)))
+    gaze_map: Array = dataclasses.field(default_factory=lambda: np.zeros((1, 1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +85,13 @@ class VirtualObstacle:
     track_id: int
 
 
+class DirectionField(Protocol):
+    """Where a planner leads at any point; looking at it changes nothing."""
+
+    def at(self, points: Array) -> Array:
+        """Directions at `points` (..., 2) in W [m]: (..., 2), of any length, zero for none."""
+
+
 @dataclass(frozen=True, slots=True)
 class MotionDecision:
     """How to move during the next footstep.
@@ -95,6 +104,8 @@ class MotionDecision:
             path_change.
         virtual_obstacles: in force.
         extended_radii: (track id, S_oe) of the obstacles the field uses.
+        field: what the direction was taken from, for those who watch; None for a planner that
+            has no field.
     """
 
     velocity: Array
@@ -103,3 +114,4 @@ class MotionDecision:
     situation: str = "free"
     virtual_obstacles: tuple[VirtualObstacle, ...] = ()
     extended_radii: tuple[tuple[int, float], ...] = ()
+    field: DirectionField | None = dataclasses.field(default=None, repr=False, compare=False)

@@ -88,6 +88,18 @@ class MotionField:
             return self._weighted(points, u_muf, scene, forces)
         return self._blended(points, u_muf, scene, forces)
 
+    def planned(
+        self, heading: float, scene: FieldScene, forces: tuple[VirtualForce, ...]
+    ) -> "PlannedField":
+        """The field of a decision, for those who watch.
+
+        In the blend by distance a virtual obstacle acts at the robot's place alone: the field
+        around it is without.
+        """
+        p = self._univector
+        acting = forces if p.blend == "weights" else ()
+        return PlannedField(p, self._mover, heading, scene, acting)
+
     def _weighted(
         self, points: Array, u_muf: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]
     ) -> Array:
@@ -268,3 +280,26 @@ class MotionField:
             outward,
             weight,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedField:
+    """The field that a decision was made in; looking at it changes nothing.
+
+    Attributes:
+        univector, mover: parameters of the field.
+        heading: of the robot [rad].
+        scene: obstacles and destination.
+        forces: virtual obstacles that act wherever they are looked at.
+    """
+
+    univector: UnivectorParameters
+    mover: MoverParameters
+    heading: float
+    scene: FieldScene
+    forces: tuple[VirtualForce, ...]
+
+    def at(self, points: Array) -> Array:
+        """u_T at `points` (..., 2) in W [m]: (..., 2)."""
+        field = MotionField(self.univector, self.mover)
+        return field.at(points, self.heading, self.scene, self.forces)

@@ -167,7 +167,12 @@ class Planner:
         self._direction = direction
         allowed = min(speed.speed, self._gate(belief, direction))
         return MotionDecision(
-            self._body, direction, allowed, speed.situation, tuple(f.obstacle for f in forces), ()
+            self._body,
+            direction,
+            allowed,
+            speed.situation,
+            tuple(f.obstacle for f in forces),
+            field=self._field.planned(float(pose[2]), scene, forces),
         )
 
     def _facing(self, belief: Belief, task: Task) -> float | None:

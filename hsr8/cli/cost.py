@@ -2,12 +2,17 @@
 
 from dataclasses import dataclass
 
+from hsr8.recorder.log_level import LogLevel
 from hsr8.scenario.schema import Scenario
 
 # Measured on two cores without a graphics card, `course` at its defaults.
 REAL_TIME_FACTOR = 3.3
-LOG_RATE = 0.27  # megabytes of log and records per simulated second
-RECORD_RATE = 0.1  # the records alone
+RECORD_RATE = 0.1  # megabytes of records per simulated second
+LOG_RATES = {  # and of the log beside them
+    LogLevel.MINIMAL: 0.09,
+    LogLevel.STANDARD: 0.22,
+    LogLevel.FULL: 0.6,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +30,8 @@ class Cost:
     disk: float
 
 
-def estimate(scenario: Scenario, *, log: bool = True) -> Cost:
-    """Cost of one run of `scenario`, with or without its Rerun log."""
+def estimate(scenario: Scenario, *, log: LogLevel | None = LogLevel.STANDARD) -> Cost:
+    """Cost of one run of `scenario`, with a Rerun log of a level or without."""
     seconds = scenario.duration
-    return Cost(seconds, seconds / REAL_TIME_FACTOR, seconds * (LOG_RATE if log else RECORD_RATE))
+    rate = RECORD_RATE + (0.0 if log is None else LOG_RATES[log])
+    return Cost(seconds, seconds / REAL_TIME_FACTOR, seconds * rate)

@@ -41,6 +41,7 @@ COMMANDS: dict[str, tuple[type, str]] = {
     "doctor": (options.Doctor, "hsr8.cli.doctor"),
     "bug-report": (options.BugReport, "hsr8.cli.bug_report"),
 }
+VIEWS = ("native", "web")
 MODULES = dict(COMMANDS.values())
 INTERRUPTED = 130
 READER_LEFT = 141  # as of a program that SIGPIPE ends
@@ -102,11 +103,20 @@ def _parsed(given: list[str]) -> options.Command | int:
             f"there is no command {given[0]!r}{suggestion(given[0], list(COMMANDS))} "
             f"(commands: {', '.join(COMMANDS)})"
         )
+    given = _with_kind_of_view(given)
     try:
         command: options.Command = parse(given or ["--help"])
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else 2
     return command
+
+
+def _with_kind_of_view(given: list[str]) -> list[str]:
+    """``--view`` alone means the window; `tyro` knows no options with an optional value."""
+    words: list[str] = []
+    for word, following in zip(given, [*given[1:], ""], strict=True):
+        words += ["--view", "native"] if word == "--view" and following not in VIEWS else [word]
+    return words
 
 
 def parse(arguments: Sequence[str]) -> options.Command:

@@ -51,6 +51,20 @@ class Run:
     ] = None
     no_log: bool = False
     """Write no Rerun log."""
+    log_level: Annotated[
+        Literal["minimal", "standard", "full"],
+        _arg(
+            "{minimal,standard,full}",
+            "poses, curves and events; with images and beliefs; every frame of everything",
+        ),
+    ] = "standard"
+    view: Annotated[
+        Literal["native", "web"] | None,
+        _arg(
+            "[{native,web}]",
+            "show the log as it is written too: in a window, or to a browser on this machine",
+        ),
+    ] = None
     checkpoint: Annotated[
         int,
         tyro.conf.arg(

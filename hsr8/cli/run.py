@@ -4,6 +4,7 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -19,10 +20,12 @@ from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import Check, exit_code
 from hsr8.loop import Simulation
 from hsr8.recorder import atomic
+from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import RUNNING, Manifest
 from hsr8.recorder.progress import Progress
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import open_run
+from hsr8.render.live_view import LiveView, live_view
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.generator import draw_layout
@@ -51,11 +54,12 @@ def main(options: Run) -> int:
         return 0
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
     recording, simulation = _recording(options, scenario)
-    path = RunFolder.create(options.out, scenario.name, scenario.seed)
-    with CrashReport(path), _interruptible(simulation):
-        recording.into(path, manifest, log=not options.no_log, checkpoint=options.checkpoint)
-        result = recording.run()
-    return _told(options, result, manifest)
+    with _view(options) as view:
+        path = RunFolder.create(options.out, scenario.name, scenario.seed)
+        with CrashReport(path), _interruptible(simulation):
+            _record(recording, path, manifest, options, view)
+            result = recording.run()
+        return _told(options, result, manifest, view)
 
 
 def _resume(options: Run) -> int:
@@ -67,12 +71,13 @@ def _resume(options: Run) -> int:
         raise UsageError(f"{run.path} has nothing to go on with: it ended by {reason!r}")
     manifest = Manifest.read(run.manifest, run.path)
     recording, simulation = _recording(options, load(str(run.scenario_file), seed=run.seed))
-    with CrashReport(run.path), _interruptible(simulation):
-        recording.resume(run)
-        log = bool(run.log_files) and not options.no_log
-        recording.into(run.path, manifest, log=log, checkpoint=options.checkpoint)
-        result = recording.run()
-    return _told(options, result, manifest)
+    options = replace(options, no_log=options.no_log or not run.log_files)
+    with _view(options) as view:
+        with CrashReport(run.path), _interruptible(simulation):
+            recording.resume(run)
+            _record(recording, run.path, manifest, options, view)
+            result = recording.run()
+        return _told(options, result, manifest, view)
 
 
 def _alone(options: Run) -> None:
@@ -90,8 +95,33 @@ def _recording(options: Run, scenario: Scenario) -> tuple[Recording, Simulation]
     return Recording(simulation, watchers), simulation
 
 
-def _told(options: Run, result: Result, manifest: Manifest) -> int:
-    """Verify and report; the exit code."""
+def _record(
+    recording: Recording, path: Path, manifest: Manifest, options: Run, view: LiveView | None
+) -> None:
+    live = "" if view is None else view.address
+    recording.into(path, manifest, log=_level(options), live=live, checkpoint=options.checkpoint)
+
+
+def _level(options: Run) -> LogLevel | None:
+    return None if options.no_log else LogLevel(options.log_level)
+
+
+@contextmanager
+def _view(options: Run) -> Iterator[LiveView | None]:
+    """The viewer that was asked for, if one was."""
+    if options.view is None:
+        yield None
+        return
+    if options.no_log:
+        raise UsageError("--view shows the log, and --no-log writes none: leave one of them out")
+    with live_view(options.view) as view:
+        if view.page:
+            print(f"watch it in a browser on this machine:  {view.page}", file=sys.stderr)
+        yield view
+
+
+def _told(options: Run, result: Result, manifest: Manifest, view: LiveView | None) -> int:
+    """Verify and report, and leave time to look; the exit code."""
     assert result.folder is not None
     results, checks = result.metrics, result.checks
     code = exit_code(result.exit_reason, checks)
@@ -112,6 +142,9 @@ def _told(options: Run, result: Result, manifest: Manifest) -> int:
             path=result.folder,
             command=manifest.command.split(),
         )
+    if view is not None and result.exit_reason != "interrupted":
+        print(f"{'Ctrl-C' if view.page else 'closing the window'} ends the viewer", file=sys.stderr)
+        view.wait()
     return code
 
 
@@ -126,7 +159,7 @@ def _deterministic(verified: Verified) -> Check:
 def _tell_cost(options: Run, scenario: Scenario, command: Sequence[str]) -> None:
     """What the run would take; its world is drawn, so that it can be."""
     draw_layout(scenario, scenario.seed)
-    cost = estimate(scenario, log=not options.no_log)
+    cost = estimate(scenario, log=_level(options))
     folder = options.out / scenario.name
     if options.json:
         told = {

@@ -12,6 +12,7 @@ from hsr8.evaluation.verdict import Check, judge
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
+from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
 from hsr8.recorder.rerun_log import RerunLog
@@ -77,13 +78,22 @@ class Recording:
         self._folder: Path | None = None
         self._checkpoint: Checkpoint | None = None
 
-    def into(self, path: Path, manifest: Manifest, *, log: bool, checkpoint: int = 0) -> None:
+    def into(
+        self,
+        path: Path,
+        manifest: Manifest,
+        *,
+        log: LogLevel | None = LogLevel.STANDARD,
+        live: str = "",
+        checkpoint: int = 0,
+    ) -> None:
         """Record into a folder.
 
         Args:
             path: of the run; new, or that of a run that goes on.
             manifest: of the run.
-            log: write the Rerun log too.
+            log: how much the Rerun log holds; None for no log.
+            live: address of a viewer that is shown the log as it is written; empty for none.
             checkpoint: simulated time between two checkpoints, 0 for none [s].
         """
         simulation, scenario = self._simulation, self._simulation.scenario
@@ -92,11 +102,15 @@ class Recording:
         tape = TapeWriter(path / run_folder.TAPE)
         self._folder, simulation.tape = path, tape
         writers: list[Listener] = [folder, table]
-        if log:
+        if log is not None:
             size = (scenario.camera.width, scenario.camera.height)
             name = f"{scenario.name} {scenario.seed}"
             file = run_folder.next_log(path)
-            writers.append(RerunLog(file, simulation.model, simulation.layout, size, name))
+            writers.append(
+                RerunLog(
+                    file, simulation.model, simulation.layout, size, name, level=log, live=live
+                )
+            )
         self._listeners = writers + self._listeners
         if checkpoint:
             simulation.each_second = Checkpoints(

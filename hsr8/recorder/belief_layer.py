@@ -17,19 +17,25 @@ SIGMAS = 2.0  # ellipses show so many standard deviations
 HEADING_LENGTH = 0.35  # [m]
 VELOCITY_SCALE = 2.0  # an arrow shows the way of so many seconds [s]
 VIEW_RANGE = 1.5  # drawn length of the field of view [m]
-MAP_PERIOD = 0.5  # [s]
 MAP_HEIGHT, MARK_HEIGHT = 0.002, 0.012  # heights at which flat things are drawn [m]
 FLAT = 0.004  # and their thickness [m]
+PARTICLE, PARTICLE_SHARES = 0.016, (0.2, 4.0)  # its drawn radius [m], by relative weight
 LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
-SEEN, UNSEEN = 255, 110  # opacity of tracks in view and out of it
+SEEN, UNSEEN = 255, 160  # opacity of tracks in view and out of it
 
 
 class BeliefLayer:
-    """Logs pose, tracks, local map, virtual obstacles and destination."""
+    """Logs pose, tracks, particles, local map, virtual obstacles and destination.
 
-    def __init__(self, stream: rr.RecordingStream) -> None:
+    Args:
+        stream: where it goes.
+        map_period: time between two local maps and clouds of particles at least [s].
+    """
+
+    def __init__(self, stream: rr.RecordingStream, map_period: float) -> None:
         self._stream = stream
-        self._map_at = -MAP_PERIOD
+        self._map_period = map_period
+        self._map_at = -np.inf
         solid = rr.components.FillMode.Solid
         lines = rr.components.FillMode.MajorWireframe
         for path, style in (
@@ -56,6 +62,7 @@ class BeliefLayer:
         self._virtual = Channel(stream, "/belief/virtual_obstacles", rr.Cylinders3D.columns)
         self._view = Channel(stream, "/belief/view", rr.LineStrips3D.columns)
         self._target = Channel(stream, "/belief/target", rr.Points3D.columns)
+        self._particles = Channel(stream, "/belief/particles", rr.Points3D.columns)
         self._map = Channel(stream, "/belief/local_map", rr.GridMap.columns)
         self._channels = (
             self._pose,
@@ -66,6 +73,7 @@ class BeliefLayer:
             self._virtual,
             self._view,
             self._target,
+            self._particles,
             self._map,
         )
 
@@ -84,8 +92,9 @@ class BeliefLayer:
         self._add_virtual(frame)
         self._view.add(time, strips=[_wedge(belief)])
         self._target.add(time, positions=np.array([[*frame.task.target.tolist(), 0.05]]))
-        if time - self._map_at >= MAP_PERIOD - 1e-9:
+        if time - self._map_at >= self._map_period - 1e-9:
             self._map_at = time
+            self._add_particles(time, belief)
             self._add_map(time, belief)
 
     def flush(self) -> None:
@@ -118,6 +127,25 @@ class BeliefLayer:
         vectors = np.zeros((len(moving), 3))
         vectors[:, :2] = np.array([tracks[i].velocity for i in moving]).reshape(-1, 2)
         self._velocities.add(time, origins=centres[moving], vectors=VELOCITY_SCALE * vectors)
+
+    def _add_particles(self, time: float, belief: Belief) -> None:
+        """Where lost movers may be; a particle is the larger the more likely it is."""
+        clouds = [(t, t.particles) for t in belief.tracks if t.particles is not None]
+        positions = [cloud.positions for _, cloud in clouds]
+        shares = [len(cloud.weights) * cloud.weights for _, cloud in clouds]
+        places = np.concatenate(positions) if clouds else np.zeros((0, 2))
+        weights = np.concatenate(shares) if clouds else np.zeros(0)
+        colours = [
+            palette.packed(palette.of_label(t.label))
+            for t, cloud in clouds
+            for _ in range(len(cloud.weights))
+        ]
+        self._particles.add(
+            time,
+            positions=np.column_stack([places, np.full(len(places), MARK_HEIGHT)]),
+            radii=PARTICLE * np.sqrt(np.clip(weights, *PARTICLE_SHARES)),
+            colors=np.array(colours, dtype=np.uint32),
+        )
 
     def _add_virtual(self, frame: FrameRecord) -> None:
         virtual = frame.motion.virtual_obstacles

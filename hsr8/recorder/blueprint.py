@@ -1,7 +1,9 @@
 """How the viewer arranges a log."""
 
+import rerun as rr
 import rerun.blueprint as rrb
 
+from hsr8.recorder import palette
 from hsr8.recorder.channel import TIMELINE
 
 AROUND = rrb.VisibleTimeRange(
@@ -10,18 +12,29 @@ AROUND = rrb.VisibleTimeRange(
     end=rrb.TimeRangeBoundary.cursor_relative(seconds=1.5),
 )
 BACKGROUND = [228, 231, 235]
-ABOVE = 7.0  # height of the eye over a field of 5 m [m]
+# Over the truth in outlines the belief can be told from it.
+TRUTH = (
+    "/world/obstacles/boxes",
+    "/world/obstacles/capsules",
+    "/world/obstacles/cylinders",
+    "/world/movers",
+)
+OUTLINES = rr.Cylinders3D.from_fields(
+    fill_mode=rr.components.FillMode.MajorWireframe, colors=[palette.TRUTH], line_radii=[0.006]
+)
+ABOVE = 6.2  # height of the eye over a field of 5 m [m]
 
 
-def blueprint(field_size: float, *, walking: bool = False) -> rrb.Blueprint:
+def blueprint(field_size: float, *, walking: bool = False, pictures: bool = True) -> rrb.Blueprint:
     """Two tabs: the whole robot, and its walking in detail.
 
     Args:
         field_size: longer side of the field [m].
         walking: whether walking is shown first.
+        pictures: whether there are images, beliefs and plans to show.
     """
     return rrb.Blueprint(
-        rrb.Tabs(_overview(field_size), _walking(), active_tab=1 if walking else 0),
+        rrb.Tabs(_overview(field_size, pictures), _walking(), active_tab=1 if walking else 0),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -76,18 +89,27 @@ def _walking() -> rrb.Container:
     return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
 
 
-def _overview(field_size: float) -> rrb.Container:
-    """Robot, camera and gaze on the left; belief, states and curves on the right."""
+def _overview(field_size: float, pictures: bool) -> rrb.Container:
+    """Robot and belief above; camera, gaze, states and curves below."""
     height = ABOVE * field_size / 5.0
     robot = rrb.Spatial3DView(
         name="HSR-VIII",
         origin="/",
-        contents=["+ /world/**", "+ /belief/**", "- /belief/local_map"],
+        contents=[
+            "+ /world/**",
+            "+ /belief/**",
+            "+ /plan/**",
+            "- /belief/local_map",
+            # The image has a view of its own; here it would hide the robot.
+            "- /world/camera/image",
+            "- /world/camera/detections",
+            "- /world/camera/gaze_window",
+        ],
         background=BACKGROUND,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
-            position=(-1.3, -1.0, 0.9),
-            look_target=(0.0, 0.0, 0.25),
+            position=(-1.05, -0.75, 0.75),
+            look_target=(0.05, 0.0, 0.2),
             eye_up=(0.0, 0.0, 1.0),
             tracking_entity="/world/robot/ellipsoids",
         ),
@@ -97,14 +119,16 @@ def _overview(field_size: float) -> rrb.Container:
         origin="/",
         contents=[
             "+ /belief/**",
+            "+ /plan/**",
             "+ /world/floor",
             "+ /world/rim/**",
             "+ /world/obstacles/**",
             "+ /world/movers/**",
             "+ /world/beacons/**",
-            "+ /world/way_points",
+            "+ /world/way_points/**",
             "+ /world/path",
         ],
+        overrides=dict.fromkeys(TRUTH, OUTLINES),
         background=BACKGROUND,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
@@ -122,14 +146,19 @@ def _overview(field_size: float) -> rrb.Container:
                 ("Pose error", "pose_error"),
                 ("ZMP left [m]", "zmp_left"),
                 ("ZMP forward [m]", "zmp_forward"),
-                ("Speed forward", "speed_forward"),
+                ("Speed", "speed_forward"),
                 ("Tilt", "tilt"),
                 ("Clearance", "clearance"),
             )
         ),
+        rrb.TextLogView(name="Events", origin="/events"),
         active_tab=0,
     )
-    events = rrb.TextLogView(name="Events", origin="/events")
-    left = rrb.Vertical(robot, rrb.Horizontal(camera, gaze), row_shares=[3, 2])
-    right = rrb.Vertical(belief, states, curves, events, row_shares=[5, 2.3, 2.5, 1.5])
-    return rrb.Horizontal(left, right, column_shares=[1, 1], name="Robot and belief")
+    name = "Robot and belief"
+    if not pictures:
+        below = rrb.Horizontal(states, curves, column_shares=[1, 1])
+        return rrb.Vertical(robot, below, row_shares=[3, 2], name=name)
+    above = rrb.Horizontal(robot, belief, column_shares=[1.15, 1])
+    sight = rrb.Vertical(states, curves, row_shares=[1.5, 1])
+    below = rrb.Horizontal(camera, gaze, sight, column_shares=[1, 1.1, 2])
+    return rrb.Vertical(above, below, row_shares=[5, 4], name=name)

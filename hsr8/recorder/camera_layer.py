@@ -1,6 +1,6 @@
 """The head camera: its pose in the world, its image, what was recognised, the gaze map."""
 
-from math import radians, tan
+from math import cos, pi, radians, sin, tan
 
 import cv2
 import mujoco
@@ -16,7 +16,7 @@ from hsr8.recorder.record import FrameRecord, Image
 Array = NDArray[np.float64]
 
 CAMERA = "egocentric"
-JPEG_QUALITY = 75
+WINDOW = 0.45  # half a gaze window as a share of the field of view, where GM is summed
 PAN_LIMIT = radians(90.0)  # the gaze map spans the head's range [rad]
 TILT_MIN, TILT_MAX = radians(-60.0), radians(20.0)
 
@@ -28,13 +28,21 @@ class CameraLayer:
         stream: where it goes.
         model: compiled world, which has the camera.
         width, height: of the image [pixel].
+        jpeg: quality of the images [%].
     """
 
     def __init__(
-        self, stream: rr.RecordingStream, model: mujoco.MjModel, width: int, height: int
+        self,
+        stream: rr.RecordingStream,
+        model: mujoco.MjModel,
+        width: int,
+        height: int,
+        jpeg: int,
     ) -> None:
+        self._jpeg_quality = jpeg
         self._id = model.camera(CAMERA).id
-        focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
+        self._size = (width, height)
+        self._focal = focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
         stream.log(
             "/world/camera",
             rr.Pinhole(
@@ -51,7 +59,10 @@ class CameraLayer:
             rr.EncodedImage.from_fields(media_type="image/jpeg"),
             static=True,
         )
-        stream.log("/gaze/choice", rr.Points2D.from_fields(radii=[0.8]), static=True)
+        stream.log("/gaze/choice", rr.Points2D.from_fields(radii=[0.5]), static=True)
+        for path, radius in (("/gaze/window", 0.12), ("/world/camera/gaze_window", 1.2)):
+            style = rr.LineStrips2D.from_fields(colors=[palette.VIEW], radii=[radius])
+            stream.log(path, style, static=True)
         # OpenCV builds its table anew at every call.
         ramp = np.arange(256, dtype=np.uint8)[:, None]
         self._heat = cv2.applyColorMap(ramp, cv2.COLORMAP_MAGMA)[:, 0]
@@ -59,6 +70,8 @@ class CameraLayer:
         self._image = Channel(stream, "/world/camera/image", rr.EncodedImage.columns)
         self._boxes = Channel(stream, "/world/camera/detections", rr.Boxes2D.columns)
         self._gaze_map = Channel(stream, "/gaze/map", rr.EncodedImage.columns)
+        self._window = Channel(stream, "/gaze/window", rr.LineStrips2D.columns)
+        self._seen_window = Channel(stream, "/world/camera/gaze_window", rr.LineStrips2D.columns)
         self._choice = Channel(stream, "/gaze/choice", rr.Points2D.columns)
         stream.log("/gaze/map", rr.EncodedImage.from_fields(media_type="image/png"), static=True)
 
@@ -77,7 +90,7 @@ class CameraLayer:
     def add_frame(self, frame: FrameRecord) -> None:
         """Take one camera frame."""
         if frame.image is not None:
-            self._image.add(frame.time, blob=[_jpeg(frame.image)])
+            self._image.add(frame.time, blob=[_jpeg(frame.image, self._jpeg_quality)])
         boxes = np.array([d.box for d in frame.detections], dtype=float).reshape(-1, 4)
         self._boxes.add(
             frame.time,
@@ -87,18 +100,30 @@ class CameraLayer:
                 [palette.packed(palette.of_label(d.label)) for d in frame.detections],
                 dtype=np.uint32,
             ),
-            labels=[f"{d.label} {d.distance:.2f} m" for d in frame.detections],
+            labels=[f"{d.distance:.1f} m" for d in frame.detections],
         )
         self._add_gaze(frame)
 
     def flush(self) -> None:
         """Send the block."""
-        for channel in (self._pose, self._image, self._boxes, self._gaze_map, self._choice):
+        for channel in (
+            self._pose,
+            self._image,
+            self._boxes,
+            self._gaze_map,
+            self._choice,
+            self._window,
+            self._seen_window,
+        ):
             channel.flush()
 
     def _add_gaze(self, frame: FrameRecord) -> None:
         gaze_map = frame.gaze.gaze_map
-        if gaze_map.size == 0:
+        window = _window(frame)
+        view = frame.belief.view
+        seen = image_points((view.pan, view.tilt), window, self._focal, self._size)
+        self._seen_window.add(frame.time, strips=[] if seen is None else [seen])
+        if gaze_map.size <= 1:
             return
         top = float(gaze_map.max())
         shades = np.zeros(gaze_map.shape, np.uint8)
@@ -108,17 +133,65 @@ class CameraLayer:
         coloured = self._heat[shades[::-1, ::-1]]
         self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", coloured)[1].ravel()])
         rows, columns = gaze_map.shape
-        u = (PAN_LIMIT - frame.gaze.pan) / (2.0 * PAN_LIMIT) * (columns - 1) + 0.5
-        v = (TILT_MAX - frame.gaze.tilt) / (TILT_MAX - TILT_MIN) * (rows - 1) + 0.5
+
+        def place(angles: Array) -> Array:
+            u = (PAN_LIMIT - angles[:, 0]) / (2.0 * PAN_LIMIT) * (columns - 1) + 0.5
+            v = (TILT_MAX - angles[:, 1]) / (TILT_MAX - TILT_MIN) * (rows - 1) + 0.5
+            return np.column_stack([np.clip(u, 0.0, columns), np.clip(v, 0.0, rows)])
+
         self._choice.add(
             frame.time,
-            positions=np.array([[u, v]]),
+            positions=place(np.array([[frame.gaze.pan, frame.gaze.tilt]])),
             colors=np.array([palette.packed(palette.BELIEF)], dtype=np.uint32),
         )
+        self._window.add(frame.time, strips=[place(window)])
 
 
-def _jpeg(image: Image) -> NDArray[np.uint8]:
+def _window(frame: FrameRecord) -> Array:
+    """Outline of the gaze window that was chosen: pan and tilt (n, 2) [rad]."""
+    view, gaze = frame.belief.view, frame.gaze
+    half = WINDOW * np.minimum([view.horizontal_fov, view.vertical_fov], pi)
+    edge = np.linspace(-1.0, 1.0, 7)
+    one = np.ones_like(edge)
+    sides = ((edge, one), (one, -edge), (-edge, -one), (-one, edge))
+    outline = np.concatenate([np.column_stack(side) for side in sides])
+    found: Array = outline * half + (gaze.pan, gaze.tilt)
+    return found
+
+
+def image_points(
+    head: tuple[float, float], angles: Array, focal: float, size: tuple[int, int]
+) -> Array | None:
+    """Where directions are in the image of the head camera.
+
+    What lies beyond the image is put on its border.
+
+    Args:
+        head: pan and tilt, left and up positive [rad].
+        angles: pan and tilt of n directions (n, 2) [rad].
+        focal: length [pixel].
+        size: width and height of the image [pixel].
+
+    Returns:
+        Pixels (n, 2); None if all of the directions are behind the camera.
+    """
+    tilt = head[1]
+    turn, up = angles[:, 0] - head[0], angles[:, 1]
+    ahead = np.cos(up) * np.cos(turn)
+    left, high = np.cos(up) * np.sin(turn), np.sin(up)
+    depth = ahead * cos(tilt) + high * sin(tilt)
+    down = ahead * sin(tilt) - high * cos(tilt)
+    if (depth <= 0.0).all():
+        return None
+    depth = np.maximum(depth, 1e-3)
+    pixels = np.column_stack(
+        [0.5 * size[0] - focal * left / depth, 0.5 * size[1] + focal * down / depth]
+    )
+    return np.clip(pixels, 0.0, size)
+
+
+def _jpeg(image: Image, quality: int) -> NDArray[np.uint8]:
     bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
-    encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1]
+    encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])[1]
     blob: NDArray[np.uint8] = encoded.ravel()
     return blob

@@ -22,6 +22,14 @@ SITUATIONS = {
     "escape": RED,
     "path_change": VIOLET,
 }
+GAZE = {
+    "local map": GREY,
+    "self": BLUE,
+    "obstacle": ORANGE,
+    "way": GREEN,
+    "search": RED,
+    "none": SAND,
+}
 LOCALIZATION = {"localized": GREEN, "lost": RED}
 
 
@@ -81,6 +89,15 @@ class Lane:
         self._channel.flush()
 
 
+def gaze_reason(frame: FrameRecord) -> str:
+    """What the head looks for: the largest partial evaluation at the time of the choice."""
+    if frame.belief.lost:
+        return "search"
+    gaze = frame.gaze
+    values = (gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
+    return tuple(GAZE)[values.index(max(values))] if max(values) > 0.0 else "none"
+
+
 class PlotLayer:
     """Plots and state lanes of the decisions and the belief."""
 
@@ -97,12 +114,14 @@ class PlotLayer:
             (("position error [m]", BLUE), ("2σ [m]", GREY), ("heading error [rad]", ORANGE)),
         )
         self._situation = Lane(stream, "/state/planner", SITUATIONS)
+        self._gaze = Lane(stream, "/state/gaze", GAZE)
         self._localization = Lane(stream, "/state/localization", LOCALIZATION)
         self._parts = (
             self._clearance,
             self._partial,
             self._error,
             self._situation,
+            self._gaze,
             self._localization,
         )
 
@@ -119,6 +138,7 @@ class PlotLayer:
         spread = 2.0 * float(np.sqrt(np.linalg.eigvalsh(belief.pose_covariance[:2, :2])[-1]))
         self._error.add(frame.time, float(np.hypot(dx, dy)), spread, abs(wrap(turn)))
         self._situation.add(frame.time, frame.motion.situation)
+        self._gaze.add(frame.time, gaze_reason(frame))
         self._localization.add(frame.time, "lost" if belief.lost else "localized")
 
     def flush(self) -> None:

@@ -1,4 +1,4 @@
-"""The log of a run for the Rerun viewer: a listener that writes ``log.rrd``."""
+"""The log of a run for the Rerun viewer: a listener that writes ``log.rrd``, also as it happens."""
 
 from collections.abc import Sequence
 from math import cos, sin
@@ -15,6 +15,8 @@ from hsr8.recorder.blueprint import blueprint
 from hsr8.recorder.camera_layer import CameraLayer
 from hsr8.recorder.channel import TIMELINE, Channel
 from hsr8.recorder.geometry import Scene
+from hsr8.recorder.log_level import RATES, LogLevel
+from hsr8.recorder.plan_layer import PlanLayer
 from hsr8.recorder.plot_layer import PlotLayer
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.recorder.walk_layer import WalkLayer
@@ -26,11 +28,9 @@ Array = NDArray[np.float64]
 
 APRON = 1.0  # the floor shown is larger than the field by this [m]
 BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one [s]
-POSE_PERIOD = 0.04  # [s]
-FRAME_PERIOD = 0.12  # of camera frames [s]
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
 LABELLED = 12  # more way points than this are shown without their numbers
-TRAIL = 60.0  # the path shown behind the robot [s]
+TRAIL, TRAIL_PERIOD = 60.0, 0.12  # the path shown behind the robot, and of its points [s]
 LEVELS = {"fall": "ERROR", "diverged": "ERROR", "collision": "WARN", "lost": "WARN", "push": "WARN"}
 
 
@@ -43,6 +43,8 @@ class RerunLog:
         layout: what stands where.
         image_size: width and height of the head camera's image [pixel].
         name: of the recording, shown by the viewer.
+        level: how much is logged.
+        live: address of a viewer that is shown everything too; empty for none.
     """
 
     def __init__(
@@ -52,29 +54,43 @@ class RerunLog:
         layout: Layout,
         image_size: tuple[int, int],
         name: str,
+        *,
+        level: LogLevel = LogLevel.STANDARD,
+        live: str = "",
     ) -> None:
+        self._rates = rates = RATES[level]
         self._stream = rr.RecordingStream("hsr8", recording_id=path.parent.name)
         self._stream.set_log_time_enabled(False)
-        self._stream.save(
-            path,
-            default_blueprint=blueprint(max(layout.field_size), walking=len(layout.waypoints) == 0),
+        sinks = [rr.FileSink(str(path)), *([rr.GrpcSink(live)] if live else [])]
+        self._stream.set_sinks(
+            *sinks,
+            default_blueprint=blueprint(
+                max(layout.field_size), walking=len(layout.waypoints) == 0, pictures=rates.pictures
+            ),
         )
         self._stream.send_recording_name(name)
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._n_movers = len(layout.movers)
         width, depth = layout.field_size
         self._scene = Scene(self._stream, model, (width + APRON, depth + APRON))
-        self._camera = CameraLayer(self._stream, model, *image_size)
-        self._belief = BeliefLayer(self._stream)
+        self._camera: CameraLayer | None = None
+        self._minds: tuple[BeliefLayer | PlanLayer, ...] = ()
+        if rates.pictures:
+            self._camera = CameraLayer(self._stream, model, *image_size, rates.jpeg)
+            self._minds = (
+                BeliefLayer(self._stream, rates.map),
+                PlanLayer(self._stream, rates.map),
+            )
         self._plots = PlotLayer(self._stream)
         self._walk = WalkLayer(self._stream)
         self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D.columns)
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D.columns)
         self._trail: list[list[float]] = []
         self._log_way_points(layout)
+        self._trail_at = -np.inf
         self._block_at = 0.0
-        self._pose_at = -POSE_PERIOD
-        self._frame_at = -FRAME_PERIOD
+        self._pose_at = -np.inf
+        self._frame_at = -np.inf
 
     def on_record(self, record: TickRecord) -> None:
         """Log one record."""
@@ -82,15 +98,16 @@ class RerunLog:
         if time - self._block_at >= BLOCK - 1e-9:
             self._flush()
             self._block_at = time
-        if time - self._pose_at >= POSE_PERIOD - 1e-9:
+        if time - self._pose_at >= self._rates.pose - 1e-9:
             self._pose_at = time
             movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
             self._scene.add(time, truth.qpos, movers)
-            self._camera.add_pose(time, self._scene.data)
+            if self._camera is not None:
+                self._camera.add_pose(time, self._scene.data)
             self._plots.add(record)
             self._walk.add(record)
         self._walk.watch(record)
-        if record.frame is not None and time - self._frame_at >= FRAME_PERIOD - 1e-9:
+        if record.frame is not None and time - self._frame_at >= self._rates.frame - 1e-9:
             self._frame_at = time
             self._add_frame(record, record.frame)
 
@@ -107,11 +124,15 @@ class RerunLog:
         self._stream.disconnect()
 
     def _add_frame(self, record: TickRecord, frame: FrameRecord) -> None:
-        self._camera.add_frame(frame)
-        self._belief.add(frame)
+        if self._camera is not None:
+            self._camera.add_frame(frame)
+        for layer in self._minds:
+            layer.add(frame)
         self._plots.add_frame(frame, record.truth.robot)
-        x, y, _ = record.truth.robot.tolist()
-        self._trail.append([x, y, 0.003])
+        if record.time - self._trail_at >= TRAIL_PERIOD - 1e-9:
+            self._trail_at = record.time
+            x, y, _ = record.truth.robot.tolist()
+            self._trail.append([x, y, 0.003])
         # Planned footholds are known in the odometry frame; they are drawn from the true pose.
         there = OdometryToWorld(record)
         placed = [
@@ -133,8 +154,10 @@ class RerunLog:
                 colors=_colours([palette.TRUTH]),
                 radii=np.array([0.006]),
             )
-            del self._trail[: -round(TRAIL / FRAME_PERIOD)]
-        for part in (self._scene, self._camera, self._belief, self._plots, self._walk):
+            del self._trail[: -round(TRAIL / TRAIL_PERIOD)]
+        if self._camera is not None:
+            self._camera.flush()
+        for part in (self._scene, *self._minds, self._plots, self._walk):
             part.flush()
         self._footsteps.flush()
         self._path.flush()

@@ -45,7 +45,7 @@ def has_display() -> bool:
 
 def show(logs: Sequence[Path]) -> int:
     """Open the `logs` of a run in a window and wait until it is closed; its exit status."""
-    return subprocess.run(_command(logs, _free_port()), check=False).returncode
+    return subprocess.run(_command(logs, free_port()), check=False).returncode
 
 
 def screenshot(logs: Sequence[Path], time: float, size: tuple[int, int]) -> bytes:
@@ -60,9 +60,9 @@ def screenshot(logs: Sequence[Path], time: float, size: tuple[int, int]) -> byte
         UsageError: the viewer did not start, for example for want of Vulkan, or `logs` hold
             no recording.
     """
-    port = _free_port()
+    port = free_port()
     window = ("--headless", "--window-size", f"{size[0]}x{size[1]}")
-    with _running([*_command(logs, port), *window]) as viewer:
+    with running([*_command(logs, port), *window]) as viewer:
         try:
             client = _connect(viewer, port)
             _wait_for_recording(client, viewer, logs[0])
@@ -77,14 +77,16 @@ def _command(logs: Sequence[Path], port: int) -> list[str]:
     return [executable(), *map(str, logs), "--bind", "127.0.0.1", "--port", str(port)]
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """A port of this machine that nobody listens on."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
 
 @contextmanager
-def _running(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
+def running(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
+    """A viewer for the time of the context."""
     # The launcher starts a second process: a group of their own ends both.
     viewer = subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True
@@ -98,11 +100,21 @@ def _running(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
 
 
 def _connect(viewer: subprocess.Popen[bytes], port: int) -> ViewerClient:
+    connected(viewer, port)
+    return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+
+
+def connected(viewer: subprocess.Popen[bytes], port: int) -> None:
+    """Wait until the viewer listens.
+
+    Raises:
+        UsageError: it ended, or does not answer.
+    """
     end = clock.monotonic() + START_LIMIT
     while clock.monotonic() < end and viewer.poll() is None:
         try:
             with socket.create_connection(("127.0.0.1", port), timeout=1.0):
-                return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+                return
         except OSError:
             clock.sleep(0.2)
     raise _failed(viewer)

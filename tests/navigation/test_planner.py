@@ -189,3 +189,29 @@ def test_a_mover_head_on_is_passed_with_the_printed_scheme_and_not_without(
         least[p] = min(gaps)
     assert least[PAPER] > 0.0
     assert least[off] < least[PAPER]
+
+
+@BOTH
+def test_the_field_of_a_decision_leads_at_the_robot_where_it_decided_to_go(
+    p, belief, task, track, limits
+):
+    decision = Planner(p, limits).plan(belief([track((0.7, 0.15))]), task())
+    u_x, u_y = decision.field.at(np.zeros(2))
+    assert np.arctan2(u_y, u_x) == pytest.approx(decision.direction)
+
+
+@BOTH
+def test_looking_at_the_field_changes_no_decision(p, belief, task, track, limits):
+    looked, blind = Planner(p, limits), Planner(p, limits)
+    points = np.random.default_rng(0).uniform(-1.0, 2.0, (50, 2))
+    for step in range(6):
+        b = belief([track((1.2 - 0.1 * step, 0.1), (-0.14, 0.0)), track((0.7, -0.2), id=2)])
+        one, other = looked.plan(b, task()), blind.plan(b, task())
+        before = one.field.at(points)
+        assert one.field.at(points).tolist() == before.tolist()
+        assert one.velocity.tolist() == other.velocity.tolist()
+        assert before.shape == points.shape
+
+
+def test_a_robot_that_stands_has_no_field(belief, task, limits):
+    assert Planner(EXTENDED, limits).plan(belief(), task(done=True)).field is None

@@ -43,7 +43,7 @@ def test_the_screenshot_is_of_the_middle_unless_asked_for(run, monkeypatch, caps
     assert entry(["replay", str(run), "--screenshot", str(picture)]) == 0
     assert entry(["replay", str(run), "--screenshot", str(picture), "--time", "0.1"]) == 0
     assert picture.read_bytes() == b"PNG"
-    assert asked[0] == (run / run_folder.LOG, 0.5, (1600, 900))
+    assert asked[0] == ([run / run_folder.LOG], 0.5, (1600, 900))
     assert asked[1][1] == 0.1
 
 

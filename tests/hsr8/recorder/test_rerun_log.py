@@ -2,14 +2,17 @@ import subprocess
 import sys
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
 
+from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.world.truth import PushActing
+from navigation.belief import Particles
 from walking.admission import AdmissionReport, Limit
 from walking.command import VelocityCommand
 
@@ -28,6 +31,23 @@ def _rows(path):
     for chunk in RrdReader(str(path)).stream():
         rows[str(chunk.entity_path)] += chunk.to_record_batch().num_rows
     return rows
+
+
+@pytest.fixture
+def folder(tmp_path):
+    path = tmp_path / "7-abc"
+    path.mkdir()
+    return path
+
+
+def _logged(folder, model, layout, records, **options):
+    """Log of `records`."""
+    path = folder / "log.rrd"
+    listener = RerunLog(path, model, layout, (320, 240), "test 7", **options)
+    for record in records:
+        listener.on_record(record)
+    listener.close("goal")
+    return path
 
 
 @pytest.fixture
@@ -58,6 +78,71 @@ def test_a_run_is_logged_at_its_rates(log, walk):
     assert rows["/world/walking/points"] == 76 + 1
     # The soles that carry are logged once a phase.
     assert 9 <= rows["/world/walking/support"] <= 11
+
+
+def test_a_minimal_log_has_poses_curves_and_events_alone(folder, model, layout, walk):
+    rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.MINIMAL))
+    assert rows["/world/robot/ellipsoids"] == rows["/plots/tilt"] == 26 + 1
+    assert rows["/state/planner"] == 1 + 1
+    assert not [path for path in rows if path.startswith(("/belief", "/plan", "/gaze"))]
+    assert "/world/camera/image" not in rows
+
+
+def test_a_full_log_leaves_nothing_out(folder, model, layout, walk):
+    rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.FULL))
+    assert rows["/world/robot/ellipsoids"] == 51 + 1
+    assert rows["/world/camera/image"] == rows["/belief/tracks"] == 17 + 1
+    assert rows["/belief/local_map"] == rows["/belief/particles"] == 17
+
+
+class Field:
+    """Leads ahead everywhere."""
+
+    def at(self, points):
+        return np.broadcast_to([2.0, 0.0], np.shape(points))
+
+
+def test_the_field_is_shown_while_there_is_one(folder, model, layout, fake):
+    records = []
+    for k, field in enumerate((Field(), None, None)):
+        frame = fake.frame(0.6 * k)
+        motion = replace(frame.motion, field=field)
+        frame = replace(frame, decided=replace(frame.decided, motion=motion))
+        records.append(fake.record(0.6 * k, frame=frame))
+    path = _logged(folder, model, layout, records)
+    arrows = _values(path, "/plan/field", "Arrows3D:vectors")
+    ways = _values(path, "/plan/way", "LineStrips3D:strips")
+    assert [time for time, _ in arrows] == [time for time, _ in ways] == [0.0, 0.6]
+    assert np.array(arrows[0][1]) == pytest.approx(
+        np.tile([0.13, 0.0, 0.0], (len(arrows[0][1]), 1))
+    )
+    assert len(ways[0][1]) == 1
+    assert arrows[1][1] == ways[1][1] == []
+    assert len(_values(path, "/plan/decision", "Arrows3D:vectors")) == 3
+
+
+def test_particles_show_where_a_lost_mover_may_be(folder, model, layout, fake):
+    places = np.array([[1.0, 0.5], [1.2, -0.5]])
+    cloud = Particles(places, np.zeros((2, 2)), np.array([0.1, 0.9]))
+    lost = replace(fake.track(2, 0.0), particles=cloud)
+    record = fake.record(0.0, frame=fake.frame(0.0, tracks=(fake.track(0, 0.0), lost)))
+    path = _logged(folder, model, layout, [record])
+    ((_, shown),) = _values(path, "/belief/particles", "Points3D:positions")
+    assert np.array(shown)[:, :2] == pytest.approx(places)
+    ((_, radii),) = _values(path, "/belief/particles", "Points3D:radii")
+    assert radii[0] < radii[1]
+
+
+@pytest.mark.parametrize("level", LogLevel)
+def test_a_finished_log_is_verified_by_rerun(folder, model, layout, walk, level):
+    program = Path(sys.executable).with_name("rerun")
+    if not program.exists():
+        pytest.skip("there is no rerun executable")
+    path = _logged(folder, model, layout, walk(0.5), level=level)
+    done = subprocess.run(
+        [program, "rrd", "verify", path], check=False, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_nothing_believed_nothing_seen_is_logged_too(log, fake):

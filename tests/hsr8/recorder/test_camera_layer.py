@@ -1,0 +1,30 @@
+from math import atan, radians
+
+import numpy as np
+import pytest
+
+from hsr8.recorder.camera_layer import image_points
+
+FOCAL, SIZE = 160.0, (320, 240)
+
+
+@pytest.mark.parametrize("head", [(0.0, 0.0), (0.9, -0.6), (-1.2, 0.3)])
+def test_where_the_head_looks_is_the_middle_of_the_image(head):
+    assert image_points(head, np.array([head]), FOCAL, SIZE)[0] == pytest.approx([160.0, 120.0])
+
+
+def test_left_and_up_are_left_and_up_in_the_image():
+    angles = np.array([[atan(0.5), 0.0], [0.0, atan(0.5)]])
+    left, up = image_points((0.0, 0.0), angles, FOCAL, SIZE)
+    assert left == pytest.approx([80.0, 120.0])
+    assert up == pytest.approx([160.0, 40.0])
+
+
+def test_what_lies_beyond_the_image_is_on_its_border():
+    aside, above = image_points((0.0, -0.3), np.radians([[-85.0, 0.0], [0.0, 60.0]]), FOCAL, SIZE)
+    assert aside[0] == 320.0
+    assert above[1] == 0.0
+
+
+def test_nothing_is_drawn_of_what_is_behind():
+    assert image_points((0.0, 0.0), np.array([[radians(170.0), 0.0]]), FOCAL, SIZE) is None
