@@ -28,6 +28,10 @@ def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjMo
     if scenario.robot.body == "kinematic":
         return KinematicBody(model, layout, noise, rng)
     pushes = schedule(
-        scenario.disturbance, scenario.duration, CONTROL_PERIOD, named_rng(seed, "push")
+        scenario.disturbance,
+        scenario.duration,
+        CONTROL_PERIOD,
+        named_rng(seed, "push"),
+        scenario.fault,
     )
-    return PhysicsBody(model, layout, noise, rng, pushes=pushes)
+    return PhysicsBody(model, layout, noise, rng, pushes=pushes, faults=scenario.fault)

@@ -1,11 +1,14 @@
-"""What happens in a run, as events: contacts, falls, pushes, via points, the goal."""
+"""What happens in a run, as events: faults, contacts, falls, pushes, via points, the goal."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from hsr8.recorder.record import FrameRecord
+from hsr8.scenario.fault import Fault
 from hsr8.world.episodes import Episodes
 from hsr8.world.falls import Falls
 from hsr8.world.truth import Truth
+
+INSTANT = 1e-6  # times nearer to one another are the same [s]
 
 
 class EventWatch:
@@ -13,10 +16,14 @@ class EventWatch:
 
     Args:
         tell: takes kind, text, and the time where it is not now [s].
+        faults: of the scenario.
     """
 
-    def __init__(self, tell: Callable[..., None]) -> None:
+    def __init__(self, tell: Callable[..., None], faults: Sequence[Fault] = ()) -> None:
         self._tell = tell
+        told = [(f.start, f"{f.text()}: begins") for f in faults]
+        told += [(f.end, f"{f.text()}: ends") for f in faults if f.end is not None]
+        self._faults = sorted(told, key=lambda line: line[0])
         self._pushes = 0
         self._episodes = Episodes()
         self._falls = Falls()
@@ -26,6 +33,9 @@ class EventWatch:
 
     def look(self, truth: Truth, frame: FrameRecord | None) -> None:
         """Tell what changed since the last record."""
+        while self._faults and self._faults[0][0] <= truth.time + INSTANT:
+            time, text = self._faults.pop(0)
+            self._tell("fault", text, time)
         for push in truth.pushes:
             if push.number >= self._pushes:
                 self._pushes = push.number + 1

@@ -21,10 +21,13 @@ from hsr8.seeds import named_rng
 from hsr8.world.analytic import AnalyticCamera
 from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
+from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.camera_feed import CameraFeed, Picture
 from hsr8.world.generator import draw_layout
 from hsr8.world.index import ModelIndex
 from hsr8.world.physics import CONTROL_PERIOD
+from hsr8.world.sensor_faults import SensorFaults
+from hsr8.world.servo_faults import ServoFaults
 from hsr8.world.truth import Truth
 from walking.state import Phase
 
@@ -38,6 +41,8 @@ CHANGING = (
     "_analytic",
     "_camera_rng",
     "_feed",
+    "_sensor_faults",
+    "_servo_faults",
     "_end",
     "_published",
 )  # attributes of a simulation that change from tick to tick
@@ -107,7 +112,10 @@ class Simulation:
         self.tick = 0
         self._body = build_body(scenario, seed, self.layout, self.model)
         self._robot = build_robot(scenario, self.layout, seed, planner=planner, gaze=gaze)
-        self._watch = EventWatch(self._tell)
+        self._watch = EventWatch(self._tell, scenario.fault)
+        self._sensor_faults = SensorFaults(scenario.fault)
+        self._servo_faults = ServoFaults(scenario.fault)
+        self._camera_faults = CameraFaults(scenario.fault)
         self._interrupted = False
         self._open = False
         self._rendered: RenderedCamera | None = None
@@ -116,9 +124,15 @@ class Simulation:
         camera = scenario.camera
         if camera.source != "egl":
             self._analytic = AnalyticCamera(
-                self.layout, head_camera(scenario), self._camera_rng, scenario.camera
+                self.layout,
+                head_camera(scenario),
+                self._camera_rng,
+                scenario.camera,
+                self._camera_faults,
             )
-        self._feed = CameraFeed(camera, self._take, named_rng(seed, "camera_feed"))
+        self._feed = CameraFeed(
+            camera, self._take, named_rng(seed, "camera_feed"), self._camera_faults
+        )
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
@@ -141,7 +155,9 @@ class Simulation:
     def __enter__(self) -> Self:
         cv2.setNumThreads(1)  # threads only wait for one another over images so small
         if self._analytic is None:
-            self._rendered = RenderedCamera(self.model, self.scenario.camera, self._camera_rng)
+            self._rendered = RenderedCamera(
+                self.model, self.scenario.camera, self._camera_rng, self._camera_faults
+            )
         self._open = True
         return self
 
@@ -252,6 +268,7 @@ class Simulation:
             return self._finish("interrupted", record)
         if self._end is not None and tick >= self._end[0]:
             return self._finish(self._end[1], record)
+        targets = self._servo_faults.spoil(targets, tick)
         if self.tape is not None:
             self.tape.add(self._body.set_points(targets))
         self._body.apply(targets)
@@ -267,7 +284,7 @@ class Simulation:
         return record
 
     def _sense(self, tick: int) -> SensorFrame:
-        body, time = self._body.sense(), self._body.time
+        body, time = self._sensor_faults.spoil(self._body.sense(), tick), self._body.time
         shutter, picture = self._feed.shutter(tick), self._feed.arrived(tick, self._body)
         if picture is None:
             return SensorFrame(time, body, shutter)

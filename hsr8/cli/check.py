@@ -112,6 +112,8 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
         facts.add_row("command", _command(scenario.command))
     if not scenario.disturbance.empty:
         facts.add_row("pushes", _pushes(scenario))
+    if scenario.fault:
+        facts.add_row("faults", ", ".join(f"{f.kind} at {f.start:g} s" for f in scenario.fault))
     facts.add_row("certificate", _certificate(summary, layout))
     wide, high = camera.horizontal_fov_deg, camera.vertical_fov_deg
     view = (

@@ -19,7 +19,12 @@ Array = NDArray[np.float64]
 VISUAL_GROUPS = (0, 1, 2)  # groups 3 and up are collision shapes
 BASE = "base_link"
 # What stands, by the beginning of its names; the walls only the robot sees are left out.
-STANDING = {"/world/beacons": "beacon", "/world/obstacles": "obstacle", "/world/rim": "rim"}
+STANDING = {
+    "/world/beacons": "beacon",
+    "/world/obstacles": "obstacle",
+    "/world/rim": "rim",
+    "/world/bumps": "bump",
+}
 _BOX, _CAPSULE, _CYLINDER, _ELLIPSOID = (
     int(mujoco.mjtGeom.mjGEOM_BOX),
     int(mujoco.mjtGeom.mjGEOM_CAPSULE),

@@ -31,7 +31,9 @@ BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
 LABELLED = 12  # more way points than this are shown without their numbers
 TRAIL, TRAIL_PERIOD = 60.0, 0.12  # the path shown behind the robot, and of its points [s]
-LEVELS = {"fall": "ERROR", "diverged": "ERROR", "collision": "WARN", "lost": "WARN", "push": "WARN"}
+LEVELS = {"fall": "ERROR", "diverged": "ERROR"} | dict.fromkeys(
+    ("collision", "fault", "lost", "push"), "WARN"
+)
 
 
 class RerunLog:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from math import cos, hypot, radians, sin
 from pathlib import Path as FilePath
 
+from hsr8.scenario.fault_checks import fault_problems
 from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
@@ -26,6 +27,7 @@ def check(scenario: Scenario) -> list[Problem]:
         *_mission(scenario),
         *_command(scenario),
         *_disturbance(scenario),
+        *fault_problems(scenario),
         *_inside(scenario),
         *_free(scenario),
         *_rows_free(scenario),

@@ -9,6 +9,7 @@ from pydantic import Field
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.command import Command
 from hsr8.scenario.disturbance import Disturbance
+from hsr8.scenario.fault import Fault
 from hsr8.scenario.mission import Course, Mission, Points, Tour, Walk
 from hsr8.scenario.robot import Robot
 from hsr8.scenario.section import PeriodMs, Section
@@ -70,6 +71,8 @@ class Scenario(Section):
     """What walking is asked for in a mission of kind "walk"."""
     disturbance: Disturbance = Disturbance()
     """What disturbs the robot."""
+    fault: Annotated[tuple[Fault, ...], Len(0, 64)] = ()
+    """What fails, when, for how long and how badly."""
     robot: Robot = Robot()
     """Body, start and speeds."""
     camera: Camera = Camera()

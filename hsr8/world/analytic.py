@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.camera import Camera
+from hsr8.scenario.fault import ticks
 from hsr8.world.body import Body
 from hsr8.world.camera import HEAD_CAMERA
+from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.layout import Layout
 from hsr8.world.rotation import heading
 from vision.camera import PinholeCamera
@@ -52,7 +54,8 @@ class AnalyticCamera:
         layout: obstacles and beacons.
         camera: intrinsics.
         rng: generator of noise and misses.
-        settings: faults of the images.
+        settings: whether it sees all around.
+        faults: of the images.
     """
 
     def __init__(
@@ -61,11 +64,13 @@ class AnalyticCamera:
         camera: PinholeCamera,
         rng: np.random.Generator,
         settings: Camera | None = None,
+        faults: CameraFaults | None = None,
     ) -> None:
         self._camera = camera
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
         self._settings = settings or Camera()
+        self._faults = faults or CameraFaults()
         self._movers = layout.motion()
         static = layout.obstacles[: len(layout.obstacles) - len(self._movers)]
         self._static = np.array([o.position for o in static], dtype=float).reshape(-1, 2)
@@ -89,20 +94,20 @@ class AnalyticCamera:
         rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
         robot = np.array([*data.qpos[root : root + 2], heading(data.qpos[root + 3 : root + 7])])
         places = np.concatenate([self._static, self._movers.positions(body.time), self._posts])
-        found = self._detect(places, position, rotation, robot)
-        found += self._not_there(position, rotation, robot)
-        if self._settings.black(body.time):
+        tick = ticks(body.time)
+        found = self._detect(places, position, rotation, robot, self._faults.missed(tick))
+        found += self._not_there(position, rotation, robot, self._faults.ghosts(tick))
+        if self._faults.black(tick):
             return ()
         return tuple(sorted(found, key=lambda d: (d.distance, d.label)))
 
     def _detect(
-        self, places: Array, position: Array, rotation: Array, robot: Array
+        self, places: Array, position: Array, rotation: Array, robot: Array, missed: float
     ) -> list[Detection]:
         offsets = places - position[:2]
         ranges = np.hypot(offsets[:, 0], offsets[:, 1])
         spans: list[tuple[float, float]] = []  # azimuth and half width, nearer first
         found = []
-        missed = self._settings.noise.missed
         for i in np.argsort(ranges, kind="stable").tolist():
             thing, distance = self._things[i], float(ranges[i])
             if distance <= thing.radius:
@@ -126,9 +131,11 @@ class AnalyticCamera:
             found.append(_detection(polar, thing, box, hidden=hidden, noise=noise))
         return found
 
-    def _not_there(self, position: Array, rotation: Array, robot: Array) -> list[Detection]:
-        """Detections of obstacles that are not there."""
-        mean, rng = self._settings.noise.false_blobs, self._fault_rng
+    def _not_there(
+        self, position: Array, rotation: Array, robot: Array, mean: float
+    ) -> list[Detection]:
+        """Detections of obstacles that are not there, so many on average."""
+        rng = self._fault_rng
         ahead = atan2(rotation[1, 2], rotation[0, 2]) - float(robot[2])
         half = pi if self._settings.all_round else 0.5 * self._camera.horizontal_fov
         found = []

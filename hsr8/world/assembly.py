@@ -12,6 +12,7 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
+from hsr8.scenario.fault import Bump
 from hsr8.world.layout import Beacon, Layout, Obstacle
 from hsr8.world.models import models_dir
 from vision.colour import COLOUR_CLASSES
@@ -59,8 +60,8 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     """Compile the world of `layout`.
 
     Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00``
-    ..., beacons are ``beacon_<top>_<bottom>``. For people there are the cameras ``top``
-    and ``corner`` beside those of the robot.
+    ..., beacons are ``beacon_<top>_<bottom>``, bumps are geoms ``bump_00`` ... of the world.
+    For people there are the cameras ``top`` and ``corner`` beside those of the robot.
     """
     spec = mujoco.MjSpec.from_file(str(models_dir() / "field" / f"{quality}.xml"))
     spec.modelname = f"hsr8_{quality}"
@@ -82,6 +83,8 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
         _add_obstacle(spec, f"mover_{i:02d}", mover, quality)
     for beacon in layout.beacons:
         _add_beacon(spec, beacon, quality)
+    for i, bump in enumerate(layout.bumps):
+        _add_bump(spec, f"bump_{i:02d}", bump)
     return spec.compile()
 
 
@@ -206,3 +209,16 @@ def _add_beacon(spec: mujoco.MjSpec, beacon: Beacon, quality: Quality) -> None:
             material=_paint(spec, colour, quality),
             **_SOLID,
         )
+
+
+def _add_bump(spec: mujoco.MjSpec, name: str, bump: Bump) -> None:
+    """A disc that sticks out of the floor, drawn as the rim is; it can be touched while it acts."""
+    spec.worldbody.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        pos=[*bump.place, 0.0],
+        size=[bump.radius, bump.size, 0.0],
+        material="line",
+        condim=4,
+        **_SOLID,
+    )

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from hsr8.gl import require_gl
 from hsr8.scenario.camera import Camera
+from hsr8.scenario.fault import ticks
+from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.frustum import Frustum
 from hsr8.world.image_noise import ImageNoise
 
@@ -26,15 +28,23 @@ class RenderedCamera:
 
     Args:
         model: compiled world; its offscreen buffer must hold the image.
-        settings: size, noise and faults of the images.
+        settings: size and noise of the images.
         rng: generator of the noise.
+        faults: of the images.
 
     Raises:
         RenderingUnavailable: no OpenGL draws here.
     """
 
-    def __init__(self, model: mujoco.MjModel, settings: Camera, rng: np.random.Generator) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        settings: Camera,
+        rng: np.random.Generator,
+        faults: CameraFaults | None = None,
+    ) -> None:
         require_gl()
+        self._faults = faults or CameraFaults()
         self._settings = settings
         self.noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
         self._renderer = mujoco.Renderer(model, height=settings.height, width=settings.width)
@@ -50,11 +60,12 @@ class RenderedCamera:
     def capture(self, body: "Body") -> Image:
         """Image (height, width, 3) of the world as it is now."""
         body.update_kinematics()
-        settings, noise = self._settings, self.noise
-        light, missed = noise.light(), noise.missed(len(self._things))
-        if settings.black(body.time):
-            return noise.spoil(np.zeros((settings.height, settings.width, 3), np.uint8))
-        self._lights.set(light * settings.light(body.time))
+        settings, noise, faults, tick = self._settings, self.noise, self._faults, ticks(body.time)
+        light, missed = noise.light(), noise.missed(len(self._things), faults.missed(tick))
+        ghosts = faults.ghosts(tick)
+        if faults.black(tick):
+            return noise.spoil(np.zeros((settings.height, settings.width, 3), np.uint8), ghosts)
+        self._lights.set(light * faults.light(tick))
         away = self._frustum.misses(body.data)
         for i in missed:
             away[self._things[i]] = True
@@ -62,7 +73,7 @@ class RenderedCamera:
         self._renderer.update_scene(body.data, camera=HEAD_CAMERA)
         self._group[:] = self._usual_group
         image: Image = self._renderer.render()
-        return noise.spoil(image)
+        return noise.spoil(image, ghosts)
 
     def close(self) -> None:
         """Free the OpenGL context."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.section import CONTROL_PERIOD_MS
+from hsr8.world.camera_faults import CameraFaults
 from vision.detection import Detection
 
 if TYPE_CHECKING:
@@ -37,17 +38,22 @@ class CameraFeed:
     """Takes a picture every period and hands it over when it has arrived.
 
     Args:
-        settings: period, latency and share of dropped images.
+        settings: period and latency.
         take: takes a picture of the world as it is now.
         rng: generator of the dropped images.
+        faults: images that are dropped or late; late ones hold up those after them.
     """
 
     def __init__(
-        self, settings: Camera, take: Callable[["Body"], Picture], rng: np.random.Generator
+        self,
+        settings: Camera,
+        take: Callable[["Body"], Picture],
+        rng: np.random.Generator,
+        faults: CameraFaults | None = None,
     ) -> None:
         self._take = take
         self._rng = rng
-        self._dropped = settings.noise.dropped
+        self._faults = faults or CameraFaults()
         self._period = settings.period_ms // CONTROL_PERIOD_MS
         self._latency = settings.latency_ms // CONTROL_PERIOD_MS
         self._under_way: deque[tuple[int, Picture]] = deque()
@@ -60,8 +66,12 @@ class CameraFeed:
         """Take the picture that is due in control tick `tick`; return the one that arrives."""
         if self.shutter(tick):
             picture = self._take(body)
-            if not (self._dropped and self._rng.random() < self._dropped):
-                self._under_way.append((tick + self._latency, picture))
+            dropped = self._faults.dropped(tick)
+            if not (dropped and self._rng.random() < dropped):
+                due = tick + self._latency + self._faults.late(tick)
+                if self._under_way:  # pictures arrive in their order, one in a tick
+                    due = max(due, self._under_way[-1][0] + 1)
+                self._under_way.append((due, picture))
         if self._under_way and self._under_way[0][0] == tick:
             return self._under_way.popleft()[1]
         return None

@@ -22,6 +22,7 @@ class ContactWatch:
         self._n_static = n_static
         self._force = np.zeros(6)
         self._fromto = np.zeros(6)
+        self._ground = frozenset((index.floor, *index.bumps))
         self._seen: dict[tuple[int, int], Contact] = {}
         self._first_obstacle = int(min(index.obstacle_geoms, default=model.ngeom))
         self._obstacles: list[int] = index.obstacle_geoms.tolist()
@@ -83,10 +84,10 @@ class ContactWatch:
         """Normal force under each foot (2,) [N] and the centre of pressure (2,) [m]."""
         load = [0.0, 0.0]
         x = y = 0.0
-        contact, feet, floor = data.contact, self._index.foot_geoms, self._index.floor
+        contact, feet, ground = data.contact, self._index.foot_geoms, self._ground
         places = contact.pos.tolist()
         for i, pair in enumerate(contact.geom.tolist()):
-            if floor not in pair or not (feet[0] in pair or feet[1] in pair):
+            if ground.isdisjoint(pair) or not (feet[0] in pair or feet[1] in pair):
                 continue
             mujoco.mj_contactForce(self._model, data, i, self._force)
             force = float(self._force[0])

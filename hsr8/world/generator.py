@@ -23,7 +23,7 @@ from hsr8.scenario.mission import Course, Tour
 from hsr8.scenario.schema import Scenario
 from hsr8.world.attempt import Attempt, CrowdedError
 from hsr8.world.certificate import Certificate, certify
-from hsr8.world.layout import Layout
+from hsr8.world.layout import Layout, with_faults
 
 WORLDS = 20  # worlds begun before giving up
 
@@ -74,7 +74,8 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
             continue
         certificate = certify(layout, scenario.robot.speed)
         if certificate.solvable or not _draws(scenario):
-            return FairWorld(layout, certificate, rejected, crowded.total())
+            faulty = with_faults(layout, scenario.fault)
+            return FairWorld(faulty, certificate, rejected, crowded.total())
         rejected += 1
     width, depth = scenario.world.size
     reasons = [f"for want of room for {thing} {n} times" for thing, n in crowded.most_common()]

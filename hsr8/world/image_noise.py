@@ -49,17 +49,17 @@ class ImageNoise:
             return 1.0
         return max(0.05, 1.0 + self._noise.exposure * float(self._rng.standard_normal()))
 
-    def missed(self, things: int) -> Sequence[int]:
-        """Which of so many things the next image does not show."""
-        if self._noise.missed == 0.0:
+    def missed(self, things: int, share: float) -> Sequence[int]:
+        """Which of so many things the next image does not show, a `share` of them on average."""
+        if share == 0.0:
             return ()
-        missed: list[int] = np.flatnonzero(self._rng.random(things) < self._noise.missed).tolist()
+        missed: list[int] = np.flatnonzero(self._rng.random(things) < share).tolist()
         return missed
 
-    def spoil(self, image: Image) -> Image:
-        """`image` with false blobs, which are painted into it, and with grain."""
-        if self._noise.false_blobs > 0.0:
-            for _ in range(int(self._rng.poisson(self._noise.false_blobs))):
+    def spoil(self, image: Image, ghosts: float = 0.0) -> Image:
+        """`image` with `ghosts` false blobs on average, painted into it, and with grain."""
+        if ghosts > 0.0:
+            for _ in range(int(self._rng.poisson(ghosts))):
                 self._paint(image)
         if self._grain is None:
             return image

@@ -26,6 +26,7 @@ class ModelIndex:
         foot_sites: site ids of the left and the right foot.
         foot_geoms: geom ids of the left and the right sole.
         floor: geom id of the floor.
+        bumps: geom ids of what lies on the floor.
         base_body: body id of ``base_link``.
         robot_geoms: ids of the robot's colliding geoms.
         obstacle_of_geom: obstacle index of every geom, -1 for anything else (ngeom,).
@@ -43,6 +44,7 @@ class ModelIndex:
     foot_sites: tuple[int, int]
     foot_geoms: tuple[int, int]
     floor: int
+    bumps: tuple[int, ...]
     base_body: int
     robot_geoms: Ints
     obstacle_of_geom: Ints
@@ -81,6 +83,7 @@ class ModelIndex:
             foot_sites=(model.site("l_foot").id, model.site("r_foot").id),
             foot_geoms=(model.geom("l_sole").id, model.geom("r_sole").id),
             floor=model.geom("floor").id,
+            bumps=tuple(g for g in range(model.ngeom) if model.geom(g).name.startswith("bump_")),
             base_body=base,
             robot_geoms=np.flatnonzero(collides & on_robot),
             obstacle_of_geom=obstacle_of_geom,

@@ -1,12 +1,14 @@
 """What stands and moves in the world of one run."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import hypot
+from math import hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.world.motion import MotionLaw, Movers, Point
+from hsr8.scenario.fault import Bump, Fault, MoverAppears
+from hsr8.world.motion import Appearing, MotionLaw, Movers, Point
 
 Array = NDArray[np.float64]
 
@@ -76,6 +78,7 @@ class Layout:
         waypoints: points to pass in W (n, 2) [m]; empty when nothing is to be reached.
         goal_heading: heading to arrive with at the last [rad]; None for any.
         endless: the first point follows the last.
+        bumps: low discs on the floor, which are faults.
     """
 
     field_size: Point
@@ -85,6 +88,7 @@ class Layout:
     waypoints: Array
     goal_heading: float | None
     endless: bool
+    bumps: tuple[Bump, ...] = ()
 
     @property
     def static(self) -> tuple[Obstacle, ...]:
@@ -128,3 +132,18 @@ def with_first_moved(beacons: tuple[Beacon, ...], distance: float) -> tuple[Beac
     share = distance / hypot(x, y)
     moved = replace(first, position=(x - share * y, y + share * x), known=first.position)
     return (moved, *beacons[1:])
+
+
+def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:
+    """`layout` with the movers that appear and the bumps that `faults` put into it."""
+    obstacles = list(layout.obstacles)
+    first = len(layout.static)
+    for fault in faults:
+        if isinstance(fault, MoverAppears):
+            mover = obstacles[first + fault.mover]
+            assert mover.motion is not None
+            end = inf if fault.end is None else fault.end
+            law = Appearing(mover.motion, fault.start, end)
+            obstacles[first + fault.mover] = replace(mover, position=law.position(0.0), motion=law)
+    bumps = tuple(fault for fault in faults if isinstance(fault, Bump))
+    return replace(layout, obstacles=tuple(obstacles), bumps=bumps) if faults else layout

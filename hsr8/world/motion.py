@@ -12,6 +12,9 @@ from hsr8.world.wander import Wander
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
+AWAY = 60.0  # what is away is so far from its place: nothing sees it there [m]
+INSTANT = 1e-6  # times nearer to one another are the same [s]
+
 
 @dataclass(frozen=True, slots=True)
 class Still:
@@ -122,7 +125,34 @@ class Circle:
         return -self.speed * sin(angle), self.speed * cos(angle)
 
 
-MotionLaw = Still | Line | Shuttle | Circle | Passage | Wander
+@dataclass(frozen=True, slots=True)
+class Appearing:
+    """Another law for some time; before and after it the mover is far away.
+
+    Attributes:
+        law: what it does while it is there.
+        start: when it appears [s].
+        end: when it is gone again [s].
+    """
+
+    law: "MotionLaw"
+    start: float
+    end: float = inf
+
+    def position(self, time: float) -> Point:
+        """Position at `time` [s]."""
+        x, y = self.law.position(time)
+        return (x, y) if self._there(time) else (x + AWAY, y)
+
+    def velocity(self, time: float) -> Point:
+        """Velocity at `time` [m/s]; none while it is away."""
+        return self.law.velocity(time) if self._there(time) else (0.0, 0.0)
+
+    def _there(self, time: float) -> bool:
+        return self.start <= time + INSTANT < self.end
+
+
+MotionLaw = Still | Line | Shuttle | Circle | Passage | Wander | Appearing
 
 
 class Movers:
@@ -137,7 +167,9 @@ class Movers:
         self.laws = laws
         straight = [k for k, law in enumerate(laws) if isinstance(law, Still | Line | Shuttle)]
         round_ = [k for k, law in enumerate(laws) if isinstance(law, Circle)]
-        self._others = [(k, w) for k, w in enumerate(laws) if isinstance(w, Passage | Wander)]
+        self._others = [
+            (k, w) for k, w in enumerate(laws) if isinstance(w, Passage | Wander | Appearing)
+        ]
         self._all_straight = len(straight) == len(laws)
         self._straight = np.array(straight, dtype=np.intp)
         self._round = np.array(round_, dtype=np.intp)
@@ -198,6 +230,8 @@ class Movers:
 
 
 def _top_speed(law: MotionLaw) -> float:
+    if isinstance(law, Appearing):
+        return _top_speed(law.law)
     if isinstance(law, Still):
         return 0.0
     return hypot(*law.rate) if isinstance(law, Line) else abs(law.speed)

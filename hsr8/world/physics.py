@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import SimulationDiverged
+from hsr8.scenario.fault import Fault
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.layout import Layout
 from hsr8.world.pushes import Pusher, ScheduledPush
@@ -16,6 +17,7 @@ from hsr8.world.saturation import SaturationWatch
 from hsr8.world.sensors import SensorSuite
 from hsr8.world.surroundings import Surroundings
 from hsr8.world.truth import Truth
+from hsr8.world.world_faults import WorldFaults
 from walking.joints import JOINT_NAMES
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
@@ -47,6 +49,7 @@ class PhysicsBody:
         noise: sensor noise.
         rng: generator of the sensors.
         pushes: what disturbs it, in the order in which it begins.
+        faults: what fails in body and world.
 
     Raises:
         ValueError: the control period is no multiple of the physics step.
@@ -60,12 +63,14 @@ class PhysicsBody:
         rng: np.random.Generator,
         *,
         pushes: Sequence[ScheduledPush] = (),
+        faults: Sequence[Fault] = (),
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
         self._around = Surroundings(model, layout)
         self._index = self._around.index
         self._pusher = Pusher(model, pushes, CONTROL_PERIOD)
+        self._faults = WorldFaults(model, self._index, faults)
         self._saturation = SaturationWatch(model, self._index)
         self._suite = SensorSuite(noise, rng, CONTROL_PERIOD)
         self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
@@ -116,7 +121,10 @@ class PhysicsBody:
         data.ctrl[self._index.actuators] = self.set_points(targets)
         root = self._index.root_qpos
         tick = self._substep // self._substeps
+        self._faults.act(model, data, tick)
         if self._pusher.busy(tick):
+            # Whether a camera has brought the poses up to date must not matter.
+            mujoco.mj_kinematics(model, data)
             self._pusher.act(data, tick, heading(data.qpos[root + 3 : root + 7]))
         for _ in range(self._substeps):
             around.step(data, self._substep)

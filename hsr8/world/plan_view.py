@@ -1,5 +1,6 @@
 """A world seen from above, as a picture for people."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,7 +9,7 @@ from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.canvas import Canvas, Colour, Image, Point, framed
 from hsr8.world.certificate import Certificate
 from hsr8.world.layout import Layout, Obstacle
-from hsr8.world.motion import Circle, Line, MotionLaw, Shuttle
+from hsr8.world.motion import Appearing, Circle, Line, MotionLaw, Shuttle
 from hsr8.world.passage import Passage
 from hsr8.world.wander import Wander
 from vision.colour import COLOUR_CLASSES
@@ -49,6 +50,8 @@ class PlanView:
         """Picture (height, width, 3), RGB."""
         canvas = self._canvas
         canvas.field(FLOOR, INK, 2)
+        for bump in self._layout.bumps:
+            canvas.ring(bump.place, bump.radius, INK)
         for obstacle in self._layout.obstacles:
             if obstacle.motion is not None:
                 self._lane(obstacle.motion)
@@ -63,8 +66,11 @@ class PlanView:
         return canvas.image
 
     def _obstacle(self, number: int, obstacle: Obstacle) -> None:
-        self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.colour))
         law = obstacle.motion
+        if isinstance(law, Appearing):  # it is drawn where it appears
+            obstacle = replace(obstacle, position=law.position(law.start), motion=law.law)
+            law = law.law
+        self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.colour))
         if law is not None:
             # One that waits shows where it will go.
             depart = law.depart if isinstance(law, Passage) else 0.0
@@ -106,6 +112,8 @@ class PlanView:
             self._canvas.disc(mark, WAY_DOT, WAY)
 
     def _lane(self, law: MotionLaw) -> None:
+        if isinstance(law, Appearing):
+            law = law.law
         if isinstance(law, Shuttle | Passage):
             self._canvas.line((law.start, law.end), LANE)
         elif isinstance(law, Line):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.disturbance import Disturbance
+from hsr8.scenario.fault import Fault, PushOnce
 from hsr8.world.truth import PushActing
 
 Array = NDArray[np.float64]
@@ -36,7 +37,11 @@ class ScheduledPush:
 
 
 def schedule(
-    disturbance: Disturbance, duration: float, period: float, rng: np.random.Generator
+    disturbance: Disturbance,
+    duration: float,
+    period: float,
+    rng: np.random.Generator,
+    faults: Sequence[Fault] = (),
 ) -> tuple[ScheduledPush, ...]:
     """All pushes of a run in the order in which they begin.
 
@@ -45,8 +50,9 @@ def schedule(
         duration: of the run [s].
         period: control tick [s].
         rng: draws the random ones.
+        faults: some of them are pushes, too.
     """
-    pushes = []
+    pushes = [_of_fault(fault, period) for fault in faults if isinstance(fault, PushOnce)]
     for push in disturbance.push:
         ticks = _ticks(push.duration, period)
         force = push.force if push.force is not None else (push.impulse or 0.0) / (ticks * period)
@@ -127,6 +133,12 @@ class Pusher:
         seen = tuple(self._seen[number] for number in sorted(self._seen))
         self._seen.clear()
         return seen
+
+
+def _of_fault(fault: PushOnce, period: float) -> ScheduledPush:
+    ticks = _ticks(fault.duration, period)
+    first, direction = round(fault.start / period), radians(fault.direction_deg)
+    return ScheduledPush(first, ticks, fault.size / (ticks * period), direction, fault.body)
 
 
 def _ticks(duration: float, period: float) -> int:

@@ -42,11 +42,13 @@ def test_without_beacons_the_robot_knows_its_way_by_what_stands_still(simulate):
 
 def test_without_beacons_no_fault_of_the_camera_makes_it_believe_that_it_is_lost(simulate):
     faults = (
-        "camera.noise.missed=0.2",
-        "camera.noise.false_blobs=0.5",
-        "camera.blackout=[{start=4.0,duration=1.0}]",
+        '{kind="camera-misses",size=0.2}',
+        '{kind="camera-ghosts",size=0.5}',
+        '{kind="camera-black",start=4.0,duration=1.0}',
     )
-    _, recorded, _ = simulate("quick", "world.beacons=false", *faults, seed=1, duration=7.0)
+    _, recorded, _ = simulate(
+        "quick", "world.beacons=false", f"fault=[{','.join(faults)}]", seed=1, duration=7.0
+    )
     position, heading, lost = errors(recorded)
     assert not lost.any()
     assert position.max() < 0.1

@@ -39,13 +39,21 @@ def assert_got_over(outcome, recorded, reason):
 EACH_FAULT = pytest.mark.parametrize(
     "setting",
     [
-        "camera.blackout=[{start=2.0,duration=1.0}]",
-        "camera.noise.missed=0.2",
-        "camera.noise.false_blobs=0.5",
-        "camera.noise.dropped=0.2",
+        'fault=[{kind="camera-black",start=2.0,duration=1.0}]',
+        'fault=[{kind="camera-misses",size=0.2}]',
+        'fault=[{kind="camera-ghosts",size=0.5}]',
+        'fault=[{kind="camera-drops",size=0.2}]',
+        'fault=[{kind="camera-late",start=1.0,duration=2.0,size=0.1}]',
         "camera.latency_ms=60",
     ],
-    ids=["black for 1 s", "a fifth missed", "false blobs", "a fifth dropped", "60 ms late"],
+    ids=[
+        "black for 1 s",
+        "a fifth missed",
+        "false blobs",
+        "a fifth dropped",
+        "100 ms late for 2 s",
+        "60 ms late",
+    ],
 )
 
 
@@ -63,7 +71,8 @@ def test_the_robot_reaches_its_goal_in_spite_of(simulate, setting):
 
 
 def test_nothing_is_seen_while_the_camera_is_black(simulate):
-    _, recorded, _ = simulate("quick", "camera.blackout=[{start=0.3,duration=0.6}]", duration=1.2)
+    black = 'fault=[{kind="camera-black",start=0.3,duration=0.6}]'
+    _, recorded, _ = simulate("quick", black, duration=1.2)
     black = [f for f in recorded.frames if 0.3 <= f.time < 0.9]
     assert len(black) == 10
     assert not any(f.detections for f in black)
@@ -81,10 +90,13 @@ def test_late_frames_are_believed_at_their_capture(simulate):
 @pytest.mark.parametrize(
     "settings",
     [
-        ("camera.brightness_step=[{time=1.0,factor=0.4},{time=2.0,factor=1.6}]",),
-        ("camera.blackout=[{start=1.0}]",),
-        ("camera.noise.missed=0.2", "camera.noise.false_blobs=1.0"),
-        ("camera.latency_ms=60", "camera.noise.dropped=0.2"),
+        (
+            'fault=[{kind="camera-light",start=1.0,duration=1.0,size=0.4},'
+            '{kind="camera-light",start=2.0,size=1.6}]',
+        ),
+        ('fault=[{kind="camera-black",start=1.0,duration=1.0}]',),
+        ('fault=[{kind="camera-misses",size=0.2},{kind="camera-ghosts",size=1.0}]',),
+        ("camera.latency_ms=60", 'fault=[{kind="camera-drops",size=0.2}]'),
     ],
     ids=["darker, then brighter", "black for 1 s", "missed and false", "late and dropped"],
 )
@@ -95,7 +107,7 @@ def test_rendered_images_with_faults(simulate, settings):
 
 @pytest.mark.gl
 def test_a_brightness_step_changes_the_image_and_not_what_is_seen(simulate):
-    step = "camera.brightness_step=[{time=0.5,factor=0.4}]"
+    step = 'fault=[{kind="camera-light",start=0.5,size=0.4}]'
     _, steady, _ = simulate("quick", camera="egl", duration=0.6)
     _, stepped, _ = simulate("quick", step, camera="egl", duration=0.6)
     a, b = steady.frames[-1], stepped.frames[-1]

@@ -16,7 +16,8 @@ RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duratio
 def recorded(tmp_path_factory):
     """A run, and one that differs by a setting from its second second on."""
     out = tmp_path_factory.mktemp("runs")
-    for name, more in (("a", []), ("b", ["--set", "camera.blackout=[{start=1.0,duration=0.5}]"])):
+    black = 'fault=[{kind="camera-black",start=1.0,duration=0.5}]'
+    for name, more in (("a", []), ("b", ["--set", black])):
         entry([*RUN, "--no-log", "--quiet", "--out", str(out / name), *more])
     return open_run(out / "a").path, open_run(out / "b").path
 
@@ -44,7 +45,7 @@ def test_the_first_difference_is_where_the_setting_acts(recorded, capsys):
     assert "number of observations" in first["channel"]
     assert first["a"] > first["b"] == 0
     keys = {d["channel"] for d in told["differences"] if d["record"] == "settings"}
-    assert keys == {"camera.blackout.0.start", "camera.blackout.0.duration"}
+    assert keys == {f"fault.0.{key}" for key in ("kind", "start", "duration")}
 
 
 def test_the_order_of_the_runs_only_swaps_the_values(recorded, capsys):

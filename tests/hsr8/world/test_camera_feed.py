@@ -5,14 +5,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.scenario.camera import Camera, CameraNoise
+from hsr8.scenario.camera import Camera
+from hsr8.scenario.fault import CameraDrops, CameraLate
+from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.camera_feed import CameraFeed, Picture
 
 
-def deliveries(ticks=400, seed=0, **settings):
+def deliveries(ticks=400, seed=0, faults=(), **settings):
     """Tick and capture time [s] of every picture that arrives."""
     feed = CameraFeed(
-        Camera(**settings), lambda body: Picture(body.time), np.random.default_rng(seed)
+        Camera(**settings),
+        lambda body: Picture(body.time),
+        np.random.default_rng(seed),
+        CameraFaults(faults),
     )
     arrived = []
     for tick in range(ticks):
@@ -38,7 +43,26 @@ def test_pictures_arrive_in_order_each_after_the_latency(latency, period):
 
 def test_dropped_pictures_never_arrive_and_the_others_are_not_moved():
     every = set(deliveries(4000, latency_ms=60))
-    some = set(deliveries(4000, latency_ms=60, noise=CameraNoise(dropped=0.3)))
+    some = set(deliveries(4000, latency_ms=60, faults=[CameraDrops(kind="camera-drops", size=0.3)]))
     assert some < every
     assert len(some) == pytest.approx(0.7 * len(every), rel=0.1)
-    assert deliveries(noise=CameraNoise(dropped=1.0)) == []
+    assert deliveries(faults=[CameraDrops(kind="camera-drops", size=1.0)]) == []
+
+
+@settings(max_examples=25)
+@given(
+    late=st.integers(0, 60),
+    usual=st.integers(0, 20),
+    period=st.integers(1, 20),
+    start=st.integers(0, 100),
+    lasts=st.integers(1, 100),
+)
+def test_late_pictures_come_in_order_and_none_is_lost(late, usual, period, start, lasts):
+    times = {"start": 0.005 * start, "duration": 0.005 * lasts}
+    fault = CameraLate(kind="camera-late", size=0.005 * late, **times)
+    arrived = deliveries(ticks=400, faults=[fault], latency_ms=5 * usual, period_ms=5 * period)
+    captured = [round(time / 0.005) for _, time in arrived]
+    assert captured == list(range(0, period * len(captured), period))
+    assert captured[-1] >= 400 - period - usual - late - 1
+    for tick, taken in zip([tick for tick, _ in arrived], captured, strict=True):
+        assert usual <= tick - taken <= usual + late

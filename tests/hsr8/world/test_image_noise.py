@@ -21,11 +21,11 @@ def test_no_noise_leaves_an_image_as_it_is():
     noise = make()
     assert np.array_equal(noise.spoil(grey()), grey())
     assert noise.light() == 1.0
-    assert noise.missed(5) == ()
+    assert noise.missed(5, 0.0) == ()
 
 
 def test_the_same_seed_spoils_alike_and_another_one_otherwise():
-    images = [[make(seed, pixel=4.0, false_blobs=1.0).spoil(grey())] for seed in (1, 1, 2)]
+    images = [[make(seed, pixel=4.0).spoil(grey(), 1.0)] for seed in (1, 1, 2)]
     assert np.array_equal(images[0], images[1])
     assert not np.array_equal(images[0], images[2])
 
@@ -47,16 +47,16 @@ def test_grain_stays_within_the_range_of_a_pixel():
 
 
 def test_shares_and_rates_are_kept_on_average():
-    noise = make(missed=0.2, exposure=0.05)
-    missed = [len(noise.missed(50)) for _ in range(200)]
+    noise = make(exposure=0.05)
+    missed = [len(noise.missed(50, 0.2)) for _ in range(200)]
     assert np.mean(missed) == pytest.approx(10.0, rel=0.05)
     lights = [noise.light() for _ in range(500)]
     assert np.std(lights) == pytest.approx(0.05, rel=0.1)
 
 
 def test_false_blobs_are_painted_in_colours_of_things():
-    noise = make(false_blobs=20.0)
-    spoiled = noise.spoil(grey(128))
+    noise = make()
+    spoiled = noise.spoil(grey(128), 20.0)
     painted = (spoiled != 128).any(axis=2)
     assert 0.02 < painted.mean() < 1.0
     colours = spoiled[painted].astype(int)

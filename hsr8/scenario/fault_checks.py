@@ -1,0 +1,59 @@
+"""What the faults of a scenario must satisfy beyond the type and range of each key."""
+
+from collections.abc import Iterator
+
+from hsr8.scenario.fault import Bump, CameraLate, CameraLight, MoverAppears, Slippery, WorldFault
+from hsr8.scenario.problem import Problem
+from hsr8.scenario.schema import Scenario
+
+LATEST_MS = 500
+"""Images that arrive later than this are not understood [ms]."""
+
+
+def fault_problems(scenario: Scenario) -> Iterator[Problem]:
+    """Every fault that does not fit the rest of the scenario."""
+    world, body = scenario.world, scenario.robot.body
+    movers = len(world.mover) + world.n_moving + world.encounters.n
+    late = scenario.camera.latency_ms
+    appear: set[int] = set()
+    for i, fault in enumerate(scenario.fault):
+        if fault.start >= scenario.duration:
+            yield Problem(
+                ("fault", i, "start"),
+                f"{fault.start:g} s is not before the end of the run at {scenario.duration:g} s",
+            )
+        if isinstance(fault, WorldFault) and body != "full":
+            yield Problem(
+                ("fault", i, "kind"),
+                f'"{fault.kind}" needs dynamics, which a {body} body has not; '
+                'robot.body = "full" has',
+            )
+        if isinstance(fault, CameraLight) and scenario.camera.source != "egl":
+            yield Problem(
+                ("fault", i, "kind"),
+                f'"{fault.kind}" needs rendered images, which camera.source = '
+                f'"{scenario.camera.source}" has not; camera.source = "egl" has',
+            )
+        if isinstance(fault, CameraLate):
+            late += round(1000.0 * fault.size)
+            if late > LATEST_MS:
+                yield Problem(
+                    ("fault", i, "size"),
+                    f"with camera.latency_ms and all such faults together images come {late} ms "
+                    f"late; at most {LATEST_MS}",
+                )
+        if isinstance(fault, MoverAppears) and fault.mover >= movers:
+            has = f"0 to {movers - 1}" if movers else "none"
+            yield Problem(("fault", i, "mover"), f"there is no mover {fault.mover} ({has})")
+        if isinstance(fault, MoverAppears):
+            if fault.mover in appear:
+                yield Problem(("fault", i, "mover"), f"mover {fault.mover} appears twice")
+            appear.add(fault.mover)
+        if isinstance(fault, Bump | Slippery) and fault.place is not None:
+            x, y = (0.5 * side for side in world.size)
+            if abs(fault.place[0]) > x or abs(fault.place[1]) > y:
+                yield Problem(
+                    ("fault", i, "place"),
+                    f"{list(fault.place)} is outside the field, which reaches from "
+                    f"{[-x, -y]} to {[x, y]}",
+                )

@@ -1,0 +1,79 @@
+"""Faults of the body's sensors: between what they measure and what the robot is told."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hsr8.scenario.fault import (
+    EncoderFrozen,
+    EncoderOffset,
+    Fault,
+    FootGain,
+    ImuFrozen,
+    ImuTilt,
+    ImuTurn,
+    SensorFault,
+)
+from hsr8.scenario.section import CONTROL_PERIOD_MS
+from hsr8.world.rotation import quaternion_from_yaw, quaternion_product, small_rotation
+from walking.sensing import BodySensors
+
+PERIOD = 0.001 * CONTROL_PERIOD_MS
+AXES = {"roll": 0, "pitch": 1, "yaw": 2}
+
+
+class SensorFaults:
+    """Spoils readings, one fault after the other in the order of the scenario.
+
+    Args:
+        faults: of the scenario; those of other parts are left to them.
+    """
+
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        self._faults = [f for f in faults if isinstance(f, SensorFault)]
+        self._held: dict[int, BodySensors] = {}
+        self._turned = 0.0
+
+    def spoil(self, sensors: BodySensors, tick: int) -> BodySensors:
+        """What the robot is told of the reading of control tick `tick`."""
+        for number, fault in enumerate(self._faults):
+            if fault.acts(tick):
+                sensors = self._spoiled(sensors, number, fault)
+        if self._turned:
+            turned = quaternion_product(quaternion_from_yaw(self._turned), sensors.orientation)
+            sensors = replace(sensors, orientation=turned)
+        return sensors
+
+    def _spoiled(self, now: BodySensors, number: int, fault: SensorFault) -> BodySensors:
+        if isinstance(fault, ImuFrozen | EncoderFrozen):
+            return _frozen(now, self._held.setdefault(number, now), fault)
+        if isinstance(fault, ImuTurn):
+            gyro = now.gyro.copy()
+            gyro[AXES[fault.axis]] += fault.size
+            if fault.axis == "yaw":
+                self._turned += PERIOD * fault.size
+            return replace(now, gyro=gyro)
+        if isinstance(fault, ImuTilt):
+            roll, pitch = (fault.size, 0.0) if fault.axis == "roll" else (0.0, fault.size)
+            tilted = quaternion_product(now.orientation, small_rotation(roll, pitch))
+            return replace(now, orientation=tilted)
+        if isinstance(fault, EncoderOffset):
+            position = now.joint_position.copy()
+            position[fault.joints] += fault.size
+            return replace(now, joint_position=position)
+        force = now.foot_force.copy()
+        force[fault.feet] *= fault.size if isinstance(fault, FootGain) else 0.0
+        return replace(now, foot_force=force)
+
+
+def _frozen(now: BodySensors, then: BodySensors, fault: ImuFrozen | EncoderFrozen) -> BodySensors:
+    if isinstance(fault, ImuFrozen):
+        return replace(
+            now,
+            gyro=then.gyro,
+            accelerometer=then.accelerometer,
+            orientation=then.orientation,
+        )
+    position, velocity = now.joint_position.copy(), now.joint_velocity.copy()
+    position[fault.joints] = then.joint_position[fault.joints]
+    velocity[fault.joints] = 0.0
+    return replace(now, joint_position=position, joint_velocity=velocity)

@@ -1,0 +1,274 @@
+"""At which size each fault breaks the robot: a ladder of sizes for every kind.
+
+    python scripts/fault_study.py --seeds 0-1 --rows docs/results/faults.jsonl
+    python scripts/fault_study.py --seeds 1000-1019 --only imu-tilt slippery
+    python scripts/fault_study.py --page docs/results/faults.md
+
+The scenario is `quick` in full physics with the analytic camera (rendered images where the light
+is at fault). A fault begins after 3 s, in the walk, and lasts to the end of the run, unless its
+size is its duration. A ladder ends with the first size that no seed gets over. Runs that are
+already among the rows are not made again.
+"""
+
+import argparse
+import json
+import platform
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.metadata import version
+from math import hypot
+from pathlib import Path
+
+import numpy as np
+
+from hsr8.errors import SimulationDiverged
+from hsr8.evaluation.wilson import wilson
+from hsr8.loop import Simulation
+from hsr8.recorder.record import TickRecord
+from hsr8.scenario.loader import load
+from hsr8.scenario.world import ROBOT_RADIUS
+from hsr8.world.generator import draw_layout
+
+START = 3.0  # of a fault [s]
+DURATION = 60.0  # most seeds reach the goal in 15 to 40 s [s]
+AHEAD = 0.5  # where a bump lies on the way to the first point [m]
+BUMP_RADIUS = 0.15  # wide enough to be stepped on [m]
+STRAIGHT = (
+    "world.n_static=0",
+    "world.n_moving=0",
+    "robot.start={position=[-1.2,0.0],heading_deg=0.0}",
+    'mission={kind="points",points=[[1.2,0.0]]}',
+    'world.mover=[{motion="line",start=[0.2,0.0],heading_deg=90.0,speed=0.000001,radius=0.08}]',
+)
+MOVER_X, MOVER_RADIUS = 0.2, 0.08  # where that mover stands, and its radius [m]
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Sizes of one kind of fault, harmless ones first.
+
+    Attributes:
+        unit: of the sizes, and what they are where that is not `size`.
+        fault: the TOML keys besides kind and start; ``{}`` is the size.
+        sizes: to try.
+    """
+
+    unit: str
+    fault: str
+    sizes: tuple[float, ...]
+
+
+LADDERS = {
+    "camera-black": Ladder("duration [s]", "duration={}", (1, 3, 6, 12)),
+    "camera-light darker": Ladder("factor", "size={}", (0.6, 0.4, 0.25, 0.15, 0.1)),
+    "camera-light brighter": Ladder("factor", "size={}", (1.5, 2, 3, 4)),
+    "camera-drops": Ladder("share", "size={}", (0.5, 0.8, 0.9, 0.95)),
+    "camera-misses": Ladder("share", "size={}", (0.3, 0.6, 0.8, 0.95)),
+    "camera-ghosts": Ladder("mean number", "size={}", (0.5, 1, 3, 10)),
+    "camera-late": Ladder("s", "size={}", (0.06, 0.12, 0.24, 0.48)),
+    "imu-tilt pitch": Ladder("rad", 'axis="pitch",size={}', (0.02, 0.04, 0.08, 0.12)),
+    "imu-tilt roll": Ladder("rad", 'axis="roll",size={}', (0.02, 0.04, 0.08, 0.12)),
+    "imu-turn": Ladder("rad/s", "size={}", (0.02, 0.05, 0.1, 0.2, 0.4)),
+    "imu-frozen": Ladder("duration [s]", "duration={}", (0.1, 0.3, 1, 3)),
+    "encoder-offset ankle": Ladder("rad", 'joint="l_ankle_pitch",size={}', (0.02, 0.05, 0.1, 0.2)),
+    "encoder-frozen": Ladder("duration [s]", "duration={}", (0.05, 0.1, 0.3, 1)),
+    "foot-dead": Ladder("duration [s]", 'foot="left",duration={}', (0.2, 0.5, 1, 3)),
+    "foot-gain weaker": Ladder("gain", 'foot="left",size={}', (0.7, 0.5, 0.3, 0.1)),
+    "foot-gain stronger": Ladder("gain", 'foot="left",size={}', (1.5, 2, 4, 8)),
+    "servo-weak": Ladder("share left", "size={}", (0.6, 0.5, 0.4, 0.3, 0.2)),
+    "servo-stuck knee": Ladder("duration [s]", 'joint="l_knee",duration={}', (0.05, 0.1, 0.2, 0.5)),
+    "servo-late": Ladder("s", "size={}", (0.005, 0.01, 0.015, 0.02, 0.03)),
+    "push": Ladder("N s", "direction_deg=90.0,size={}", (0.8, 1.6, 2.4, 3.2)),
+    "slippery": Ladder("friction", "size={}", (0.4, 0.2, 0.1, 0.05)),
+    "bump": Ladder("m", "size={}", (0.004, 0.008, 0.012, 0.02)),
+    "mover-appears": Ladder("gap [m]", "mover=0", (0.5, 0.3, 0.2, 0.1, 0.03)),
+}
+
+
+class Watch:
+    """Listener that counts what went wrong."""
+
+    def __init__(self) -> None:
+        self.events: Counter[str] = Counter()
+        self.error = 0.0
+        self.lost = 0
+        self.finite = True
+        self.path: list[tuple[float, float]] = []
+
+    def on_record(self, record: TickRecord) -> None:
+        """Take the error of the believed position."""
+        self.path.append((record.time, float(record.truth.robot[0])))
+        if record.frame is not None:
+            belief = record.frame.belief
+            self.finite &= bool(np.isfinite(belief.pose).all())
+            error = hypot(*(belief.pose[:2] - record.truth.robot[:2]).tolist())
+            self.error = max(self.error, error)
+            self.lost += belief.lost
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Count it."""
+        self.events[kind] += 1
+
+    def close(self, exit_reason: str) -> None:
+        """Nothing is left open."""
+
+
+def run(settings: list[str], seed: int) -> tuple[str, Watch]:
+    """Exit reason and what was seen."""
+    watch = Watch()
+    simulation = Simulation(load("quick", settings), seed, [watch])
+    try:
+        return simulation.run().exit_reason, watch
+    except SimulationDiverged:
+        return "diverged", watch
+
+
+def settings_of(name: str, size: float, seed: int) -> list[str]:
+    """Scenario settings of one run."""
+    kind, ladder = name.split(maxsplit=1)[0], LADDERS[name]
+    start = START
+    common = [
+        f"duration={DURATION}",
+        f'camera.source="{"egl" if kind == "camera-light" else "analytic"}"',
+    ]
+    fault = ladder.fault.format(float(size))
+    if kind == "mover-appears":
+        common += STRAIGHT
+        start = _time_at(MOVER_X - MOVER_RADIUS - ROBOT_RADIUS - size, seed, common)
+    if kind == "bump":
+        layout = draw_layout(load("quick"), seed)
+        begin, way = np.array(layout.start[:2]), layout.waypoints[0] - np.array(layout.start[:2])
+        place = begin + AHEAD * way / np.linalg.norm(way)
+        fault += f",radius={BUMP_RADIUS},place={place.round(3).tolist()}"
+        start = 0.0
+    return [*common, f'fault=[{{kind="{kind}",start={start},{fault}}}]']
+
+
+def _time_at(x: float, seed: int, settings: list[str]) -> float:
+    """When the robot that nothing stops comes to `x` [s]."""
+    away = 'fault=[{kind="mover-appears",start=29.9}]'
+    _, watch = run([*settings, away], seed)
+    return next(round(time, 3) for time, at in watch.path if at >= x)
+
+
+def outcome_of(reason: str, watch: Watch) -> str:
+    """The outcome in a word."""
+    if not watch.finite:
+        return "NaN"
+    if reason == "goal" and watch.events["collision"]:
+        return "touched"
+    return reason
+
+
+def rows(names: list[str], seeds: list[int], known: list[dict]) -> Iterator[dict]:
+    """One row a run that is not known yet."""
+    done = {(row["fault"], row["size"], row["seed"]): row for row in known}
+    for name in names:
+        for size in LADDERS[name].sizes:
+            outcomes = []
+            for seed in seeds:
+                row = done.get((name, size, seed))
+                if row is None:
+                    reason, watch = run(settings_of(name, size, seed), seed)
+                    row = {
+                        "fault": name,
+                        "size": size,
+                        "seed": seed,
+                        "outcome": outcome_of(reason, watch),
+                        "error": round(watch.error, 3),
+                        "lost": watch.lost,
+                    }
+                    yield row
+                outcomes.append(row["outcome"])
+            if "goal" not in outcomes:
+                break
+
+
+def page(known: list[dict], command: str) -> str:
+    """The page of results."""
+    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy"))
+    seeds = sorted({row["seed"] for row in known})
+    lines = [
+        "# Faults: the limits at which they break the robot",
+        "",
+        f"{versions}; Python {platform.python_version()}, {platform.machine()}; seeds "
+        f"{', '.join(map(str, seeds))}.",
+        "",
+        *command.splitlines(),
+        "",
+        "Scenario `quick`, full physics, analytic camera (rendered images for camera-light). A",
+        "fault begins after 3 s of walking and lasts to the end, unless its size is a duration; a",
+        "bump lies on the way, 0.5 m from the start. `mover-appears` is a straight walk: the gap",
+        "is from body to mover when it appears. Unharmed: the goal is reached without a fall or a",
+        "contact. The limit lies between the last size that every seed gets over and the first",
+        "that one does not. A ladder ends at the first size that nobody gets over.",
+        "",
+        "| fault | limit | sizes: unharmed of runs (other outcomes) |",
+        "|---|---|---|",
+    ]
+    for name, ladder in LADDERS.items():
+        cells, good, bad = [], None, None
+        for size in ladder.sizes:
+            there = [r for r in known if r["fault"] == name and r["size"] == size]
+            if not there:
+                continue
+            tally = Counter(row["outcome"] for row in there)
+            unharmed = tally.pop("goal", 0)
+            other = f" ({', '.join(f'{n} {k}' for k, n in sorted(tally.items()))})" if tally else ""
+            cells.append(f"{size:g}: {unharmed}/{len(there)}{other}")
+            if tally and bad is None:
+                bad = size
+            if bad is None:
+                good = size
+        if cells:
+            lines.append(f"| {name}, {ladder.unit} | {_limit(good, bad)} | {'; '.join(cells)} |")
+    n = len(known)
+    named = sum(row["outcome"] != "NaN" for row in known)
+    least, _ = wilson(named, n)
+    lines += [
+        "",
+        f"{named} of {n} runs recovered or failed by name (at least {least:.1%} of all, 95 % "
+        "interval of Wilson); none hung, none had a number that is none.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _limit(good: float | None, bad: float | None) -> str:
+    if bad is None:
+        return f"beyond {good:g}"
+    return f"before {bad:g}" if good is None else f"{good:g} to {bad:g}"
+
+
+def seeds_of(text: str) -> list[int]:
+    """`first-last` or one seed."""
+    first, _, last = text.partition("-")
+    return list(range(int(first), int(last or first) + 1))
+
+
+def main() -> None:
+    """Run what is missing, and write the page if asked to."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", type=seeds_of, default=[], help="first-last; none: only a page")
+    parser.add_argument("--only", nargs="+", choices=LADDERS, default=list(LADDERS))
+    parser.add_argument("--rows", type=Path, default=Path("docs/results/faults.jsonl"))
+    parser.add_argument("--page", type=Path, help="write the page of all rows here")
+    options = parser.parse_args()
+    text = options.rows.read_text() if options.rows.exists() else ""
+    known = [json.loads(line) for line in text.splitlines()]
+    for row in rows(options.only, options.seeds, known):
+        known.append(row)
+        print(json.dumps(row), flush=True)
+        with options.rows.open("a") as file:
+            file.write(json.dumps(row) + "\n")
+    if options.page is not None:
+        seeds = sorted({row["seed"] for row in known})
+        command = (
+            f"    python scripts/fault_study.py --seeds {seeds[0]}-{seeds[-1]} "
+            f"--rows {options.rows}\n    python scripts/fault_study.py --page {options.page}"
+        )
+        options.page.write_text(page(known, command))
+
+
+if __name__ == "__main__":
+    main()

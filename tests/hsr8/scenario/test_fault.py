@@ -1,0 +1,90 @@
+from typing import get_args
+
+import pytest
+
+from hsr8.errors import ScenarioError
+from hsr8.scenario.fault import CameraBlack, Fault, Joint, ServoWeak
+from hsr8.scenario.loader import dump, load, loads
+from walking.joints import JOINT_NAMES
+
+FULL = 'robot.body="full"'
+SIZES = {
+    "camera-light": 0.5,
+    "camera-drops": 0.2,
+    "camera-misses": 0.2,
+    "camera-ghosts": 0.5,
+    "camera-late": 0.1,
+    "imu-tilt": 0.02,
+    "imu-turn": 0.02,
+    "encoder-offset": 0.02,
+    "foot-gain": 0.5,
+    "servo-weak": 0.5,
+    "servo-late": 0.01,
+    "push": 0.5,
+    "slippery": 0.2,
+    "bump": 0.01,
+}
+MORE = {"servo-stuck": 'joint="l_knee"', "bump": "place=[0.5,0.0]"}
+KINDS = [kind.model_fields["kind"].annotation.__args__[0] for kind in get_args(get_args(Fault)[0])]
+
+
+def fault_of(kind, **given):
+    """TOML text of a fault of this kind, with all that it must have."""
+    keys = {"kind": f'"{kind}"', "start": "1.0"}
+    if kind in SIZES:
+        keys["size"] = str(SIZES[kind])
+    keys |= given
+    more = [MORE[kind]] if kind in MORE else []
+    return "{" + ",".join([*(f"{k}={v}" for k, v in keys.items()), *more]) + "}"
+
+
+def test_the_joints_are_those_of_the_robot_and_its_groups():
+    assert get_args(Joint) == ("all", "legs", "left_leg", "right_leg", *JOINT_NAMES)
+    for joint in get_args(Joint):
+        fault = ServoWeak(kind="servo-weak", size=0.5, joint=joint)
+        assert joint not in JOINT_NAMES or [JOINT_NAMES[k] for k in fault.joints] == [joint]
+    assert ServoWeak(kind="servo-weak", size=0.5, joint="right_leg").joints == [*range(6, 12)]
+
+
+def test_a_fault_acts_from_its_first_tick_to_its_last():
+    for start in (0.0, 0.3, 2.35):
+        first = round(start / 0.005)
+        acts = CameraBlack(kind="camera-black", start=start, duration=0.15).acts
+        assert [acts(tick) for tick in (first - 1, first, first + 29, first + 30)] == [
+            *(False, True, True, False)
+        ]
+    assert CameraBlack(kind="camera-black", start=1.0).acts(10**6)
+
+
+def test_all_kinds_are_one_vocabulary():
+    assert len(set(KINDS)) == len(KINDS) == 20
+    scenario = load("quick", [f"fault=[{','.join(map(fault_of, KINDS))}]"])
+    assert [f.kind for f in scenario.fault] == KINDS
+    assert loads(dump(scenario)) == scenario
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ([f"fault=[{fault_of('slipery')}]"], "did you mean 'slippery'"),
+        (["fault=[{start=1.0}]"], "fault[0].kind: is missing"),
+        ([f"fault=[{fault_of('imu-tilt', size='0.9')}]"], "fault[0].size"),
+        ([f"fault=[{fault_of('imu-tilt', axis='0')}]"], "pitch"),
+        (['fault=[{kind="servo-weak",size=0.5,joint="l_kne"}]'], "'l_knee'"),
+        ([f"fault=[{fault_of('camera-black', size='1.0')}]"], "unknown key"),
+        ([f"fault=[{fault_of('camera-black', start='99.0')}]"], "not before the end of the run"),
+        ([f"fault=[{fault_of('slippery', radius='0.5')}]"], "a radius needs a place"),
+        ([f"fault=[{fault_of('slippery', place='[9.0,0.0]')}]"], "outside the field"),
+        ([f"fault=[{fault_of('mover-appears', mover='7')}]"], "there is no mover 7 (0 to 0)"),
+        ([f"fault=[{','.join([fault_of('mover-appears')] * 2)}]"], "mover 0 appears twice"),
+        (['robot.body="kinematic"', f"fault=[{fault_of('bump')}]"], "needs dynamics"),
+        (['camera.source="analytic"', f"fault=[{fault_of('camera-light')}]"], "rendered images"),
+        (["camera.latency_ms=450", f"fault=[{fault_of('camera-late')}]"], "at most 500"),
+        (["fault=[" + ",".join([fault_of("imu-frozen")] * 65) + "]"], "64"),
+    ],
+)
+def test_what_does_not_fit_is_one_clear_mistake(settings, told):
+    with pytest.raises(ScenarioError) as error:
+        load("quick", settings)
+    assert "1 mistake in" in str(error.value)
+    assert told in str(error.value)
