@@ -60,7 +60,7 @@ class Ladder:
 
 
 LADDERS = {
-    "camera-black": Ladder("duration [s]", "duration={}", (1, 3, 6, 12)),
+    "camera-black": Ladder("duration [s]", "duration={}", (3, 12, 30)),
     "camera-light darker": Ladder("factor", "size={}", (0.6, 0.4, 0.25, 0.15, 0.1)),
     "camera-light brighter": Ladder("factor", "size={}", (1.5, 2, 3, 4)),
     "camera-drops": Ladder("share", "size={}", (0.5, 0.8, 0.9, 0.95)),

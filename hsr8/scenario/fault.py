@@ -148,12 +148,12 @@ class CameraGhosts(_Fault):
 
 
 class CameraLate(_Fault):
-    """Images arrive late, in their order."""
+    """Images arrive late; one that a newer one overtakes never arrives."""
 
     kind: Literal["camera-late"]
     """Images arrive late."""
     size: Annotated[float, Interval(ge=0.0, le=0.5)]
-    """Time from capture to arrival besides camera.latency_ms, in whole control ticks [s]."""
+    """Time from capture to arrival besides camera.latency_ms, up to a whole camera period [s]."""
 
 
 class ImuTilt(_Fault):

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,7 +42,8 @@ class CameraFeed:
         settings: period and latency.
         take: takes a picture of the world as it is now.
         rng: generator of the dropped images.
-        faults: images that are dropped or late; late ones hold up those after them.
+        faults: images that are dropped, or late by whole periods; one that a newer one overtakes
+            never arrives.
     """
 
     def __init__(
@@ -68,9 +70,10 @@ class CameraFeed:
             picture = self._take(body)
             dropped = self._faults.dropped(tick)
             if not (dropped and self._rng.random() < dropped):
-                due = tick + self._latency + self._faults.late(tick)
-                if self._under_way:  # pictures arrive in their order, one in a tick
-                    due = max(due, self._under_way[-1][0] + 1)
+                late = ceil(self._faults.late(tick) / self._period) * self._period
+                due = tick + self._latency + late
+                while self._under_way and self._under_way[-1][0] >= due:
+                    self._under_way.pop()  # the newer one overtakes it
                 self._under_way.append((due, picture))
         if self._under_way and self._under_way[0][0] == tick:
             return self._under_way.popleft()[1]

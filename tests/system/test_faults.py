@@ -1,0 +1,171 @@
+"""Every kind of fault, and what must come of it: recovery, or a failure with a name."""
+
+import json
+
+import numpy as np
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.loop import Simulation
+from hsr8.recorder.run_reader import open_run
+from hsr8.scenario.loader import load
+from hsr8.snapshot import decode, encode
+
+START, LASTS = 1.0, 0.5  # of the faults that are got over [s]
+WELL = {  # what the robot gets over within two seconds, walking
+    "imu-tilt": "size=0.03",
+    "imu-turn": "size=0.05",
+    "imu-frozen": "",
+    "encoder-offset": 'size=0.02,joint="l_ankle_pitch"',
+    "encoder-frozen": 'joint="l_shoulder_pitch"',
+    "foot-dead": 'foot="left"',
+    "foot-gain": 'size=0.6,foot="right"',
+    "servo-weak": "size=0.7",
+    "servo-stuck": 'joint="head_pan"',
+    "servo-late": "size=0.005",
+    "push": "size=0.5",
+    "slippery": "size=0.3",
+    "bump": "size=0.003,place=[0.1,0.0],radius=0.2",
+}
+BADLY = {  # what makes it fall
+    "imu-tilt": "size=0.4",
+    "encoder-offset": "size=0.2",
+    "servo-weak": "size=0.05",
+    "servo-stuck": 'joint="l_knee"',
+    "push": "size=5.0",
+}
+HARDLY = {  # what goes on to the end of a walk, which it slows down or turns, without a fall
+    "imu-frozen": "",
+    "encoder-frozen": "",
+    "foot-dead": "",
+    "servo-late": "size=0.03",
+    "slippery": "size=0.05",
+}
+BODY = [
+    *("world.size=[4.0,4.0]", "world.n_static=0", "world.n_moving=0"),
+    *("robot.start={position=[0.0,0.0],heading_deg=0.0}", "command.vx=0.15"),
+]
+
+
+def fault(kind, keys="", start=START, lasts=LASTS):
+    """TOML text of a fault."""
+    lasting = f"duration={lasts}" if lasts else ""
+    keys = ",".join(part for part in (f"start={start}", lasting, keys) if part)
+    return f'{{kind="{kind}",{keys}}}'
+
+
+def walked(simulate, text, duration):
+    outcome, recorded, _ = simulate(
+        "walk", *BODY, f"fault=[{text}]", body="full", duration=duration
+    )
+    assert np.isfinite([r.truth.qpos for r in recorded.records]).all()
+    return outcome, recorded
+
+
+@pytest.mark.parametrize("kind", WELL)
+def test_a_walking_robot_gets_over(simulate, kind):
+    outcome, recorded = walked(simulate, fault(kind, WELL[kind]), 2.5)
+    assert outcome.exit_reason == "completed"
+    assert [e[1] for e in recorded.events if e[1] != "push"] == ["fault", "fault"]
+    assert recorded.records[-1].truth.robot[0] > 0.2
+
+
+@pytest.mark.parametrize("kind", BADLY)
+def test_a_walking_robot_falls_by(simulate, kind):
+    lasts = 0.05 if kind == "push" else None
+    outcome, recorded = walked(simulate, fault(kind, BADLY[kind], lasts=lasts), 4.0)
+    assert outcome.exit_reason == "fall"
+    assert [e[1] for e in recorded.events if e[1] != "push"][-1] == "fall"
+
+
+@pytest.mark.parametrize("kind", HARDLY)
+def test_a_walking_robot_stays_on_its_feet_under(simulate, kind):
+    outcome, recorded = walked(simulate, fault(kind, HARDLY[kind], lasts=None), 3.0)
+    assert outcome.exit_reason == "completed"
+    assert not any(r.truth.fallen for r in recorded.records)
+
+
+def test_a_mover_that_appears_stops_the_robot_or_is_passed(simulate):
+    stands = '{motion="line",start=[0.6,0.0],heading_deg=90.0,speed=0.000001}'
+    settings = (
+        *BODY[:-1],
+        'mission={kind="points",points=[[1.2,0.0]]}',
+        f"world.mover=[{stands}]",
+        f"fault=[{fault('mover-appears', 'mover=0', start=2.0, lasts=0)}]",
+    )
+    outcome, recorded, _ = simulate("quick", *settings, duration=20.0)
+    assert outcome.exit_reason == "goal"
+    assert not any(r.truth.contacts for r in recorded.records)
+    gap = [r.truth.clearance for r in recorded.records]
+    before = [g for r, g in zip(recorded.records, gap, strict=True) if r.time < 1.99]
+    assert min(before) > 10.0
+    assert min(gap) < 0.5
+
+
+def test_begin_and_end_of_a_fault_are_events_of_their_time(simulate):
+    both = ",".join([fault("imu-tilt", "size=0.02"), fault("camera-drops", "size=0.5", lasts=0)])
+    _, recorded, _ = simulate("quick", f"fault=[{both}]", duration=2.0)
+    assert recorded.events == [
+        (1.0, "fault", "imu-tilt, size 0.02, axis pitch: begins"),
+        (1.0, "fault", "camera-drops, size 0.5: begins"),
+        (1.5, "fault", "imu-tilt, size 0.02, axis pitch: ends"),
+    ]
+
+
+ALL = [
+    fault("camera-black", start=0.2, lasts=0.2),
+    fault("camera-misses", "size=0.3", start=0.3, lasts=0.5),
+    fault("camera-ghosts", "size=0.5", start=0.3, lasts=0.5),
+    fault("camera-drops", "size=0.3", start=0.4, lasts=0.5),
+    fault("camera-late", "size=0.1", start=0.5, lasts=0.4),
+    fault("imu-tilt", "size=0.02", start=0.2),
+    fault("imu-turn", "size=0.05", start=0.2),
+    fault("imu-frozen", start=0.6, lasts=0.1),
+    fault("encoder-offset", "size=0.01", start=0.2),
+    fault("encoder-frozen", 'joint="head_pan"', start=0.3, lasts=0.4),
+    fault("foot-dead", 'foot="left"', start=0.3, lasts=0.4),
+    fault("foot-gain", "size=0.5", start=0.2),
+    fault("servo-stuck", 'joint="head_tilt"', start=0.3, lasts=0.4),
+    fault("servo-late", "size=0.005", start=0.2, lasts=0.8),
+    fault("mover-appears", start=0.4, lasts=0.4),
+]
+PHYSICAL = [
+    fault("servo-weak", "size=0.7", start=0.3),
+    fault("push", "size=0.3", start=0.5, lasts=0.1),
+    fault("slippery", "size=0.3,place=[0.0,0.0],radius=3.0", start=0.4),
+    fault("bump", "size=0.004,place=[0.0,0.0],radius=0.5", start=0.45),
+]
+
+
+@pytest.mark.parametrize("tick", [70, 130, 170])
+def test_a_run_with_all_faults_goes_on_from_any_tick(tick):
+    faults = f"fault=[{','.join([*ALL, *PHYSICAL])}]"
+    scenario = load("quick", ['camera.source="analytic"', "duration=1.2", faults])
+    with Simulation(scenario, 2) as first:
+        while first.tick < tick:
+            first.step()
+        content = encode(first.snapshot(), first)
+        while first.exit_reason is None:
+            first.step()
+    with Simulation(scenario, 2) as second:
+        anchors = {"owner": second, "model": second.model}
+        anchors["robot model"] = second._robot._walking._robot
+        second.restore(decode(content, anchors, "x"))
+        while second.exit_reason is None:
+            second.step()
+    assert second.outcome() == first.outcome()
+
+
+@pytest.mark.parametrize("lever", [False, True], ids=["", "pushed off its centre"])
+def test_a_run_with_all_faults_is_computed_again_bit_for_bit(tmp_path, capsys, lever):
+    words = ["run", "quick", "--camera", "analytic", "--duration", "1.2", "--no-log", "--quiet"]
+    words += ["--set", f"fault=[{','.join([*ALL, *PHYSICAL])}]"]
+    if lever:
+        words += ["--set", "disturbance.push=[{time=0.31,impulse=0.3,point=[0.0,0.1,0.05]}]"]
+    entry([*words, "--out", str(tmp_path)])
+    run = open_run(tmp_path)
+    assert sum(event["kind"] == "fault" for event in run.events()) > 20
+    capsys.readouterr()
+    assert entry(["check", "replay", str(run.path), "--json"]) == 0
+    stages = json.loads(capsys.readouterr().out)["stages"]
+    assert all(stage["equal"] for stage in stages)
