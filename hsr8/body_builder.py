@@ -24,7 +24,7 @@ def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
 
 def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjModel) -> Body:
     """The robot's body in `model`; `seed` draws its noise and what disturbs it."""
-    noise, rng = scenario.sensor_noise(), named_rng(seed, "body")
+    noise, rng = scenario.sensors, named_rng(seed, "body")
     if scenario.robot.body == "kinematic":
         return KinematicBody(model, layout, noise, rng)
     pushes = schedule(

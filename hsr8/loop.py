@@ -32,6 +32,7 @@ from hsr8.world.truth import Truth
 from walking.state import Phase
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
+FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]
 TICKS_A_SECOND = round(1.0 / CONTROL_PERIOD)
 CHANGING = (
     "tick",
@@ -46,7 +47,6 @@ CHANGING = (
     "_end",
     "_published",
 )  # attributes of a simulation that change from tick to tick
-FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,6 @@ class RunOutcome:
     """How a run ended.
 
     Attributes:
-        each_second: called before the first tick of every simulated second.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted.
         time: simulated time at the end [s].
         state_hash: SHA-256 of the world's state and the robot's belief.
@@ -82,7 +81,11 @@ class Simulation:
         gaze: chooses the gaze instead of the scenario's.
 
     Attributes:
+        listeners: told of every record; may be added to before the run.
+        tape: where set-points and hashes go, if anywhere.
         each_second: called before the first tick of every simulated second.
+        layout: the world that was drawn.
+        model: MuJoCo model of it, with the robot.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted once the run has
             ended; None before.
         tick: control ticks made so far.
@@ -307,7 +310,7 @@ class Simulation:
 
     def _stays_down(self) -> bool:
         """Whether a fallen robot does not try to get up, or no longer."""
-        if not self.scenario.walking_parameters().get_up.enabled:
+        if not self.scenario.walking.get_up.enabled:
             return True
         return self._robot.walking_state().phase is Phase.FALLEN
 

@@ -54,10 +54,10 @@ def build_robot(
     body = robot_model()
     script = build_script(scenario, named_rng(seed, "command"))
     return Robot(
-        walking=Walker(body, parameters_for(body, scenario.walking_parameters())),
+        walking=Walker(body, parameters_for(body, scenario.walking)),
         fov=field_of_view(scenario, camera),
-        vision=Detector(camera, scenario.vision_parameters(), arms()),
-        pose=scenario.vision_parameters().pose,
+        vision=Detector(camera, scenario.vision, arms()),
+        pose=scenario.vision.pose,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
         decisions=build_decisions(scenario, layout, seed, script, planner=planner, gaze=gaze),
         script=script,
@@ -97,7 +97,7 @@ def build_decisions(
     With a `script`, it is obeyed; `seed` is for a planner that draws samples. A `planner` or a
     `gaze` takes the place of the scenario's.
     """
-    navigation, limits = scenario.navigation_parameters(), scenario.speed_limits()
+    navigation, limits = scenario.navigation, scenario.speed_limits()
     mission: Goes
     if script is not None:
         mission, planner = ScriptedMission(), ScriptedPlanner(script)
@@ -112,7 +112,7 @@ def build_decisions(
 
 def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, float]]:
     """Where the robot takes the beacons to be, by name [m]; empty if it has no map of them."""
-    if scenario.belief_parameters().localization.map == "none":
+    if scenario.belief.localization.map == "none":
         return {}
     return {b.name: b.believed for b in layout.beacons}
 
@@ -120,7 +120,7 @@ def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, 
 def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator) -> Estimator:
     """The belief of the robot of `scenario`; `rng` draws its particles."""
     return Estimator(
-        scenario.belief_parameters(),
+        scenario.belief,
         known_beacons(scenario, layout),
         np.array(layout.start),
         np.diag(np.square(START_SIGMA)),

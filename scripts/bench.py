@@ -98,7 +98,7 @@ class Bench:
         with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
             path = RunFolder.create(Path(out), scenario.name, seed)
             manifest = Manifest.now(scenario.name, seed, "", require_gl())
-            mission = scenario.navigation_parameters().mission
+            mission = scenario.navigation.mission
             layout, model, camera = simulation.layout, simulation.model, scenario.camera
             simulation.listeners += [
                 floor,

@@ -70,7 +70,7 @@ class Run:
         self.seed, self.sensing = seed, sensing
         self.world = World(draw_layout(scenario, seed))
         layout, limits = self.world.layout, scenario.speed_limits()
-        parameters = scenario.navigation_parameters()
+        parameters = scenario.navigation
         self.duration, self.step_ticks = scenario.duration, round(limits.footstep / TICK)
         self.walker = Walker(np.array(layout.start), limits, streams[1])
         self.mission = Mission(
@@ -85,7 +85,7 @@ class Run:
         self.camera = Camera(streams[2], self.fov, self.period)
         start = np.array(layout.start) + streams[2].normal(0.0, 0.02, 3)
         self.estimator = Estimator(
-            scenario.belief_parameters(), self.world.beacons, start, np.eye(3) * 4e-4, streams[3]
+            scenario.belief, self.world.beacons, start, np.eye(3) * 4e-4, streams[3]
         )
         self.head, self.target = np.array([0.0, -0.45]), np.array([0.0, -0.45])
         self.close = self.travel = 0.0

@@ -62,7 +62,7 @@ def recorded() -> RecordedRun:
 
 def looks(ran: RecordedRun) -> list[Look]:
     """Every decision that moved the gaze far, best first: many obstacles, high evaluations."""
-    p = ran.scenario.navigation_parameters()
+    p = ran.scenario.navigation
     samples = SamplePoints.polar(p.evaluation, p.gaze.pan_limit)
     found = []
     for k in range(1, len(ran.frames) - 6):

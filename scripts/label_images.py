@@ -36,7 +36,7 @@ def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
     fov = float(np.radians(camera.vertical_fov_deg))
     model = assemble(layout, "vision", Optics(camera.width, camera.height, fov))
     rng = named_rng(seed, "label")
-    body = KinematicBody(model, layout, scenario.sensor_noise(), rng)
+    body = KinematicBody(model, layout, scenario.sensors, rng)
     body.data.joint("head_pan").qpos[0] = pan
     body.data.joint("head_tilt").qpos[0] = tilt
     rendered = RenderedCamera(model, camera, rng)

@@ -128,7 +128,7 @@ def shapes(shown: Tour, frame: FrameSummary) -> list[tuple[tuple[float, float], 
         )
         for t in frame.tracks
     ]
-    obstacles, p = ObstacleSet.from_tracks(tracks), shown.scenario.navigation_parameters()
+    obstacles, p = ObstacleSet.from_tracks(tracks), shown.scenario.navigation
     x, y, yaw = frame.pose
     forward, left, _ = frame.velocity
     velocity = np.array(

@@ -71,7 +71,7 @@ class Recording:
     """
 
     def __init__(self, simulation: Simulation, listeners: Sequence[Listener] = ()) -> None:
-        mission = simulation.scenario.navigation_parameters().mission
+        mission = simulation.scenario.navigation.mission
         self._simulation = simulation
         self._listeners = list(listeners)
         self._metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)

@@ -92,26 +92,6 @@ class Scenario(Section):
     recorder: Recorder = Recorder()
     """What is published and kept."""
 
-    def sensor_noise(self) -> SensorNoise:
-        """Noise of the body's sensors."""
-        return self.sensors
-
-    def walking_parameters(self) -> WalkingParameters:
-        """Parameters of the walking engine."""
-        return self.walking
-
-    def vision_parameters(self) -> VisionParameters:
-        """Parameters of the detector."""
-        return self.vision
-
-    def belief_parameters(self) -> BeliefParameters:
-        """Parameters of the belief."""
-        return self.belief
-
-    def navigation_parameters(self) -> NavigationParameters:
-        """Parameters of the decisions."""
-        return self.navigation
-
     def speed_limits(self) -> SpeedLimits:
         """Speed envelope navigation plans with; a command lasts for one footstep."""
         speed = self.robot.speed

@@ -63,16 +63,16 @@ def test_their_constraints_hold(text):
 
 def test_a_scenario_holds_the_libraries_own_parameters():
     scenario = load("course")
-    assert scenario.walking_parameters() == WalkingParameters()
-    assert scenario.vision_parameters() == VisionParameters()
-    assert scenario.belief_parameters() == BeliefParameters()
-    parameters = scenario.navigation_parameters()
+    assert scenario.walking == WalkingParameters()
+    assert scenario.vision == VisionParameters()
+    assert scenario.belief == BeliefParameters()
+    parameters = scenario.navigation
     assert isinstance(parameters, NavigationParameters)
     assert parameters.gaze == NavigationParameters.extended().gaze
 
 
 def test_the_profile_paper_is_the_librarys():
-    given = load("course", ["navigation.profile=paper"]).navigation_parameters()
+    given = load("course", ["navigation.profile=paper"]).navigation
     paper = NavigationParameters.paper()
     for name in ("mission", "evaluation", "gaze", "univector", "mover", "gate", "filter", "body"):
         assert getattr(given, name) == getattr(paper, name)
