@@ -44,3 +44,15 @@ def body_velocity(
         turn_gain * wrap_array(np.asarray(facing) - np.asarray(heading)), -limits.turn, limits.turn
     )
     return np.stack(np.broadcast_arrays(scale * forward, scale * left, turn), axis=-1)
+
+
+def idle_velocity(searching: bool, turn: float, limits: SpeedLimits) -> Array:
+    """Velocity of the body that has nowhere to go (3,) [m/s, m/s, rad/s].
+
+    Args:
+        searching: lost, it turns on the spot, for the head does not reach all around and what
+            it faces may show it no beacon; else it stands.
+        turn: that turn rate [rad/s].
+        limits: envelope.
+    """
+    return np.array([0.0, 0.0, min(turn, limits.turn) if searching else 0.0])

@@ -228,6 +228,8 @@ class BodyParameters:
     """Turn rate per heading error [1/s]."""
     turn_wait: NonNegative = 0.5
     """Heading error below which a fast path is walked without turning first [rad]."""
+    lost_turn: NonNegative = 0.5
+    """Turn rate of a lost robot, whose head alone does not reach all around [rad/s]."""
 
 
 @dataclass(frozen=True)

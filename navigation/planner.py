@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief import Belief
-from navigation.body_command import body_velocity
+from navigation.body_command import body_velocity, idle_velocity
 from navigation.collision_band import Encounter, Situation
 from navigation.collision_filter import CollisionFilter, direction_and_speed
 from navigation.confidence_gate import gate_points
@@ -63,7 +63,8 @@ class Planner:
         if self._direction is None:
             self._direction = heading
         if task.done or belief.lost:
-            self._body = np.zeros(3)
+            turn = self._parameters.body.lost_turn
+            self._body = idle_velocity(not task.done, turn, self._limits)
             return MotionDecision(self._body, self._direction, 0.0, "free", (), ())
         task = self._round_obstacles(belief, task)
         scene, radii = self._scene(belief, task)

@@ -102,14 +102,11 @@ class Run:
         for tick in range(round(self.duration / TICK)):
             time = tick * TICK
             if self.sensing == "camera":
-                step = HEAD_SPEED * TICK
-                turn = np.clip(self.target - self.head, -step, step)
-                self.head += turn
-                self.travel += abs(float(turn[0]))
+                self.turn_head()
             if tick % self.frame_ticks == 0:
-                belief = self._sense(time)
+                belief = self.sense(time)
                 task = self.mission.update(belief.pose)
-                self._look(belief, task)
+                self.look(belief, task)
             assert belief is not None
             assert task is not None
             if task.done:
@@ -132,7 +129,15 @@ class Run:
         assert task is not None
         return self._end("timeout", self.duration, clearance, task)
 
-    def _sense(self, time: float) -> Belief:
+    def turn_head(self) -> None:
+        """One tick towards the target."""
+        step = HEAD_SPEED * TICK
+        turn = np.clip(self.target - self.head, -step, step)
+        self.head += turn
+        self.travel += abs(float(turn[0]))
+
+    def sense(self, time: float) -> Belief:
+        """Belief by the sensing of this run."""
         if self.sensing == "perfect":
             pose = self.walker.pose.copy()
             pose[2] = wrap(float(pose[2]))
@@ -170,7 +175,8 @@ class Run:
         bottom, top = atan2(low - 0.47, depth), atan2(high - 0.47, depth)
         return bottom < tilt + 0.5 * VFOV - 0.02 and top > tilt - 0.5 * VFOV + 0.02
 
-    def _look(self, belief: Belief, task: Task) -> None:
+    def look(self, belief: Belief, task: Task) -> None:
+        """Decide the gaze."""
         if self.sensing == "perfect":
             return
         begin = process_time()

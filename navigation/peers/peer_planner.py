@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief import Belief
+from navigation.body_command import idle_velocity
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.decision_parameters import NavigationParameters
 from navigation.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
@@ -30,7 +31,7 @@ class PeerPlanner:
     """A published way to avoid obstacles with our way to arrive.
 
     Direction and speed towards the destination, the turn to the goal's heading near it,
-    standing when lost or done are those of our planner; only the avoidance differs.
+    turning when lost and standing when done are those of our planner; only the avoidance differs.
     """
 
     def __init__(
@@ -60,7 +61,8 @@ class PeerPlanner:
         """
         heading = float(belief.pose[2])
         if task.done or belief.lost:
-            self._body = np.zeros(3)
+            turn = self._parameters.body.lost_turn
+            self._body = idle_velocity(not task.done, turn, self._limits)
             return MotionDecision(self._body, heading, 0.0, "free", (), ())
         situation = self._situation(belief, task)
         limits = self._envelope

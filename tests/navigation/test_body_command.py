@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from navigation.body_command import body_velocity
+from navigation.body_command import body_velocity, idle_velocity
 
 COURSES = np.linspace(-np.pi, np.pi, 181)
 
@@ -31,3 +31,9 @@ def test_it_turns_to_where_it_faces(limits):
 
 def test_standing_stands(limits):
     assert body_velocity(1.0, 0.0, 0.0, 0.0, limits=limits, turn_gain=1.5) == pytest.approx(0.0)
+
+
+def test_who_has_nowhere_to_go_stands_and_who_is_lost_turns_within_the_envelope(limits):
+    assert idle_velocity(False, 0.5, limits).tolist() == [0.0, 0.0, 0.0]
+    assert idle_velocity(True, 0.5, limits).tolist() == [0.0, 0.0, 0.5]
+    assert idle_velocity(True, 9.0, limits).tolist() == [0.0, 0.0, limits.turn]

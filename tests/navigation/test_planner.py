@@ -21,9 +21,12 @@ def test_a_free_way_is_walked_at_full_speed(p, belief, task, limits):
 
 
 @BOTH
-def test_done_or_lost_stands(p, belief, task, limits):
-    for b, t in ((belief(), task(done=True)), (belief(lost=True), task())):
-        assert Planner(p, limits).plan(b, t).velocity == pytest.approx(0.0)
+def test_done_stands_and_lost_turns_on_the_spot(p, belief, task, limits):
+    for b in (belief(), belief(lost=True)):
+        assert Planner(p, limits).plan(b, task(done=True)).velocity == pytest.approx(0.0)
+    lost = Planner(p, limits).plan(belief(lost=True), task()).velocity
+    assert lost == pytest.approx([0.0, 0.0, p.body.lost_turn])
+    assert lost[2] > 0.0
 
 
 @BOTH
