@@ -29,6 +29,7 @@ MODULES = (
     "hsr8.robot",
     "hsr8.script",
     "hsr8.recorder.record",
+    "hsr8.recorder.time_histogram",
     "hsr8.recorder.walk_tally",
     "hsr8.evaluation.metrics",
     "hsr8.evaluation.walk_metrics",

@@ -1,50 +1,244 @@
-"""Run the same seeds with and without the log and compare the hashes of the final state.
+"""Does a seed alone decide a run: the same hashes each second, replays, and resumed runs.
 
-python scripts/determinism_study.py --seeds 1000:1005 --out docs/results/determinism.md
+    python scripts/determinism_study.py --light 1000:1004 --full 1000:1001 --kills 10 \
+        --out docs/results/determinism.md
+
+Every seed runs in six ways, each in processes of its own; the hashes of world and belief of every
+simulated second must be those of the first way. Then physics, estimator and decisions of every
+run are computed again from its records, and runs killed at random ticks are resumed.
 """
 
 import argparse
+import random
+import subprocess
 import sys
 import tempfile
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
+from hsr8.evaluation.difference import motion, results
+from hsr8.evaluation.replay import replay
 from hsr8.evaluation.sweep.definition import Definition
-from hsr8.evaluation.sweep.job import Job, run_job
 from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.recorder import run_folder
+from hsr8.recorder.run_reader import Run, open_run
+from hsr8.recorder.tape import read_tape
 from hsr8.scenario.loader import dump, load
+from hsr8.world.physics import CONTROL_PERIOD
+
+STAND_INS = ("--body", "kinematic", "--camera", "analytic")
+AFTER_VIDEO = """
+import sys
+from pathlib import Path
+from hsr8.cli.main import entry
+from hsr8.recorder.run_reader import open_run
+out, *words = sys.argv[1:]
+entry([*words, "--duration", "1", "--no-log", "--out", out + "/before"])
+video = ["--camera", "head", "--fps", "5", "--stop", "0.4", "--speed", "1", "--quiet"]
+assert entry(["render", str(open_run(Path(out + "/before")).path), *video]) == 0
+entry([*words, "--no-log", "--out", out + "/after"])
+"""
+KILLED = """
+import os, sys
+from hsr8.cli.main import entry
+from hsr8.loop import Simulation
+step, tick = Simulation.step, int(sys.argv[1])
+def until(self):
+    if self.tick == tick:
+        os._exit(9)
+    return step(self)
+Simulation.step = until
+entry(sys.argv[2:])
+"""
+KILL = 9
+
+
+@dataclass(frozen=True)
+class Case:
+    """One scenario as it is run here.
+
+    Attributes:
+        name: for the table.
+        seed: of the run.
+        words: of the command line, without the seed.
+        duration: simulated time [s].
+    """
+
+    name: str
+    seed: int
+    words: tuple[str, ...]
+    duration: str
+
+    def run(self, out: Path, *more: str, starts: tuple[str, ...] = ("-m", "hsr8")) -> Run:
+        """Run it in a process of its own."""
+        words = ["run", "course", "--seed", str(self.seed), "--quiet", *self.words]
+        words += ["--duration", self.duration, *more, "--out", str(out)]
+        command(*starts, *words)
+        return open_run(out)
+
+
+def command(*words: str, codes: tuple[int, ...] = (0, 1)) -> None:
+    """Run Python with `words`; exit code 1 says that a criterion was not met."""
+    done = subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False)
+    if done.returncode not in codes:
+        raise SystemExit(f"{words}: exit code {done.returncode}\n{done.stderr}")
+
+
+def after_video(case: Case, out: Path) -> Run:
+    words = ["run", "course", "--seed", str(case.seed), "--quiet", *case.words]
+    command("-c", AFTER_VIDEO, str(out), *words, "--duration", case.duration)
+    return open_run(out / "after")
+
+
+def swept(case: Case, out: Path, workers: int) -> Run:
+    """As one of two runs of a sweep."""
+    words = ["sweep", "course", "--seeds", f"{case.seed},{case.seed + 1}", *case.words]
+    words += ["--duration", case.duration, "--workers", str(workers), "--quiet", "--out", str(out)]
+    command("-m", "hsr8", *words)
+    (folder,) = (out / "runs").glob(f"*/{case.seed}-*")
+    return open_run(folder)
+
+
+WAYS: dict[str, Callable[[Case, Path], Run]] = {
+    "no log": lambda case, out: case.run(out, "--no-log"),
+    "log": lambda case, out: case.run(out),
+    "checkpoint each second": lambda case, out: case.run(out, "--no-log", "--checkpoint", "1"),
+    "after a run and its video, same process": after_video,
+    "sweep, 1 worker": lambda case, out: swept(case, out, 1),
+    "sweep, 2 workers": lambda case, out: swept(case, out, 2),
+}
+
+
+def hashes(run: Run) -> list[tuple[int, str, str]]:
+    tape = read_tape(run.path / run_folder.TAPE, whole=True)
+    return [(block.tick, block.world, block.robot) for block in tape]
+
+
+class Replays:
+    """Counts what comes out again, bit for bit."""
+
+    def __init__(self) -> None:
+        self.runs = 0
+        self.counts: dict[tuple[str, str], list[int]] = {}
+
+    def add(self, run: Run) -> None:
+        """Compute a run again."""
+        self.runs += 1
+        for stage in replay(run):
+            equal, different = self.counts.setdefault((stage.stage, stage.unit), [0, 0])
+            self.counts[stage.stage, stage.unit] = [
+                equal + stage.count * stage.equal,
+                different + (not stage.equal),
+            ]
+
+    def table(self) -> list[str]:
+        """Ticks and frames that came out the same."""
+        lines = ["| stage | equal | runs that differ |", "|---|---|---|"]
+        for (stage, unit), (equal, different) in self.counts.items():
+            lines.append(f"| {stage} | {equal} {unit} | {different} of {self.runs} |")
+        return lines
+
+
+def compare(cases: list[Case], folder: Path, replays: Replays) -> tuple[list[str], int, int]:
+    """Table of the ways, how many runs there were, and how many with the same hashes."""
+    lines = ["| run | seconds | last hash | " + " | ".join(WAYS) + " |"]
+    lines.append("|---" * (len(WAYS) + 3) + "|")
+    runs = equal = 0
+    for case in cases:
+        first: list[tuple[int, str, str]] = []
+        cells = []
+        for number, way in enumerate(WAYS.values()):
+            run = way(case, folder / f"{case.name}-{case.seed}-{number}")
+            found = hashes(run)
+            first = first or found
+            same = found == first
+            cells.append(f"{len(found)} equal" if same else "DIFFERENT")
+            runs, equal = runs + 1, equal + same
+            replays.add(run)
+        last, end = first[-1], first[-1][0] * CONTROL_PERIOD
+        begin = f"| {case.name}, seed {case.seed} | {end:.0f} | `{last[2][:12]}`"
+        lines.append(" | ".join([begin, *cells]) + " |")
+        print(lines[-1], flush=True)
+    return lines, runs, equal
+
+
+def resumed(cases: list[Case], kills: int, folder: Path) -> list[str]:
+    """Kill each case at random ticks and compare the ends of the resumed runs."""
+    lines = ["| run | killed at tick | resumed from | same records and results |"]
+    lines.append("|---|---|---|---|")
+    rng = random.Random(0)
+    for number in range(kills):
+        case = cases[number % len(cases)]
+        whole = open_run(folder / f"{case.name}-{case.seed}-0")
+        ticks = hashes(whole)[-1][0]
+        tick = rng.randrange(round(1.0 / CONTROL_PERIOD) + 1, ticks)
+        out = folder / f"killed-{number}"
+        words = ["run", "course", "--seed", str(case.seed), "--quiet", *case.words]
+        words += ["--duration", case.duration, "--no-log", "--checkpoint", "1", "--out", str(out)]
+        command("-c", KILLED, str(tick), *words, codes=(KILL,))
+        run = open_run(out)
+        command("-m", "hsr8", "run", str(run.path), "--resume", "--quiet")
+        run = open_run(run.path)
+        same = not motion(run, whole) and not list(results(run, whole))
+        same = same and hashes(run) == hashes(whole)
+        begin = int(tick * CONTROL_PERIOD)
+        lines.append(
+            f"| {case.name}, seed {case.seed} | {tick} of {ticks} | {begin} s | "
+            f"{'yes' if same else 'NO'} |"
+        )
+        print(lines[-1], flush=True)
+    return lines
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scenario", default="course")
-    parser.add_argument("--seeds", default="1000:1005", help="A:B for A to B-1, or a list")
-    parser.add_argument("--duration", default="60", help="simulated time [s]")
+    parser.add_argument("--light", default="1000:1004", help="seeds with stand-ins: A:B or a list")
+    parser.add_argument("--full", default="1000:1001", help="seeds with full physics and camera")
+    parser.add_argument("--duration", default="20", help="of the light runs [s]")
+    parser.add_argument("--full-duration", default="20", help="of the full ones [s]")
+    parser.add_argument("--kills", type=int, default=10)
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
-    scenario = dump(load(arguments.scenario, [f"duration={arguments.duration}"]))
-    made_with = Definition.now(arguments.scenario, (), scenario).made_with()
+    light = [Case("light", s, STAND_INS, arguments.duration) for s in parse_seeds(arguments.light)]
+    full = [Case("full", s, (), arguments.full_duration) for s in parse_seeds(arguments.full)]
+    replays = Replays()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        ways, runs, equal = compare([*light, *full], folder, replays)
+        kills = resumed([*light, *full], arguments.kills, folder)
+    made_with = Definition.now("course", (), dump(load("course"))).made_with()
     lines = [
-        "# Same seed, same end",
+        "# Same seed, same run",
         "",
         f"    python scripts/determinism_study.py {' '.join(sys.argv[1:])}",
         "",
         f"{made_with}.",
         "",
-        f"`{arguments.scenario}`, full physics and rendered camera, {arguments.duration} s.",
+        f"`course`: *light* with kinematic body and analytic camera, {arguments.duration} s; "
+        f"*full* with full physics and rendered camera, {arguments.full_duration} s. Every cell is "
+        "a run of its own: how many hashes of world and belief (each second and at the end) are "
+        "those of the first way.",
         "",
-        "| seed | with log | without log | equal |",
-        "|---|---|---|---|",
+        f"**{equal} of {runs} runs have the hashes of the first way of their seed.**",
+        "",
+        *ways,
+        "",
+        "## Computed again from the records",
+        "",
+        "Physics from the set-points of each tick, the estimator from the recorded measurements, "
+        "the decisions from the recorded beliefs: `hsr8 check replay`.",
+        "",
+        *replays.table(),
+        "",
+        "## Killed and resumed",
+        "",
+        "The process ends without a word before a random tick; `--resume` goes on from the last "
+        "checkpoint, one a second. All records, results and hashes are compared with the run "
+        "that was not killed.",
+        "",
+        *kills,
     ]
-    with tempfile.TemporaryDirectory() as folder:
-        for seed in parse_seeds(arguments.seeds):
-            job = Job(seed, folder, scenario, timeout=7200.0, keep="none")
-            logged, bare = (
-                run_job(replace(job, log=log)).get("state_hash", "crashed") for log in (True, False)
-            )
-            equal = "yes" if logged == bare else "NO"
-            lines.append(f"| {seed} | `{logged[:16]}` | `{bare[:16]}` | {equal} |")
-            print(lines[-1], flush=True)
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     arguments.out.write_text("\n".join(lines) + "\n")
 

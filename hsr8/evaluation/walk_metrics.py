@@ -1,6 +1,5 @@
 """Results of walking: velocity against command, ZMP, altered commands, servos, time."""
 
-from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
@@ -21,20 +20,33 @@ STRIDE = 2  # footsteps after which the gait repeats
 COMPONENTS = ("vx", "vy", "wz")
 
 
-@dataclass(frozen=True, slots=True)
-class Stride:
-    """One stride: the pose at its ends and what was asked in between.
+class Strides:
+    """Sums over strides, each weighted by its duration.
 
     Attributes:
-        time: its duration [s].
-        achieved: mean velocity in the robot frame (3,) [m/s, m/s, rad/s].
-        asked, given: mean commanded and admitted velocity (3,).
+        time: of all of them [s].
+        achieved: sum of the mean velocities in the robot frame (3,) [m, m, rad].
+        errors: sums of what they were beyond the velocity asked and given (3,).
+        squares: sums of the squares of that (3,).
     """
 
-    time: float
-    achieved: Array
-    asked: Array
-    given: Array
+    def __init__(self) -> None:
+        self.time = 0.0
+        self.achieved = np.zeros(3)
+        self.errors = {name: np.zeros(3) for name in ("asked", "given")}
+        self.squares = {name: np.zeros(3) for name in ("asked", "given")}
+
+    def add(self, took: float, achieved: Array, **wanted: Array) -> None:
+        """Take a stride: its duration [s], its velocity (3,) and what was ``asked`` and ``given``.
+
+        The latter are means over the stride (3,) [m/s, m/s, rad/s].
+        """
+        self.time += took
+        self.achieved += took * achieved
+        for name, velocity in wanted.items():
+            error = achieved - velocity
+            self.errors[name] += took * error
+            self.squares[name] += took * error**2
 
 
 class StrideMeter:
@@ -45,7 +57,7 @@ class StrideMeter:
     """
 
     def __init__(self) -> None:
-        self.strides: list[Stride] = []
+        self.strides = Strides()
         self._begin: tuple[float, Array] | None = None
         self._steps = 0
         self._yaw = 0.0
@@ -87,13 +99,11 @@ class StrideMeter:
         assert self._begin is not None
         begin, start = self._begin
         took = time - begin
-        self.strides.append(
-            Stride(
-                time=took,
-                achieved=mean_velocity(start, pose, took),
-                asked=self._asked / took,
-                given=self._given / took,
-            )
+        self.strides.add(
+            took,
+            mean_velocity(start, pose, took),
+            asked=self._asked / took,
+            given=self._given / took,
         )
 
 
@@ -137,19 +147,14 @@ class WalkMetrics:
 
     def _velocities(self) -> dict[str, object]:
         strides = self._meter.strides
-        if not strides:
+        if not strides.time:
             return {"mean_velocity": None, "velocity_error": None, "velocity_error_rms": None}
-        weight = np.array([s.time for s in strides])[:, None] / sum(s.time for s in strides)
-        achieved = np.array([s.achieved for s in strides])
-        errors = {
-            name: achieved - np.array([getattr(s, name) for s in strides])
-            for name in ("asked", "given")
-        }
+        time = strides.time
         return {
-            "mean_velocity": _named((weight * achieved).sum(axis=0)),
-            "velocity_error": {k: _named((weight * e).sum(axis=0)) for k, e in errors.items()},
+            "mean_velocity": _named(strides.achieved / time),
+            "velocity_error": {k: _named(e / time) for k, e in strides.errors.items()},
             "velocity_error_rms": {
-                k: _named(np.sqrt((weight * e**2).sum(axis=0))) for k, e in errors.items()
+                k: _named(np.sqrt(e / time)) for k, e in strides.squares.items()
             },
         }
 
@@ -173,11 +178,11 @@ def _counted(tally: WalkTally) -> dict[str, object]:
 
 
 def _timed(tally: WalkTally) -> dict[str, object]:
-    wall = 1000.0 * np.array(tally.wall)
+    wall = tally.wall
     return {
-        "walk_tick_mean_ms": float(wall.mean()),
-        "walk_tick_p999_ms": float(np.quantile(wall, 0.999)),
-        "walk_tick_max_ms": float(wall.max()),
+        "walk_tick_mean_ms": 1000.0 * wall.mean,
+        "walk_tick_p999_ms": 1000.0 * wall.quantile(0.999),
+        "walk_tick_max_ms": 1000.0 * wall.greatest,
     }
 
 

@@ -1,10 +1,10 @@
 """What is counted in every control tick of walking, records being rarer."""
 
-from array import array
 from collections import Counter
 from math import inf
 from typing import Protocol
 
+from hsr8.recorder.time_histogram import TimeHistogram
 from walking.admission import Limit
 
 
@@ -29,7 +29,7 @@ class WalkTally:
         by_limit: of them, those in which each limit bound.
         outside: of them, those with the planned ZMP outside the soles.
         least_depth: least distance of the planned ZMP to the edge of the soles [m].
-        wall: wall time of every walking tick [s].
+        wall: wall times of the walking ticks.
     """
 
     __slots__ = ("altered", "by_limit", "least_depth", "outside", "ticks", "wall")
@@ -38,12 +38,12 @@ class WalkTally:
         self.ticks = self.altered = self.outside = 0
         self.by_limit: Counter[Limit] = Counter()
         self.least_depth = inf
-        self.wall = array("d")
+        self.wall = TimeHistogram()
 
     def add(self, walking: Countable, seconds: float) -> None:
         """Take the tick just made, which took `seconds` of wall time."""
         self.ticks += 1
-        self.wall.append(seconds)
+        self.wall.add(seconds)
         limits = walking.limits
         if limits:
             self.altered += 1
