@@ -5,8 +5,9 @@
     result = hsr8.run("course", seed=7)
     print(result.passed, result.metrics["time_to_goal_s"])
 
-`run` and `Result` make runs at once, `load` and `Simulation` tick by tick; `docs/python.md`
-shows how a planner or a gaze of one's own takes part.
+`run` and `Result` make runs at once, `load` and `Simulation` tick by tick; `open_run` and
+`read_log` read them back. `docs/python.md` shows how a planner or a gaze of one's own takes part,
+`docs/log.md` what a log holds.
 """
 
 from importlib import import_module
@@ -19,16 +20,20 @@ if TYPE_CHECKING:
     from hsr8.api import run
     from hsr8.evaluation.recording import Result
     from hsr8.loop import Simulation
+    from hsr8.recorder.log_reader import read_log
+    from hsr8.recorder.run_reader import open_run
     from hsr8.scenario.loader import load
 
 __version__ = VERSION
-__all__ = ["Result", "Simulation", "load", "run"]
+__all__ = ["Result", "Simulation", "load", "open_run", "read_log", "run"]
 
 # Imported when they are asked for: MuJoCo and SciPy take seconds.
 _PLACES = {
     "Result": "hsr8.evaluation.recording",
     "Simulation": "hsr8.loop",
     "load": "hsr8.scenario.loader",
+    "open_run": "hsr8.recorder.run_reader",
+    "read_log": "hsr8.recorder.log_reader",
     "run": "hsr8.api",
 }
 

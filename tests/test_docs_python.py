@@ -8,7 +8,7 @@ import pytest
 DOCS = Path(__file__).parents[1] / "docs"
 EXAMPLES = [
     pytest.param(code, id=f"{page.name}-{k}")
-    for page in (DOCS / "python.md",)
+    for page in (DOCS / "python.md", DOCS / "log.md")
     for k, code in enumerate(re.findall(r"```python\n(.*?)```", page.read_text(), re.S))
 ]
 

@@ -10,6 +10,7 @@ from hsr8.recorder import ellipse, palette
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.record import FrameRecord
 from navigation.belief import Belief, Motion
+from navigation.decision import MotionDecision
 
 Array = NDArray[np.float64]
 
@@ -36,6 +37,8 @@ class BeliefLayer:
         self._stream = stream
         self._map_period = map_period
         self._map_at = -np.inf
+        self._motion: MotionDecision | None = None  # whose virtual obstacles are shown
+        self._aim: list[float] = []
         solid = rr.components.FillMode.Solid
         lines = rr.components.FillMode.MajorWireframe
         for path, style in (
@@ -89,9 +92,14 @@ class BeliefLayer:
         centres = np.array([[x, y, MARK_HEIGHT]])
         self._ellipses(self._uncertainty, time, centres, belief.pose_covariance[None, :2, :2])
         self._add_tracks(time, belief)
-        self._add_virtual(frame)
+        if frame.motion is not self._motion:
+            self._motion = frame.motion
+            self._add_virtual(frame)
         self._view.add(time, strips=[_wedge(belief)])
-        self._target.add(time, positions=np.array([[*frame.task.target.tolist(), 0.05]]))
+        target = frame.task.target.tolist()
+        if target != self._aim:
+            self._aim = target
+            self._target.add(time, positions=np.array([[*target, 0.05]]))
         if time - self._map_at >= self._map_period - 1e-9:
             self._map_at = time
             self._add_particles(time, belief)

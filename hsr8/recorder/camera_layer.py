@@ -12,6 +12,7 @@ from hsr8.recorder import palette
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.geometry import xyzw
 from hsr8.recorder.record import FrameRecord, Image
+from navigation.decision import GazeDecision
 
 Array = NDArray[np.float64]
 
@@ -40,6 +41,7 @@ class CameraLayer:
         jpeg: int,
     ) -> None:
         self._jpeg_quality = jpeg
+        self._gaze: GazeDecision | None = None  # that is shown
         self._id = model.camera(CAMERA).id
         self._size = (width, height)
         self._focal = focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
@@ -123,8 +125,9 @@ class CameraLayer:
         view = frame.belief.view
         seen = image_points((view.pan, view.tilt), window, self._focal, self._size)
         self._seen_window.add(frame.time, strips=[] if seen is None else [seen])
-        if gaze_map.size <= 1:
+        if frame.gaze is self._gaze or gaze_map.size <= 1:
             return
+        self._gaze = frame.gaze
         top = float(gaze_map.max())
         shades = np.zeros(gaze_map.shape, np.uint8)
         if top > 0.0:

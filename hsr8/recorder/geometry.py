@@ -131,7 +131,7 @@ def multiply(a: Array, b: Array) -> Array:
 
 def xyzw(q: Array) -> Array:
     """MuJoCo's w-x-y-z quaternions (..., 4) in Rerun's order."""
-    return np.roll(q, -1, axis=-1)
+    return q[..., [1, 2, 3, 0]]
 
 
 class Scene:

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 SPACING, REACH = 0.25, 1.5  # of the arrows of the field, and how far they go [m]
 ARROW = 0.13  # length of each [m]
-STRIDE, STRIDES = 0.12, 12  # of the way that follows the field [m]
+STRIDE, STRIDES = 0.15, 8  # of the way that follows the field [m]
 SPEED_SCALE = 2.0  # the arrow of the decision shows the way of so many seconds [s]
 HEIGHT = 0.016  # at which all this is drawn [m]
 NOWHERE = 1e-9  # a shorter direction leads nowhere
@@ -95,7 +95,7 @@ def along(field: DirectionField, here: Array, target: Array) -> Array:
     """Where the field leads from `here` (2,), as far as `target` (2,) (n, 2) [m]."""
     way = [np.asarray(here, dtype=float)]
     for _ in range(STRIDES):
-        if float(np.hypot(*(target - way[-1]))) < STRIDE:
+        if float(np.hypot(*(target - way[-1]))) <= STRIDE:
             way.append(target)
             break
         way.append(way[-1] + STRIDE * unit(field.at(way[-1])))

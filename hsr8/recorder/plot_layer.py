@@ -6,7 +6,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from hsr8.recorder import palette
+from hsr8.recorder import ellipse, palette
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.record import FrameRecord, TickRecord
 from navigation.angles import wrap
@@ -51,14 +51,21 @@ class Curves:
         names, colours = zip(*curves, strict=True)
         stream.log(path, rr.SeriesLines(names=list(names), colors=list(colours)), static=True)
         self._channel = Channel(stream, path, rr.Scalars.columns)
+        self._times: list[float] = []
+        self._values: list[tuple[float, ...]] = []
 
     def add(self, time: float, *values: float) -> None:
         """One value of every curve; NaN leaves a gap."""
-        self._channel.add(time, scalars=np.array(values))
+        self._times.append(time)
+        self._values.append(values)
 
     def flush(self) -> None:
         """Send the block."""
-        self._channel.flush()
+        if self._times:
+            self._channel.add_rows(self._times, scalars=np.array(self._values))
+            self._channel.flush()
+            self._times.clear()
+            self._values.clear()
 
 
 class Lane:
@@ -135,7 +142,7 @@ class PlotLayer:
         gaze, belief = frame.gaze, frame.belief
         self._partial.add(frame.time, gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
         dx, dy, turn = (belief.pose - truth).tolist()
-        spread = 2.0 * float(np.sqrt(np.linalg.eigvalsh(belief.pose_covariance[:2, :2])[-1]))
+        spread = 2.0 * float(ellipse.axes(belief.pose_covariance[None, :2, :2])[0][0, 0])
         self._error.add(frame.time, float(np.hypot(dx, dy)), spread, abs(wrap(turn)))
         self._situation.add(frame.time, frame.motion.situation)
         self._gaze.add(frame.time, gaze_reason(frame))

@@ -27,7 +27,8 @@ from walking.state import Footstep
 Array = NDArray[np.float64]
 
 APRON = 1.0  # the floor shown is larger than the field by this [m]
-BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one [s]
+BLOCK = 2.0  # rows are sent in blocks of this length; a kill loses the last one [s]
+LIVE_BLOCK = 0.5  # shorter while somebody watches [s]
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
 LABELLED = 12  # more way points than this are shown without their numbers
 TRAIL, TRAIL_PERIOD = 60.0, 0.12  # the path shown behind the robot, and of its points [s]
@@ -90,14 +91,19 @@ class RerunLog:
         self._trail: list[list[float]] = []
         self._log_way_points(layout)
         self._trail_at = -np.inf
-        self._block_at = 0.0
+        self._block = LIVE_BLOCK if live else BLOCK
+        self._block_at: float | None = None
+        self._time = 0.0
         self._pose_at = -np.inf
         self._frame_at = -np.inf
 
     def on_record(self, record: TickRecord) -> None:
         """Log one record."""
         time, truth = record.time, record.truth
-        if time - self._block_at >= BLOCK - 1e-9:
+        self._time = time
+        if self._block_at is None:
+            self._block_at = time
+        if time - self._block_at >= self._block - 1e-9:
             self._flush()
             self._block_at = time
         if time - self._pose_at >= self._rates.pose - 1e-9:
@@ -121,7 +127,7 @@ class RerunLog:
 
     def close(self, exit_reason: str) -> None:
         """Write what is left and finish the file."""
-        self.on_event(self._block_at, "end", exit_reason)
+        self.on_event(self._time, "end", exit_reason)
         self._flush()
         self._stream.disconnect()
 
@@ -151,7 +157,7 @@ class RerunLog:
     def _flush(self) -> None:
         if self._trail:
             self._path.add(
-                self._block_at,
+                self._time,
                 strips=[np.array(self._trail)],
                 colors=_colours([palette.TRUTH]),
                 radii=np.array([0.006]),

@@ -80,12 +80,13 @@ class Run:
         return tuple(read_lines(file, _event)) if file.exists() else ()
 
 
-def open_run(path: Path) -> Run:
+def open_run(path: str | Path) -> Run:
     """The run at `path`, or the newest run below it.
 
     Raises:
         UsageError: there is no run there.
     """
+    path = Path(path)
     try:
         if (path / run_folder.MANIFEST).is_file():
             return _run(path)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.arc import mean_velocity
-from hsr8.recorder.channel import TIMELINE, Channel
+from hsr8.recorder.channel import Channel
 from hsr8.recorder.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walking_table import LEG_JOINTS, OdometryToWorld
@@ -42,7 +42,6 @@ class WalkLayer:
     """Logs how the robot walks."""
 
     def __init__(self, stream: rr.RecordingStream) -> None:
-        self._stream = stream
         stream.log(
             "/world/walking/points",
             rr.Arrows3D.from_fields(
@@ -85,6 +84,7 @@ class WalkLayer:
         self._torque = tuple(self._torque_curves(stream, group) for group in TORQUES)
         self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
         self._phase = Lane(stream, "/state/gait", GAIT)
+        self._said = Channel(stream, "/admission", rr.TextLog.columns)
         self._meter = _Speedometer()
         self._stood: tuple[str, int] | None = None
         self._told: tuple[Limit, ...] = ()
@@ -99,6 +99,7 @@ class WalkLayer:
             *(curves for curves, _ in self._torque),
             self._tilt,
             self._phase,
+            self._said,
         )
 
     def add(self, record: TickRecord) -> None:
@@ -179,8 +180,7 @@ class WalkLayer:
         asked, given = admission.asked.velocity, record.walking.given.tolist()
         text = "obeyed" if not news else ", ".join(news)
         said = f"{text}: asked {_words(asked)}, given {_words(given)}"
-        self._stream.set_time(TIMELINE, duration=record.time)
-        self._stream.log("/admission", rr.TextLog(said, level="WARN" if news else "INFO"))
+        self._said.add(record.time, text=[said], level=["WARN" if news else "INFO"])
 
 
 class _Speedometer:

@@ -3,6 +3,9 @@
 import pytest
 
 from hsr8.loop import Simulation
+from hsr8.recorder.log_level import LogLevel
+from hsr8.recorder.log_reader import Log
+from hsr8.recorder.rerun_log import RerunLog
 from hsr8.scenario.loader import load
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
@@ -32,6 +35,19 @@ class Meddler:
 
 def test_same_seed_same_end_whoever_listens():
     assert final_hash(3, STAND_INS, 4.0) == final_hash(3, STAND_INS, 4.0, [Meddler()])
+
+
+def test_a_log_of_everything_changes_nothing(tmp_path):
+    scenario = load("course", [*STAND_INS, "duration=3.0"])
+    simulation = Simulation(scenario, 3)
+    size = (scenario.camera.width, scenario.camera.height)
+    for level in LogLevel:
+        file = tmp_path / f"{level}.rrd"
+        log = RerunLog(file, simulation.model, simulation.layout, size, "test", level=level)
+        simulation.listeners.append(log)
+    assert simulation.run().state_hash == final_hash(3, STAND_INS, 3.0)
+    fields = Log([file]).table("/plan/field", "Arrows3D:vectors")
+    assert len(fields) >= 5  # what the planner was asked for
 
 
 def test_another_seed_another_end():

@@ -10,6 +10,7 @@ import rerun as rr
 from rerun.chunk import RrdReader
 
 from hsr8.recorder.log_level import LogLevel
+from hsr8.recorder.log_reader import Log
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.world.truth import PushActing
 from navigation.belief import Particles
@@ -145,6 +146,20 @@ def test_a_finished_log_is_verified_by_rerun(folder, model, layout, walk, level)
     assert done.returncode == 0, done.stderr
 
 
+def test_a_viewer_is_shown_what_the_file_holds(folder, model, layout, walk, monkeypatch):
+    asked = []
+
+    def viewer(address):
+        asked.append(address)
+        return rr.FileSink(str(folder / "live.rrd"))
+
+    monkeypatch.setattr(rr, "GrpcSink", viewer)
+    address = "rerun+http://127.0.0.1:1/proxy"
+    path = _logged(folder, model, layout, walk(0.5), live=address)
+    assert asked == [address]
+    assert _rows(folder / "live.rrd") == _rows(path)
+
+
 def test_nothing_believed_nothing_seen_is_logged_too(log, fake):
     path, listener = log
     frame = fake.frame(0.0, tracks=(), image=None)
@@ -173,6 +188,7 @@ os.kill(os.getpid(), 9)
     done = subprocess.run([sys.executable, "-c", script, str(file)], check=False, timeout=60)
     assert done.returncode == -9
     assert _rows(file)["/plots/x"] == 100
+    assert Log([file]).table("/plots/x").array()[:, 0].tolist() == list(range(100))
 
 
 def _values(path, entity, component="Scalars:scalars"):
