@@ -23,3 +23,7 @@ class RenderingUnavailable(UsageError):
 
 class SimulationDiverged(Hsr8Error):
     """The physics blew up: names the tick, the body and the last command."""
+
+
+class RecordingFailed(Hsr8Error):
+    """What a run leaves behind cannot be written: the disk is full, or the folder is gone."""

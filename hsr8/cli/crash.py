@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Self
 
 from hsr8.errors import Hsr8Error
+from hsr8.recorder import atomic
 
 FILE = "crash.txt"
 EXPECTED = (Hsr8Error, BrokenPipeError)  # told by the command line itself
@@ -61,5 +62,5 @@ class CrashReport:
 
 def _write(folder: Path, trace: str) -> str:
     file = folder / FILE
-    file.write_text(trace, encoding="utf-8")
+    atomic.write_text(file, trace)
     return str(file)

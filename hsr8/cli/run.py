@@ -25,6 +25,7 @@ from hsr8.recorder.manifest import RUNNING, Manifest
 from hsr8.recorder.progress import Progress
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.writing import FAILED
 from hsr8.render.live_view import LiveView, live_view
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
@@ -67,7 +68,7 @@ def _resume(options: Run) -> int:
     _alone(options)
     run = open_run(Path(options.scenario))
     reason = run.manifest.get("exit_reason")
-    if reason not in (RUNNING, "interrupted"):
+    if reason not in (RUNNING, FAILED, "interrupted"):
         raise UsageError(f"{run.path} has nothing to go on with: it ended by {reason!r}")
     manifest = Manifest.read(run.manifest, run.path)
     recording, simulation = _recording(options, load(str(run.scenario_file), seed=run.seed))

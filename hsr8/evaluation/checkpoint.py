@@ -12,6 +12,7 @@ from hsr8.loop import TICKS_A_SECOND, Simulation
 from hsr8.recorder import atomic, run_folder
 from hsr8.recorder.manifest import versions
 from hsr8.recorder.run_reader import Run
+from hsr8.recorder.writing import writing
 from hsr8.robot_builder import robot_model
 from hsr8.version import VERSION
 
@@ -63,6 +64,11 @@ class Checkpoints:
         simulation = self._simulation
         if simulation.tick == 0 or simulation.tick % self._ticks:
             return
+        with writing(self._folder):
+            self._save()
+
+    def _save(self) -> None:
+        simulation = self._simulation
         for writer in self._writers:
             writer.flush()
         parts = simulation.snapshot() | {

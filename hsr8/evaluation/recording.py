@@ -1,11 +1,12 @@
 """A simulation whose results are measured, and which leaves a run folder behind."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hsr8.errors import SimulationDiverged
+from hsr8.errors import RecordingFailed, SimulationDiverged
 from hsr8.evaluation.checkpoint import Checkpoint, Checkpoints, read_checkpoint
 from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Check, judge
@@ -20,6 +21,7 @@ from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import TapeWriter
 from hsr8.recorder.walking_table import WalkingTableWriter
+from hsr8.recorder.writing import FAILED
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 
@@ -75,7 +77,7 @@ class Recording:
         self._simulation = simulation
         self._listeners = list(listeners)
         self._metrics = Metrics(simulation.layout, mission.r_via, mission.r_goal)
-        self._folder: Path | None = None
+        self._folder: RunFolder | None = None
         self._checkpoint: Checkpoint | None = None
 
     def into(
@@ -95,27 +97,34 @@ class Recording:
             log: how much the Rerun log holds; None for no log.
             live: address of a viewer that is shown the log as it is written; empty for none.
             checkpoint: simulated time between two checkpoints, 0 for none [s].
+
+        Raises:
+            RecordingFailed: the folder cannot be written.
         """
         simulation, scenario = self._simulation, self._simulation.scenario
         folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
-        table = WalkingTableWriter(path / run_folder.WALKING, simulation.model, simulation.index)
-        tape = TapeWriter(path / run_folder.TAPE)
-        self._folder, simulation.tape = path, tape
-        writers: list[Listener] = [folder, table]
-        if log is not None:
-            size = (scenario.camera.width, scenario.camera.height)
-            name = f"{scenario.name} {scenario.seed}"
-            file = run_folder.next_log(path)
-            writers.append(
-                RerunLog(
-                    file, simulation.model, simulation.layout, size, name, level=log, live=live
+        self._folder = folder
+        with self._failure_noted():
+            table = WalkingTableWriter(
+                path / run_folder.WALKING, simulation.model, simulation.index
+            )
+            tape = TapeWriter(path / run_folder.TAPE)
+            simulation.tape = tape
+            writers: list[Listener] = [folder, table]
+            if log is not None:
+                size = (scenario.camera.width, scenario.camera.height)
+                name = f"{scenario.name} {scenario.seed}"
+                file = run_folder.next_log(path)
+                writers.append(
+                    RerunLog(
+                        file, simulation.model, simulation.layout, size, name, level=log, live=live
+                    )
                 )
-            )
-        self._listeners = writers + self._listeners
-        if checkpoint:
-            simulation.each_second = Checkpoints(
-                simulation, self._metrics, path, checkpoint, (folder, table, tape)
-            )
+            self._listeners = writers + self._listeners
+            if checkpoint:
+                simulation.each_second = Checkpoints(
+                    simulation, self._metrics, path, checkpoint, (folder, table, tape)
+                )
 
     def resume(self, run: Run) -> None:
         """Go on from the checkpoint of `run`; call it before `into`.
@@ -128,7 +137,26 @@ class Recording:
         self._metrics = self._checkpoint.metrics
 
     def run(self) -> Result:
-        """Run to the end and write the results."""
+        """Run to the end and write the results.
+
+        Raises:
+            RecordingFailed: its records cannot be written.
+        """
+        with self._failure_noted():
+            return self._run()
+
+    @contextmanager
+    def _failure_noted(self) -> Iterator[None]:
+        """The manifest of a run whose records cannot be written says so, if it can be."""
+        try:
+            yield
+        except RecordingFailed:
+            if self._folder is not None:
+                with suppress(RecordingFailed):
+                    self._folder.note(FAILED)
+            raise
+
+    def _run(self) -> Result:
         simulation = self._simulation
         simulation.listeners += [self._metrics, *self._listeners]
         diverged = ""
@@ -138,6 +166,7 @@ class Recording:
         except SimulationDiverged as error:
             diverged, outcome = str(error), simulation.outcome()
         results = self._metrics.result(outcome.exit_reason, outcome.state_hash)
-        if self._folder is not None:
-            run_folder.write_metrics(self._folder, results)
-        return Result(results, judge(simulation.scenario.criteria, results), self._folder, diverged)
+        path = None if self._folder is None else self._folder.path
+        if path is not None:
+            run_folder.write_metrics(path, results)
+        return Result(results, judge(simulation.scenario.criteria, results), path, diverged)

@@ -1,1 +1,6 @@
 """Recorder: run folder and Rerun log, both listeners of the loop."""
+
+import os
+
+# A log that cannot be written is told by us, once; Rerun would tell it too, in its own way.
+os.environ.setdefault("RUST_LOG", "warn,re_log_encoding=off,re_sdk=off")

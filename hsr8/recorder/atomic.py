@@ -3,6 +3,7 @@
 import json
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +16,36 @@ def write_text(path: Path, text: str) -> None:
 def write_bytes(path: Path, content: bytes) -> None:
     """As `write_text`."""
     draft = path.with_name(path.name + ".tmp")
-    with draft.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    draft.replace(path)
+    try:
+        with draft.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        draft.replace(path)
+    except OSError:
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
+        raise
+
+
+def overwrite_text(path: Path, text: str) -> None:
+    """As `write_text` where there is no room for two: over the old file, in its place."""
+    try:
+        write_text(path, text)
+    except OSError:
+        with path.open("r+b") as file:
+            file.write(text.encode("utf-8"))
+            file.truncate()
 
 
 def write_json(path: Path, value: Mapping[str, Any]) -> None:
     """Write `value` as indented JSON; numbers that are not finite become null."""
     write_text(path, dumps(value, indent=2) + "\n")
+
+
+def overwrite_json(path: Path, value: Mapping[str, Any]) -> None:
+    """As `write_json`, by `overwrite_text`."""
+    overwrite_text(path, dumps(value, indent=2) + "\n")
 
 
 def dumps(value: Any, indent: int | None = None) -> str:

@@ -34,7 +34,8 @@ class Manifest:
         scenario: name of the scenario.
         seed: of the run.
         command: command line that repeats it.
-        exit_reason: how it ended; ``running`` until then, and for ever after a kill.
+        exit_reason: how it ended; ``running`` until then, and for ever after a kill; ``failed``
+            where its records could not be written, ``error`` after a mistake of ours.
         started: wall-clock time, ISO 8601.
         renderer: OpenGL renderer of the head camera; ``analytic`` without one.
         hsr8: version.
@@ -88,8 +89,8 @@ class Manifest:
         return replace(self, exit_reason=exit_reason)
 
     def write(self, path: Path) -> None:
-        """Write to `path` at once."""
-        atomic.write_json(path, asdict(self))
+        """Write to `path` at once; on a full disk in place of the one before."""
+        atomic.overwrite_json(path, asdict(self))
 
 
 def other_versions(manifest: Mapping[str, Any]) -> list[tuple[str, str, str]]:

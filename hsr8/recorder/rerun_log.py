@@ -21,16 +21,18 @@ from hsr8.recorder.plot_layer import PlotLayer
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.recorder.walk_layer import WalkLayer
 from hsr8.recorder.walking_table import OdometryToWorld
+from hsr8.recorder.writing import failure
 from hsr8.world.layout import Layout
 from walking.state import Footstep
 
 Array = NDArray[np.float64]
 
 APRON = 1.0  # the floor shown is larger than the field by this [m]
-BLOCK = 2.0  # rows are sent in blocks of this length; a kill loses the last one [s]
+BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one [s]
 LIVE_BLOCK = 0.5  # shorter while somebody watches [s]
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
 LABELLED = 12  # more way points than this are shown without their numbers
+PATIENCE = 20.0  # a block must be with the operating system within this wall time [s]
 TRAIL, TRAIL_PERIOD = 60.0, 0.12  # the path shown behind the robot, and of its points [s]
 LEVELS = {"fall": "ERROR", "diverged": "ERROR"} | dict.fromkeys(
     ("collision", "fault", "lost", "push"), "WARN"
@@ -65,12 +67,15 @@ class RerunLog:
         self._stream = rr.RecordingStream("hsr8", recording_id=path.parent.name)
         self._stream.set_log_time_enabled(False)
         sinks = [rr.FileSink(str(path)), *([rr.GrpcSink(live)] if live else [])]
-        self._stream.set_sinks(
-            *sinks,
-            default_blueprint=blueprint(
-                max(layout.field_size), walking=len(layout.waypoints) == 0, pictures=rates.pictures
-            ),
+        self._folder = path.parent
+        self._waits = not live  # for the file; a viewer may leave
+        shown = blueprint(
+            max(layout.field_size), walking=len(layout.waypoints) == 0, pictures=rates.pictures
         )
+        try:
+            self._stream.set_sinks(*sinks, default_blueprint=shown)
+        except RuntimeError as error:
+            raise failure(self._folder, f"the log: {error}") from error
         self._stream.send_recording_name(name)
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._n_movers = len(layout.movers)
@@ -127,9 +132,11 @@ class RerunLog:
 
     def close(self, exit_reason: str) -> None:
         """Write what is left and finish the file."""
-        self.on_event(self._time, "end", exit_reason)
-        self._flush()
-        self._stream.disconnect()
+        try:
+            self.on_event(self._time, "end", exit_reason)
+            self._flush()
+        finally:
+            self._stream.disconnect()
 
     def _add_frame(self, record: TickRecord, frame: FrameRecord) -> None:
         if self._camera is not None:
@@ -169,6 +176,17 @@ class RerunLog:
             part.flush()
         self._footsteps.flush()
         self._path.flush()
+        self._hand_over()
+
+    def _hand_over(self) -> None:
+        """Wait until everything is with the operating system."""
+        if not self._waits:
+            return
+        try:
+            self._stream.flush(timeout_sec=PATIENCE)
+        except RuntimeError as error:
+            self._waits = False  # the library would wait in vain again
+            raise failure(self._folder, f"the log: {error}") from error
 
     def _log_way_points(self, layout: Layout) -> None:
         points = np.asarray(layout.waypoints, float).reshape(-1, 2)

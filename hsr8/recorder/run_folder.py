@@ -17,8 +17,10 @@
 Everything is written as it happens, so a killed run leaves a folder that can be read.
 """
 
+import errno
 import secrets
 from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -28,6 +30,7 @@ from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.measurements import MeasurementWriter
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.trajectory import TrajectoryWriter
+from hsr8.recorder.writing import NO_ROOM, failure, writing
 
 SCENARIO = "scenario.toml"
 MANIFEST = "manifest.json"
@@ -54,6 +57,9 @@ class RunFolder:
         manifest: of the run; written at once.
         scenario: the resolved scenario as TOML.
         movers: number of movers; they are the last of the obstacles.
+
+    Raises:
+        RecordingFailed: here and in every method, the folder cannot be written.
     """
 
     def __init__(self, path: Path, manifest: Manifest, scenario: str, movers: int) -> None:
@@ -62,18 +68,20 @@ class RunFolder:
         self._n_movers = movers
         self._trajectory: TrajectoryWriter | None = None
         self._flushed_at = 0.0
-        manifest.write(path / MANIFEST)
-        atomic.write_text(path / SCENARIO, scenario)
-        self._events: TextIO = (path / EVENTS).open("a", encoding="utf-8", buffering=1)
-        self._measurements = MeasurementWriter(path / MEASUREMENTS)
-        self._frames: TextIO = (path / FRAMES).open("a", encoding="utf-8")
+        with writing(path):
+            manifest.write(path / MANIFEST)
+            atomic.write_text(path / SCENARIO, scenario)
+            self._events: TextIO = (path / EVENTS).open("a", encoding="utf-8", buffering=1)
+            self._measurements = MeasurementWriter(path / MEASUREMENTS)
+            self._frames: TextIO = (path / FRAMES).open("a", encoding="utf-8")
 
     @staticmethod
     def create(out: Path, scenario: str, seed: int) -> Path:
         """Make a new folder under `out`; it never overwrites one.
 
         Raises:
-            UsageError: the folder cannot be made or written.
+            RecordingFailed: the disk is full or may not be written.
+            UsageError: the folder cannot be made for another reason.
         """
         parent = out / scenario
         try:
@@ -87,12 +95,52 @@ class RunFolder:
                 (path / EVENTS).touch()
                 return path
         except OSError as error:
+            if error.errno in NO_ROOM:
+                raise failure(parent, error.strerror or str(error)) from error
             raise UsageError(
                 f"cannot write the run folder {parent}: {error.strerror}; choose another with --out"
             ) from error
 
     def on_record(self, record: TickRecord) -> None:
         """Append the motion and, if there is one, the camera frame."""
+        with writing(self.path):
+            self._add(record)
+        if record.time - self._flushed_at >= FLUSH_PERIOD:
+            self._flushed_at = record.time
+            self.flush()
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Write one line."""
+        line = atomic.dumps({"time": round(time, 4), "kind": kind, "text": text})
+        with writing(self.path):
+            self._events.write(f"{line}\n")
+
+    def flush(self) -> None:
+        """Hand everything to the operating system."""
+        with writing(self.path):
+            if not (self.path / MANIFEST).exists():  # open files outlive their folder
+                raise FileNotFoundError(errno.ENOENT, "it is no longer there")
+            if self._trajectory is not None:
+                self._trajectory.flush()
+            self._frames.flush()
+            self._measurements.flush()
+
+    def close(self, exit_reason: str) -> None:
+        """Finish the files and note how the run ended; each, also when another one fails."""
+        with writing(self.path), ExitStack() as farewell:
+            farewell.callback(self.note, exit_reason)
+            farewell.callback(self._events.close)
+            farewell.callback(self._measurements.close)
+            farewell.callback(self._frames.close)
+            if self._trajectory is not None:
+                farewell.callback(self._trajectory.close)
+
+    def note(self, exit_reason: str) -> None:
+        """Note how the run ended."""
+        with writing(self.path):
+            self._manifest.ended(exit_reason).write(self.path / MANIFEST)
+
+    def _add(self, record: TickRecord) -> None:
         truth = record.truth
         movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
         if self._trajectory is None:
@@ -103,36 +151,16 @@ class RunFolder:
         self._measurements.on_record(record)
         if record.frame is not None:
             self._frames.write(frame_summary.to_line(record.frame, truth) + "\n")
-        if record.time - self._flushed_at >= FLUSH_PERIOD:
-            self._flushed_at = record.time
-            self.flush()
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Write one line."""
-        self._events.write(
-            atomic.dumps({"time": round(time, 4), "kind": kind, "text": text}) + "\n"
-        )
-
-    def flush(self) -> None:
-        """Hand everything to the operating system."""
-        if self._trajectory is not None:
-            self._trajectory.flush()
-        self._frames.flush()
-        self._measurements.flush()
-
-    def close(self, exit_reason: str) -> None:
-        """Finish the files and note how the run ended."""
-        if self._trajectory is not None:
-            self._trajectory.close()
-        self._frames.close()
-        self._measurements.close()
-        self._events.close()
-        self._manifest.ended(exit_reason).write(self.path / MANIFEST)
 
 
 def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:
-    """Write the results into the run folder `path`."""
-    atomic.write_json(path / METRICS, metrics)
+    """Write the results into the run folder `path`.
+
+    Raises:
+        RecordingFailed: they cannot be written.
+    """
+    with writing(path):
+        atomic.write_json(path / METRICS, metrics)
 
 
 def logs(path: Path) -> list[Path]:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.recorder.writing import writing
 from walking.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]
@@ -49,12 +50,17 @@ class TapeWriter:
 
     Args:
         path: file to create, or to go on with.
+
+    Raises:
+        RecordingFailed: here and in every method, it cannot be written.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("ab")
-        if not self._file.tell():
-            self._file.write(MAGIC)
+        self._folder = path.parent
+        with writing(self._folder):
+            self._file = path.open("ab")
+            if not self._file.tell():
+                self._file.write(MAGIC)
         self._payload = b""
         self._rows: list[bytes] = []
 
@@ -83,15 +89,16 @@ class TapeWriter:
 
     def close(self) -> None:
         """Finish the file."""
-        self._write()
-        self._file.close()
+        with writing(self._folder), self._file:
+            self._write()
 
     def _write(self) -> None:
         if not self._payload:
             return
         payload = self._payload + b"".join(self._rows)
-        self._file.write(_GUARD.pack(len(payload), zlib.crc32(payload)) + payload)
-        self._file.flush()
+        with writing(self._folder):
+            self._file.write(_GUARD.pack(len(payload), zlib.crc32(payload)) + payload)
+            self._file.flush()
         self._payload = b""
         self._rows.clear()
 

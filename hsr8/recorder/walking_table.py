@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.recorder.record import TickRecord
+from hsr8.recorder.writing import writing
 from hsr8.world.index import ModelIndex
 from walking.admission import Limit
 from walking.joints import JOINT_NAMES
@@ -103,6 +104,9 @@ class WalkingTableWriter:
         path: file to create, or to go on with.
         model: compiled world.
         index: addresses in it.
+
+    Raises:
+        RecordingFailed: here and in every method, it cannot be written.
     """
 
     def __init__(self, path: Path, model: mujoco.MjModel, index: ModelIndex) -> None:
@@ -116,28 +120,33 @@ class WalkingTableWriter:
         ).encode()
         header += b" " * (-len(header) % 8)
         self._flushed_at = 0.0
-        self._file = path.open("ab")
-        if not self._file.tell():
-            self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
+        self._folder = path.parent
+        with writing(self._folder):
+            self._file = path.open("ab")
+            if not self._file.tell():
+                self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
 
     def on_record(self, record: TickRecord) -> None:
         """Append one row."""
-        self._file.write(struct.pack("<d", record.time))
-        self._file.write(np.array(_row(record), dtype="<f4").tobytes())
+        row = struct.pack("<d", record.time) + np.array(_row(record), dtype="<f4").tobytes()
+        with writing(self._folder):
+            self._file.write(row)
         if record.time - self._flushed_at >= FLUSH_PERIOD:
             self._flushed_at = record.time
-            self._file.flush()
+            self.flush()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Events have a file of their own."""
 
     def flush(self) -> None:
         """Hand everything to the operating system."""
-        self._file.flush()
+        with writing(self._folder):
+            self._file.flush()
 
     def close(self, exit_reason: str) -> None:
         """Finish the file."""
-        self._file.close()
+        with writing(self._folder):
+            self._file.close()
 
 
 def read_walking_table(path: Path) -> WalkingTable:

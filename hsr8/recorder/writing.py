@@ -1,0 +1,32 @@
+"""Files of a run that can no longer be written: one error, whichever file it was."""
+
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hsr8.errors import RecordingFailed
+
+FAILED = "failed"  # how a run ended whose records could not be written
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Turns what the system says about a write into `RecordingFailed`.
+
+    Args:
+        folder: of the run.
+
+    Raises:
+        RecordingFailed: a file could not be written; what was written before stays.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise failure(folder, error.strerror or str(error)) from error
+
+
+def failure(folder: Path, reason: str) -> RecordingFailed:
+    """The error of a run whose `folder` takes no more."""
+    return RecordingFailed(f"cannot write the run folder {folder}: {reason}")
