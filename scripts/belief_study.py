@@ -4,8 +4,8 @@ Runs a scenario with its body and camera as they are, keeps what reached the bel
 with the truth at each capture, feeds it to the estimator again and scores every belief.
 
     python scripts/belief_study.py course --seeds 1000-1019 --write docs/results/belief.md
-    python scripts/belief_study.py course --seeds 0-19 --keep /tmp/kept
-    python scripts/belief_study.py course --seeds 0-19 --kept /tmp/kept    # seconds
+    python scripts/belief_study.py course --seeds 0-19 --keep KEPT
+    python scripts/belief_study.py course --seeds 0-19 --kept KEPT    # seconds
 """
 
 import pickle
@@ -18,6 +18,7 @@ from typing import Annotated
 import numpy as np
 import tyro
 from belief_score import Moment, Score, Thing
+from study_page import seeds_of
 from tyro.conf import Positional, UseAppendAction
 
 from hsr8.loop import Simulation
@@ -75,7 +76,7 @@ def score_run(score: Score, scenario: Scenario, seed: int, moments: list[Moment]
 
 def write_column(path: Path, seeds: str, rows: list[tuple[str, str]]) -> None:
     """Put results into the first table of a page: held-out seeds left, tuning seeds right."""
-    held_out = int(seeds.partition("-")[0]) >= 1000
+    held_out = min(seeds_of(seeds)) >= 1000
     column = 2 if held_out else 3
     wanted = [("what", f"seeds {seeds}" + " (held out)" * held_out), *rows]
     lines = path.read_text().split("\n")
@@ -103,16 +104,15 @@ def main(
 
     Args:
         scenario: name or TOML file.
-        seeds: first-last; 0-99 are for tuning, 1000 and above for reports.
+        seeds: as everywhere, 1000-1019 or 1,5,9; 0-99 are for tuning, 1000 and above for reports.
         duration: simulated time of each run [s].
         set: settings of the scenario.
         keep: folder in which the frames are kept.
         kept: folder of frames kept before; nothing is run then.
         write: page whose first table takes the results up.
     """
-    first, last = (int(part) for part in seeds.split("-"))
     score = Score()
-    for seed in range(first, last + 1):
+    for seed in seeds_of(seeds):
         settings = load(scenario, [f"duration={duration}", *set], seed)
         if kept is not None:
             moments = pickle.loads((kept / f"{seed}.pkl").read_bytes())

@@ -10,14 +10,12 @@ threads; the time on the clock is no longer unless other work wants the same cor
 """
 
 import argparse
-import platform
-import sys
 import tempfile
-from importlib.metadata import version
 from pathlib import Path
 
 import mujoco
 from stopwatch import Stopwatch
+from study_page import command_line, environment
 
 from hsr8.evaluation.metrics import Metrics
 from hsr8.gl import require_gl
@@ -35,6 +33,7 @@ from hsr8.world.image_noise import ImageNoise
 from hsr8.world.physics import CONTROL_PERIOD
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "loop-time.md"
+PACKAGES = ("hsr8", "mujoco", "numpy", "rerun-sdk")
 EARLIER = "\n## Earlier states\n"  # what the page says from here on is not measured anew
 FLOOR = ("floor: physics", "floor: images")
 SECOND = 1.0  # the floor has its turn after so much simulated time [s]
@@ -173,12 +172,6 @@ class Bench:
             self.watch.watch(owner, method, stage)
 
 
-def environment() -> str:
-    """What was measured with."""
-    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy", "rerun-sdk"))
-    return f"{versions}; Python {platform.python_version()}, {platform.machine()}, {require_gl()}."
-
-
 def world_of(obstacles: int) -> list[str]:
     """Settings of a world with so many obstacles, as dense as usual, a quarter of them moving."""
     moving = max(obstacles // 4, obstacles - MOST_OF_A_KIND)
@@ -220,8 +213,8 @@ def main() -> None:
         lines += ["", "| obstacles | loop [ms/s] | floor [ms/s] | ratio |", "|---|---|---|---|"]
         lines += growth
     if options.write:
-        command = " ".join(["python scripts/bench.py", *sys.argv[1:]])
-        text = ["# Time of the closed loop", "", environment(), "", f"    {command}", ""]
+        measured = f"{environment(PACKAGES)}, {require_gl()}."
+        text = ["# Time of the closed loop", "", measured, "", f"    {command_line()}", ""]
         intro = (__doc__ or "").split("\n\n")[2].split("\n")
         _, earlier, kept = (PAGE.read_text() if PAGE.exists() else "").partition(EARLIER)
         PAGE.write_text("\n".join([*text, *intro, "", *lines, ""]) + earlier + kept)

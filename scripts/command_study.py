@@ -133,7 +133,7 @@ def main() -> None:
             rows.append(tally.row(f"{generator}, {name}"))
             print(rows[-1], flush=True)
     if options.write:
-        write_page(PAGE, "Command states in full physics", conditions(), [HEAD, *rows], options)
+        write_page(PAGE, "Command states in full physics", conditions(), [HEAD, *rows])
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 
+from study_page import command_line
+
 from hsr8.evaluation.sweep.folder import SweepFolder
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "executors.md"
@@ -64,7 +66,7 @@ def main() -> None:
         text = [
             "# Executors of sweeps",
             "",
-            f"    python scripts/executor_study.py {' '.join(sys.argv[1:])}",
+            f"    {command_line()}",
             "",
             f"{made_with}; {os.cpu_count()} cores, load {load:.1f} before.",
             "",

@@ -8,8 +8,6 @@ beside the page: the world from above, what is true outlined, what is believed f
 """
 
 import argparse
-import shlex
-import sys
 from collections import deque
 from dataclasses import dataclass
 from math import degrees, hypot, pi
@@ -17,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from study_page import add_seeds, command_line
 
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
@@ -215,19 +214,17 @@ def page(failures: list[Failure], runs: int, pictures: dict[str, str], command: 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenarios", nargs="+")
-    parser.add_argument("--seeds", default="0-9", help="first-last, both included")
+    add_seeds(parser, range(10))
     parser.add_argument("--set", nargs="*", default=[], help="settings, key=value")
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
     settings = ["robot.body=kinematic", "camera.source=analytic", *arguments.set]
-    first, last = (int(part) for part in arguments.seeds.split("-"))
     failures: list[Failure] = []
     pictures: dict[str, str] = {}
     folder = arguments.out.with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
     runs = 0
-    command = shlex.join(["python", "scripts/failure_study.py", *sys.argv[1:]])
-    for seed in range(first, last + 1):
+    for seed in arguments.seeds:
         for scenario in arguments.scenarios:
             draft = folder / "latest.png"
             failure = run(scenario, settings, seed, draft)
@@ -241,8 +238,8 @@ def main() -> None:
                 draft.replace(folder / name)
                 pictures[failure.kind] = f"{folder.name}/{name}"
             draft.unlink(missing_ok=True)
-            arguments.out.write_text(page(failures, runs, pictures, command))
-    arguments.out.write_text(page(failures, runs, pictures, command))
+            arguments.out.write_text(page(failures, runs, pictures, command_line()))
+    arguments.out.write_text(page(failures, runs, pictures, command_line()))
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from math import hypot
 from pathlib import Path
 
 import numpy as np
+from study_page import add_seeds
 
 from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.wilson import wilson
@@ -240,16 +241,10 @@ def _limit(good: float | None, bad: float | None) -> str:
     return f"before {bad:g}" if good is None else f"{good:g} to {bad:g}"
 
 
-def seeds_of(text: str) -> list[int]:
-    """`first-last` or one seed."""
-    first, _, last = text.partition("-")
-    return list(range(int(first), int(last or first) + 1))
-
-
 def main() -> None:
     """Run what is missing, and write the page if asked to."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=seeds_of, default=[], help="first-last; none: only a page")
+    add_seeds(parser, ())
     parser.add_argument("--only", nargs="+", choices=LADDERS, default=list(LADDERS))
     parser.add_argument("--rows", type=Path, default=Path("docs/results/faults.jsonl"))
     parser.add_argument("--page", type=Path, help="write the page of all rows here")

@@ -9,16 +9,13 @@ the page, and a study that is started again goes on where it stopped.
 
 import argparse
 import json
-import platform
-import shlex
-import sys
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 from decision_study import Run
 from scipy.stats import binomtest
+from study_page import add_seeds, command_line, environment
 
 from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
@@ -86,7 +83,7 @@ def table(rows: list[dict], arms: Sequence[str]) -> list[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenario")
-    parser.add_argument("--seeds", default="0-9", help="first-last, both included")
+    add_seeds(parser, range(10))
     parser.add_argument("--table", choices=sorted(TABLES), default="gazes")
     parser.add_argument("--arm", nargs="*", default=[], help="more arms: name:key=value,key=value")
     parser.add_argument("--only", nargs="*", help="of the table's arms only these")
@@ -99,20 +96,19 @@ def main() -> None:
     for arm in arguments.arm:
         name, _, text = arm.partition(":")
         arms[name] = [part for part in text.split(",") if part]
-    first, last = (int(part) for part in arguments.seeds.split("-"))
     raw = arguments.out.with_suffix(".jsonl")
     rows = [json.loads(line) for line in raw.read_text().splitlines()] if raw.exists() else []
     known = {(r["arm"], r["seed"]) for r in rows}
-    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "numpy", "scipy"))
+    first, last = arguments.seeds[0], arguments.seeds[-1]
     head = [
         f"# Gazes in `{arguments.scenario}`, 2-D loop, seeds {first} to {last}",
         "",
-        f"    {shlex.join(['python', 'scripts/gaze_study.py', *sys.argv[1:]])}",
+        f"    {command_line()}",
         "",
-        f"{versions}; Python {platform.python_version()}, {platform.machine()}.",
+        f"{environment(('hsr8', 'numpy', 'scipy'))}.",
         "",
     ]
-    for seed in range(first, last + 1):
+    for seed in arguments.seeds:
         for arm, settings in arms.items():
             if (arm, seed) in known:
                 continue

@@ -1,8 +1,8 @@
 """Push a walking robot over in full physics and see whether it gets up and walks on.
 
-    python scripts/getup_study.py falls --seeds 0 20
-    python scripts/getup_study.py falls --seeds 1000 1100 --write
-    python scripts/getup_study.py search --posture squat --seeds 0 10
+    python scripts/getup_study.py falls --seeds 0-19
+    python scripts/getup_study.py falls --seeds 1000-1099 --write
+    python scripts/getup_study.py search --posture squat --seeds 0-9
 
 A push of 3 to 4 N s in 50 ms comes from a random side in a walk at a random velocity. `search`
 draws the numbers of one key posture anew around the best ones so far. Tune on seeds 0-99, report
@@ -10,7 +10,6 @@ on seeds from 1000.
 """
 
 import argparse
-import platform
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -18,6 +17,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+from study_page import add_seeds, command_line, environment
 from walking_body import ROBOT, Body, Plant
 
 from walking.command import HeadTarget, VelocityCommand
@@ -163,7 +163,7 @@ HEAD = (
 )
 
 
-def falls_study(robot: RobotModel, seeds: range, *, write: bool) -> None:
+def falls_study(robot: RobotModel, seeds: list[int], *, write: bool) -> None:
     """Print, and perhaps write, the table."""
     lines = [HEAD]
     for name, plant in (
@@ -180,10 +180,10 @@ def falls_study(robot: RobotModel, seeds: range, *, write: bool) -> None:
     if write:
         text = RESULT.read_text(encoding="utf-8")
         before = text[: text.index("<!-- table -->")]
-        versions = f"Python {platform.python_version()}, MuJoCo {mujoco.__version__}"
-        source = f"`python scripts/getup_study.py falls --seeds {seeds.start} {seeds.stop} --write`"
         body = "\n".join(lines)
-        RESULT.write_text(f"{before}<!-- table -->\n{source}, {versions}.\n\n{body}\n", "utf-8")
+        RESULT.write_text(
+            f"{before}<!-- table -->\n`{command_line()}`, {environment()}.\n\n{body}\n", "utf-8"
+        )
 
 
 def lie(body: Body, rng: np.random.Generator) -> None:
@@ -216,7 +216,7 @@ def score(robot: RobotModel, motions: Motions, seeds: Iterable[int]) -> float:
     return float(np.mean(times))
 
 
-def search(robot: RobotModel, name: str, seeds: range, rounds: int) -> None:
+def search(robot: RobotModel, name: str, seeds: list[int], rounds: int) -> None:
     """Hill-climb on the numbers of one symmetric posture of the rise."""
     rise = list(MOTIONS.rise)
     index = [posture.name for posture in rise].index(name)
@@ -248,12 +248,12 @@ def main() -> None:
     """Run one of the studies."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", choices=("falls", "search"))
-    parser.add_argument("--seeds", type=int, nargs=2, default=(0, 10), metavar=("FIRST", "END"))
+    add_seeds(parser, range(10))
     parser.add_argument("--write", action="store_true", help=f"into {RESULT.name}")
     parser.add_argument("--posture", default="squat", help="to vary, by its name")
     parser.add_argument("--rounds", type=int, default=30)
     options = parser.parse_args()
-    robot, seeds = RobotModel.from_mjcf(ROBOT), range(*options.seeds)
+    robot, seeds = RobotModel.from_mjcf(ROBOT), options.seeds
     if options.study == "falls":
         falls_study(robot, seeds, write=options.write)
     else:

@@ -16,6 +16,7 @@ from unittest.mock import patch
 
 import numpy as np
 import tyro
+from study_page import seeds_of
 from tyro.conf import Positional, UseAppendAction
 
 from hsr8 import robot_builder
@@ -124,19 +125,18 @@ def main(
 
     Args:
         scenario: name or TOML file.
-        seeds: first-last; 0-99 are for tuning, 1000 and above for reports.
+        seeds: as everywhere, 1000-1009 or 1,5,9; 0-99 are for tuning, 1000 and above for reports.
         kidnaps: per run.
         interval: between two of them [s].
         set: settings of the scenario.
         kept: folder of frames that `belief_study.py --keep` left; the walks of then are
             believed anew, and neither gaze nor walking take notice of the kidnaps.
     """
-    first, last = (int(part) for part in seeds.split("-"))
     noticed: list[float] = []
     found: list[float] = []
     total = wrong = 0
     build = robot_builder.build_estimator
-    for seed in range(first, last + 1):
+    for seed in seeds_of(seeds):
         carried: list[Carried] = []
 
         def built(*arguments, seed=seed, carried=carried):

@@ -10,7 +10,6 @@ polygon of the feet on the floor, which is convex.
 """
 
 import argparse
-import platform
 import time
 from dataclasses import dataclass, field
 from math import cos, hypot, sin
@@ -18,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.spatial import ConvexHull
+from study_page import add_seeds, command_line, environment
 
 from walking import zmp_program
 from walking.command import Command, CommandState, VelocityCommand
@@ -332,7 +332,7 @@ def main() -> None:
     """Run the studies."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", choices=("every-tick", "landing", "all"))
-    parser.add_argument("--seeds", type=int, nargs="+", default=list(range(1000, 1005)))
+    add_seeds(parser, range(1000, 1005))
     parser.add_argument("--duration", type=float, default=60.0)
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.relative_to(ROOT)}")
     parser.add_argument("--generators", nargs="+", choices=GENERATORS, default=GENERATORS)
@@ -356,9 +356,7 @@ def page(options: argparse.Namespace, first: list[str], second: list[str]) -> st
         [
             "# Pattern generators under a new command in every tick",
             "",
-            f"Pendulum alone, no body: `python scripts/pattern_study.py all --seeds "
-            f"{' '.join(map(str, options.seeds))} --duration {options.duration:g} --write`, "
-            f"Python {platform.python_version()}, NumPy {np.__version__}.",
+            f"Pendulum alone, no body: `{command_line()}`, {environment(('hsr8', 'numpy'))}.",
             "",
             f"## A new command in every tick (seeds {seeds}, {options.duration:g} s each)",
             "",

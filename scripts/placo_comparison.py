@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 from pattern_study import OUTSIDE, Walker
+from study_page import add_seeds
 
 from walking.command import VelocityCommand
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -190,7 +191,7 @@ def theirs(account: Account, seed: int, duration: float) -> None:
 def main() -> None:
     """Run both and print a table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1000, 1001])
+    add_seeds(parser, (1000, 1001))
     parser.add_argument("--duration", type=float, default=20.0)
     options = parser.parse_args()
     mine, other = Account(), Account()

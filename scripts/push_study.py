@@ -14,6 +14,7 @@ from math import sqrt
 
 import mujoco
 import numpy as np
+from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import parameters_of
 
@@ -100,7 +101,7 @@ def main() -> None:
     """Run the study."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", choices=("walking", "standing"))
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0])
+    add_seeds(parser)
     parser.add_argument("--levels", type=float, nargs="+", default=[0.15, 0.20, 0.25, 0.30])
     parser.add_argument("--set", nargs="*", default=[], help="parameters, group.name=value")
     options = parser.parse_args()

@@ -12,6 +12,7 @@ import argparse
 from math import radians
 
 import numpy as np
+from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import Trace, parameters_of, random_script, walk
 
@@ -63,17 +64,11 @@ def row(name: str, traces: list[Trace]) -> str:
     )
 
 
-def seeds_of(text: str) -> list[int]:
-    """`first-last` or one seed."""
-    first, _, last = text.partition("-")
-    return list(range(int(first), int(last or first) + 1))
-
-
 def main() -> None:
     """Run the study."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", choices=("falls", "errors"))
-    parser.add_argument("--seeds", type=seeds_of, default=[0], help="first-last")
+    add_seeds(parser)
     parser.add_argument("--duration", type=float, default=30.0, help="of a seed [s]")
     parser.add_argument("--only", default="", help="errors whose name contains this")
     parser.add_argument("--set", nargs="*", default=[], help="parameters, group.name=value")

@@ -14,6 +14,7 @@ from itertools import pairwise, product
 
 import mujoco
 import numpy as np
+from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import Script, parameters_of, random_script, steady_script
 
@@ -253,7 +254,7 @@ def main() -> None:
     """Run one of the studies."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", choices=("straight", "box", "stop", "odometry"))
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0])
+    add_seeds(parser)
     parser.add_argument("--duration", type=float, default=30.0)
     parser.add_argument("--only", nargs="+", choices=FAST, default=list(FAST), help="fast walks")
     parser.add_argument("--count", type=int, default=50, help="of stops")

@@ -175,7 +175,7 @@ def main() -> None:
                 rows.append(times.row(f"{generator}, {name}, {'on' if collecting else 'off'}"))
                 print(rows[-1], flush=True)
     if options.write:
-        write_page(PAGE, "CPU time of the walking tick", CONDITIONS, [HEAD, *rows], options)
+        write_page(PAGE, "CPU time of the walking tick", CONDITIONS, [HEAD, *rows])
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 from speed_study import SETTLED, zmp_error
+from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import random_script, steady_script
 
@@ -88,7 +89,7 @@ def row(robot: RobotModel, name: str, seeds: list[int], duration: float, **made:
 def main() -> None:
     """Run the study."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0])
+    add_seeds(parser)
     parser.add_argument("--duration", type=float, default=15.0)
     options = parser.parse_args()
     robot = RobotModel.from_mjcf(ROBOT)

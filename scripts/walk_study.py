@@ -12,6 +12,7 @@ import cProfile
 import pstats
 
 import numpy as np
+from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import SAMPLE_TIME, Trace, parameters_of, random_script, steady_script, walk
 
@@ -88,7 +89,7 @@ def main() -> None:
     """Run one of the studies."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("study", choices=("random", "steady", "profile"))
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0])
+    add_seeds(parser)
     parser.add_argument("--duration", type=float, default=60.0)
     parser.add_argument("--forward", type=float, default=0.0)
     parser.add_argument("--left", type=float, default=0.0)

@@ -16,6 +16,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 import mujoco
 import numpy as np
+from study_page import add_seeds
 from vision_score import Study
 from vision_truth import Array, Thing, sights
 
@@ -142,7 +143,7 @@ def timed(simulation: Simulation, study: Study) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--scenario", default="course")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0])
+    add_seeds(parser)
     parser.add_argument("--duration", type=float, default=30.0)
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE of the scenario")
     parser.add_argument("--verbose", action="store_true", help="print every mistake")

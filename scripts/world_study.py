@@ -7,12 +7,11 @@ pace, blind. A world that it crosses without a contact asks nothing of navigatio
 """
 
 import argparse
-import platform
-from importlib.metadata import version
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
+from study_page import add_seeds, command_line, environment
 
 from hsr8.render.png import write_png
 from hsr8.scenario.loader import load
@@ -38,14 +37,13 @@ HEADER = (
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", default="0-99", help="first-last, both included")
+    add_seeds(parser, range(100))
     parser.add_argument("--families", nargs="+", default=FAMILIES.split())
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} and pictures")
     options = parser.parse_args()
-    first, last = (int(part) for part in options.seeds.split("-"))
     table = [f"| {HEADER} |", "|---" * (HEADER.count("|") + 1) + "|"]
     for name in options.families:
-        table.append(row(name, range(first, last + 1)))
+        table.append(row(name, options.seeds))
         print(table[-1], flush=True)
     if options.write:
         for name in PICTURED.split():
@@ -56,7 +54,7 @@ def main() -> None:
         PAGE.write_text(page(options.seeds, table))
 
 
-def row(name: str, seeds: range) -> str:
+def row(name: str, seeds: list[int]) -> str:
     """One family."""
     scenario = load(name)
     rejected, crowded, hits, cost, ways = 0, 0, 0, [], []
@@ -109,15 +107,14 @@ def spread(values: np.ndarray, form: str) -> str:
     return f"{middle:{form}} ({low:{form}} to {high:{form}})"
 
 
-def page(seeds: str, table: list[str]) -> str:
+def page(seeds: list[int], table: list[str]) -> str:
     """The page of results."""
-    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "numpy"))
     lines = [
         "# Worlds: rejections and certificates",
         "",
-        f"    python scripts/world_study.py --seeds {seeds} --write",
+        f"    {command_line()}",
         "",
-        f"{versions}; Python {platform.python_version()}, {platform.machine()}. Seeds {seeds}.",
+        f"{environment(('hsr8', 'numpy'))}. Seeds {seeds[0]} to {seeds[-1]}.",
         "",
         "Rejected: worlds drawn without a way through, of all drawn. Crowded: attempts in which "
         "something found no place. Nominal walk hits: a blind robot that goes straight from point "
