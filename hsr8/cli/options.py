@@ -259,7 +259,16 @@ class Render:
     """Frames per second of the video [1/s]."""
     size: str = "960x540"
     """Width x height [pixel]."""
-    out: Annotated[Path | None, _arg("FILE", "by default video.mp4 in the run folder")] = None
+    fine: bool = False
+    """Smooth edges and sharper shadows, at twice the cost."""
+    out: Annotated[
+        Path | None,
+        _arg(
+            "FILE",
+            "by default video.mp4 in the run folder; .gif and .webp are animations, "
+            ".png is one picture, at --start",
+        ),
+    ] = None
     start: float = 0.0
     """Simulated time at which the video begins [s]."""
     stop: Annotated[float | None, _arg("S", "simulated time at which it ends [s]")] = None

@@ -1,7 +1,7 @@
 """``hsr8 render``: the video of a run."""
 
-import sys
 import time as clock
+from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -12,7 +12,10 @@ from hsr8.errors import UsageError
 from hsr8.gl import is_software, require_gl
 from hsr8.recorder import atomic, run_folder
 from hsr8.recorder.run_reader import open_run
-from hsr8.render.movie import Shot, film
+from hsr8.render import animation
+from hsr8.render.movie import Film, Shot, film
+
+KINDS = (".mp4", *animation.KINDS, ".png")
 
 
 def main(options: Render) -> int:
@@ -28,11 +31,7 @@ def main(options: Render) -> int:
         raise UsageError(f"--speed {options.speed:g}: give 0.01 to 1000")
     run = open_run(options.run)
     renderer = require_gl()
-    out = options.out or run.path / run_folder.VIDEO
-    if out.suffix.lower() != ".mp4":
-        raise UsageError(f"--out {out}: give a file that ends in .mp4")
-    if not out.parent.is_dir():
-        raise UsageError(f"--out {out}: there is no folder {out.parent}")
+    out = _checked(options.out or run.path / run_folder.VIDEO)
     shot = Shot(
         camera=options.camera,
         size=parse_size(options.size),
@@ -40,6 +39,7 @@ def main(options: Render) -> int:
         start=options.start,
         stop=options.stop,
         speed=options.speed,
+        fine=options.fine,
     )
     console = Console(stderr=True, quiet=options.quiet)
     if is_software(renderer):
@@ -52,22 +52,43 @@ def main(options: Render) -> int:
             made = film(run, shot, out, lambda n, total: bar.update(task, completed=n, total=total))
         except OSError as error:
             raise UsageError(f"{out} cannot be written: {error.strerror}; see --out") from error
-    wall = clock.perf_counter() - started
+        except KeyboardInterrupt:
+            if out.suffix.lower() == ".mp4":
+                console.print("interrupted; the same command goes on where it stopped")
+            raise
+    _tell(made, clock.perf_counter() - started, options)
+    return 0
+
+
+def _checked(out: Path) -> Path:
+    """The file to write, if it can be one."""
+    if out.suffix.lower() not in KINDS:
+        raise UsageError(f"--out {out}: give a file that ends in {', '.join(KINDS)}")
+    if not out.parent.is_dir():
+        raise UsageError(f"--out {out}: there is no folder {out.parent}")
+    if out.is_dir():
+        raise UsageError(f"--out {out} cannot be written: it is a folder")
+    return out
+
+
+def _tell(made: Film, wall: float, options: Render) -> None:
     if options.json:
         result = {
             "video": str(made.video),
-            "thumbnail": str(made.thumbnail),
+            "thumbnail": None if made.thumbnail is None else str(made.thumbnail),
             "frames": made.frames,
+            "frames_reused": made.reused,
             "duration_s": made.duration,
             "speed": made.speed,
             "wall_time_s": wall,
         }
         print(atomic.dumps(result))
     elif not options.quiet:
+        print(f"{'video' if made.thumbnail else 'picture':<12}{made.video}")
+        if made.thumbnail:
+            print(f"thumbnail   {made.thumbnail}")
+        again = f", {made.reused} of them drawn before" if made.reused else ""
         print(
-            f"video       {made.video}\nthumbnail   {made.thumbnail}\n"
-            f"{made.frames} frames, {made.duration:.1f} s at {made.speed:g}x, "
-            f"drawn in {wall:.0f} s",
-            file=sys.stdout,
+            f"{made.frames} frames{again}, {made.duration:.1f} s at {made.speed:g}x, "
+            f"drawn in {wall:.0f} s"
         )
-    return 0

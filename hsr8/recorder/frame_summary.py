@@ -1,8 +1,13 @@
 """One camera frame as a line of JSON: what the dashboard of a video shows."""
 
+import base64
 import json
+import zlib
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.world.truth import Truth
@@ -37,11 +42,45 @@ class TrackSummary:
 
 
 @dataclass(frozen=True, slots=True)
-class FrameSummary:
-    """What one camera frame led to, without image and maps.
+class Blob:
+    """What vision recognised in the image.
 
     Attributes:
-        time: capture time [s].
+        label: colour class, of a beacon ``top/bottom``.
+        box: left, top, right, bottom [pixel].
+        distance: [m].
+    """
+
+    label: str
+    box: tuple[int, int, int, int]
+    distance: float
+
+
+@dataclass(frozen=True, slots=True)
+class GazeMapSummary:
+    """GM in 255 shades of its maximum.
+
+    Attributes:
+        rows, columns: cells of tilt, from below, and of pan, from the right.
+        shades: one byte a cell, row by row.
+    """
+
+    rows: int
+    columns: int
+    shades: bytes
+
+    def image(self) -> NDArray[np.uint8]:
+        """Shades (rows, columns) as the robot sees: left is left, up is up."""
+        cells = np.frombuffer(self.shades, np.uint8).reshape(self.rows, self.columns)
+        return cells[::-1, ::-1]
+
+
+@dataclass(frozen=True, slots=True)
+class FrameSummary:
+    """What one camera frame led to, without the image.
+
+    Attributes:
+        time: when the frame reached the robot [s].
         truth: true x, y, heading of the robot [m, m, rad].
         pose: believed x, y, heading [m, m, rad].
         covariance: xx, xy, yy of the believed position [m²].
@@ -55,6 +94,10 @@ class FrameSummary:
         lost: localization has noticed that it is lost.
         tracks: believed obstacles.
         virtual_obstacles: x, y, radius of each [m].
+        captured: when the image was taken [s].
+        look: chosen pan and tilt [rad]; None where an older run did not tell.
+        blobs: what vision recognised.
+        gaze_map: None where no map was made, or an older run did not tell.
     """
 
     time: float
@@ -71,10 +114,20 @@ class FrameSummary:
     lost: bool
     tracks: tuple[TrackSummary, ...]
     virtual_obstacles: tuple[tuple[float, float, float], ...]
+    captured: float
+    look: tuple[float, float] | None
+    blobs: tuple[Blob, ...]
+    gaze_map: GazeMapSummary | None
 
 
-def to_line(frame: FrameRecord, truth: Truth) -> str:
-    """`frame` as one line of JSON, without the newline."""
+def to_line(frame: FrameRecord, truth: Truth, *, new_map: bool = True) -> str:
+    """`frame` as one line of JSON, without the newline.
+
+    Args:
+        frame: to write.
+        truth: of that time.
+        new_map: tell the gaze map too; else it is that of the line before.
+    """
     belief, gaze, motion = frame.belief, frame.gaze, frame.motion
     line: dict[str, Any] = {
         "t": round(frame.time, 4),
@@ -91,13 +144,24 @@ def to_line(frame: FrameRecord, truth: Truth) -> str:
         "lost": int(belief.lost),
         "tracks": [_track(track) for track in belief.tracks],
         "virtual": [_rounded([*o.position.tolist(), o.radius]) for o in motion.virtual_obstacles],
+        "seen": round(frame.measured.time, 4),
+        "look": _rounded([gaze.pan, gaze.tilt]),
+        "blobs": [[d.label, *d.box, round(d.distance, 2)] for d in frame.detections],
     }
+    if new_map:
+        line["gm"] = _packed(gaze.gaze_map)
     return json.dumps(line, separators=(",", ":"))
 
 
-def from_line(line: str) -> FrameSummary:
-    """Inverse of `to_line`, up to rounding."""
+def from_line(line: str, before: FrameSummary | None = None) -> FrameSummary:
+    """Inverse of `to_line`, up to rounding.
+
+    Args:
+        line: to read.
+        before: what the line before told.
+    """
     row = json.loads(line)
+    kept = None if before is None else before.gaze_map
     return FrameSummary(
         time=row["t"],
         truth=tuple(row["truth"]),
@@ -125,6 +189,13 @@ def from_line(line: str) -> FrameSummary:
             for number, label, x, y, vx, vy, xx, xy, yy, radius, motion, visible in row["tracks"]
         ),
         virtual_obstacles=tuple((x, y, radius) for x, y, radius in row["virtual"]),
+        captured=row.get("seen", row["t"]),
+        look=tuple(row["look"]) if "look" in row else None,
+        blobs=tuple(
+            Blob(label, (left, top, right, bottom), distance)
+            for label, left, top, right, bottom, distance in row.get("blobs", ())
+        ),
+        gaze_map=_unpacked(row["gm"]) if "gm" in row else kept,
     )
 
 
@@ -138,6 +209,28 @@ def _track(track: Track) -> list[Any]:
         _MOTIONS.index(track.motion),
         int(track.visible),
     ]
+
+
+def _packed(gaze_map: NDArray[np.float64]) -> list[Any] | None:
+    """Shape and shades; a gaze that weighs nothing makes no map."""
+    top = float(gaze_map.max(initial=0.0))
+    if gaze_map.size <= 1:
+        return None
+    shades = np.round(gaze_map * (255.0 / top if top > 0.0 else 0.0)).astype(np.uint8)
+    return [*shades.shape, base64.b85encode(zlib.compress(shades.tobytes(), 1)).decode()]
+
+
+def _unpacked(packed: list[Any] | None) -> GazeMapSummary | None:
+    if packed is None:
+        return None
+    rows, columns, text = packed
+    try:
+        shades = zlib.decompress(base64.b85decode(text))
+    except zlib.error as error:
+        raise ValueError(str(error)) from error
+    if len(shades) != rows * columns:
+        raise ValueError(f"a gaze map of {len(shades)} cells, not {rows} x {columns}")
+    return GazeMapSummary(rows, columns, shades)
 
 
 def _covariance(rows: list[list[float]]) -> list[float]:

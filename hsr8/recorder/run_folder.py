@@ -24,6 +24,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, TextIO
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic, frame_summary
 from hsr8.recorder.manifest import Manifest
@@ -31,6 +34,8 @@ from hsr8.recorder.measurements import MeasurementWriter
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.trajectory import TrajectoryWriter
 from hsr8.recorder.writing import NO_ROOM, failure, writing
+
+Array = NDArray[np.float64]
 
 SCENARIO = "scenario.toml"
 MANIFEST = "manifest.json"
@@ -67,6 +72,7 @@ class RunFolder:
         self._manifest = manifest
         self._n_movers = movers
         self._trajectory: TrajectoryWriter | None = None
+        self._gaze_map: Array | None = None  # told last; a gaze rests for many frames
         self._flushed_at = 0.0
         with writing(path):
             manifest.write(path / MANIFEST)
@@ -150,7 +156,10 @@ class RunFolder:
         self._trajectory.append(record.time, truth.qpos, movers)
         self._measurements.on_record(record)
         if record.frame is not None:
-            self._frames.write(frame_summary.to_line(record.frame, truth) + "\n")
+            gaze_map = record.frame.gaze.gaze_map
+            new = gaze_map is not self._gaze_map
+            self._frames.write(frame_summary.to_line(record.frame, truth, new_map=new) + "\n")
+            self._gaze_map = gaze_map
 
 
 def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:

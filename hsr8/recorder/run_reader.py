@@ -68,7 +68,15 @@ class Run:
             UsageError: a line is damaged.
         """
         file = self.path / run_folder.FRAMES
-        return tuple(read_lines(file, from_line)) if file.exists() else ()
+        frames: list[FrameSummary] = []
+
+        def parse(line: str) -> FrameSummary:
+            return from_line(line, frames[-1] if frames else None)
+
+        if file.exists():
+            for frame in read_lines(file, parse):
+                frames.append(frame)  # `parse` needs it there at once
+        return tuple(frames)
 
     def events(self) -> tuple[dict[str, Any], ...]:
         """What happened, each with ``time``, ``kind`` and ``text``.

@@ -1,25 +1,33 @@
 """A recorded run as a video."""
 
+import hashlib
+import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.recorder import run_folder
 from hsr8.recorder.run_reader import Run
+from hsr8.render.animation import KINDS, AnimationWriter
 from hsr8.render.png import write_png
 from hsr8.render.scene_pictures import Pictures
+from hsr8.render.segments import Segments, join
+from hsr8.render.stage import Image
 from hsr8.render.video import VideoWriter
 from hsr8.scenario.loader import load
+from hsr8.version import VERSION
 from hsr8.world.generator import draw_layout
 
 Array = NDArray[np.float64]
+Tell = Callable[[int, int], None]
 
 SPEEDS = (1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 60.0)
 LENGTH = 60.0  # a video is not longer than this unless its speed is asked for [s]
-SHORT = 300  # a video of so many frames is drawn finely
+SEGMENT = 150  # frames that an interrupted video loses at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +40,7 @@ class Shot:
         fps: frames per second [1/s].
         start, stop: simulated time [s]; None is the end of the run.
         speed: simulated seconds per second of video; None chooses.
+        fine: smooth edges and sharp shadows, at twice the cost.
     """
 
     camera: str = "dashboard"
@@ -40,6 +49,7 @@ class Shot:
     start: float = 0.0
     stop: float | None = None
     speed: float | None = None
+    fine: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,26 +57,30 @@ class Film:
     """What was drawn.
 
     Attributes:
-        video, thumbnail: files.
+        video: file.
+        thumbnail: file of a picture that stands for it; None where it is a picture itself.
         frames: number of pictures.
+        reused: of these, drawn before by a call that was interrupted.
         duration: of the video [s].
         speed: simulated seconds per second of video.
     """
 
     video: Path
-    thumbnail: Path
+    thumbnail: Path | None
     frames: int
+    reused: int
     duration: float
     speed: float
 
 
-def film(run: Run, shot: Shot, out: Path, tell: Callable[[int, int], None]) -> Film:
-    """Draw the video of a run.
+def film(run: Run, shot: Shot, out: Path, tell: Tell) -> Film:
+    """Draw a run as a video, an animation or a picture; the ending of the name says as what.
 
     Args:
         run: recorded run.
-        shot: what to draw.
-        out: file to write; the thumbnail is beside it, a PNG.
+        shot: what to draw; a picture is of its `start`.
+        out: file to write: ``.mp4``, ``.gif``, ``.webp`` or ``.png``. The thumbnail of a video
+            is beside it, a PNG.
         tell: called with the number of frames done and of all.
 
     Raises:
@@ -75,10 +89,11 @@ def film(run: Run, shot: Shot, out: Path, tell: Callable[[int, int], None]) -> F
         RenderingUnavailable: no OpenGL draws here.
     """
     times, speed = instants(run.trajectory().time, shot)
+    kind = out.suffix.lower()
+    if kind == ".png":
+        times = times[:1]
     scenario = load(str(run.scenario_file))
     layout = draw_layout(scenario, run.seed)
-    thumbnail = out.with_suffix(".png")
-    middle = len(times) // 2
     with Pictures(
         run,
         scenario,
@@ -87,17 +102,66 @@ def film(run: Run, shot: Shot, out: Path, tell: Callable[[int, int], None]) -> F
         size=shot.size,
         fps=shot.fps,
         speed=speed,
-        fine=len(times) <= SHORT,
+        fine=shot.fine,
     ) as pictures:
         draw = pictures.camera(shot.camera)
-        with VideoWriter(out, shot.size, shot.fps) as video:
-            for index in range(len(times)):
+        thumbnail, reused = None, 0
+        if kind == ".png":
+            write_png(out, draw(0))
+            tell(1, 1)
+        elif kind in KINDS:
+            with AnimationWriter(out, shot.size, shot.fps) as animation:
+                for index in range(len(times)):
+                    animation.add(draw(index))
+                    tell(index + 1, len(times))
+        else:
+            segments = Segments(out, _key(run, shot, speed))
+            segments.open()
+            reused = _shoot(segments, draw, len(times), shot, tell)
+            parts = [segments.path(k) for k in range(len(_lengths(len(times))))]
+            join(parts, _lengths(len(times)), shot.fps, out)
+            thumbnail = out.with_suffix(".png")
+            segments.thumbnail.replace(thumbnail)
+            segments.remove()
+    return Film(out, thumbnail, len(times), reused, len(times) / shot.fps, speed)
+
+
+def _shoot(
+    segments: Segments, draw: Callable[[int], Image], count: int, shot: Shot, tell: Tell
+) -> int:
+    """Draw the segments that are not there yet; the number of frames that were."""
+    middle, first, reused = count // 2, 0, 0
+    for number, length in enumerate(_lengths(count)):
+        if segments.done(number):
+            reused += length
+            first += length
+            tell(first, count)
+            continue
+        with VideoWriter(segments.path(number), shot.size, shot.fps) as video:
+            for index in range(first, first + length):
                 picture = draw(index)
                 video.add(picture)
                 if index == middle:
-                    write_png(thumbnail, picture)
-                tell(index + 1, len(times))
-    return Film(out, thumbnail, len(times), len(times) / shot.fps, speed)
+                    write_png(segments.thumbnail, picture)
+                tell(index + 1, count)
+        first += length
+    return reused
+
+
+def _lengths(count: int) -> list[int]:
+    """Frames of each segment of a video of `count` frames."""
+    return [min(SEGMENT, count - first) for first in range(0, count, SEGMENT)]
+
+
+def _key(run: Run, shot: Shot, speed: float) -> str:
+    """Tells videos apart that are not made of the same pictures."""
+    files = (run_folder.SCENARIO, run_folder.TRAJECTORY, run_folder.FRAMES)
+    stamps = []
+    for file in (run.path / name for name in files):
+        if file.exists():
+            stamps.append([file.name, file.stat().st_size, file.stat().st_mtime_ns])
+    told = json.dumps([VERSION, SEGMENT, speed, asdict(shot), str(run.path.resolve()), stamps])
+    return hashlib.blake2b(told.encode(), digest_size=16).hexdigest()
 
 
 def instants(time: Array, shot: Shot) -> tuple[Array, float]:

@@ -3,10 +3,8 @@
 from bisect import bisect_right
 from collections.abc import Callable
 from contextlib import ExitStack, closing
-from math import hypot
 from typing import Self
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,11 +12,13 @@ from hsr8.errors import UsageError
 from hsr8.recorder.frame_summary import FrameSummary
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.trajectory import Trajectory, rows_at
+from hsr8.render.dashboard import Dashboard, Moment
+from hsr8.render.eye_overlay import EyeOverlay
 from hsr8.render.follow import FollowCamera
 from hsr8.render.push_arrows import SHOWN, Arrow, SeenPush, arrows_at, pushes_of
 from hsr8.render.stage import Image, Stage
 from hsr8.render.timeline import Timeline
-from hsr8.render.top_down import TRAIL, TopDown
+from hsr8.render.top_down import TRAIL
 from hsr8.scenario.schema import Scenario
 from hsr8.world.assembly import Optics, Quality
 from hsr8.world.camera import HEAD_CAMERA
@@ -27,9 +27,8 @@ from hsr8.world.layout import Layout
 Array = NDArray[np.float64]
 
 CYCLE = 34  # records per gait cycle
-BAR = 30  # height of the line of numbers [pixel]
-INK, PANEL = (235, 236, 238), (34, 36, 40)
-LABEL = 0.42  # size of the letters
+FINER = {True: 2.0, False: 1.25}  # fine and quick pictures are drawn so much finer than shown
+SMALL = 2.0  # as is the head camera's view in the dashboard: it costs little
 
 
 class Pictures:
@@ -43,7 +42,7 @@ class Pictures:
         size: width and height [pixel].
         fps: pictures per second when shown.
         speed: simulated seconds per second of video, shown in the dashboard.
-        fine: smooth edges and sharp shadows, at four times the cost.
+        fine: smooth edges and sharp shadows, at twice the cost.
     """
 
     def __init__(
@@ -59,6 +58,7 @@ class Pictures:
         fine: bool,
     ) -> None:
         self._layout, self._size, self._speed = layout, size, speed
+        self._scenario = scenario
         self._times = times
         self._trajectory: Trajectory = run.trajectory()
         self._rows = rows_at(self._trajectory.time, times)
@@ -96,15 +96,23 @@ class Pictures:
             stage = self._stage("show", self._size)
             return lambda i: self._placed(stage, i).draw(self._follow.at(i), self._arrows(i))
         if name == "head":
-            stage = self._stage("vision", self._size)
-            return lambda i: self._placed(stage, i).draw(HEAD_CAMERA)
+            return self._head()
         stage = self._stage("show", self._size)
         stage.require_camera(name)
         return lambda i: self._placed(stage, i).draw(name, self._arrows(i))
 
-    def _stage(self, quality: Quality, size: tuple[int, int]) -> Stage:
+    def _stage(self, quality: Quality, size: tuple[int, int], finer: float | None = None) -> Stage:
         stage = self._stack.enter_context(
-            closing(Stage(self._layout, quality, size, optics=self._optics, fine=self._fine))
+            closing(
+                Stage(
+                    self._layout,
+                    quality,
+                    size,
+                    optics=self._optics,
+                    finer=FINER[self._fine] if finer is None else finer,
+                    fine=self._fine,
+                )
+            )
         )
         recorded = (self._trajectory.qpos.shape[1], self._trajectory.movers.shape[1])
         if recorded != (stage.model.nq, len(self._layout.movers)):
@@ -115,36 +123,68 @@ class Pictures:
         return stage
 
     def _placed(self, stage: Stage, index: int) -> Stage:
-        row = int(self._rows[index])
-        stage.place(self._trajectory.qpos[row], self._trajectory.movers[row])
+        stage.place(*self._state(int(self._rows[index])))
         return stage
 
-    def _dashboard(self) -> Callable[[int], Image]:
-        width, height = self._size
-        side = width // 3 // 2 * 2
-        eye_height = min(side * 3 // 4, height // 2) // 2 * 2
-        main = self._stage("show", (width - side, height))
-        eye = self._stage("vision", (side, eye_height))
-        above = TopDown(self._layout, (side, height - eye_height))
-        first, last = float(self._times[0]), float(self._times[-1])
-        timeline = Timeline(self._events, first, last, width - side)
+    def _state(self, row: int) -> tuple[Array, Array]:
+        """Robot and movers in a row of the recording."""
+        return self._trajectory.qpos[row], self._trajectory.movers[row]
+
+    def _head(self) -> Callable[[int], Image]:
+        """What the robot sees; with what it recognises there, where a run tells."""
+        stage = self._stage("vision", self._size)
+        if not self._frames:
+            return lambda i: self._placed(stage, i).draw(HEAD_CAMERA)
+        camera = self._scenario.camera
+        overlay = EyeOverlay((camera.width, camera.height), self._size, self._optics.vertical_fov)
 
         def draw(index: int) -> Image:
-            frame = self._frame(index)
-            picture = np.empty((height, width, 3), np.uint8)
-            picture[:, : width - side] = self._placed(main, index).draw(
-                self._follow.at(index), self._arrows(index)
-            )
-            picture[:eye_height, width - side :] = self._placed(eye, index).draw(HEAD_CAMERA)
-            row = int(self._rows[index])
-            picture[eye_height:, width - side :] = above.draw(
-                frame, self._trajectory.movers[row], self._trail(row)
-            )
-            self._write_numbers(picture, index, frame, width - side)
-            timeline.draw(picture[:, : width - side], float(self._times[index]))
+            frame = self._frames[self._frame(index)]
+            stage.place(*self._state(int(rows_at(self._trajectory.time, [frame.captured])[0])))
+            picture = stage.draw(HEAD_CAMERA)
+            overlay.draw(picture, frame)
             return picture
 
         return draw
+
+    def _dashboard(self) -> Callable[[int], Image]:
+        first, last = float(self._times[0]), float(self._times[-1])
+        timeline = Timeline(self._events, first, last)
+        board = Dashboard(self._layout, self._scenario, timeline, self._size, self._speed)
+        scene = self._stage("show", board.scene_size)
+        eye = self._stage("vision", board.eye_size, SMALL)
+        # The robot sees anew at every camera frame only, and the overlay belongs to that image.
+        seen: tuple[int, Image] | None = None
+
+        def look(number: int) -> Image:
+            nonlocal seen
+            if seen is None or seen[0] != number:
+                captured = self._frames[number].captured
+                eye.place(*self._state(int(rows_at(self._trajectory.time, [captured])[0])))
+                seen = number, eye.draw(HEAD_CAMERA)
+            return seen[1]
+
+        def draw(index: int) -> Image:
+            number = self._frame(index)
+            outside = self._placed(scene, index).draw(self._follow.at(index), self._arrows(index))
+            return board.draw(outside, look(number), self._moment(index, self._frames[number]))
+
+        return draw
+
+    def _moment(self, index: int, frame: FrameSummary) -> Moment:
+        time, row = float(self._times[index]), int(self._rows[index])
+        pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
+        doing = "lost" if frame.lost else frame.situation.replace("_", " ")
+        if pushed:
+            doing = f"push {pushed[-1].impulse:.2f} N s"
+        return Moment(
+            time=time,
+            frame=frame,
+            movers=self._trajectory.movers[row],
+            trail=self._trail(row),
+            collisions=bisect_right(self._collisions, time),
+            doing=doing,
+        )
 
     @staticmethod
     def _read_pushes(run: Run) -> tuple[SeenPush, ...]:
@@ -157,10 +197,9 @@ class Pictures:
         base = self._trajectory.qpos[int(self._rows[index]), :3]
         return arrows_at(self._pushes, float(self._times[index]), base, self._speed)
 
-    def _frame(self, index: int) -> FrameSummary:
-        """The latest camera frame at a picture."""
-        place = bisect_right(self._frame_times, float(self._times[index]) + 1e-9) - 1
-        return self._frames[max(place, 0)]
+    def _frame(self, index: int) -> int:
+        """Number of the latest camera frame at a picture."""
+        return max(bisect_right(self._frame_times, float(self._times[index]) + 1e-9) - 1, 0)
 
     def _trail(self, row: int) -> Array:
         first = int(np.searchsorted(self._trajectory.time, self._trajectory.time[row] - TRAIL))
@@ -169,31 +208,3 @@ class Pictures:
         whole = len(path) // CYCLE * CYCLE
         trail: Array = path[:whole].reshape(-1, CYCLE, 2).mean(axis=1)
         return trail
-
-    def _write_numbers(self, picture: Image, index: int, frame: FrameSummary, width: int) -> None:
-        time = float(self._times[index])
-        error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
-        collisions = bisect_right(self._collisions, time)
-        pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
-        doing = "lost" if frame.lost else frame.situation.replace("_", " ")
-        if pushed:
-            doing = f"push {pushed[-1].impulse:.2f} N s"
-        speed = f"  x{self._speed:g}" if self._speed != 1.0 else ""
-        words = (
-            f"{time:6.1f} s{speed}   via points {frame.passed}   collisions {collisions}   "
-            f"{hypot(*frame.velocity[:2]):.2f} m/s   pose error {100 * error:4.1f} cm   "
-            f"{doing}"
-        )
-        bar = picture[-BAR:, :width]
-        bar[:] = (0.35 * bar + 0.65 * np.array(PANEL)).astype(np.uint8)
-        scale = LABEL * min(1.0, width / 640)
-        cv2.putText(
-            picture,
-            words,
-            (10, picture.shape[0] - 10),
-            cv2.FONT_HERSHEY_SIMPLEX,
-            scale,
-            INK,
-            1,
-            cv2.LINE_AA,
-        )

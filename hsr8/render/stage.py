@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import cv2
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,9 @@ Image = NDArray[np.uint8]
 
 ARROW = np.array([0.90, 0.20, 0.45, 1.0], dtype=np.float32)  # colour of arrows
 ARROW_RADIUS = 0.012  # [m]
-SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick pictures [pixel]
-SAMPLES = {True: 4, False: 0}  # per pixel against jagged edges; four take thrice the time
+SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick pictures [texel]
+SHADOW_CONE = 0.48  # share of the sun's cone that is searched for shadows
+LARGEST = 8192  # side of what is drawn before it is scaled down [pixel]
 
 
 class Stage:
@@ -32,7 +34,8 @@ class Stage:
         quality: ``show`` for people, ``vision`` for what the robot saw.
         size: width and height of the pictures [pixel].
         optics: of the head camera.
-        fine: smooth edges and sharp shadows, at four times the cost; for ``show`` only.
+        finer: pictures are drawn so many times as fine along each side, and scaled down.
+        fine: sharp shadows; for ``show`` only.
 
     Raises:
         RenderingUnavailable: no OpenGL draws here.
@@ -45,6 +48,7 @@ class Stage:
         size: tuple[int, int],
         *,
         optics: Optics,
+        finer: float = 1.0,
         fine: bool = False,
     ) -> None:
         require_gl()
@@ -55,14 +59,19 @@ class Stage:
             dtype=np.intp,
         )
         visual = self.model.vis
-        visual.global_.offwidth, visual.global_.offheight = size
+        self._size = size
+        finer = min(finer, LARGEST / max(size))
+        width, height = (round(finer * side) for side in size)
+        visual.global_.offwidth, visual.global_.offheight = width, height
         if quality == "show":
-            visual.quality.offsamples = SAMPLES[fine]
+            visual.quality.offsamples = 0  # `finer` smooths shadows and texture, too
             visual.quality.numslices, visual.quality.numstacks = 16, 10
             visual.quality.shadowsize = SHADOW_SIZE[fine]
+            # The sun's shadows reach the rim of the field, no further, so that they are sharp.
+            visual.map.shadowscale = SHADOW_CONE
             # A reflection would draw everything twice.
             self.model.mat_reflectance[:] = 0.0
-        self._renderer = mujoco.Renderer(self.model, height=size[1], width=size[0])
+        self._renderer = mujoco.Renderer(self.model, height=height, width=width)
 
     def place(self, qpos: Array, movers: Array) -> None:
         """Put the robot and the movers (n, 2) [m] where they were."""
@@ -90,6 +99,8 @@ class Stage:
             mujoco.mjv_connector(geom, kind, ARROW_RADIUS, tail, tip)
             scene.ngeom += 1
         image: Image = self._renderer.render()
+        if image.shape[1::-1] != self._size:
+            image = cv2.resize(image, self._size, interpolation=cv2.INTER_AREA)
         return image
 
     def require_camera(self, name: str) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 Colour = tuple[int, int, int]
 
-HEIGHT = 5  # [pixel]
+HEIGHT = 0.1  # as a share of the picture drawn into
 MARK = 3  # width of an event [pixel]
 AHEAD, DONE = (62, 65, 71), (138, 142, 150)
 MARKS: dict[str, Colour] = {
@@ -29,26 +29,25 @@ class Timeline:
     Args:
         events: of the run, each with ``time`` and ``kind``.
         start, stop: simulated time of the first and the last picture [s].
-        width: [pixel].
     """
 
-    def __init__(
-        self, events: Sequence[Mapping[str, Any]], start: float, stop: float, width: int
-    ) -> None:
-        self._start, self._scale = start, width / max(stop - start, 1e-9)
-        self._marks: list[tuple[int, Colour]] = []
+    def __init__(self, events: Sequence[Mapping[str, Any]], start: float, stop: float) -> None:
+        self._start, self._length = start, max(stop - start, 1e-9)
+        self._marks: list[tuple[float, Colour]] = []
         for kind, colour in MARKS.items():
             for event in events:
                 if event["kind"] == kind and start <= event["time"] <= stop:
-                    self._marks.append((self._column(event["time"]), colour))
+                    self._marks.append((event["time"], colour))
 
     def draw(self, picture: Image, time: float) -> None:
         """Draw over the lowest rows of `picture` (height, width, 3) what holds at `time` [s]."""
-        strip = picture[-HEIGHT:]
+        height, width, _ = picture.shape
+        strip = picture[-max(2, round(HEIGHT * height)) :]
         strip[:] = AHEAD
-        strip[:, : self._column(time)] = DONE
-        for column, colour in self._marks:
+        strip[:, : self._column(time, width)] = DONE
+        for when, colour in self._marks:
+            column = self._column(when, width)
             strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = colour
 
-    def _column(self, time: float) -> int:
-        return round((time - self._start) * self._scale)
+    def _column(self, time: float, width: int) -> int:
+        return round((time - self._start) / self._length * width)

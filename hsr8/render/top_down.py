@@ -7,20 +7,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
-from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.recorder.frame_summary import FrameSummary, TrackSummary
+from hsr8.render.lettering import size_of, write
 from hsr8.world.canvas import Canvas, Image
 from hsr8.world.layout import Layout
 
 Array = NDArray[np.float64]
 
-PAPER, FIELD, RIM = (228, 231, 235), (246, 245, 242), (190, 190, 188)
-INK, SHADE, PATH = (60, 60, 64), (206, 205, 202), (150, 150, 154)
+PAPER, FIELD, RIM = (222, 225, 230), (247, 246, 243), (176, 178, 182)
+INK, SHADE, PATH = (44, 46, 52), (212, 211, 208), (146, 148, 154)
 VIEW_RANGE = 1.6  # drawn length of the field of view [m]
 VIEW_OPACITY = 0.35
+NUMBER = (176, 92, 0)  # of a way point
 TRAIL = 40.0  # path drawn behind the robot [s]
 ROBOT = ((0.16, 0.0), (-0.09, 0.10), (-0.05, 0.0), (-0.09, -0.10))  # an arrow head [m]
 AHEAD = 3  # way points shown
 SIGMAS = 2.0
+VELOCITY = 2.0  # a line shows the way of so many seconds [s]
+LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
+THIN = 400  # in pictures lower than this lines are one pixel wide, in higher ones two [pixel]
 
 
 class TopDown:
@@ -33,6 +38,8 @@ class TopDown:
 
     def __init__(self, layout: Layout, size: tuple[int, int]) -> None:
         self._layout = layout
+        self._width = 1 + int(size[1] >= THIN)
+        self._letters = size_of(size[1] / 27)
         self._ground = Canvas(layout.field_size, size, PAPER)
         self._ground.field(FIELD, RIM, 1)
         for beacon in layout.beacons:
@@ -40,7 +47,7 @@ class TopDown:
             self._ground.beacon(beacon.position, top, bottom)
         for obstacle in layout.static:
             self._ground.disc(obstacle.position, obstacle.radius, SHADE)
-            self._ground.ring(obstacle.position, obstacle.radius, INK)
+            self._ground.ring(obstacle.position, obstacle.radius, INK, self._width)
 
     def draw(self, frame: FrameSummary, movers: Array, trail: Array) -> Image:
         """The map at one camera frame.
@@ -53,25 +60,22 @@ class TopDown:
         Returns:
             Picture (height, width, 3), RGB.
         """
-        canvas = self._ground.copy()
+        canvas, width = self._ground.copy(), self._width
         canvas.area(_view(frame), palette.VIEW, VIEW_OPACITY)
         if len(trail) > 1:
-            canvas.line(trail, PATH)
+            canvas.line(trail, PATH, width)
         for track in frame.tracks:
-            _draw_track(canvas, track.position, track.radius, track.label, track.visible)
-            if track.motion != "static":
-                tip = np.add(track.position, 2.0 * np.array(track.velocity))
-                canvas.line((track.position, tip), palette.BELIEF)
+            self._draw_track(canvas, track)
         for obstacle, position in zip(self._layout.movers, movers.tolist(), strict=True):
-            canvas.ring(position, obstacle.radius, INK)
+            canvas.ring(position, obstacle.radius, INK, width)
         for x, y, radius in frame.virtual_obstacles:
-            canvas.ring((x, y), radius, palette.VIRTUAL)
+            canvas.ring((x, y), radius, palette.VIRTUAL, width)
         self._draw_way_points(canvas, frame.passed)
-        canvas.line((frame.pose[:2], frame.target), palette.TARGET)
+        canvas.line((frame.pose[:2], frame.target), palette.TARGET, width)
         canvas.disc(frame.target, 0.05, palette.TARGET)
-        canvas.outline(_robot(frame.truth), INK)
         canvas.area(_robot(frame.pose), palette.BELIEF)
-        _draw_covariance(canvas, frame)
+        canvas.outline(_robot(frame.truth), INK, width)
+        self._draw_covariance(canvas, frame.pose[:2], frame.covariance)
         return canvas.image
 
     def _draw_way_points(self, canvas: Canvas, passed: int) -> None:
@@ -80,24 +84,29 @@ class TopDown:
         last = passed + AHEAD if self._layout.endless else min(passed + AHEAD, len(points))
         for number in range(passed, last):
             point = points[number % len(points)]
-            canvas.ring(point, 0.05, palette.TARGET)
-            canvas.text(point, str(number + 1), palette.TARGET, size=0.38)
+            canvas.ring(point, 0.05, palette.TARGET, self._width)
+            u, v = canvas.pixel(point)
+            place = (u + self._letters // 2, v - self._letters // 2)
+            write(canvas.image, place, str(number + 1), NUMBER, self._letters, strong=True)
 
+    def _draw_track(self, canvas: Canvas, track: TrackSummary) -> None:
+        strong = palette.of_label(track.label)
+        # A track out of view is paler.
+        pale = tuple((channel + 2 * 246) // 3 for channel in strong)
+        canvas.disc(track.position, track.radius, strong if track.visible else pale)
+        canvas.ring(track.position, track.radius, strong, self._width)
+        self._draw_covariance(canvas, track.position, track.covariance)
+        if track.motion != "static":
+            tip = np.add(track.position, VELOCITY * np.array(track.velocity))
+            canvas.line((track.position, tip), palette.BELIEF, self._width)
 
-def _draw_track(
-    canvas: Canvas, at: Sequence[float], radius: float, label: str, visible: bool
-) -> None:
-    strong = palette.of_label(label)
-    # A track out of view is paler.
-    pale = tuple((channel + 2 * 246) // 3 for channel in strong)
-    canvas.disc(at, radius, strong if visible else pale)
-    canvas.ring(at, radius, strong)
-
-
-def _draw_covariance(canvas: Canvas, frame: FrameSummary) -> None:
-    xx, xy, yy = frame.covariance
-    half, direction = ellipse.axes(np.array([[[xx, xy], [xy, yy]]]))
-    canvas.ellipse(frame.pose[:2], SIGMAS * half[0], float(direction[0]), palette.BELIEF)
+    def _draw_covariance(
+        self, canvas: Canvas, at: Sequence[float], covariance: tuple[float, float, float]
+    ) -> None:
+        xx, xy, yy = covariance
+        if xx + yy < LOST_SIGMA**2:
+            half, direction = ellipse.axes(np.array([[[xx, xy], [xy, yy]]]))
+            canvas.ellipse(at, SIGMAS * half[0], float(direction[0]), palette.BELIEF, self._width)
 
 
 def _robot(pose: Sequence[float]) -> list[tuple[float, float]]:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 Image = NDArray[np.uint8]
 
-OPTIONS = {"preset": "veryfast", "crf": "23", "threads": "1"}
+OPTIONS = {"preset": "veryfast", "crf": "21", "threads": "1"}
+OPTIONS_OF_CONTAINER = {"movflags": "+faststart"}  # a page plays it while it loads
 
 
 class VideoWriter:
@@ -27,9 +28,7 @@ class VideoWriter:
     def __init__(self, path: Path, size: tuple[int, int], fps: int) -> None:
         self._path = path
         self._draft = path.with_name(path.name + ".part")
-        self._container = av.open(
-            str(self._draft), "w", format="mp4", options={"movflags": "+faststart"}
-        )
+        self._container = av.open(str(self._draft), "w", format="mp4", options=OPTIONS_OF_CONTAINER)
         self._stream = self._container.add_stream("libx264", rate=fps, options=OPTIONS)
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"

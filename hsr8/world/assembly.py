@@ -22,6 +22,7 @@ Quality = Literal["vision", "show"]
 RIM = 0.02  # half width of the line round the field [m]
 PAINT = 0.0005  # height of what is painted on the floor [m]
 STRIPE = 0.010  # half height of the stripe that marks a mover, for people only [m]
+BRIGHTER = 0.7  # exponent of colours for people; vision's own are deep so that it tells them apart
 APRON = 1.5  # distance of the walls the robot sees from the rim of the field [m]
 WALL_HEIGHT = 4.0  # [m]
 SHADOW_SIZE = 2048  # resolution of the shadows the robot sees [texel]
@@ -166,7 +167,10 @@ def _paint(spec: mujoco.MjSpec, colour: str, quality: Quality) -> str:
     """Name of the material of a colour class, made when first asked for."""
     name = f"paint_{colour}"
     if spec.material(name) is None:
-        material = spec.add_material(name=name, rgba=[*COLOUR_CLASSES[colour].rgb, 1.0])
+        rgb = np.asarray(COLOUR_CLASSES[colour].rgb)
+        if quality == "show":
+            rgb = rgb**BRIGHTER
+        material = spec.add_material(name=name, rgba=[*rgb, 1.0])
         material.specular = 0.0 if quality == "vision" else 0.25
         material.shininess = 0.0 if quality == "vision" else 0.4
         material.reflectance = 0.0

@@ -62,9 +62,9 @@ class Canvas:
         """A filled circle; `radius` in [m]."""
         self._circle(at, radius, colour, -1)
 
-    def ring(self, at: Point, radius: float, colour: Colour) -> None:
-        """A circle; `radius` in [m]."""
-        self._circle(at, radius, colour, 1)
+    def ring(self, at: Point, radius: float, colour: Colour, width: int = 1) -> None:
+        """A circle, `width` [pixel] wide; `radius` in [m]."""
+        self._circle(at, radius, colour, width)
 
     def line(self, points: Points, colour: Colour, width: int = 1) -> None:
         """Strokes from point to point, `width` [pixel] wide."""
@@ -85,11 +85,15 @@ class Canvas:
         if opacity < 1.0:
             cv2.addWeighted(drawn, opacity, self.image, 1.0 - opacity, 0.0, dst=self.image)
 
-    def ellipse(self, at: Point, half_axes: Point, turn: float, colour: Colour) -> None:
-        """An ellipse with its first half axis at `turn` [rad] to x."""
+    def ellipse(
+        self, at: Point, half_axes: Point, turn: float, colour: Colour, width: int = 1
+    ) -> None:
+        """An ellipse with its first half axis at `turn` [rad] to x, `width` [pixel] wide."""
         lengths = (self._length(half_axes[0]), self._length(half_axes[1]))
         centre, angle = self._pixel(at), -degrees(turn)
-        cv2.ellipse(self.image, centre, lengths, angle, 0, 360, colour, 1, cv2.LINE_AA, SUBPIXEL)
+        cv2.ellipse(
+            self.image, centre, lengths, angle, 0, 360, colour, width, cv2.LINE_AA, SUBPIXEL
+        )
 
     def arrow(self, tail: Point, head: Point, colour: Colour) -> None:
         """An arrow from `tail` to `head`."""
@@ -102,9 +106,14 @@ class Canvas:
         """Letters beside a point or, if `centred`, on it."""
         font = cv2.FONT_HERSHEY_SIMPLEX
         (width, height), _ = cv2.getTextSize(text, font, size, 1)
-        u, v = (x >> SUBPIXEL for x in self._pixel(at))
+        u, v = self.pixel(at)
         corner = (u - width // 2, v + height // 2) if centred else (u + 7, v - 6)
         cv2.putText(self.image, text, corner, font, size, colour, 1, cv2.LINE_AA)
+
+    def pixel(self, at: Point) -> tuple[int, int]:
+        """Column and row of a point."""
+        u, v = self._pixel(at)
+        return u >> SUBPIXEL, v >> SUBPIXEL
 
     def _circle(self, at: Point, radius: float, colour: Colour, width: int) -> None:
         place, length = self._pixel(at), self._length(radius)

@@ -1,9 +1,12 @@
 import json
+import shutil
 
 import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import RenderingUnavailable
+from hsr8.recorder import run_folder
+from hsr8.recorder.run_reader import open_run
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +35,7 @@ def test_json_is_all_there_is_on_standard_output(run, tmp_path, capsys):
         (["--fps", "0"], "--fps"),
         (["--speed", "-1"], "--speed"),
         (["--out", "nowhere/v.mp4"], "nowhere"),
-        (["--out", "v.png"], "ends in .mp4"),
+        (["--out", "v.avi"], "ends in .mp4, .gif, .webp, .png"),
         (["--start", "7"], "ended at 0.5 s"),
     ],
 )
@@ -59,3 +62,17 @@ def test_a_video_that_cannot_be_written_is_one_clear_error(run, tmp_path, capsys
     assert entry(["render", str(run), *options]) == 2
     assert "cannot be written" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir() if p.suffix == ".part"] == []
+
+
+def test_a_run_whose_scenario_has_a_key_that_is_gone_names_it(run, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("hsr8.cli.render.require_gl", lambda: "llvmpipe")
+    copy = tmp_path / "old"
+    shutil.copytree(open_run(run).path, copy)
+    file = copy / run_folder.SCENARIO
+    file.write_text(file.read_text().replace("n_moving = ", "n_movers = "))
+    line = next(k for k, t in enumerate(file.read_text().splitlines(), 1) if "n_movers" in t)
+    assert entry(["render", str(copy), "--quiet"]) == 2
+    told = capsys.readouterr().err
+    assert f"{run_folder.SCENARIO}:{line}" in told
+    assert "n_movers" in told
+    assert "n_moving" in told  # what it may have meant

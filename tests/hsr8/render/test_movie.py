@@ -1,5 +1,7 @@
 import shutil
 
+import av
+import cv2
 import numpy as np
 import pytest
 
@@ -64,6 +66,55 @@ def test_every_camera_draws(run, camera, tmp_path):
     assert done == [(k, 5) for k in range(1, 6)]
     assert made.video.stat().st_size > 1000
     assert made.thumbnail.read_bytes().startswith(b"\x89PNG")
+
+
+def _times(path):
+    with av.open(str(path)) as container:
+        return [float(f.pts * f.time_base) for f in container.decode(video=0)]
+
+
+@pytest.mark.gl
+def test_an_interrupted_video_goes_on_where_it_stopped(run, tmp_path, monkeypatch):
+    monkeypatch.setattr("hsr8.render.movie.SEGMENT", 4)
+    shot, out, drawn = Shot(camera="top", size=(64, 64), fps=10), tmp_path / "v.mp4", []
+
+    def interrupt(n, _):
+        if n == 7:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        film(run, shot, out, interrupt)
+    assert not out.exists()
+    made = film(run, shot, out, lambda n, total: drawn.append(n))
+    assert (made.frames, made.reused) == (10, 4)
+    assert drawn == [4, 5, 6, 7, 8, 9, 10]
+    assert _times(out) == pytest.approx([k / 10 for k in range(10)])
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["v.mp4", "v.png"]
+
+
+@pytest.mark.gl
+def test_segments_of_another_shot_are_thrown_away(run, tmp_path, monkeypatch):
+    monkeypatch.setattr("hsr8.render.movie.SEGMENT", 2)
+    out = tmp_path / "v.mp4"
+
+    def interrupt(n, _):
+        if n == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        film(run, Shot(camera="top", size=(64, 64), fps=5), out, interrupt)
+    made = film(run, Shot(camera="corner", size=(64, 64), fps=5), out, lambda n, total: None)
+    assert (made.frames, made.reused) == (5, 0)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("size", [(64, 64), (1280, 64), (64, 720), (640, 480)])
+def test_the_dashboard_fits_every_size(run, size, tmp_path):
+    out = tmp_path / "p.png"
+    made = film(run, Shot(size=size, start=0.5), out, lambda n, total: None)
+    assert made.frames == 1
+    assert made.thumbnail is None
+    assert cv2.imread(str(out)).shape == (size[1], size[0], 3)
 
 
 @pytest.mark.gl

@@ -5,8 +5,8 @@ from hsr8.render.timeline import AHEAD, DONE, HEIGHT, MARKS, Timeline
 
 def strip_at(time, events=()):
     picture = np.zeros((40, 101, 3), np.uint8)
-    Timeline(events, 10.0, 20.0, 101).draw(picture, time)
-    assert not picture[:-HEIGHT].any()
+    Timeline(events, 10.0, 20.0).draw(picture, time)
+    assert not picture[: -round(HEIGHT * 40)].any()
     return [tuple(pixel) for pixel in picture[-1].tolist()]
 
 

@@ -60,5 +60,6 @@ def test_only_the_next_way_points_are_shown(layout, summary):
     for passed in (0, 1, 2):
         frame = summary(index=passed, target=np.array([0.0, 0.0]), tracks=())
         image = above.draw(frame, np.array([[1.0, 1.0]]), np.zeros((0, 2)))
-        drawn.append(int((image == palette.TARGET).all(axis=-1).sum()))
+        away = np.abs(image.astype(int) - palette.TARGET).sum(axis=-1)
+        drawn.append(int((away < 90).sum()))
     assert drawn[0] > drawn[1] > drawn[2]

@@ -1,0 +1,110 @@
+"""What vision recognised and where the robot wants to look, drawn over its camera image."""
+
+from math import cos, sin
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.recorder import palette
+from hsr8.recorder.frame_summary import Blob, FrameSummary
+from hsr8.render.lettering import size_of, width_of, write
+from hsr8.world.canvas import Colour, Image
+
+Array = NDArray[np.float64]
+
+SUBPIXEL = 3  # bits of a pixel that OpenCV draws with
+WINDOW = 0.45  # half a gaze window as a share of the field of view, as in the log
+CORNER = 0.30  # length of its corners as a share of its sides
+BEHIND = 0.1  # cosine below which a direction is no longer drawn
+TAG = (24, 26, 30)
+
+
+class EyeOverlay:
+    """Draws over one camera's images.
+
+    Args:
+        camera: width and height of the image that vision saw [pixel].
+        size: width and height of the pictures [pixel]; what vision saw is as high as they are.
+        vertical_fov: [rad].
+    """
+
+    def __init__(self, camera: tuple[int, int], size: tuple[int, int], vertical_fov: float) -> None:
+        self._camera, self._size = camera, size
+        self._scale = size[1] / camera[1]
+        self._focal = 0.5 * size[1] / np.tan(0.5 * vertical_fov)
+        self._half_fov = np.array(
+            [np.arctan(0.5 * camera[0] * self._scale / self._focal), 0.5 * vertical_fov]
+        )
+        self._letters = size_of(size[1] / 26)
+
+    def draw(self, picture: Image, frame: FrameSummary) -> None:
+        """Draw over `picture` (height, width, 3) what holds at a camera frame."""
+        for blob in sorted(frame.blobs, key=lambda b: -b.distance):
+            self._draw_blob(picture, blob)
+        if frame.look is not None:
+            self._draw_window(picture, frame.gaze, frame.look)
+
+    def _draw_blob(self, picture: Image, blob: Blob) -> None:
+        width, _ = self._camera
+        u = np.array(blob.box[::2], float) - 0.5 * width
+        left, right = (0.5 * self._size[0] + self._scale * u).tolist()
+        top, bottom = (self._scale * np.array(blob.box[1::2], float)).tolist()
+        colour = _light(palette.of_label(blob.label))
+        corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
+        _strokes(picture, corners, colour, closed=True)
+        text = f"{blob.distance:.2f} m"
+        length = width_of(text, self._letters)
+        row = round(top) - 4 if top > 2 * self._letters else round(bottom) + self._letters + 3
+        column = min(max(round(left), 2), max(2, self._size[0] - length - 4))
+        edge = max(0, row - self._letters), max(0, column - 2)
+        picture[edge[0] : row + 3, edge[1] : column + length + 2] = TAG
+        write(picture, (column, row), text, colour, self._letters)
+
+    def _draw_window(
+        self, picture: Image, gaze: tuple[float, float], look: tuple[float, float]
+    ) -> None:
+        """Corners of a window around the chosen direction, and its middle."""
+        across, up = (2.0 * WINDOW * self._half_fov).tolist()
+        for x in (-1.0, 1.0):
+            for y in (-1.0, 1.0):
+                bend = [(x * (1.0 - CORNER), y), (x, y), (x, y * (1.0 - CORNER))]
+                points = [
+                    self._pixel(gaze, look[0] - across * a, look[1] + up * b) for a, b in bend
+                ]
+                _strokes(picture, points, palette.VIEW)
+        middle = self._pixel(gaze, *look)
+        if middle is not None:
+            arm = 0.02 * self._size[1]
+            for step in (np.array([arm, 0.0]), np.array([0.0, arm])):
+                _strokes(picture, [middle - step, middle + step], palette.VIEW)
+
+    def _pixel(self, gaze: tuple[float, float], pan: float, tilt: float) -> Array | None:
+        """Where a direction of the head lies in the picture (2,) [pixel], None behind it."""
+        turn = pan - gaze[0]
+        ahead, left = cos(tilt) * cos(turn), cos(tilt) * sin(turn)
+        forward = cos(gaze[1]) * ahead + sin(gaze[1]) * sin(tilt)
+        up = cos(gaze[1]) * sin(tilt) - sin(gaze[1]) * ahead
+        if forward < BEHIND:
+            return None
+        middle = 0.5 * np.array(self._size, float)
+        pixel: Array = middle - self._focal / forward * np.array([left, up])
+        return pixel
+
+
+def _strokes(
+    picture: Image, points: Array | list[Array] | list[Array | None], colour: Colour, *,
+    closed: bool = False,
+) -> None:  # fmt: skip
+    if any(point is None for point in points):
+        return
+    pixels = np.round(np.array(points) * (1 << SUBPIXEL)).astype(np.int32)
+    # A dark edge keeps the strokes apart from walls and obstacles of their own colour.
+    width = max(1, round(picture.shape[0] / 240))
+    for shade, thickness in ((TAG, width + 2), (colour, width)):
+        cv2.polylines(picture, [pixels], closed, shade, thickness, cv2.LINE_AA, SUBPIXEL)
+
+
+def _light(colour: Colour) -> Colour:
+    """Lighter, so that it is read on dark ground."""
+    return tuple((channel + 255) // 2 for channel in colour)

@@ -1,0 +1,97 @@
+"""The gaze map GM with the chosen gaze, and the partial evaluations it comes from."""
+
+from math import degrees
+
+import cv2
+import numpy as np
+
+from hsr8.recorder import palette
+from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.render.lettering import size_of, write
+from hsr8.world.canvas import Image
+
+PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
+INK, FAINT = (238, 239, 241), (164, 168, 176)
+OPACITY = 0.86
+EVALUATIONS = ("map", "self", "obstacles", "way")
+"""What psi_lm, psi_sf, psi_ob and psi_way speak of."""
+
+
+class GazePanel:
+    """Draws the panel into a corner of a picture.
+
+    Args:
+        width: of the panel [pixel].
+        pan_limit: largest pan of the map to either side [rad].
+        tilts: lowest and highest tilt of the map [rad].
+    """
+
+    def __init__(self, width: int, pan_limit: float, tilts: tuple[float, float]) -> None:
+        self._pan_limit, self._tilts = pan_limit, tilts
+        self._pad = pad = max(4, width // 28)
+        self._letters = size_of(width / 21)
+        self._map = (
+            width - 2 * pad,
+            max(8, round((width - 2 * pad) * (tilts[1] - tilts[0]) / (2.0 * pan_limit))),
+        )
+        self._top = self._letters + 2 * pad
+        self.size = (width, self._top + self._map[1] + 3 * pad + self._letters)
+        ramp = np.arange(256, dtype=np.uint8)[:, None]
+        heat = cv2.applyColorMap(ramp, cv2.COLORMAP_INFERNO)[:, 0, ::-1]
+        self._heat = np.ascontiguousarray(heat)
+
+    def draw(self, picture: Image, corner: tuple[int, int], frame: FrameSummary) -> None:
+        """Draw into `picture` (height, width, 3), the panel's left upper corner at `corner`."""
+        left, top = corner
+        width, height = self.size
+        panel = picture[top : top + height, left : left + width]
+        panel[:] = cv2.addWeighted(panel, 1.0 - OPACITY, np.full_like(panel, PANEL), OPACITY, 0.0)
+        pad, base = self._pad, self._pad + self._letters - 1
+        write(panel, (pad, base), "gaze map", INK, self._letters, strong=True)
+        if frame.look is not None:
+            write(panel, (width - pad, base), _told(frame.look), FAINT, self._letters, side="right")
+        self._draw_map(panel, frame)
+        self._draw_evaluations(panel, frame)
+
+    def _draw_map(self, panel: Image, frame: FrameSummary) -> None:
+        part = panel[self._top : self._top + self._map[1], self._pad : self._pad + self._map[0]]
+        part[:] = self._heat[0]
+        if frame.gaze_map is not None:
+            shades = cv2.resize(frame.gaze_map.image(), self._map, interpolation=cv2.INTER_NEAREST)
+            part[:] = self._heat[shades]
+        now = self._pixel(frame.gaze)
+        radius = max(2, self._map[1] // 14)
+        if frame.look is not None:
+            chosen = self._pixel(frame.look)
+            cv2.line(panel, now, chosen, INK, 1, cv2.LINE_AA)
+            cv2.circle(panel, chosen, radius + 2, palette.BELIEF, 2, cv2.LINE_AA)
+        cv2.circle(panel, now, radius - 1, INK, -1, cv2.LINE_AA)
+
+    def _draw_evaluations(self, panel: Image, frame: FrameSummary) -> None:
+        """Four bars below the map, each under its name."""
+        pad = self._pad
+        row = self._top + self._map[1] + pad + self._letters
+        step = (self.size[0] - pad) // len(EVALUATIONS)
+        thick = max(2, pad // 2)
+        for k, (name, value) in enumerate(zip(EVALUATIONS, frame.psi, strict=True)):
+            column = pad + k * step
+            write(panel, (column, row - 1), name, FAINT, self._letters)
+            groove = panel[row + thick : row + 2 * thick, column : column + step - pad]
+            groove[:] = GROOVE
+            groove[:, : round(min(1.0, max(0.0, value)) * groove.shape[1])] = palette.VIEW
+
+    def _pixel(self, gaze: tuple[float, float]) -> tuple[int, int]:
+        """Column and row of a gaze in the panel."""
+        low, high = self._tilts
+        u = (self._pan_limit - gaze[0]) / (2.0 * self._pan_limit)
+        v = (high - gaze[1]) / (high - low)
+        u, v = min(1.0, max(0.0, u)), min(1.0, max(0.0, v))
+        column = self._pad + round(u * (self._map[0] - 1))
+        return column, self._top + round(v * (self._map[1] - 1))
+
+
+def _told(look: tuple[float, float]) -> str:
+    """A gaze in words."""
+    pan, tilt = round(degrees(look[0])), round(degrees(look[1]))
+    across = "left" if pan >= 0 else "right"
+    return f"{abs(pan)}° {across}, {abs(tilt)}° {'up' if tilt > 0 else 'down'}"

@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+
+from hsr8.recorder.frame_summary import from_line, to_line
+from hsr8.render.dashboard import Dashboard, Moment
+from hsr8.render.timeline import Timeline
+from hsr8.scenario.loader import load
+
+
+@pytest.fixture
+def drawn(fake, layout):
+    line = to_line(fake.frame(0.6, (0.0, 0.0, 0.0)), fake.record(0.6, (0.0, 0.0, 0.0)).truth)
+
+    def draw(size, collisions=0, doing="free"):
+        board = Dashboard(layout, load("quick"), Timeline((), 0.0, 1.0), size, 1.0)
+        scene = np.full((*board.scene_size[::-1], 3), (200, 0, 0), np.uint8)
+        eye = np.full((*board.eye_size[::-1], 3), (0, 200, 0), np.uint8)
+        moment = Moment(
+            time=0.6,
+            frame=from_line(line),
+            movers=np.array([[1.0, 1.0]]),
+            trail=np.zeros((0, 2)),
+            collisions=collisions,
+            doing=doing,
+        )
+        return board.draw(scene, eye, moment), board
+
+    return draw
+
+
+@pytest.mark.parametrize("size", [(64, 64), (192, 108), (960, 540), (1280, 720), (400, 1000)])
+def test_scene_and_eye_are_shown_where_there_is_room(drawn, size):
+    picture, board = drawn(size)
+    assert picture.shape == (size[1], size[0], 3)
+    width, height = board.scene_size
+    red = (picture[:height, :width] == (200, 0, 0)).all(axis=-1)
+    green = (picture[: board.eye_size[1], -board.eye_size[0] :] == (0, 200, 0)).all(axis=-1)
+    assert red.mean() > 0.7
+    assert green.mean() > 0.3
+    assert abs(board.eye_size[0] / board.eye_size[1] - 4 / 3) < 0.1 or size[0] > size[1] * 1.7
+
+
+def test_collisions_are_told(drawn):
+    calm, alarmed = drawn((1280, 720))[0], drawn((1280, 720), collisions=2)[0]
+    rows, columns = np.nonzero((calm != alarmed).any(axis=-1))
+    assert rows.min() > 660
+    assert columns.max() - columns.min() < 60
+
+
+def test_pictures_are_not_drawn_over_each_other(drawn):
+    assert np.array_equal(drawn((640, 360))[0], drawn((640, 360))[0])

@@ -1,0 +1,76 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hsr8.recorder import palette
+from hsr8.recorder.frame_summary import from_line, to_line
+from hsr8.render.eye_overlay import EyeOverlay
+
+FOV = np.radians(60.0)
+FOCAL = 120.0 / np.tan(FOV / 2)  # of a picture 240 pixels high
+
+
+@pytest.fixture
+def summary(fake):
+    frame = fake.frame(0.6, (0.0, 0.0, 0.0))
+    line = to_line(frame, fake.record(0.6, (0.0, 0.0, 0.0)).truth)
+
+    def changed(**change):
+        return replace(from_line(line), **change)
+
+    return changed
+
+
+def _drawn(frame, size=(320, 240)):
+    picture = np.zeros((size[1], size[0], 3), np.uint8)
+    EyeOverlay((320, 240), size, FOV).draw(picture, frame)
+    return picture
+
+
+def _strokes(picture):
+    """Rows and columns of the yellow strokes, whose edges are smooth."""
+    return np.nonzero(np.abs(picture - np.array(palette.VIEW)).sum(axis=-1) < 150)
+
+
+def _window(picture):
+    """Middle of the window."""
+    rows, columns = _strokes(picture)
+    return 0.5 * (columns.min() + columns.max()), 0.5 * (rows.min() + rows.max())
+
+
+@pytest.mark.parametrize("tilt", [0.0, -0.4])
+def test_a_gaze_that_has_arrived_has_its_window_in_the_middle(summary, tilt):
+    frame = summary(blobs=(), gaze=(0.2, tilt), look=(0.2, tilt))
+    picture = _drawn(frame)
+    rows, columns = _strokes(picture)
+    assert 0.5 * (columns.min() + columns.max()) == pytest.approx(160, abs=1)
+    assert 100 < rows.mean() < 140
+
+
+def test_the_window_lies_where_the_pinhole_shows_the_chosen_gaze(summary):
+    left = _window(_drawn(summary(blobs=(), gaze=(0.0, 0.0), look=(0.1, 0.0))))
+    assert left[0] == pytest.approx(160 - FOCAL * np.tan(0.1), abs=4)
+    up = _window(_drawn(summary(blobs=(), gaze=(0.0, 0.0), look=(0.0, 0.1))))
+    assert up[1] == pytest.approx(120 - FOCAL * np.tan(0.1), abs=4)
+
+
+def test_a_gaze_behind_the_camera_is_not_drawn(summary):
+    assert not _drawn(summary(blobs=(), gaze=(1.5, 0.0), look=(-1.5, 0.0))).any()
+
+
+@pytest.mark.parametrize("scale", [1, 2])
+def test_boxes_lie_where_vision_saw_them(summary, scale):
+    frame = summary(look=None)
+    picture = _drawn(frame, (320 * scale, 240 * scale))
+    inside = picture[84 * scale : 156 * scale, 104 * scale : 136 * scale]
+    assert not inside.any()
+    assert picture[81 * scale : 159 * scale, 100 * scale].any(axis=-1).all()
+    assert picture[160 * scale, 101 * scale : 139 * scale].any(axis=-1).all()
+    assert not picture[170 * scale :].any()
+
+
+def test_a_wider_picture_shows_more_at_both_sides(summary):
+    """What vision saw fills the height and lies in the middle."""
+    wide = _drawn(summary(look=None), (480, 240))
+    assert np.array_equal(wide[100:, 80:400], _drawn(summary(look=None))[100:])
