@@ -45,6 +45,7 @@ def run(
         RenderingUnavailable: the camera needs OpenGL and there is none.
         UsageError: the run folder cannot be made, or there is no such level of `log`.
     """
+    level = _level(log)
     loaded = scenario if isinstance(scenario, Scenario) else load(str(scenario), _words(settings))
     if isinstance(scenario, Scenario) and settings:
         raise TypeError("settings go with a scenario's name or file, not with a loaded one")
@@ -55,7 +56,7 @@ def run(
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)
         command = ("hsr8.run",) if planner or gaze else ("hsr8", "run", loaded.name)
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
-        recording.into(path, manifest, log=_level(log))
+        recording.into(path, manifest, log=level)
     return recording.run()
 
 

@@ -9,9 +9,9 @@ from hsr8.scenario.schema import Scenario
 REAL_TIME_FACTOR = 3.3
 RECORD_RATE = 0.1  # megabytes of records per simulated second
 LOG_RATES = {  # and of the log beside them
-    LogLevel.MINIMAL: 0.09,
-    LogLevel.STANDARD: 0.22,
-    LogLevel.FULL: 0.6,
+    LogLevel.MINIMAL: 0.1,
+    LogLevel.STANDARD: 0.18,
+    LogLevel.FULL: 0.43,
 }
 
 

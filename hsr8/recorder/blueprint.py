@@ -83,7 +83,8 @@ def _walking() -> rrb.Container:
         ),
         active_tab=0,
     )
-    states = rrb.StateTimelineView(name="States", origin="/state")
+    lanes = ["+ /state/gait", "+ /state/planner"]
+    states = rrb.StateTimelineView(name="States", origin="/state", contents=lanes)
     curves = rrb.Vertical(*zmp, details, states, row_shares=[3, 3, 2.5, 2])
     left = rrb.Vertical(robot, texts, row_shares=[4, 1])
     return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")

@@ -1,7 +1,7 @@
 import pytest
 
 import hsr8
-from hsr8.errors import ScenarioError
+from hsr8.errors import ScenarioError, UsageError
 from hsr8.recorder.run_reader import open_run
 
 STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 1.0}
@@ -22,6 +22,23 @@ def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
     assert run.metrics()["state_hash"] == result.metrics["state_hash"]
     again = hsr8.run(run.scenario_file)
     assert again.metrics["state_hash"] == result.metrics["state_hash"]
+
+
+def test_the_log_holds_as_much_as_it_is_told_to(tmp_path):
+    found = {}
+    for level in ("minimal", "full"):
+        result = hsr8.run("quick", settings=STAND_INS, out=tmp_path / level, log=level)
+        found[level] = (hsr8.read_log(result.folder).entities(), result.metrics["state_hash"])
+    (minimal, one), (full, other) = found.values()
+    assert one == other
+    assert minimal.keys() < full.keys()
+    assert "/belief/tracks" in full.keys() - minimal.keys()
+
+
+def test_a_level_that_there_is_not_is_told_before_the_run(tmp_path):
+    with pytest.raises(UsageError, match="minimal, standard, full"):
+        hsr8.run("quick", settings=STAND_INS, out=tmp_path, log="all")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_settings_are_words_or_a_table():

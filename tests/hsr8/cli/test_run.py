@@ -32,6 +32,15 @@ def test_json_is_all_there_is_on_standard_output(tmp_path, capsys):
     assert run.log_files == []
 
 
+def test_the_log_is_as_large_as_asked_for(tmp_path):
+    sizes = []
+    for level in ("minimal", "full"):
+        _run(tmp_path / level, "--quiet", "--duration", "0.5", "--log-level", level)
+        (file,) = open_run(tmp_path / level).log_files
+        sizes.append(file.stat().st_size)
+    assert sizes[0] < 0.8 * sizes[1]
+
+
 def test_the_log_changes_nothing(tmp_path, capsys):
     hashes = set()
     for more in (["--no-log", "--quiet"], ["--quiet"], []):
