@@ -97,7 +97,7 @@ def recorded(simulation: Simulation, folder: str) -> str:
     recording = Recording(simulation)
     path = RunFolder.create(Path(folder), scenario.name, scenario.seed)
     manifest = Manifest.now(scenario.name, scenario.seed, ("soak_study",), renderer_of(scenario))
-    recording.into(path, manifest, log=True, checkpoint=10)
+    recording.into(path, manifest, checkpoint=10)
     return recording.run().exit_reason
 
 

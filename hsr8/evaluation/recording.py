@@ -25,6 +25,8 @@ from hsr8.recorder.writing import FAILED
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 
+LONGEST_INDEXED = 600.0  # logs of longer runs have no index, which would fill the memory [s]
+
 
 @dataclass(frozen=True, slots=True)
 class Result:
@@ -115,11 +117,17 @@ class Recording:
                 size = (scenario.camera.width, scenario.camera.height)
                 name = f"{scenario.name} {scenario.seed}"
                 file = run_folder.next_log(path)
-                writers.append(
-                    RerunLog(
-                        file, simulation.model, simulation.layout, size, name, level=log, live=live
-                    )
+                rerun_log = RerunLog(
+                    file,
+                    simulation.model,
+                    simulation.layout,
+                    size,
+                    name,
+                    level=log,
+                    live=live,
+                    index=scenario.duration <= LONGEST_INDEXED,
                 )
+                writers.append(rerun_log)
             self._listeners = writers + self._listeners
             if checkpoint:
                 simulation.each_second = Checkpoints(

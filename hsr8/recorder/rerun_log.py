@@ -50,6 +50,8 @@ class RerunLog:
         name: of the recording, shown by the viewer.
         level: how much is logged.
         live: address of a viewer that is shown everything too; empty for none.
+        index: end the file with a list of its parts, for tools that read some of them only; until
+            then the list is held in memory, some 0.2 MB for each second.
     """
 
     def __init__(
@@ -62,11 +64,12 @@ class RerunLog:
         *,
         level: LogLevel = LogLevel.STANDARD,
         live: str = "",
+        index: bool = True,
     ) -> None:
         self._rates = rates = RATES[level]
         self._stream = rr.RecordingStream("hsr8", recording_id=path.parent.name)
         self._stream.set_log_time_enabled(False)
-        sinks = [rr.FileSink(str(path)), *([rr.GrpcSink(live)] if live else [])]
+        sinks = [rr.FileSink(str(path), write_footer=index), *([rr.GrpcSink(live)] if live else [])]
         self._folder = path.parent
         self._waits = not live  # for the file; a viewer may leave
         shown = blueprint(

@@ -64,6 +64,7 @@ def test_the_robot_gets_over(simulate, setting):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1800)
 @EACH_FAULT
 def test_the_robot_reaches_its_goal_in_spite_of(simulate, setting):
     outcome, recorded, _ = simulate("quick", setting, seed=1, duration=90.0)

@@ -160,6 +160,17 @@ def test_a_viewer_is_shown_what_the_file_holds(folder, model, layout, walk, monk
     assert _rows(folder / "live.rrd") == _rows(path)
 
 
+@pytest.mark.filterwarnings("ignore:RRD file has no footer")
+def test_without_an_index_the_log_holds_the_same(tmp_path, model, layout, walk):
+    logs = []
+    for name, index in (("with", True), ("without", False)):
+        (tmp_path / name).mkdir()
+        logs.append(_logged(tmp_path / name, model, layout, walk(0.5), index=index))
+    with_index, without = logs
+    assert _rows(with_index) == _rows(without)
+    assert with_index.stat().st_size > without.stat().st_size
+
+
 def test_nothing_believed_nothing_seen_is_logged_too(log, fake):
     path, listener = log
     frame = fake.frame(0.0, tracks=(), image=None)
