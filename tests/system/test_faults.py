@@ -11,8 +11,8 @@ from hsr8.recorder.run_reader import open_run
 from hsr8.scenario.loader import load
 from hsr8.snapshot import decode, encode
 
-START, LASTS = 1.0, 0.5  # of the faults that are got over [s]
-WELL = {  # what the robot gets over within two seconds, walking
+START, LASTS = 0.7, 0.4  # of the faults that are got over [s]
+WELL = {  # what the robot gets over within a second, walking
     "imu-tilt": "size=0.03",
     "imu-turn": "size=0.05",
     "imu-frozen": "",
@@ -64,51 +64,52 @@ def walked(simulate, text, duration):
 
 @pytest.mark.parametrize("kind", WELL)
 def test_a_walking_robot_gets_over(simulate, kind):
-    outcome, recorded = walked(simulate, fault(kind, WELL[kind]), 2.5)
+    outcome, recorded = walked(simulate, fault(kind, WELL[kind]), 1.8)
     assert outcome.exit_reason == "completed"
     assert [e[1] for e in recorded.events if e[1] != "push"] == ["fault", "fault"]
-    assert recorded.records[-1].truth.robot[0] > 0.2
+    assert recorded.records[-1].truth.robot[0] > 0.12
 
 
 @pytest.mark.parametrize("kind", BADLY)
 def test_a_walking_robot_falls_by(simulate, kind):
     lasts = 0.05 if kind == "push" else None
-    outcome, recorded = walked(simulate, fault(kind, BADLY[kind], lasts=lasts), 4.0)
+    text = fault(kind, BADLY[kind], start=1.0, lasts=lasts)
+    outcome, recorded = walked(simulate, text, 4.0)
     assert outcome.exit_reason == "fall"
     assert [e[1] for e in recorded.events if e[1] != "push"][-1] == "fall"
 
 
 @pytest.mark.parametrize("kind", HARDLY)
 def test_a_walking_robot_stays_on_its_feet_under(simulate, kind):
-    outcome, recorded = walked(simulate, fault(kind, HARDLY[kind], lasts=None), 3.0)
+    outcome, recorded = walked(simulate, fault(kind, HARDLY[kind], lasts=None), 2.2)
     assert outcome.exit_reason == "completed"
     assert not any(r.truth.fallen for r in recorded.records)
 
 
 def test_a_mover_that_appears_stops_the_robot_or_is_passed(simulate):
-    stands = '{motion="line",start=[0.6,0.0],heading_deg=90.0,speed=0.000001}'
+    stands = '{motion="line",start=[0.5,0.0],heading_deg=90.0,speed=0.000001}'
     settings = (
         *BODY[:-1],
-        'mission={kind="points",points=[[1.2,0.0]]}',
+        'mission={kind="points",points=[[1.0,0.0]]}',
         f"world.mover=[{stands}]",
-        f"fault=[{fault('mover-appears', 'mover=0', start=2.0, lasts=0)}]",
+        f"fault=[{fault('mover-appears', 'mover=0', start=1.0, lasts=0)}]",
     )
     outcome, recorded, _ = simulate("quick", *settings, duration=20.0)
     assert outcome.exit_reason == "goal"
     assert not any(r.truth.contacts for r in recorded.records)
     gap = [r.truth.clearance for r in recorded.records]
-    before = [g for r, g in zip(recorded.records, gap, strict=True) if r.time < 1.99]
+    before = [g for r, g in zip(recorded.records, gap, strict=True) if r.time < 0.99]
     assert min(before) > 10.0
     assert min(gap) < 0.5
 
 
 def test_begin_and_end_of_a_fault_are_events_of_their_time(simulate):
     both = ",".join([fault("imu-tilt", "size=0.02"), fault("camera-drops", "size=0.5", lasts=0)])
-    _, recorded, _ = simulate("quick", f"fault=[{both}]", duration=2.0)
+    _, recorded, _ = simulate("quick", f"fault=[{both}]", duration=1.2)
     assert recorded.events == [
-        (1.0, "fault", "imu-tilt, size 0.02, axis pitch: begins"),
-        (1.0, "fault", "camera-drops, size 0.5: begins"),
-        (1.5, "fault", "imu-tilt, size 0.02, axis pitch: ends"),
+        (0.7, "fault", "imu-tilt, size 0.02, axis pitch: begins"),
+        (0.7, "fault", "camera-drops, size 0.5: begins"),
+        (1.1, "fault", "imu-tilt, size 0.02, axis pitch: ends"),
     ]
 
 

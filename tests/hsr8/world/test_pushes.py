@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from hsr8.scenario.disturbance import Disturbance, Push, PushedBody, RandomPushes
+from hsr8.scenario.fault import PushOnce
 from hsr8.world.assembly import Optics, assemble
 from hsr8.world.layout import Layout
 from hsr8.world.pushes import Pusher, ScheduledPush, schedule
@@ -31,6 +32,15 @@ def test_the_impulse_is_kept_whatever_the_ticks_make_of_the_duration(duration):
     (push,) = schedule(asked, 10.0, TICK, rng())
     assert push.force * push.ticks * TICK == pytest.approx(0.7)
     assert push.first == 200
+
+
+def test_a_fault_is_the_same_push_as_one_that_is_given():
+    given = Push(time=1.2, duration=0.1, impulse=0.7, direction_deg=30.0, body="head_tilt_link")
+    fault = PushOnce(
+        kind="push", start=1.2, duration=0.1, size=0.7, direction_deg=30.0, body="head_tilt_link"
+    )
+    asked = schedule(Disturbance(push=(given,)), 10.0, TICK, rng())
+    assert schedule(Disturbance(), 10.0, TICK, rng(), [fault]) == asked
 
 
 def test_drawn_pushes_are_as_asked_and_in_order():
