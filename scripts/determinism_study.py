@@ -191,6 +191,11 @@ def resumed(cases: list[Case], kills: int, folder: Path) -> list[str]:
     return lines
 
 
+def seeds_of(text: str) -> tuple[int, ...]:
+    """Seeds of a range or list; none of an empty one."""
+    return tuple(parse_seeds(text)) if text else ()
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--light", default="1000:1004", help="seeds with stand-ins: A:B or a list")
@@ -201,7 +206,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
     light = [Case("light", s, STAND_INS, arguments.duration) for s in parse_seeds(arguments.light)]
-    full = [Case("full", s, (), arguments.full_duration) for s in parse_seeds(arguments.full)]
+    full = [Case("full", s, (), arguments.full_duration) for s in seeds_of(arguments.full)]
     replays = Replays()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

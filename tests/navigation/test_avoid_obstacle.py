@@ -75,8 +75,33 @@ def test_on_the_circle_it_still_acts():
 
 
 def test_at_a_centre_the_given_direction_counts():
-    u = field([0.0, 0.0], s=np.array([0.0]), inside="outward", outward=np.array([1.2]))
-    assert not u.any() or np.arctan2(u[0, 1], u[0, 0]) == pytest.approx(1.2)
+    u = field([0.002, 0.002], inside="outward", outward=np.array([1.2]))
+    assert np.arctan2(u[0, 1], u[0, 0]) == pytest.approx(1.2)
+    apart = field([0.02, 0.02], inside="outward", outward=np.array([1.2]))
+    assert np.arctan2(apart[0, 1], apart[0, 0]) == pytest.approx(pi / 4)
+
+
+def test_the_spiral_has_the_printed_angles():
+    assert spiral_turn(0.05, 0.3, 0.2, 0.3) == pytest.approx(0.5 * pi * 0.5)
+    assert spiral_turn(0.7, 0.3, 0.2, 0.3) == pytest.approx(0.5 * pi * (2.0 - 0.8 / 1.3))
+
+
+def test_a_given_sense_counts_whatever_the_short_way():
+    for sign in (1, -1):
+        place = np.array([-0.4, 0.1])
+        u = field(place, signs=np.array([sign]))[0]
+        assert np.sign(place[0] * u[1] - place[1] * u[0]) == sign
+
+
+def test_an_obstacle_acts_as_far_as_its_radius_reaches_back_to_the_target():
+    """The second condition: the way from the robot is longer than that from the obstacle."""
+    target, place = np.array([1.0, 0.0]), np.array([0.0, 0.5])
+    for x, acts in ((-0.1, True), (-0.6, False)):
+        centre = np.array([[x, 0.6]])
+        far = np.hypot(*(target - centre[0])) - np.hypot(*(target - place))
+        assert (far <= S[0]) == acts
+        u = field(place, centres=centre, target=target, abeam=True, inside="outward")
+        assert u.any() == acts
 
 
 def test_rigid_motion_moves_the_field_along():

@@ -107,3 +107,27 @@ def test_the_largest_plateau_wins_over_the_nearest():
     gm[4:9, 2:7] = 1.0
     gm[8, 18] = 1.0
     assert g.highest_centre(gm, 0.0, g.tilt[8])[0] == pytest.approx(g.pan[4])
+
+
+def test_the_value_is_that_of_the_nearest_cell_also_outside_the_grid():
+    g = grid()
+    gm = np.arange(17.0 * 37.0).reshape(17, 37)
+    rng = np.random.default_rng(3)
+    for pan, tilt in zip(rng.uniform(-2, 2, 100), rng.uniform(-1.5, 0.8, 100), strict=True):
+        row, column = np.argmin(np.abs(g.tilt - tilt)), np.argmin(np.abs(g.pan - pan))
+        assert g.value_at(gm, pan, tilt) == gm[row, column]
+
+
+def test_of_plateaus_equally_far_the_smaller_pan_wins():
+    g = grid()
+    gm = np.zeros((17, 37))
+    gm[8, [10, 26]] = 1.0
+    assert g.highest_centre(gm, 0.0, g.tilt[8]) == (g.pan[10], g.tilt[8])
+
+
+def test_a_bent_plateau_gives_its_member_nearest_the_centroid():
+    g = grid()
+    gm = np.zeros((17, 37))
+    gm[4:9, 10] = gm[8, 10:15] = 1.0  # centroid (6.44, 11.56), not of the plateau
+    gm[7, 11] = 1.0
+    assert g.highest_centre(gm, 0.0, 0.0) == (g.pan[11], g.tilt[7])

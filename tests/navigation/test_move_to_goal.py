@@ -143,3 +143,52 @@ def test_the_vector_has_the_direction_phi_and_is_zero_at_the_destination(p):
     u = muf(places, 0.0, ORIGIN, 0.5, p)
     assert u == pytest.approx(np.stack([np.cos(phi), np.sin(phi)], axis=1))
     assert not muf(ORIGIN, 0.0, ORIGIN, 0.5, p).any()
+
+
+def test_the_printed_field_is_the_weighted_sum_of_both_angles():
+    p = replace(PAPER, arrival="hard", k_alpha=0.6, k_beta=-0.4, d_con=1.0)
+    place, heading, target_heading = (-0.3, -0.3), 0.2, 1.1  # the destination bears pi/4
+    alpha, beta = pi / 4 - heading, target_heading - pi / 4
+    phi = move_to_goal(place, heading, ORIGIN, target_heading, p)
+    assert phi == pytest.approx(heading + 0.6 * alpha - 0.4 * beta)
+
+
+def test_the_arrival_is_ramped_in_and_clamped():
+    p = replace(
+        EXTENDED, arrival="ramped", d_con=0.8, arrival_ramp=0.5, k_beta=-0.5, arrival_clamp=0.6
+    )
+    assert move_to_goal((-0.6, 0.0), 0.0, ORIGIN, 0.8, p) == pytest.approx(-0.5 * 0.8 * 0.5)
+    assert move_to_goal((-0.4, 0.0), 0.0, ORIGIN, 0.8, p) == pytest.approx(-0.5 * 0.8)
+    assert move_to_goal((-0.1, 0.0), 0.0, ORIGIN, 0.8, p) == pytest.approx(-0.5 * 0.8)
+    assert move_to_goal((-0.1, 0.0), 0.0, ORIGIN, 2.0, p) == pytest.approx(-0.6)
+    assert move_to_goal((-0.1, 0.0), 0.0, ORIGIN, -2.0, p) == pytest.approx(0.6)
+
+
+def test_the_posture_field_turns_by_the_angle_to_the_point_beyond():
+    p = replace(POSTURE, posture_gain=2.0, posture_offset=0.3)
+    beyond = np.arctan2(0.3, 0.4)  # 0.4 m before the destination, 0.3 m to its left beyond
+    phi = move_to_goal((-0.4, 0.0), 0.0, ORIGIN, pi / 2, p)
+    assert phi == pytest.approx(-2.0 * beyond)
+
+
+def test_each_side_is_set_and_forgotten():
+    side = ArrivalSide(EXTENDED)
+    assert side.update(-3.0) == -1
+    assert side.update(3.1) == -1
+    side.reset()
+    assert side.update(2.0) == 0
+    assert side.update(2.5) == 1
+
+
+def test_a_remembered_side_turns_a_whole_turn_the_other_way():
+    p = replace(EXTENDED, arrival_clamp=10.0, k_beta=-0.5, arrival_ramp=0.5, d_con=0.8)
+    place = (0.1, 0.0)  # beyond the destination, which bears pi
+    for side, beta in ((1, 3.0), (-1, 3.0 - 2 * pi)):
+        phi = move_to_goal(place, 0.0, ORIGIN, wrap_array(np.array(pi + 3.0)), p, side=side)
+        assert wrap_array(phi - pi + 0.5 * beta) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_k_rho_is_linear_up_to_its_distance():
+    p = replace(EXTENDED, slow_share=0.2, slow_distance=0.4)
+    assert arrival_gain(0.1, True, p) == pytest.approx(0.4)
+    assert arrival_gain(0.1, False, p) == 1.0

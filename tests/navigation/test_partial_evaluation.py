@@ -151,3 +151,25 @@ def test_the_set_o_does_not_depend_on_the_frame(track):
     assert psi_obstacle(here, np.array([0.1, 0.2]), v, E) == pytest.approx(
         psi_obstacle(there, pose[:2], r @ v, E)
     )
+
+
+def test_frontal_is_up_to_abeam(track):
+    def seen(degrees, speed=0.0):
+        a = np.radians(degrees)
+        outward = np.array([np.cos(a), np.sin(a)])
+        o = ObstacleSet.from_tracks([track(outward, speed * outward)])
+        return bool(attended(o, np.zeros(3), STILL, 2.0)[0])
+
+    assert [seen(d) for d in (85, 95, -85, -95, 170)] == [True, False, True, False, False]
+    assert seen(170, -0.1)
+    assert not seen(170, 0.1)
+
+
+def test_psi_way_is_the_share_of_its_threshold():
+    assert psi_way(0.25 * E.d_n_thres, E) == pytest.approx(0.25)
+    assert psi_way(-1.0, E) == 0.0
+
+
+def test_psi_sf_is_the_worse_of_place_and_heading():
+    assert psi_self(covariance(0.3 * E.t_sf, turn=0.6 * E.t_heading), E) == pytest.approx(0.6)
+    assert psi_self(covariance(0.7 * E.t_sf, turn=0.6 * E.t_heading), E) == pytest.approx(0.7)

@@ -1,5 +1,6 @@
 import numpy as np
 from filterpy.kalman import KalmanFilter
+from scipy.stats import multivariate_normal
 
 from navigation import track_filter
 
@@ -67,3 +68,12 @@ def test_innovation_broadcasts_tracks_against_sightings():
             S, y = P[i] + R[j], z[j] - x[i]
             assert np.isclose(pairs.distance[i, j], y @ np.linalg.solve(S, y))
             assert np.isclose(pairs.log_det[i, j], np.log(np.linalg.det(S)))
+
+
+def test_the_log_likelihood_is_that_of_the_gaussian_up_to_its_constant():
+    rng = np.random.default_rng(4)
+    x, P = rng.standard_normal((6, 2)), random_covariances(rng, 6, 2)
+    z, R = x + 0.05 * rng.standard_normal((6, 2)), random_covariances(rng, 6, 2)
+    seen = track_filter.innovation(x, P, z, R)
+    exact = [multivariate_normal(x[i], P[i] + R[i]).logpdf(z[i]) for i in range(6)]
+    assert np.allclose(seen.log_likelihood - np.log(2 * np.pi), exact)

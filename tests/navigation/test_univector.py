@@ -73,3 +73,37 @@ def test_a_goal_near_an_obstacle_shrinks_it_but_never_into_the_bodies():
     assert np.all(d_e[untouched] == 0.2)
     reachable = distance > 0.235
     assert np.all((s < distance)[reachable])
+
+
+def test_the_printed_sum_weighs_the_goal_against_the_direction_of_all_obstacles():
+    u_auf = np.array([unit(0.4), unit(1.0), [0.0, 0.0]])
+    total = weighted_sum(unit(-0.3), u_auf, 0.75, 0.25)
+    assert total == pytest.approx(0.75 * unit(-0.3) + 0.25 * unit(0.7))
+
+
+def test_obstacles_count_by_the_square_of_their_nearness():
+    """Two at right angles, of nearness 0.8 and 0.4: the nearer one counts four times."""
+    u_auf, ramp = unit(np.array([0.0, np.pi / 2])), np.array([0.8, 0.4])
+    total = blended_sum(unit(1.0), u_auf, ramp, *NO_VIRTUAL, virtual_weight=1.5)
+    avoid = np.array([4.0, 1.0]) / np.hypot(4.0, 1.0)
+    assert total == pytest.approx(0.2 * unit(1.0) + 0.8 * avoid)
+
+
+def test_virtual_obstacles_join_in_with_their_weight():
+    u_auf, u_virtual = unit(np.array([0.0])), unit(np.array([np.pi / 2]))
+    ramp, weight = np.array([0.4]), np.array([0.8])
+    total = blended_sum(unit(1.0), u_auf, ramp, u_virtual, weight, virtual_weight=1.5)
+    avoid = np.array([1.0, 6.0]) / np.hypot(1.0, 6.0)
+    assert total == pytest.approx(0.2 * unit(1.0) + 0.8 * avoid)
+    alone = blended_sum(
+        unit(1.0), np.zeros((0, 2)), np.zeros(0), u_virtual, weight, virtual_weight=1.5
+    )
+    assert alone == pytest.approx(0.2 * unit(1.0) + 0.8 * u_virtual[0])
+
+
+def test_near_the_goal_the_radius_leaves_its_share_of_the_room():
+    p = UnivectorParameters(goal_share=0.5, goal_gap=0.02, goal_offset=0.03, d_e=0.2)
+    s_oe, s_phys = np.full(3, 0.3), np.full(3, 0.2)
+    s, d_e = shrunk_for_goal(s_oe, s_phys, np.array([0.21, 0.3, 0.45]), p)
+    assert s == pytest.approx([0.21, 0.25, 0.3])
+    assert d_e == pytest.approx([0.03, 0.05, 0.15])

@@ -122,3 +122,25 @@ def test_inside_the_band_nobody_waits_for_the_mover(choose):
     assert choose(head_on, horizon=6.0, wait=True).situation == "brake"
     crossing = (Encounter(0.6, -0.8, 0.0, 0.1, 0.2),)
     assert choose(crossing, desired=0.1, now=0.1).situation in {"brake", "accelerate"}
+
+
+def test_a_speed_that_cannot_be_gained_in_time_is_not_chosen():
+    crossing = (Encounter(0.45, -0.7, 0.0, 0.1, 0.2),)
+    needed = sampled(crossing, desired=0.06, now=0.06).speed - 0.06
+
+    def choice(acceleration):
+        return sample_speed(
+            crossing, 0.06, 0.06, v_max=V_MAX, acceleration=acceleration, samples=21, horizon=6.0,
+            acceleration_time=0.8, wait_in_band=False,
+        )  # fmt: skip
+
+    assert choice(1.01 * needed / 0.8).situation == "accelerate"
+    assert choice(0.99 * needed / 0.8).situation == "brake"
+
+
+def test_the_acceleration_limit_is_that_of_the_formula():
+    crossing = (Encounter(0.45, -0.7, 0.0, 0.1, 0.2),)
+    fast = closed(crossing, desired=0.06, now=0.06, acceleration=inf).speed
+    a = needed_acceleration(0.06, fast, crossing[0].touch_time(fast), 0.34)
+    assert closed(crossing, desired=0.06, now=0.06, acceleration=1.001 * a).speed == fast
+    assert closed(crossing, desired=0.06, now=0.06, acceleration=0.999 * a).situation == "brake"

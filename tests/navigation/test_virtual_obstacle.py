@@ -96,3 +96,35 @@ def test_near_the_path_the_goal_decides_the_side():
     sides.update(1, foot(1.0, -0.02), across)
     sides.keep(set())
     assert sides.update(1, foot(1.0, -0.02), (0.0, -1.0)) == -1
+
+
+def test_the_foot_does_not_depend_on_the_frame():
+    a, shift = 0.8, np.array([3.0, -1.0])
+    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    rng = np.random.default_rng(3)
+    for robot in rng.uniform((0.1, -1.0), (1.0, 1.0), (20, 2)):
+        here = foot(*robot, VELOCITY)
+        there = foot(*(r @ robot + shift), r @ VELOCITY, shift)
+        assert (there.along, there.lateral) == pytest.approx((here.along, here.lateral))
+        assert (there.x, there.y) == pytest.approx(r @ [here.x, here.y] + shift)
+        for side in (1, -1):
+            assert there.normal(side) == pytest.approx(r @ here.normal(side))
+        sides = [
+            VirtualSides(MoverParameters()).update(1, f, tuple(u))
+            for f, u in ((here, [0.6, 0.8]), (there, r @ [0.6, 0.8]))
+        ]
+        assert sides[0] == sides[1]
+
+
+def test_the_printed_radius_is_the_oval_of_the_obstacle():
+    assert printed_radius(foot(0.4, 0.9), 0.3, 0.8, 0.6) == pytest.approx(0.6 * 0.3)
+    assert printed_radius(foot(0.4, 0.1), 0.3, 0.8, 0.6) == pytest.approx(0.1)
+    assert printed_path_length(0.0, 0.5, 12.0, 0.5, 0.05) == pytest.approx(0.3)
+
+
+def test_on_its_own_side_of_the_path_the_robot_stays_whatever_the_goal():
+    p = MoverParameters()
+    far = p.side_switch + 0.01
+    assert VirtualSides(p).update(1, foot(1.0, far), (0.0, -1.0)) == 1
+    assert VirtualSides(p).update(1, foot(1.0, -far), (0.0, 1.0)) == -1
+    assert VirtualSides(p).update(1, foot(1.0, 0.02), (0.0, -1.0)) == -1

@@ -37,3 +37,24 @@ def test_it_goes_from_foot_to_foot_without_jumps(ends):
     assert (ramps[-1].bx, ramps[-1].by) == end
     assert sum(r.ticks for r in ramps) == (2 if ends else 3) * 68 + (REFERENCE.stop if ends else 0)
     assert all(r.feet[0] is r.feet[1] for r in ramps if (r.ax, r.ay) == (r.bx, r.by))
+
+
+def test_both_feet_carry_alike_halfway_between_them():
+    (ax, ay), (bx, by) = REFERENCE.under(LEFT), REFERENCE.under(RIGHT)
+    assert REFERENCE.between(LEFT, RIGHT) == pytest.approx(((ax + bx) / 2, (ay + by) / 2))
+
+
+def test_under_a_foot_it_is_ahead_of_the_ankle_and_inward():
+    parameters = WalkingParameters()
+    x, y = REFERENCE.under(Footstep(True, 0.0, 0.0, 0.0))
+    assert x == pytest.approx(0.01 + parameters.pattern.zmp_forward)
+    assert y == pytest.approx(-parameters.pattern.zmp_inward)
+
+
+def test_each_step_takes_its_double_and_its_single_support():
+    ramps = REFERENCE.onwards(LEFT, [RIGHT], TIMING, ends=False)
+    assert [r.ticks for r in ramps] == [14, 54]
+    assert ramps[0].feet == (LEFT, RIGHT)
+    last = REFERENCE.onwards(LEFT, [RIGHT], TIMING, ends=True)
+    assert [r.ticks for r in last] == [REFERENCE.stop]
+    assert last[0].feet == (LEFT, RIGHT)
