@@ -20,7 +20,7 @@ VELOCITY_SCALE = 2.0  # an arrow shows the way of so many seconds [s]
 VIEW_RANGE = 1.5  # drawn length of the field of view [m]
 MAP_HEIGHT, MARK_HEIGHT = 0.002, 0.012  # heights at which flat things are drawn [m]
 FLAT = 0.004  # and their thickness [m]
-PARTICLE, PARTICLE_SHARES = 0.016, (0.2, 4.0)  # its drawn radius [m], by relative weight
+PARTICLE, PARTICLE_SHARES = 0.025, (0.2, 4.0)  # its drawn radius [m], by relative weight
 LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
 SEEN, UNSEEN = 255, 160  # opacity of tracks in view and out of it
 

@@ -66,7 +66,7 @@ def screenshot(logs: Sequence[Path], time: float, size: tuple[int, int]) -> byte
         try:
             client = _connect(viewer, port)
             _wait_for_recording(client, viewer, logs[0])
-            client.set_time(TIMELINE, duration=time, play_state="paused")
+            _stop_at(client, viewer, time)
             clock.sleep(SETTLE)
             return bytes(client.take_screenshot())
         except ConnectionError:  # it went down while it was talked to
@@ -129,6 +129,19 @@ def _wait_for_recording(client: ViewerClient, viewer: subprocess.Popen[bytes], l
     if viewer.poll() is None:
         raise UsageError(f"the Rerun viewer finds no recording in {log}")
     raise _failed(viewer)
+
+
+def _stop_at(client: ViewerClient, viewer: subprocess.Popen[bytes], time: float) -> None:
+    """Go to a time; a recording that is still being read has none for a while."""
+    end = clock.monotonic() + START_LIMIT
+    while True:
+        try:
+            client.set_time(TIMELINE, duration=time, play_state="paused")
+            return
+        except ConnectionError:
+            if clock.monotonic() >= end or viewer.poll() is not None:
+                raise
+            clock.sleep(0.2)
 
 
 def _failed(viewer: subprocess.Popen[bytes]) -> UsageError:

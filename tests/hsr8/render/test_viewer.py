@@ -17,6 +17,33 @@ def test_the_line_that_says_what_went_wrong_is_found():
     assert viewer.complaint("INFO loading\nINFO loaded\n") == ""
 
 
+def test_a_recording_without_times_yet_is_waited_for(monkeypatch):
+    answers = [ConnectionError("has no timelines yet"), None]
+
+    class Client:
+        def set_time(self, *_, **__):
+            answer = answers.pop(0)
+            if answer:
+                raise answer
+
+    monkeypatch.setattr(viewer.clock, "sleep", lambda _: None)
+    viewer._stop_at(Client(), Running(None), 1.0)
+    assert answers == []
+    answers = [ConnectionError("gone")]
+    with pytest.raises(ConnectionError, match="gone"):
+        viewer._stop_at(Client(), Running(1), 1.0)
+
+
+class Running:
+    """A process that has ended with `code`, or has not."""
+
+    def __init__(self, code):
+        self._code = code
+
+    def poll(self):
+        return self._code
+
+
 def test_a_viewer_that_goes_down_leads_to_the_cure(monkeypatch):
     program = "import sys; sys.exit('Error: no graphics')"
     monkeypatch.setattr(viewer, "_command", lambda log, port: [sys.executable, "-c", program])
