@@ -12,6 +12,7 @@ from hsr8.cli.options import Check
 from hsr8.errors import UsageError
 from hsr8.render.png import write_png
 from hsr8.scenario.command import Command
+from hsr8.scenario.disturbance import RandomPushes
 from hsr8.scenario.loader import load
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
@@ -110,8 +111,8 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     facts.add_row("mission", f"{mission.kind}, {_points(layout)}")
     if isinstance(mission, Walk):
         facts.add_row("command", _command(scenario.command))
-    if not scenario.disturbance.empty:
-        facts.add_row("pushes", _pushes(scenario))
+    if scenario.disturbance.random is not None:
+        facts.add_row("pushes", _pushes(scenario.disturbance.random))
     if scenario.fault:
         facts.add_row("faults", ", ".join(f"{f.kind} at {f.start:g} s" for f in scenario.fault))
     facts.add_row("certificate", _certificate(summary, layout))
@@ -147,13 +148,9 @@ def _command(command: Command) -> str:
     return f"{len(command.stretch)} stretches, {total:g} s"
 
 
-def _pushes(scenario: Scenario) -> str:
-    disturbance = scenario.disturbance
-    said = [f"{len(disturbance.push)} given"] if disturbance.push else []
-    if disturbance.random is not None:
-        least, most = disturbance.random.impulse
-        said.append(f"drawn, {least:g} to {most:g} N s on {disturbance.random.body}")
-    return ", ".join(said)
+def _pushes(drawn: RandomPushes) -> str:
+    least, most = drawn.impulse
+    return f"drawn, {least:g} to {most:g} N s on {drawn.body}"
 
 
 def _points(layout: Layout) -> str:

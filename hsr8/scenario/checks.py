@@ -121,12 +121,6 @@ def _disturbance(scenario: Scenario) -> Iterator[Problem]:
             ("disturbance",),
             f'a {scenario.robot.body} body has no dynamics to push; robot.body = "full" has',
         )
-    for i, push in enumerate(disturbance.push):
-        if push.time >= scenario.duration:
-            yield Problem(
-                ("disturbance", "push", i, "time"),
-                f"{push.time:g} s is not before the end of the run at {scenario.duration:g} s",
-            )
 
 
 def _inside(scenario: Scenario) -> Iterator[Problem]:

@@ -5,12 +5,13 @@ from typing import Annotated, Literal
 from annotated_types import Interval
 from pydantic import Field, model_validator
 
-from hsr8.scenario.disturbance import PushedBody
+from hsr8.scenario.disturbance import Impulse, PushDuration, PushedBody
 from hsr8.scenario.section import CONTROL_PERIOD_MS, Degrees, Point, Section
 from walking.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 
 Instant = Annotated[float, Interval(ge=0.0, le=7200.0)]
 Lasting = Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=7200.0)]
+Offset = Annotated[float, Interval(ge=-0.5, le=0.5)]
 Share = Annotated[float, Interval(ge=0.0, le=1.0)]
 Foot = Literal["left", "right", "both"]
 Joint = Literal[
@@ -244,19 +245,21 @@ class ServoLate(_JointFault):
     """How late, in whole control ticks of 5 ms [s]."""
 
 
-class PushOnce(_Fault):
+class Push(_Fault):
     """A constant horizontal force on one body; needs the full body."""
 
     kind: Literal["push"]
     """A push."""
-    duration: Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=60.0)] = 0.05
+    duration: PushDuration = 0.05
     """How long it lasts, in whole control ticks [s]."""
-    size: Annotated[float, Interval(gt=0.0, le=100.0)]
+    size: Impulse
     """Impulse, force times duration [N s]."""
     direction_deg: Degrees = 90.0
     """Where it pushes to: 0 is the robot's forward when it begins, 90 its left [deg]."""
     body: PushedBody = "torso_link"
     """What is pushed."""
+    point: tuple[Offset, Offset, Offset] = (0.0, 0.0, 0.0)
+    """Where, from the body's centre of mass, along the body's axes [m]."""
 
 
 class Slippery(_Fault):
@@ -308,7 +311,7 @@ class MoverAppears(_Fault):
 CameraFault = CameraBlack | CameraLight | CameraDrops | CameraMisses | CameraGhosts | CameraLate
 SensorFault = ImuTilt | ImuTurn | ImuFrozen | EncoderOffset | EncoderFrozen | FootDead | FootGain
 ServoFault = ServoStuck | ServoLate
-WorldFault = ServoWeak | Slippery | Bump | PushOnce
+WorldFault = ServoWeak | Slippery | Bump | Push
 """Faults that only a body with dynamics has."""
 Fault = Annotated[
     CameraFault | SensorFault | ServoFault | WorldFault | MoverAppears,

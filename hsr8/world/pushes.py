@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.disturbance import Disturbance
-from hsr8.scenario.fault import Fault, PushOnce
+from hsr8.scenario.fault import Fault, Push
 from hsr8.world.truth import PushActing
 
 Array = NDArray[np.float64]
@@ -46,19 +46,13 @@ def schedule(
     """All pushes of a run in the order in which they begin.
 
     Args:
-        disturbance: section of the scenario.
+        disturbance: section of the scenario, which draws pushes.
         duration: of the run [s].
         period: control tick [s].
         rng: draws the random ones.
-        faults: some of them are pushes, too.
+        faults: of the scenario, some of which are pushes.
     """
-    pushes = [_of_fault(fault, period) for fault in faults if isinstance(fault, PushOnce)]
-    for push in disturbance.push:
-        ticks = _ticks(push.duration, period)
-        force = push.force if push.force is not None else (push.impulse or 0.0) / (ticks * period)
-        first = round(push.time / period)
-        direction = radians(push.direction_deg)
-        pushes.append(ScheduledPush(first, ticks, force, direction, push.body, push.point))
+    pushes = [_of_fault(fault, period) for fault in faults if isinstance(fault, Push)]
     drawn = disturbance.random
     time = drawn.start if drawn is not None else duration
     while drawn is not None and time < duration:
@@ -135,10 +129,11 @@ class Pusher:
         return seen
 
 
-def _of_fault(fault: PushOnce, period: float) -> ScheduledPush:
+def _of_fault(fault: Push, period: float) -> ScheduledPush:
     ticks = _ticks(fault.duration, period)
     first, direction = round(fault.start / period), radians(fault.direction_deg)
-    return ScheduledPush(first, ticks, fault.size / (ticks * period), direction, fault.body)
+    force = fault.size / (ticks * period)
+    return ScheduledPush(first, ticks, force, direction, fault.body, fault.point)
 
 
 def _ticks(duration: float, period: float) -> int:

@@ -366,10 +366,10 @@ def test_a_file_of_any_name_is_a_scenario(tmp_path, file, name):
         ("walk", "command.random.vx=[0.3, 0.1]", "the smaller bound comes first"),
         ("walk", "command.stretch=[]", "nothing is asked"),
         ("course", "command.vx=0.1", 'mission.kind = "walk" obeys them'),
-        ("walk", "disturbance.push=[{time=1}]", "give either impulse"),
-        ("walk", "disturbance.push=[{time=1, impulse=1, force=1}]", "give either impulse"),
-        ("walk", "disturbance.push=[{time=99, impulse=1}]", "not before the end of the run"),
-        ("walk", 'disturbance.push=[{time=1, impulse=1, body="torso"}]', "did you mean"),
+        ("walk", 'fault=[{kind="push"}]', "fault[0].size: is missing"),
+        ("walk", 'fault=[{kind="push",start=99,size=1}]', "not before the end of the run"),
+        ("walk", 'fault=[{kind="push",size=1,body="torso"}]', "did you mean"),
+        ("walk", "disturbance.push=[{time=1, impulse=1}]", "known here: random"),
     ],
 )
 def test_commands_and_pushes_that_make_no_sense_are_named(name, override, wanted):
@@ -380,8 +380,8 @@ def test_commands_and_pushes_that_make_no_sense_are_named(name, override, wanted
 
 
 def test_a_body_without_dynamics_cannot_be_pushed():
-    push = "disturbance.push=[{time=1, impulse=1}]"
-    assert load("walk", [push]).disturbance.push[0].impulse == 1.0
+    push = "disturbance.random={}"
+    assert load("walk", [push]).disturbance.random.impulse == (0.2, 0.8)
     with pytest.raises(ScenarioError, match="has no dynamics to push"):
         load("walk", [push, "robot.body=kinematic"])
 

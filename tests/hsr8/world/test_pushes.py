@@ -2,8 +2,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.scenario.disturbance import Disturbance, Push, PushedBody, RandomPushes
-from hsr8.scenario.fault import PushOnce
+from hsr8.scenario.disturbance import Disturbance, PushedBody, RandomPushes
+from hsr8.scenario.fault import Push
 from hsr8.world.assembly import Optics, assemble
 from hsr8.world.layout import Layout
 from hsr8.world.pushes import Pusher, ScheduledPush, schedule
@@ -28,31 +28,22 @@ def test_every_body_that_may_be_pushed_is_in_the_model(model):
 
 @pytest.mark.parametrize("duration", [0.005, 0.05, 0.123])
 def test_the_impulse_is_kept_whatever_the_ticks_make_of_the_duration(duration):
-    asked = Disturbance(push=(Push(time=1.0, duration=duration, impulse=0.7),))
-    (push,) = schedule(asked, 10.0, TICK, rng())
+    asked = [Push(kind="push", start=1.0, duration=duration, size=0.7)]
+    (push,) = schedule(Disturbance(), 10.0, TICK, rng(), asked)
     assert push.force * push.ticks * TICK == pytest.approx(0.7)
     assert push.first == 200
 
 
-def test_a_fault_is_the_same_push_as_one_that_is_given():
-    given = Push(time=1.2, duration=0.1, impulse=0.7, direction_deg=30.0, body="head_tilt_link")
-    fault = PushOnce(
-        kind="push", start=1.2, duration=0.1, size=0.7, direction_deg=30.0, body="head_tilt_link"
-    )
-    asked = schedule(Disturbance(push=(given,)), 10.0, TICK, rng())
-    assert schedule(Disturbance(), 10.0, TICK, rng(), [fault]) == asked
-
-
 def test_drawn_pushes_are_as_asked_and_in_order():
     asked = Disturbance(
-        push=(Push(time=20.0, force=5.0), Push(time=2.0, force=5.0)),
         random=RandomPushes(start=4.0, interval=(1.0, 2.0), impulse=(0.3, 0.4)),
     )
-    pushes = schedule(asked, 60.0, TICK, rng())
-    assert pushes == schedule(asked, 60.0, TICK, rng())
+    given = [Push(kind="push", start=start, size=5.0) for start in (20.0, 2.0)]
+    pushes = schedule(asked, 60.0, TICK, rng(), given)
+    assert pushes == schedule(asked, 60.0, TICK, rng(), given)
     first = [push.first for push in pushes]
     assert first == sorted(first)
-    drawn = [p for p in pushes if p.force != 5.0]
+    drawn = [p for p in pushes if p.force * p.ticks * TICK < 1.0]
     assert len(drawn) >= 28
     assert all(0.3 <= p.force * p.ticks * TICK <= 0.4 for p in drawn)
     gaps = np.diff([p.first for p in drawn]) * TICK
