@@ -1,12 +1,10 @@
 """All that reached the belief and the decisions, exactly, with fingerprints of what came of it.
 
-A file of frames behind a magic word. Each frame has its length and checksum before it, so
-a damaged one is named and a killed run loses its last at most. Numbers are little-endian
-doubles as they were computed: estimator and planners fed with them again must give the same bits.
+A guarded file with a payload a frame. Numbers are little-endian doubles as they were computed:
+estimator and planners fed with them again must give the same bits.
 """
 
 import struct
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,13 +19,13 @@ from hsr8.recorder.fingerprints import (
     decision_fingerprints,
     fingerprints,
 )
+from hsr8.recorder.guarded_file import GuardedWriter, read_payloads
 from hsr8.recorder.record import TickRecord
 from navigation.observation import CameraView, Frame, Observation
 
 Array = NDArray[np.float64]
 
 MAGIC = b"HSR8MEA2"
-_GUARD = struct.Struct("<II")
 _COUNT = struct.Struct("<H")
 _VIEW = 9 + 3 + 5  # doubles of a camera view
 _FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame apart from its observations
@@ -61,12 +59,13 @@ class MeasurementWriter:
 
     Args:
         path: file to create, or to go on with.
+
+    Raises:
+        RecordingFailed: here and in every method, it cannot be written.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("ab")
-        if not self._file.tell():
-            self._file.write(MAGIC)
+        self._file = GuardedWriter(path, MAGIC)
 
     def on_record(self, record: TickRecord) -> None:
         """Append the camera frame, if there is one."""
@@ -75,7 +74,7 @@ class MeasurementWriter:
             payload = _packed(frame.measured) + _packed_now(frame.now, frame.decided.fresh)
             payload += b"".join(decision_fingerprints(frame.decided))
             payload += b"".join(fingerprints(frame.estimate))
-            self._file.write(_GUARD.pack(len(payload), zlib.crc32(payload)) + payload)
+            self._file.write(payload)
 
     def flush(self) -> None:
         """Hand everything to the operating system."""
@@ -96,33 +95,14 @@ def read_measurements(path: Path, *, whole: bool) -> list[Measured]:
     Raises:
         UsageError: it is missing, damaged, or no such file.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise UsageError(f"cannot read the measurements {path}: {error.strerror}") from error
-    if not content.startswith(MAGIC):
-        raise UsageError(f"{path} is no file of measurements of this version of hsr8")
     frames: list[Measured] = []
-    place = len(MAGIC)
-    while place < len(content):
-        payload = content[place + _GUARD.size :]
-        length, checksum = 0, 0
-        if len(content) - place >= _GUARD.size:
-            length, checksum = _GUARD.unpack_from(content, place)
-        if length == 0 or len(payload) < length:
-            if whole:
-                raise UsageError(f"{path} is cut off in frame {len(frames)}, at byte {place}")
-            break
-        payload = payload[:length]
-        if zlib.crc32(payload) != checksum:
-            raise UsageError(f"{path} is damaged in frame {len(frames)}, at byte {place}")
+    for where, payload in read_payloads(
+        path, MAGIC, file="file of measurements", payload="frame", whole=whole
+    ):
         try:
             frames.append(_unpacked(payload))
         except (ValueError, IndexError, struct.error) as error:
-            raise UsageError(
-                f"{path} is damaged in frame {len(frames)}, at byte {place}: {error}"
-            ) from error
-        place += _GUARD.size + length
+            raise UsageError(f"{path} is damaged {where}: {error}") from error
     return frames
 
 

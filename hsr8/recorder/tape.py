@@ -1,14 +1,13 @@
 """What every servo was told in every control tick, exactly, and a hash of the world each second.
 
-A file of blocks of a second behind a magic word: length and checksum, number of the first
-tick, hashes of world and robot before it, then the set-points of each tick as little-endian
-doubles. The last block of a finished run has no ticks, only the hashes of its end. Physics fed
-with the set-points again must give the same hashes. A killed run loses its last second.
+A guarded file with a payload, a block, a second: number of its first tick, hashes of world and
+robot before it, then the set-points of each tick as little-endian doubles. The last block of a
+finished run has no ticks, only the hashes of its end. Physics fed with the set-points again must
+give the same hashes.
 """
 
 import hashlib
 import struct
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,14 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.writing import writing
+from hsr8.recorder.guarded_file import GuardedWriter, read_payloads
 from walking.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]
 
 MAGIC = b"HSR8TAP1"
 HASH = 16  # bytes of a hash
-_GUARD = struct.Struct("<II")
 _FIRST = struct.Struct("<q")
 _ROW = 8 * len(JOINT_NAMES)
 
@@ -56,11 +54,7 @@ class TapeWriter:
     """
 
     def __init__(self, path: Path) -> None:
-        self._folder = path.parent
-        with writing(self._folder):
-            self._file = path.open("ab")
-            if not self._file.tell():
-                self._file.write(MAGIC)
+        self._file = GuardedWriter(path, MAGIC)
         self._payload = b""
         self._rows: list[bytes] = []
 
@@ -89,16 +83,16 @@ class TapeWriter:
 
     def close(self) -> None:
         """Finish the file."""
-        with writing(self._folder), self._file:
+        try:
             self._write()
+        finally:
+            self._file.close()
 
     def _write(self) -> None:
         if not self._payload:
             return
-        payload = self._payload + b"".join(self._rows)
-        with writing(self._folder):
-            self._file.write(_GUARD.pack(len(payload), zlib.crc32(payload)) + payload)
-            self._file.flush()
+        self._file.write(self._payload + b"".join(self._rows))
+        self._file.flush()
         self._payload = b""
         self._rows.clear()
 
@@ -113,29 +107,12 @@ def read_tape(path: Path, *, whole: bool) -> list[Block]:
     Raises:
         UsageError: it is missing, damaged, or no tape.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise UsageError(f"cannot read the tape {path}: {error.strerror}") from error
-    if not content.startswith(MAGIC):
-        raise UsageError(f"{path} is no tape of this version of hsr8")
     blocks: list[Block] = []
-    place = len(MAGIC)
-    while place < len(content):
-        start = place + _GUARD.size
-        length, checksum = (0, 0)
-        if start <= len(content):
-            length, checksum = _GUARD.unpack_from(content, place)
-        if length == 0 or start + length > len(content):
-            if whole:
-                raise UsageError(f"{path} is cut off in block {len(blocks)}, at byte {place}")
-            break
-        payload = content[start : start + length]
-        rows = length - _FIRST.size - 2 * HASH
-        if zlib.crc32(payload) != checksum or rows < 0 or rows % _ROW:
-            raise UsageError(f"{path} is damaged in block {len(blocks)}, at byte {place}")
+    for where, payload in read_payloads(path, MAGIC, file="tape", payload="block", whole=whole):
+        rows = len(payload) - _FIRST.size - 2 * HASH
+        if rows < 0 or rows % _ROW:
+            raise UsageError(f"{path} is damaged {where}")
         blocks.append(_block(payload))
-        place = start + length
     return blocks
 
 

@@ -149,7 +149,7 @@ def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
     file.write_bytes(b"something else")
     refused("is no file of measurements")
     file.unlink()
-    refused("cannot read the measurements")
+    refused("cannot read the file of measurements")
 
 
 def test_a_damaged_cut_or_missing_tape_is_one_clear_error(run, capsys):
