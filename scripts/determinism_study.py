@@ -17,10 +17,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from study_page import command_line, seeds_of
+
 from hsr8.evaluation.difference import motion, results
 from hsr8.evaluation.replay import replay
 from hsr8.evaluation.sweep.definition import Definition
-from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.recorder import run_folder
 from hsr8.recorder.run_reader import Run, open_run
 from hsr8.recorder.tape import read_tape
@@ -191,22 +192,17 @@ def resumed(cases: list[Case], kills: int, folder: Path) -> list[str]:
     return lines
 
 
-def seeds_of(text: str) -> tuple[int, ...]:
-    """Seeds of a range or list; none of an empty one."""
-    return tuple(parse_seeds(text)) if text else ()
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--light", default="1000:1004", help="seeds with stand-ins: A:B or a list")
-    parser.add_argument("--full", default="1000:1001", help="seeds with full physics and camera")
+    parser.add_argument("--light", type=seeds_of, default="1000:1004", help="seeds with stand-ins")
+    parser.add_argument("--full", type=seeds_of, default="1000", help="with physics and camera")
     parser.add_argument("--duration", default="20", help="of the light runs [s]")
     parser.add_argument("--full-duration", default="20", help="of the full ones [s]")
     parser.add_argument("--kills", type=int, default=10)
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
-    light = [Case("light", s, STAND_INS, arguments.duration) for s in parse_seeds(arguments.light)]
-    full = [Case("full", s, (), arguments.full_duration) for s in seeds_of(arguments.full)]
+    light = [Case("light", s, STAND_INS, arguments.duration) for s in arguments.light]
+    full = [Case("full", s, (), arguments.full_duration) for s in arguments.full]
     replays = Replays()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -216,7 +212,7 @@ def main() -> None:
     lines = [
         "# Same seed, same run",
         "",
-        f"    python scripts/determinism_study.py {' '.join(sys.argv[1:])}",
+        f"    {command_line()}",
         "",
         f"{made_with}.",
         "",

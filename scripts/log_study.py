@@ -7,14 +7,12 @@ holds what Rerun's own threads do while the log is written.
 """
 
 import argparse
-import platform
-import sys
 import tempfile
-from importlib.metadata import version
 from pathlib import Path
 from time import process_time
 
 from stopwatch import Stopwatch
+from study_page import command_line, environment
 
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
@@ -73,14 +71,12 @@ def main() -> None:
         hashes.add(state)
     same = "the same, bit for bit" if len(hashes) == 1 else "NOT the same"
     if options.write:
-        versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "rerun-sdk"))
-        where = f"Python {platform.python_version()}, {platform.machine()}, {require_gl()}"
         text = [
             "# Cost of the Rerun log",
             "",
-            f"{versions}; {where}.",
+            f"{environment(('hsr8', 'mujoco', 'rerun-sdk'))}, {require_gl()}.",
             "",
-            f"    {' '.join(['python scripts/log_study.py', *sys.argv[1:]])}",
+            f"    {command_line()}",
             "",
             f"`{options.scenario}`, seed {scenario.seed}, {options.duration:g} s: full physics and",
             "rendered camera unless the scenario says otherwise. Processor time of all threads per",

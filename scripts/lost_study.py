@@ -13,6 +13,7 @@ from math import atan2, hypot, inf, pi
 import numpy as np
 from decision_study import Run
 from decision_world import TICK
+from study_page import add_seeds
 
 from hsr8.scenario.loader import load
 from navigation.angles import wrap
@@ -53,16 +54,15 @@ def search(scenario: str, settings: list[str], seed: int) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenario")
-    parser.add_argument("--seeds", default="0-9", help="first-last, both included")
+    add_seeds(parser, range(10))
     parser.add_argument("--turns", type=float, nargs="+", default=[0.0, 0.5], help="[rad/s]")
     parser.add_argument("--set", nargs="*", default=[], help="settings of all runs, key=value")
     arguments = parser.parse_args()
-    first, last = (int(part) for part in arguments.seeds.split("-"))
     print("| turn rate while lost [rad/s] | N | found within 10 s, 40 s | median [s] | p90 [s] |")
     print("|---|---|---|---|---|")
     for turn in arguments.turns:
         settings = [*arguments.set, f"navigation.body.lost_turn={turn}"]
-        times = [search(arguments.scenario, settings, seed) for seed in range(first, last + 1)]
+        times = [search(arguments.scenario, settings, seed) for seed in arguments.seeds]
         middle, late = np.percentile(times, [50, 90], method="higher")
         in_time = sum(t <= 10.0 for t in times), sum(t <= LIMIT for t in times)
         print(

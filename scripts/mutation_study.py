@@ -14,7 +14,6 @@ import copy
 import importlib.abc
 import importlib.util
 import os
-import platform
 import random
 import signal
 import sys
@@ -22,12 +21,12 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.machinery import ModuleSpec
-from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 from hypothesis import Phase, settings
+from study_page import command_line, environment
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "results" / "mutation.md"
@@ -247,11 +246,10 @@ def main() -> None:
         head = [
             "# Mistakes made on purpose, and the tests that notice them",
             "",
-            f"    python scripts/mutation_study.py {' '.join(sys.argv[1:])}",
+            f"    {command_line()}",
             "",
-            f"Python {platform.python_version()}, pytest {version('pytest')}, "
-            f"hypothesis {version('hypothesis')}; choice of mutants: seed {options.seed}. Each ran "
-            "against the tests of its own module only, not those of the whole system.",
+            f"{environment(('pytest', 'hypothesis'))}; choice of mutants: seed {options.seed}. "
+            "Each ran against the tests of its own module only, not those of the whole system.",
             "",
         ]
         PAGE.write_text("\n".join([*head, *table, *listed, ""]))

@@ -10,18 +10,15 @@ tenth of them with full physics and camera. What grows after the warm-up is grow
 import argparse
 import gc
 import os
-import platform
-import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from time import thread_time
 
 import mujoco
 import numpy as np
-from study_page import RESULTS
+from study_page import RESULTS, add_seeds, command_line, environment
 
 from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.loop import TICKS_A_SECOND, Simulation
@@ -144,7 +141,7 @@ def main() -> None:
     parser.add_argument("--light", type=float, default=600.0, help="long run, stand-ins [s]")
     parser.add_argument("--full", type=float, default=180.0, help="long run, full physics [s]")
     parser.add_argument("--runs", type=int, default=60, help="short runs in one process")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1000])
+    add_seeds(parser, [1000])
     parser.add_argument("--write", action="store_true", help="write soak.md")
     options = parser.parse_args()
     seed = options.seeds[0]
@@ -169,18 +166,17 @@ def main() -> None:
         table.append(row(f"{options.runs} short runs in one process", samples))
         print(table[-1], flush=True)
     if options.write:
-        versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy", "rerun-sdk"))
         lines = [
             "# What grows in long runs and in many runs",
             "",
-            f"{versions}; Python {platform.python_version()}, {platform.machine()}.",
+            f"{environment(('hsr8', 'mujoco', 'numpy', 'rerun-sdk'))}.",
             "",
             "Scenario `paper` (an endless tour) for the long runs and `course` for the short "
             "ones, with every record, the log and a checkpoint every 10 s. Of each row the first "
             f"{WARM:.0%} are the warm-up. Of the short runs, one in ten has full physics "
             "and rendered camera. Memory is resident memory after a collection.",
             "",
-            f"    python scripts/soak_study.py {' '.join(sys.argv[1:])}",
+            f"    {command_line()}",
             "",
             *table,
             "",

@@ -19,9 +19,13 @@ PACKAGES = ("hsr8", "mujoco", "numpy", "pin")
 def seeds_of(text: str) -> tuple[int, ...]:
     """Seeds as a sweep takes them, ``1000:1020`` or ``1,5,9``; or ``1000-1019``, both included.
 
+    No text, no seeds.
+
     Raises:
         ValueError: it is no such thing.
     """
+    if not text:
+        return ()
     closed = re.sub(r"(\d+)-(\d+)", lambda m: f"{m[1]}:{int(m[2]) + 1}", text)
     try:
         return parse_seeds(closed)

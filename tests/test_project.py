@@ -95,6 +95,16 @@ def test_shell_script_parses_and_stops_at_errors(script: Path) -> None:
     assert "set -euo pipefail" in script.read_text()
 
 
+def test_every_script_is_told_of_or_shared() -> None:
+    """A study nobody can find is one nobody repeats."""
+    pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), ROOT / "Makefile"]
+    scripts = sorted(ROOT.glob("scripts/*.py")) + sorted(ROOT.glob("scripts/*.sh"))
+    told = "".join(page.read_text() for page in pages)
+    code = "".join(script.read_text() for script in scripts)
+    shared = set(re.findall(r"^\s*(?:from|import) (\w+)", code, re.MULTILINE))
+    assert [s.name for s in scripts if s.name not in told and s.stem not in shared] == []
+
+
 def test_readme_links_lead_somewhere() -> None:
     for page in [*ROOT.glob("*.md"), *ROOT.glob("models/*/*.md")]:
         for target in re.findall(r"\]\(([^)#:]+)\)|src=\"([^\":]+)\"", page.read_text()):
