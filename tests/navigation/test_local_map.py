@@ -139,3 +139,31 @@ def test_occupancy_does_not_depend_on_the_frame_rate(view, rate):
     odds = 15.0 * 0.1
     assert local_map.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-odds)))
     assert local_map.occupancy_at([[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))
+
+
+def test_free_is_where_the_cell_and_its_four_neighbours_were_seen_empty(view):
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    obstacle = (np.array([[1.0, 0.0]]), np.array([0.1]))
+    for k in range(5):
+        look(grid, 0.1 * k, view(pan=0.0), obstacles=obstacle)
+    n = len(grid.age)
+    empty = np.pad(grid.occupancy < 0.5, 1)
+    wanted = empty[1:-1, 1:-1] & empty[:-2, 1:-1] & empty[2:, 1:-1]
+    wanted &= empty[1:-1, :-2] & empty[1:-1, 2:]
+    centres = grid.origin + (np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1) + 0.5) * P.cell
+    assert np.array_equal(grid.free_at(centres.reshape(-1, 2)), wanted.ravel())
+    assert 0 < wanted.sum() < (grid.occupancy < 0.5).sum()
+    assert not grid.free_at([[50.0, 0.0]])[0]
+
+
+def test_evidence_of_one_look_and_of_all_is_bounded(view):
+    viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
+    place = np.array([[1.0, 0.0]])
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    grid.update(100.0, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+    odds = min(P.look * P.occupied_rate, P.evidence_limit)
+    assert grid.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-odds)))
+    for k in range(200):
+        grid.update(101.0 + k, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+    assert grid.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-P.evidence_limit)))
+    assert grid.occupancy_at([[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(P.evidence_limit)))

@@ -120,3 +120,79 @@ def test_covariances_stay_positive_definite_over_100000_updates():
         assert np.linalg.eigvalsh(C[:, ON:]).min() > 0.0
         assert np.linalg.eigvalsh(C[:, STILL, :2, :2]).min() > 0.0
         assert np.allclose(modes.weights.sum(axis=1), 1.0)
+
+
+def of_one(modes):
+    return Modes(*(a[0] for a in modes))
+
+
+def only(mode, velocity=(0.0, 0.0)):
+    """An obstacle known to be in one mode."""
+    modes = one()
+    modes.weights[0] = np.maximum(np.eye(3)[mode], 1e-12)
+    modes.states[0, :, 2:] = velocity
+    return modes
+
+
+def test_modes_change_at_their_rates():
+    p, dt = TrackingParameters(reversal_rate=0.2, start_rate=0.1, stop_rate=0.3), 0.7
+    starts, stops = 1.0 - np.exp(-0.1 * dt), 1.0 - np.exp(-0.3 * dt)
+    turns = 0.5 * (1.0 - np.exp(-2 * 0.2 * dt)) * (1.0 - stops)
+    goes_on = 1.0 - stops - turns
+    for mode, wanted in (
+        (STILL, [1.0 - starts, starts, 0.0]),
+        (ON, [stops, goes_on, turns]),
+        (BACK, [stops, turns, goes_on]),
+    ):
+        changed = motion_modes.predict(only(mode), dt, p).weights[0]
+        assert changed == pytest.approx(wanted, abs=1e-9)
+        assert motion_modes.predict(only(mode), dt, p).moving[0] == pytest.approx(1 - wanted[0])
+
+
+def test_what_sets_out_may_go_anywhere_and_what_stops_stands_where_it_was():
+    p = TrackingParameters(acceleration_noise=1e-9, reversal_rate=0.0, static_diffusion=1e-3)
+    out = motion_modes.predict(only(STILL), DT, p)
+    assert out.states[0, ON] == pytest.approx([1.0, 0.0, 0.0, 0.0], abs=1e-9)
+    assert np.diag(out.covariances[0, ON])[2:] == pytest.approx(2 * [p.velocity_sigma**2])
+    still = motion_modes.predict(only(ON, (0.1, 0.0)), 0.5, p)
+    assert still.states[0, STILL] == pytest.approx([1.0, 0.0, 0.0, 0.0], abs=1e-9)
+    grown = np.diag(still.covariances[0, STILL])
+    assert grown == pytest.approx([1e-4 + 0.5e-3, 2e-4 + 0.5e-3, 0.0, 0.0], abs=1e-9)
+
+
+def test_the_moments_are_those_of_the_mixture_of_both_ways():
+    modes = of_one(watch(one(), line(0.6, (0.1, 0.05))))
+    modes.states[BACK, 2:] = (-0.08, 0.02)
+    modes.weights[:] = 0.2, 0.5, 0.3
+    share, moving = np.array([0.625, 0.375]), modes.states[ON:]
+    mean = share @ moving
+    second = np.einsum("m,mij->ij", share, modes.covariances[ON:])
+    second += np.einsum("m,mi,mj->ij", share, moving, moving)
+    found, covariance = motion_modes.moments(modes)
+    assert found == pytest.approx(mean)
+    assert motion_modes.mean(modes) == pytest.approx(mean)
+    assert covariance == pytest.approx(second - np.outer(mean, mean))
+
+
+def test_a_new_obstacle_has_no_velocity_and_as_much_doubt_about_it_as_is_given():
+    modes = motion_modes.begun(np.array([1.0, 2.0]), R, 0.3, 0.15)
+    assert modes.weights == pytest.approx([0.7, 0.3, 0.0], abs=1e-5)
+    assert modes.weights.sum() == pytest.approx(1.0)
+    assert modes.weights.min() > 0.0
+    for mode, doubt in ((STILL, 0.0), (ON, 0.15**2), (BACK, 0.15**2)):
+        assert modes.states[mode] == pytest.approx([1.0, 2.0, 0.0, 0.0])
+        assert modes.covariances[mode] == pytest.approx(np.diag([1e-4, 2e-4, doubt, doubt]))
+
+
+def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit():
+    modes = one()
+    modes.states[0, ON, 0] += 0.02
+    modes.weights[0] = 0.5, 0.5 - 1e-6, 1e-6
+    z = np.array([[1.0, 0.0]])
+    seen = motion_modes.innovation(modes, z, R[None])
+    ratio = seen.log_likelihood[0, STILL] - seen.log_likelihood[0, ON]
+    assert 0.1 < ratio < 2.0
+    for limit in (10.0, 0.5 * ratio):
+        after = motion_modes.update(modes, R[None], seen, limit).weights[0]
+        assert np.log(after[STILL] / after[ON]) == pytest.approx(min(ratio, limit), abs=1e-4)
+        assert after.sum() == pytest.approx(1.0)

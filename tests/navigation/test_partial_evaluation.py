@@ -168,6 +168,7 @@ def test_frontal_is_up_to_abeam(track):
 def test_psi_way_is_the_share_of_its_threshold():
     assert psi_way(0.25 * E.d_n_thres, E) == pytest.approx(0.25)
     assert psi_way(-1.0, E) == 0.0
+    assert psi_way(2.0 * E.d_n_thres, E) == 1.0
 
 
 def test_psi_sf_is_the_worse_of_place_and_heading():
