@@ -100,7 +100,7 @@ class Comparison:
 
 
 def open_side(path: Path) -> Side:
-    """The sweep or the run at `path`.
+    """The sweep or the run at `path`, or the newest run below it.
 
     Raises:
         UsageError: there is neither.
@@ -109,8 +109,8 @@ def open_side(path: Path) -> Side:
         folder = SweepFolder.read(path)
         rows = {row["seed"]: flat(row) for row in folder.rows() if row["outcome"] != REFUSED}
         return Side(path, folder.definition, rows)
-    if not (path / run_folder.MANIFEST).exists():
-        parts = sorted(file.parent.name for file in path.glob(f"*/{DEFINITION}"))
+    parts = sorted(file.parent.name for file in path.glob(f"*/{DEFINITION}"))
+    if parts or not any(path.glob(f"**/{run_folder.MANIFEST}")):
         hint = f": give one of its parts, {', '.join(parts)}" if parts else ""
         raise UsageError(f"{path} is neither a sweep's folder nor a run folder{hint}")
     run = open_run(path)
@@ -129,7 +129,7 @@ def open_side(path: Path) -> Side:
         )
     except (OSError, KeyError, TypeError, ValueError) as error:
         raise UsageError(f"cannot read the run folder {path}: {error}") from error
-    return Side(path, definition, {run.seed: {"seed": run.seed, **flat(metrics)}})
+    return Side(run.path, definition, {run.seed: {"seed": run.seed, **flat(metrics)}})
 
 
 def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
