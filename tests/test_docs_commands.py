@@ -44,7 +44,7 @@ IN_SHORT = {
     "render": ["--size", "64x64", "--fps", "10"],
 }
 # Only read, since they would need what the page cannot give or take seconds.
-ONLY_READ = {"colours", "--resume", "--verify-determinism", "--view"}
+ONLY_READ = {"colours", "--resume", "--verify-determinism"}
 WITHOUT_ARGUMENTS = {"list", "doctor", "schema", "completion", "bug-report"}
 GOOD = {"success": True, "collisions": 0, "falls": 0, "path_length_m": 2.0, "exit_reason": "goal"}
 
@@ -131,8 +131,9 @@ def hsr8(words, capsys):
         parse(given)
         return ""
     else:
-        late = any("start=" in word for word in given)  # something begins after a short run's end
-        given += ["--dry-run"] if late else IN_SHORT.get(given[0], [])
+        # What begins after a short run's end, and what opens a window.
+        dry = any("start=" in word or word == "--view" for word in given)
+        given += ["--dry-run"] if dry else IN_SHORT.get(given[0], [])
         if given[0] == "run" and "--camera" not in given:
             given += ["--camera", "analytic"]
     capsys.readouterr()
