@@ -131,3 +131,13 @@ def test_a_bent_plateau_gives_its_member_nearest_the_centroid():
     gm[4:9, 10] = gm[8, 10:15] = 1.0  # centroid (6.44, 11.56), not of the plateau
     gm[7, 11] = 1.0
     assert g.highest_centre(gm, 0.0, 0.0) == (g.pan[11], g.tilt[7])
+
+
+def test_no_votes_ask_for_nothing():
+    nothing = Votes.join([])
+    assert len(nothing.pan) == len(nothing.tilt) == len(nothing.value) == 0
+    assert not grid().gaze_map(nothing).any()
+    joined = Votes.join([Votes.one(0.1, -0.2, 0.3), nothing, Votes.one(0.4, -0.5, 0.6)])
+    assert joined.pan.tolist() == [0.1, 0.4]
+    assert joined.tilt.tolist() == [-0.2, -0.5]
+    assert joined.value.tolist() == [0.3, 0.6]

@@ -54,6 +54,11 @@ def test_a_cell_is_under_confident_five_seconds_after_the_last_look():
     assert m.under_confident.tolist() == [False, True]
 
 
+def test_a_point_just_confident_enough_is_confident():
+    m = psi_local_map(np.array([E.lambda_cf, E.lambda_cf - 1e-9]), np.zeros(2, bool), E)
+    assert m.under_confident.tolist() == [False, True]
+
+
 def test_points_in_the_gaze_region_do_not_count():
     m = psi_local_map(np.zeros(4), np.array([True, False, False, True]), E)
     assert m.under_confident.tolist() == [False, True, True, False]
@@ -162,6 +167,8 @@ def test_frontal_is_up_to_abeam(track):
 
     assert [seen(d) for d in (85, 95, -85, -95, 170)] == [True, False, True, False, False]
     assert seen(170, -0.1)
+    abeam = ObstacleSet.from_tracks([track((0, 1))])
+    assert not attended(abeam, np.zeros(3), STILL, 2.0)[0]
     assert not seen(170, 0.1)
 
 

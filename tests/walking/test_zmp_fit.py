@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from walking.zmp_fit import Cell, ZmpFit, limited
+from walking.zmp_fit import Cell, ZmpFit, limited, sides
 
 NOMINAL = (0.005, -0.003)
 BOUNDS = (-0.04, 0.04, -0.02, 0.02)
@@ -113,3 +113,17 @@ def test_the_rate_narrows_the_box_about_the_zmp():
     assert narrow.knots == 1
     assert narrow.box[2:4] == pytest.approx((0.015, 0.04))
     assert narrow.box[4:] == pytest.approx((-0.02, 0.005))
+
+
+@given(st.floats(-3.0, 3.0), st.floats(0.3, 2.8), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_the_coordinates_along_two_directions_lead_back(angle, between, x, y):
+    a = (float(np.cos(angle)), float(np.sin(angle)))
+    b = (2.0 * float(np.cos(angle + between)), 2.0 * float(np.sin(angle + between)))
+    u, v = sides((a, b), x, y)
+    assert (a[0] * u + b[0] * v, a[1] * u + b[1] * v) == pytest.approx((x, y), abs=1e-9)
+
+
+def test_a_zmp_outside_its_cell_counts_as_on_its_edge():
+    turned = Cell((0.1, 0.2), ((0.0, 1.0), (-1.0, 0.0)), (0.0, 0.0, *BOUNDS), 3)
+    narrow = limited(turned, 0.1, 0.3, 0.015)  # 0.1 m ahead, the cell ends at 0.04 m
+    assert narrow.box == pytest.approx((0.0, 0.0, 0.025, 0.04, -0.015, 0.015))
