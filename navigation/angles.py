@@ -37,15 +37,3 @@ def wrap_array(a: ArrayLike) -> NDArray[np.float64]:
     wrapped = math.pi - np.mod(math.pi - angles, TWO_PI)
     half_open: NDArray[np.float64] = np.where(wrapped <= -math.pi, math.pi, wrapped)
     return half_open
-
-
-def angle_of(x: float, y: float) -> float:
-    """Direction of the vector (x, y), counter-clockwise from the x axis [rad]."""
-    return math.atan2(y, x)
-
-
-def angle_of_array(v: ArrayLike) -> NDArray[np.float64]:
-    """Directions of vectors of shape (..., 2), result of shape (...) [rad]."""
-    vectors = np.asarray(v, dtype=np.float64)
-    directions: NDArray[np.float64] = np.arctan2(vectors[..., 1], vectors[..., 0])
-    return directions

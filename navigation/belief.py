@@ -75,11 +75,6 @@ class Track:
     particles: Particles | None = None
     reach: float = 0.0
 
-    @property
-    def position_sigma(self) -> float:
-        """Square root of the largest eigenvalue of the position covariance [m]."""
-        return float(np.sqrt(max(np.linalg.eigvalsh(self.covariance[:2, :2])[-1], 0.0)))
-
 
 @dataclass(frozen=True, slots=True)
 class Belief:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navigation.angles import angle_of, angle_of_array, wrap, wrap_array
+from navigation.angles import wrap, wrap_array
 
 angles = st.floats(-1e4, 1e4)
 
@@ -36,9 +36,3 @@ def test_array_version_leaves_its_argument_alone():
     a = np.array([4.0, -4.0])
     wrap_array(a)
     assert a.tolist() == [4.0, -4.0]
-
-
-def test_angle_of_vectors_agrees():
-    rng = np.random.default_rng(0)
-    v = rng.standard_normal((20, 2))
-    assert np.allclose(angle_of_array(v), [angle_of(x, y) for x, y in v.tolist()])

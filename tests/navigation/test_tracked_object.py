@@ -111,7 +111,6 @@ def test_a_cloud_is_published_by_its_moments():
     assert np.allclose(track.position, [0.75, 0.0])
     assert np.allclose(track.velocity, [-0.05, 0.0])
     assert track.covariance[0, 0] == pytest.approx(0.1875)
-    assert track.position_sigma == pytest.approx(0.1875**0.5)
 
 
 def test_what_is_published_does_not_change_later():

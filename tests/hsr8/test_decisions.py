@@ -1,0 +1,77 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hsr8.decisions import Decisions
+from navigation.decision import GazeDecision, MotionDecision
+
+FOOTSTEP = 0.34
+
+
+class Parts:
+    """Mission, planner and gaze that note what they are asked."""
+
+    def __init__(self, task):
+        self.task, self.poses, self.plans, self.looks = task, [], [], []
+
+    def update(self, pose):
+        self.poses.append(pose)
+        return self.task
+
+    def plan(self, belief, task):
+        assert task is self.task
+        self.plans.append(belief.time)
+        return MotionDecision(np.array([0.1 * len(self.plans), 0.0, 0.0]))
+
+    def choose(self, belief, task, motion):
+        self.looks.append(motion)
+        return GazeDecision(0.0, 0.0)
+
+
+@pytest.fixture
+def made(fake):
+    """Decisions, their parts, and a decision at a time with so many steps made."""
+    parts = Parts(fake.frame(0.0).decided.task)
+    decisions = Decisions(mission=parts, planner=parts, gaze=parts, footstep=FOOTSTEP)
+
+    def make(time, steps, late=0.0, moved=(0.0, 0.0, 0.0)):
+        frame = fake.frame(time)
+        now = replace(
+            frame.now, time=time + late, step_count=steps, odometry=frame.now.odometry + moved
+        )
+        return decisions.make(frame.estimate, frame.measured, now)
+
+    return decisions, parts, make
+
+
+def test_motion_is_decided_once_a_footstep_and_gaze_every_frame(made):
+    _, parts, make = made
+    decided = [make(0.06 * k, k // 5) for k in range(15)]
+    assert parts.plans == pytest.approx([0.0, 0.30, 0.60])
+    assert len(parts.looks) == 15
+    assert [d.fresh for d in decided] == [True] + [False] * 14
+    assert all(d.motion is looked for d, looked in zip(decided, parts.looks, strict=True))
+
+
+def test_a_robot_that_stands_decides_after_the_time_of_a_footstep(made):
+    _, parts, make = made
+    for k in range(13):
+        make(0.06 * k, 0)
+    assert parts.plans == pytest.approx([0.0, 0.36, 0.72])
+
+
+def test_after_a_fall_it_decides_anew(made):
+    decisions, parts, make = made
+    make(0.0, 0)
+    decisions.forget()
+    assert make(0.06, 0).fresh
+    assert len(parts.plans) == 2
+
+
+def test_a_late_frame_is_carried_on_to_now(made):
+    _, parts, make = made
+    decided = make(0.0, 0, late=0.1, moved=(0.02, 0.0, 0.0))
+    assert decided.belief.time == pytest.approx(0.1)
+    assert np.allclose(parts.poses[0], (0.02, 0.0, 0.0))
+    assert np.allclose(make(1.0, 9).belief.pose, 0.0)

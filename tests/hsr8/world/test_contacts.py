@@ -1,0 +1,98 @@
+import mujoco
+import numpy as np
+import pytest
+
+from hsr8.world.contacts import ContactWatch
+from hsr8.world.index import ModelIndex
+from hsr8.world.layout import Obstacle
+from hsr8.world.motion import Still
+
+
+@pytest.fixture
+def placed(world):
+    """A watch over a robot whose base is put somewhere, with a velocity."""
+
+    def place(*obstacles, at=(0.0, 0.0, 0.245), velocity=(0.0, 0.0)):
+        layout, model = world(*obstacles)
+        index = ModelIndex.of(model, len(layout.static), len(layout.movers))
+        data = mujoco.MjData(model)
+        data.qpos[index.root_qpos : index.root_qpos + 3] = at
+        data.qvel[index.root_dof : index.root_dof + 2] = velocity
+        mujoco.mj_forward(model, data)
+        return ContactWatch(model, index, len(layout.static)), data, model
+
+    return place
+
+
+AHEAD = Obstacle((0.15, 0.0), 0.10, 0.40, "red")
+
+
+def test_every_touch_is_told_once_and_says_what_touched(placed):
+    watch, data, _ = placed(AHEAD)
+    watch.watch(data)
+    watch.watch(data)
+    contacts = watch.take()
+    assert contacts
+    assert {c.obstacle for c in contacts} == {0}
+    assert not any(c.moving for c in contacts)
+    names = [c.robot_geom for c in contacts]
+    assert len(set(names)) == len(names)
+    assert watch.take() == ()
+
+
+@pytest.mark.parametrize(("speed", "closing"), [(0.3, True), (-0.3, False), (0.0, False)])
+def test_the_robot_closes_a_gap_only_when_it_walks_into_it(placed, speed, closing):
+    watch, data, _ = placed(AHEAD, velocity=(speed, 0.0))
+    watch.watch(data)
+    assert {c.closing for c in watch.take()} == {closing}
+
+
+def test_what_can_move_is_told_from_what_cannot(placed):
+    mover = Obstacle((0.15, 0.0), 0.10, 0.40, "blue", Still((0.15, 0.0)))
+    far = Obstacle((2.0, 2.0), 0.10, 0.40, "red")
+    watch, data, _ = placed(far, mover)
+    watch.watch(data)
+    contacts = watch.take()
+    assert {c.obstacle for c in contacts} == {1}
+    assert all(c.moving for c in contacts)
+
+
+def test_without_a_touch_there_is_none(placed):
+    watch, data, _ = placed(Obstacle((1.0, 0.0), 0.10, 0.40, "red"))
+    watch.watch(data)
+    assert watch.take() == ()
+
+
+def test_clearance_falls_as_the_obstacle_nears_and_is_that_of_the_body(placed):
+    found = []
+    for x in (2.0, 0.8, 0.5, 0.4):
+        watch, data, _ = placed(Obstacle((x, 0.0), 0.10, 0.40, "red"))
+        found.append(watch.clearance(data, np.zeros(3)))
+    assert found == sorted(found, reverse=True)
+    assert found[0] == pytest.approx(1.9)  # far off, of the axis alone
+    assert found[2] - found[3] == pytest.approx(0.1, abs=1e-3)
+    assert found[3] < 0.3  # the body is wider than its axis
+
+
+def test_without_obstacles_there_is_room_without_end(placed):
+    watch, data, _ = placed()
+    assert watch.clearance(data, np.zeros(3)) == np.inf
+
+
+def test_feet_in_the_air_carry_nothing_and_have_no_centre_of_pressure(placed):
+    watch, data, _ = placed(at=(0.0, 0.0, 1.0))
+    load, pressure = watch.feet(data)
+    assert load.tolist() == [0.0, 0.0]
+    assert np.isnan(pressure).all()
+
+
+def test_a_robot_that_stands_carries_its_weight_on_both_feet_and_on_no_obstacle(placed):
+    watch, data, model = placed()
+    for _ in range(400):
+        mujoco.mj_step(model, data)
+    load, pressure = watch.feet(data)
+    assert load.sum() == pytest.approx(9.81 * model.body("base_link").subtreemass[0], rel=0.05)
+    assert load.min() > 0.2 * load.max()
+    assert np.hypot(*(pressure - data.qpos[:2])) < 0.08
+    watch.watch(data)
+    assert watch.take() == ()
