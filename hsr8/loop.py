@@ -10,11 +10,11 @@ import cv2
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import Looks, Moves
-from hsr8.errors import SimulationDiverged
+from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.event_watch import EventWatch
 from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.recorder.tape import TapeWriter
-from hsr8.robot import SensorFrame
+from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_robot, head_camera
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
@@ -114,7 +114,7 @@ class Simulation:
         self.exit_reason: str | None = None
         self.tick = 0
         self._body = build_body(scenario, seed, self.layout, self.model)
-        self._robot = build_robot(scenario, self.layout, seed, planner=planner, gaze=gaze)
+        self._robot = self._built(planner, gaze)
         self._watch = EventWatch(self._tell, scenario.fault)
         self._sensor_faults = SensorFaults(scenario.fault)
         self._servo_faults = ServoFaults(scenario.fault)
@@ -140,6 +140,16 @@ class Simulation:
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
+
+    def _built(self, planner: Moves | None, gaze: Looks | None) -> Robot:
+        scenario, seed = self.scenario, self.seed
+        try:
+            return build_robot(scenario, self.layout, seed, planner=planner, gaze=gaze)
+        except (ValueError, ArithmeticError, MemoryError) as error:
+            raise ScenarioError(
+                f"scenario {scenario.name!r}: the robot does not work with the parameters in "
+                f"walking, vision, belief and navigation: {error}"
+            ) from error
 
     @property
     def index(self) -> ModelIndex:

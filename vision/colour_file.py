@@ -1,6 +1,7 @@
 """Colour tables as files: NumPy archives of the labels and the names of their classes."""
 
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,21 @@ from vision.colour import COLOUR_CLASSES, ColourTable
 from vision.errors import VisionError
 
 SUFFIX = ".npz"
+LARGEST = 1_000_000  # neither the file nor what it unpacks to is larger [byte]
+SHOWN = 200  # characters of another file's classes that are told
+DAMAGE = (
+    KeyError,
+    ValueError,
+    EOFError,
+    AttributeError,
+    TypeError,
+    NotImplementedError,
+    RuntimeError,
+    ArithmeticError,
+    MemoryError,
+    zipfile.BadZipFile,
+    zlib.error,
+)  # what readers of a forged archive raise
 
 
 def save_table(table: ColourTable, path: Path) -> None:
@@ -26,26 +42,43 @@ def save_table(table: ColourTable, path: Path) -> None:
 def load_table(path: Path) -> ColourTable:
     """Read a table.
 
+    Nothing but a small regular file is opened, and nothing in it is run.
+
     Raises:
         VisionError: there is no such file, it is no colour table, or it was made for other
             colour classes than those of this version.
     """
     try:
+        _must_be_small(path)
         with np.load(path, allow_pickle=False) as archive:
             labels, names = archive["labels"], archive["names"].tolist()
+    except VisionError:
+        raise
     except OSError as error:
         raise VisionError(f"{path}: {error.strerror or 'no colour table'}") from None
-    except (KeyError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile):
+    except DAMAGE:
         raise VisionError(
             f"{path} is no colour table: it must hold the arrays 'labels' and 'names' "
             "(`hsr8 colours` writes such files)"
         ) from None
     if names != list(COLOUR_CLASSES):
         raise VisionError(
-            f"{path} was made for the colour classes {', '.join(map(str, names))}; "
+            f"{path} was made for the colour classes {', '.join(map(str, names))[:SHOWN]}; "
             f"those of this version are {', '.join(COLOUR_CLASSES)}"
         )
     try:
         return ColourTable(COLOUR_CLASSES, labels)
     except VisionError as error:
         raise VisionError(f"{path}: {error}") from None
+
+
+def _must_be_small(path: Path) -> None:
+    """Devices, pipes and archives that unpack without end are not read."""
+    if path.exists() and not path.is_file():
+        raise VisionError(f"{path} is no colour table: it is no file")
+    with path.open("rb") as file:
+        if file.seek(0, 2) > LARGEST:
+            raise VisionError(f"{path} is no colour table: it is above {LARGEST:,} bytes")
+        with zipfile.ZipFile(file) as packed:
+            if sum(entry.file_size for entry in packed.infolist()) > LARGEST:
+                raise VisionError(f"{path} is no colour table: it unpacks to too much")

@@ -1,5 +1,6 @@
 """Two sweeps, or two runs, on the seeds that they have in common."""
 
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -118,6 +119,8 @@ def open_side(path: Path) -> Side:
     if not metrics:
         raise UsageError(f"{path} has no results: the run did not end")
     try:
+        scenario = run.scenario_file.read_text(encoding="utf-8")
+        tomllib.loads(scenario)
         definition = Definition(
             name=str(run.manifest["scenario"]),
             again=(),
@@ -125,7 +128,7 @@ def open_side(path: Path) -> Side:
             code="",
             processor=str(run.manifest["machine"]).split(" ")[-1],
             libraries=dict(run.manifest["libraries"]),
-            scenario=run.scenario_file.read_text(encoding="utf-8"),
+            scenario=scenario,
         )
     except (OSError, KeyError, TypeError, ValueError) as error:
         raise UsageError(f"cannot read the run folder {path}: {error}") from error

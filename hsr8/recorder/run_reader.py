@@ -113,11 +113,22 @@ def open_run(path: str | Path) -> Run:
 
 
 def _run(path: Path) -> Run:
+    _must_hold_files_alone(path)
     file = path / run_folder.MANIFEST
     manifest = _json(file)
     if not isinstance(manifest.get("seed"), int):
         raise UsageError(f"cannot read {file}: it names no seed")
     return Run(path, manifest)
+
+
+def _must_hold_files_alone(path: Path) -> None:
+    """What is read, written or packed lies in the folder, not where a link in it points to."""
+    try:
+        links = [file.name for file in path.iterdir() if file.is_symlink()]
+    except OSError as error:
+        raise UsageError(f"cannot read the run folder {path}: {error.strerror}") from error
+    if links:
+        raise UsageError(f"{path / sorted(links)[0]} is a link; a run folder holds files alone")
 
 
 def _event(line: str) -> dict[str, Any]:

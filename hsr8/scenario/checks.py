@@ -5,6 +5,7 @@ from math import cos, hypot, radians, sin
 from pathlib import Path as FilePath
 
 from hsr8.scenario.fault_checks import fault_problems
+from hsr8.scenario.magnitudes import magnitudes
 from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
@@ -24,6 +25,7 @@ def check(scenario: Scenario) -> list[Problem]:
         *_colours(scenario),
         *_radii(scenario),
         *_local_map(scenario),
+        *magnitudes(scenario),
         *_mission(scenario),
         *_command(scenario),
         *_disturbance(scenario),

@@ -1,5 +1,6 @@
 """Files that can no longer be written: full disk, folder that is gone."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -67,7 +68,7 @@ def test_a_full_disk_is_one_line_and_the_manifest_says_so(tmp_path, capfd, full,
     assert len(said) == 1, said
     assert said[0].startswith("hsr8: cannot write the run folder")
     folder = next(path for path in (tmp_path / "quick").iterdir() if path != earlier)
-    assert open_run(folder).manifest["exit_reason"] == "failed"
+    assert json.loads((folder / "manifest.json").read_text())["exit_reason"] == "failed"
     assert not (folder / run_folder.METRICS).exists()
     assert not (folder / run_folder.CRASH).exists()
     assert not list(folder.glob("*.tmp"))

@@ -1,0 +1,58 @@
+"""Numbers that no run could work with: they would overflow, or take all memory and all time."""
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from hsr8.scenario.problem import Problem
+from hsr8.scenario.schema import Scenario
+from hsr8.scenario.toml_lines import Path
+
+SECTIONS = ("sensors", "walking", "vision", "belief", "navigation")
+LARGEST = 1e6  # of any parameter, in its unit
+SMALLEST = 1e-9  # of any that is not zero
+
+# Parameters that time and memory go with, and what a run can still bear.
+BOUNDS: dict[Path, tuple[float, float]] = {
+    ("walking", "gait", "preview_steps"): (1, 20),
+    ("walking", "pattern", "preview_time"): (0.05, 10.0),
+    ("walking", "pattern", "lipm_height"): (0.02, 5.0),
+    ("walking", "pattern", "pelvis_height"): (0.02, 5.0),
+    ("belief", "tracking", "particles"): (2, 1000),
+    ("navigation", "evaluation", "d_fm"): (0.01, 50.0),
+    ("navigation", "evaluation", "ring_step"): (0.01, 50.0),
+    ("navigation", "evaluation", "ray_step"): (0.01, 7.0),
+    ("navigation", "gaze", "step"): (0.01, 7.0),
+    ("navigation", "gaze", "pan_limit"): (0.01, 7.0),
+    ("navigation", "gaze", "tilt_max"): (0.0, 2.0),
+    ("navigation", "mover", "samples"): (2, 1000),
+    ("navigation", "filter", "headings"): (1, 360),
+    ("navigation", "filter", "speeds"): (1, 100),
+    ("navigation", "filter", "steps"): (0, 100),
+    ("navigation", "way_search", "cell"): (0.01, 10.0),
+    ("navigation", "way_search", "reach"): (0.01, 20.0),
+    ("navigation", "way_search", "around"): (0.01, 20.0),
+}
+
+
+def magnitudes(scenario: Scenario) -> Iterator[Problem]:
+    """Every parameter of the libraries that is out of all bounds."""
+    for name in SECTIONS:
+        yield from _within((name,), getattr(scenario, name))
+
+
+def _within(path: Path, value: Any) -> Iterator[Problem]:
+    if is_dataclass(value):
+        for field in fields(value):
+            yield from _within((*path, field.name), getattr(value, field.name))
+        return
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return
+    if path in BOUNDS:
+        low, high = BOUNDS[path]
+        if not low <= value <= high:
+            yield Problem(path, f"must be from {low:g} to {high:g}, got {value:g}")
+    elif abs(value) > LARGEST:
+        yield Problem(path, f"{value:g} is out of all bounds: at most {LARGEST:g}")
+    elif 0.0 < abs(value) < SMALLEST and path[0] != "sensors":  # a noise may be next to none
+        yield Problem(path, f"{value:g} is too small to mean anything: at least {SMALLEST:g}")

@@ -1,0 +1,325 @@
+"""Give the program bad input, many times: every answer is a good one or an error that says where.
+
+python scripts/fuzz.py --cases 50000 --run runs/quick
+"""
+
+import argparse
+import contextlib
+import io
+import random
+import re
+import shutil
+import tempfile
+import time as clock
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from hsr8.cli.main import entry
+from hsr8.errors import ScenarioError, SimulationDiverged
+from hsr8.loop import Simulation
+from hsr8.recorder import run_folder
+from hsr8.recorder.run_reader import open_run
+from hsr8.scenario.loader import BUILT_IN, built_in_names, load, loads
+from hsr8.scenario.reference import json_schema, json_schema_definition
+
+TICKS = 30  # of a run that is begun
+SLOW = 10.0  # a case that takes longer hangs [s]
+TOKENS = ("", "[", "]", "[[", "{", "}", '"', "'''", "=", ".", ",", "\n", "nan", "inf", "-", "1e999")
+TOKENS += ("0x7fffffffffffffff", "1979-05-27T07:32:00Z", "\x00", "\ud7ff", "é", "9" * 400, "true")
+COMMANDS: tuple[tuple[str, ...], ...] = (
+    ("info", "RUN"),
+    ("info", "RUN", "--json"),
+    ("diff", "RUN", "OTHER"),
+    ("compare", "RUN", "OTHER"),
+    ("check replay", "RUN"),
+    ("run", "RUN", "--resume", "--quiet", "--no-log"),
+    ("plot", "RUN", "--out", "PNG"),
+)
+RARE = {"check replay": 0.15, "run": 0.15, "plot": 0.1}  # these take their time
+FILES = (
+    run_folder.SCENARIO,
+    run_folder.MANIFEST,
+    run_folder.METRICS,
+    run_folder.EVENTS,
+    run_folder.TRAJECTORY,
+    run_folder.WALKING,
+    run_folder.MEASUREMENTS,
+    run_folder.TAPE,
+    run_folder.FRAMES,
+    "checkpoint.bin",
+)
+
+VALUE = re.compile(rb'(?<=[:,\[])\s*(-?[\d.e+-]+|"[^"]*"|true|false|null|\[\]|\{\})')
+
+
+def value(rng: random.Random, depth: int = 0) -> Any:
+    """Any value that TOML can write."""
+    kind = rng.randrange(9 if depth < 3 else 7)
+    if kind == 7:
+        return [value(rng, depth + 1) for _ in range(rng.randrange(4))]
+    if kind == 8:
+        return {rng.choice("abkxyz"): value(rng, depth + 1) for _ in range(rng.randrange(3))}
+    return (
+        rng.randrange(-5, 70),
+        rng.uniform(-10.0, 10.0),
+        10.0 ** rng.uniform(-300.0, 300.0) * rng.choice((-1, 1)),
+        rng.choice((0, -1, 2**31, 2**63 - 1, -(2**63), 10**30)),
+        rng.choice((float("nan"), float("inf"), -float("inf"), -0.0, 5e-324, 1e308)),
+        rng.choice(("", "egl", "course", "../x", "/etc/passwd", "a" * 3000, "\x00", "\ud7ff")),
+        rng.random() < 0.5,
+    )[kind]
+
+
+def near(rng: random.Random, node: dict[str, Any]) -> Any:
+    """A value about where the limits of a key are, or any at all."""
+    if rng.random() < 0.1:
+        return value(rng)
+    if "$ref" in node:
+        return near(rng, json_schema_definition(node["$ref"]))
+    for several in ("anyOf", "oneOf", "allOf"):
+        if several in node:
+            return near(rng, rng.choice(node[several]))
+    if "enum" in node or "const" in node:
+        return rng.choice([*node.get("enum", [node.get("const")]), "egll"])
+    kind = node.get("type")
+    if kind == "object":
+        keys = list(node.get("properties", {}))
+        chosen = set(rng.sample(keys, min(len(keys), rng.randrange(4)))) | set(
+            node.get("required", ()) if rng.random() < 0.9 else ()
+        )
+        return {key: near(rng, node["properties"][key]) for key in sorted(chosen)}
+    if kind == "array":
+        items = node.get("prefixItems") or [node.get("items", {})] * rng.randrange(5)
+        return [near(rng, item) for item in items]
+    if kind in ("number", "integer"):
+        low = node.get("minimum", node.get("exclusiveMinimum", -1e6))
+        high = node.get("maximum", node.get("exclusiveMaximum", 1e6))
+        edges = (low, high, low - 1, high + 1, low + 1e-9, 0.5 * (low + high))
+        inner = low + (high - low) * 10.0 ** rng.uniform(-12.0, 0.0)
+        found = rng.choice((*edges, rng.uniform(low, high), inner))
+        if kind == "integer":
+            step = node.get("multipleOf", 1)
+            return round(found / step) * step
+        return float(found)
+    if kind == "boolean":
+        return rng.random() < 0.5
+    if kind == "string":
+        return rng.choice(("", "a", "x.npz", "/etc/passwd", "../../x", "course", "\n", "ü" * 70))
+    return value(rng)
+
+
+def keys() -> list[tuple[str, dict[str, Any]]]:
+    """Every key of a scenario by its name with dots, with its schema."""
+    found: list[tuple[str, dict[str, Any]]] = []
+
+    def descend(prefix: str, node: dict[str, Any]) -> None:
+        if "$ref" in node:
+            node = {**json_schema_definition(node["$ref"]), "default": None}
+        for key, inner in node.get("properties", {}).items():
+            found.append((f"{prefix}{key}", inner))
+            descend(f"{prefix}{key}.", inner)
+
+    descend("", json_schema())
+    return found
+
+
+def mutated(rng: random.Random, raw: bytes) -> bytes:
+    """`raw` with some bytes changed, moved, repeated or cut off."""
+    content = bytearray(raw)
+    for _ in range(rng.randrange(1, 4)):
+        place, length = rng.randrange(len(content) + 1), rng.choice((1, 1, 4, 8, 64))
+        kind = rng.randrange(6)
+        if kind == 0:
+            content[place : place + length] = rng.randbytes(length)
+        elif kind == 1:
+            del content[place : place + length]
+        elif kind == 2:
+            content[place:place] = content[place : place + length]
+        elif kind == 3:
+            del content[place:]
+        elif kind == 4:
+            content[place:place] = rng.choice(TOKENS).encode()
+        else:
+            content[place : place + 8] = rng.choice((b"\xff" * 8, b"\0" * 8, b"\x7f" * 8))
+    return bytes(content)
+
+
+def text_case(rng: random.Random) -> None:
+    """A built-in scenario with its text damaged."""
+    name = rng.choice(built_in_names())
+    raw = mutated(rng, (BUILT_IN / f"{name}.toml").read_bytes())
+    loads(raw.decode("utf-8", errors="replace"), name)
+
+
+def table_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
+    """A built-in scenario with some keys set to what they nearly allow."""
+    settings = []
+    for key, node in rng.sample(schema, rng.randrange(1, 4)):
+        settings.append(f"{key}={written(near(rng, node))}")
+    load(rng.choice(built_in_names()), settings)
+
+
+def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
+    """The first ticks of a run with some keys set to what they nearly allow."""
+    settings = ['camera.source="analytic"', "camera.width=64", "camera.height=48"]
+    for key, node in rng.sample(schema, rng.randrange(1, 3)):
+        settings.append(f"{key}={written(near(rng, node))}")
+    scenario = load(rng.choice(built_in_names()), settings)
+    if scenario.camera.source == "egl":
+        return
+    with Simulation(scenario, rng.randrange(3)) as simulation:
+        for _ in range(TICKS):
+            if simulation.exit_reason is None:
+                simulation.step()
+
+
+def setting_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
+    """``--set`` with anything on both sides."""
+    key = rng.choice(schema)[0]
+    word = f"{key}={written(value(rng))}"
+    if rng.random() < 0.7:
+        word = mutated(rng, word.encode()).decode("utf-8", errors="replace")
+    load(rng.choice(built_in_names()), (word,))
+
+
+def written(given: Any) -> str:
+    """TOML of any value."""
+    if isinstance(given, bool):
+        return str(given).lower()
+    if isinstance(given, list):
+        return f"[{', '.join(map(written, given))}]"
+    if isinstance(given, dict):
+        return "{" + ", ".join(f"{key} = {written(inner)}" for key, inner in given.items()) + "}"
+    return repr(given) if not isinstance(given, str) else f'"{given}"'
+
+
+class Folders:
+    """Damages copies of a run folder and asks the program about them.
+
+    Args:
+        run: a whole run folder with a checkpoint, made for the purpose.
+        scratch: where the copies go.
+    """
+
+    def __init__(self, run: Path, scratch: Path) -> None:
+        self._run = run
+        self._scratch = scratch
+        there = [name for name in FILES if (run / name).exists()]
+        self._contents = {name: (run / name).read_bytes() for name in there}
+
+    def damaged(self, rng: random.Random) -> Path:
+        """A new copy in which one or two files are not what they were."""
+        path = self._scratch / "run"
+        shutil.rmtree(path, ignore_errors=True)
+        path.mkdir()
+        contents = dict(self._contents)
+        for name in rng.sample(sorted(contents), rng.choice((1, 1, 2))):
+            kind = rng.randrange(5)
+            if kind == 0:
+                del contents[name]
+            elif kind == 1:
+                contents[name] = self._contents[rng.choice(sorted(self._contents))]
+            elif kind == 2 and name.endswith((".json", ".jsonl")):
+                contents[name] = values_changed(rng, contents[name])
+            else:
+                contents[name] = mutated(rng, contents[name])
+        for name, content in contents.items():
+            (path / name).write_bytes(content)
+        return path
+
+    def case(self, rng: random.Random) -> None:
+        """One command on a damaged folder.
+
+        Raises:
+            AssertionError: it answered as it must not.
+        """
+        path = self.damaged(rng)
+        command = rng.choice(COMMANDS)
+        while rng.random() > RARE.get(command[0], 1.0):
+            command = rng.choice(COMMANDS)
+        places = {"RUN": str(path), "OTHER": str(self._run), "PNG": str(self._scratch / "p.png")}
+        words = [places.get(word, word) for word in command]
+        ask([*words[0].split(), *words[1:]])
+
+
+def values_changed(rng: random.Random, raw: bytes) -> bytes:
+    """JSON with a value replaced by another one."""
+    places = list(VALUE.finditer(raw))
+    if not places:
+        return raw
+    place = rng.choice(places)
+    other = rng.choice(
+        ("null", "-1", "1e400", "1e308", '"x"', "[]", "{}", "true", "[" * 3000, "NaN", "1" * 5000)
+    )
+    return raw[: place.start()] + other.encode() + raw[place.end() :]
+
+
+def ask(words: list[str]) -> None:
+    """Give the program a command line.
+
+    Raises:
+        AssertionError: it ended neither well nor with an error that people can use.
+    """
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = entry(words)
+    said = err.getvalue()
+    assert code in (0, 1, 2), f"{words}: exit {code}: {said[-500:]}"
+    assert "Traceback" not in said, f"{words}: {said[-500:]}"
+    assert code != 2 or said.strip(), f"{words}: exit 2 without a word"
+
+
+def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any]) -> str:
+    """One case; ``valid`` or ``refused``."""
+    try:
+        if kind == "text":
+            text_case(rng)
+        elif kind == "table":
+            table_case(rng, schema)
+        elif kind == "start":
+            start_case(rng, schema)
+        elif kind == "setting":
+            setting_case(rng, schema)
+        else:
+            assert folders is not None
+            folders.case(rng)
+    except (ScenarioError, SimulationDiverged) as error:
+        return "refused" if str(error).strip() else "BUG: an error without a word"
+    return "valid"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--cases", type=int, default=2000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first case")
+    parser.add_argument(
+        "--kinds", nargs="+", default=["text", "table", "setting", "start", "folder"]
+    )
+    parser.add_argument("--run", type=Path, help="a run folder with a checkpoint")
+    arguments = parser.parse_args()
+    schema, counts = keys(), Counter[str]()
+    kinds = [kind for kind in arguments.kinds if kind != "folder" or arguments.run]
+    with tempfile.TemporaryDirectory() as scratch:
+        run = open_run(arguments.run).path if arguments.run else None
+        folders = None if run is None else Folders(run, Path(scratch))
+        slowest = 0.0
+        for number in range(arguments.first, arguments.first + arguments.cases):
+            kind = kinds[number % len(kinds)]
+            began = clock.perf_counter()
+            try:
+                found = one(random.Random(number), kind, folders, schema)
+            except Exception as error:  # a bug found
+                found = "BUG"
+                text = f"{type(error).__name__}: {error}".replace("\n", " | ")
+                print(f"case {number} ({kind}): {text[:700]}", flush=True)
+            took = clock.perf_counter() - began
+            slowest = max(slowest, took)
+            if took > SLOW:
+                print(f"case {number} ({kind}): took {took:.1f} s", flush=True)
+            counts[f"{kind}, {found}"] += 1
+    print(f"{arguments.cases} cases, slowest {slowest:.1f} s: {dict(sorted(counts.items()))}")
+
+
+if __name__ == "__main__":
+    main()

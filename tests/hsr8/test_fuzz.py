@@ -1,0 +1,167 @@
+"""Bad input of every kind: a good answer, or an error that says where; never anything else."""
+
+import importlib.util
+import os
+import random
+import shutil
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hsr8.cli.main import entry
+from hsr8.errors import ScenarioError, UsageError
+from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.render import viewer
+from hsr8.scenario.loader import load, loads
+from vision.colour_file import LARGEST, load_table
+from vision.errors import VisionError
+
+CASES = 700  # of each of the three kinds
+
+
+def _script():
+    path = Path(__file__).resolve().parents[2] / "scripts" / "fuzz.py"
+    spec = importlib.util.spec_from_file_location("fuzz", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["fuzz"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+fuzz = _script()
+SCHEMA = fuzz.keys()
+
+
+@pytest.mark.parametrize("kind", ["text", "table", "setting"])
+def test_any_scenario_is_valid_or_refused(kind):
+    found = {fuzz.one(random.Random(number), kind, None, SCHEMA) for number in range(CASES)}
+    assert found == {"valid", "refused"}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A run folder as a kill leaves it."""
+    out = tmp_path_factory.mktemp("fuzz")
+    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--quiet"]
+    more = ["--no-log", "--duration", "1.2", "--checkpoint", "1", "--out", str(out)]
+    assert entry([*words, *more]) == 1
+    (folder,) = (out / "quick").iterdir()
+    manifest = (folder / "manifest.json").read_text()
+    (folder / "manifest.json").write_text(manifest.replace('"timeout"', '"running"'))
+    return folder
+
+
+def test_any_run_folder_is_read_or_refused(run, tmp_path, monkeypatch):
+    commands = [c for c in fuzz.COMMANDS if c[0] in ("info", "diff", "compare")]
+    monkeypatch.setattr(fuzz, "COMMANDS", tuple(commands))
+    folders = fuzz.Folders(run, tmp_path)
+    assert {fuzz.one(random.Random(k), "folder", folders, SCHEMA) for k in range(50)} == {"valid"}
+
+
+@pytest.mark.parametrize("name", fuzz.FILES)
+def test_a_resumed_run_trusts_nothing_that_was_cut(run, tmp_path, capfd, name):
+    copy = tmp_path / "copy"
+    shutil.copytree(run, copy)
+    if (copy / name).exists():
+        content = (copy / name).read_bytes()
+        (copy / name).write_bytes(content[: len(content) // 3])
+    fuzz.ask(["run", str(copy), "--resume", "--quiet", "--no-log"])
+
+
+NUMBERS = [
+    key
+    for key, node in SCHEMA
+    if node.get("type") in ("number", "integer")
+    and key.startswith(("walking.", "belief.", "navigation.", "vision."))
+]
+
+
+@settings(max_examples=60)
+@given(
+    key=st.sampled_from(NUMBERS),
+    value=st.sampled_from(["1e300", "-1e300", "5e-324", "9223372036854775807", "nan"]),
+)
+def test_no_number_is_out_of_all_bounds(key, value):
+    with pytest.raises(ScenarioError, match=key.split(".")[-1]):
+        load("quick", (f"{key}={value}",))
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        "walking.pattern.lipm_height=1e-9",
+        "walking.gait.preview_steps=100000000",
+        "belief.tracking.particles=1000000000",
+        "navigation.mover.samples=1000000000",
+        "navigation.gaze.step=1e-9",
+        "navigation.evaluation.ring_step=1e-8",
+        "navigation.way_search.cell=1e-8",
+        "belief.local_map.cell=1e-8",
+        "camera.width=100000",
+        "recorder.period_ms=0",
+        "duration=1e9",
+        "world.n_moving=1000000",
+    ],
+)
+def test_what_would_take_all_memory_or_time_is_refused_by_name(setting):
+    with pytest.raises(ScenarioError, match=setting.split("=")[0]):
+        load("quick", (setting,))
+
+
+def test_seeds_without_end_are_refused():
+    with pytest.raises(UsageError, match="at most"):
+        parse_seeds("0:1000000000")
+
+
+@pytest.mark.parametrize("name", ["../x.toml", "/etc/passwd", "a/b.toml", "..", "x.toml\x00"])
+def test_a_scenario_extends_nothing_outside_its_folder(name):
+    with pytest.raises(ScenarioError):
+        loads(f"extends = '{name}'" if "\x00" not in name else 'extends = "x.toml\\u0000"')
+
+
+def test_a_colour_table_is_a_small_file(tmp_path):
+    large = tmp_path / "large.npz"
+    large.write_bytes(b"PK" + bytes(LARGEST))
+    bomb = tmp_path / "bomb.npz"
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("labels.npy", bytes(50 * LARGEST))
+    pipe = tmp_path / "pipe.npz"
+    os.mkfifo(pipe)
+    code = tmp_path / "code.npz"
+    np.savez(code, labels=np.array([print], object), names=np.array(["red"]))
+    for path, wanted in (
+        (large, "above"),
+        (bomb, "unpacks"),
+        (pipe, "no file"),
+        (Path("/dev/zero"), "no file"),
+        (Path("/etc/passwd"), "no colour table"),
+        (code, "no colour table"),
+    ):
+        with pytest.raises(VisionError, match=wanted):
+            load_table(path)
+
+
+def test_a_viewer_listens_to_this_machine_alone(tmp_path):
+    words = viewer._command([tmp_path / "log.rrd"], 9876)
+    assert words[words.index("--bind") + 1] == "127.0.0.1"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["info"], ["run", "--resume", "--no-log"], ["check", "replay"], ["plot"], ["bug-report"]],
+)
+def test_a_link_in_a_run_folder_is_not_followed(run, tmp_path, capfd, monkeypatch, words):
+    copy, secret = tmp_path / "copy", tmp_path / "secret"
+    shutil.copytree(run, copy)
+    secret.write_bytes(b"x" * 1_000_000)
+    (copy / "tape.bin").unlink()
+    (copy / "tape.bin").symlink_to(secret)
+    monkeypatch.chdir(tmp_path)
+    assert entry([*words, str(copy)]) == 2
+    assert "tape.bin is a link" in capfd.readouterr().err
+    assert secret.read_bytes() == b"x" * 1_000_000
