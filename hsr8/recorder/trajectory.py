@@ -1,12 +1,9 @@
 """The motion of a run, exact and small: what videos are drawn from afterwards.
 
 One file of rows of little-endian doubles: time [s], qpos of the robot, then x, y of every
-mover [m]. The file begins with a magic word, the length of a JSON header and that header,
-padded so that the rows are aligned. A file cut anywhere loses its last row at most.
+mover [m], behind a header with the numbers of each.
 """
 
-import json
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.recorder.headed_file import HeadedWriter, read_headed
 
 Array = NDArray[np.float64]
 
 MAGIC = b"HSR8TRJ1"
-_LENGTH = struct.Struct("<Q")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,14 +44,13 @@ class TrajectoryWriter:
         path: file to create, or to go on with.
         nq: length of qpos.
         movers: number of movers.
+
+    Raises:
+        RecordingFailed: here and in every method, it cannot be written.
     """
 
     def __init__(self, path: Path, nq: int, movers: int) -> None:
-        header = json.dumps({"nq": nq, "movers": movers}).encode()
-        header += b" " * (-len(header) % 8)
-        self._file = path.open("ab")
-        if not self._file.tell():
-            self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
+        self._file = HeadedWriter(path, MAGIC, {"nq": nq, "movers": movers})
 
     def append(self, time: float, qpos: Array, movers: Array) -> None:
         """Add one row."""
@@ -76,25 +72,16 @@ def read_trajectory(path: Path) -> Trajectory:
     Raises:
         UsageError: it is missing, or no trajectory file.
     """
+    header, content = read_headed(path, MAGIC, "trajectory file")
     try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise UsageError(f"cannot read the trajectory {path}: {error.strerror}") from error
-    start = len(MAGIC) + _LENGTH.size
-    if len(content) < start or not content.startswith(MAGIC):
-        raise UsageError(f"{path} is no trajectory file of this version of hsr8")
-    (length,) = _LENGTH.unpack_from(content, len(MAGIC))
-    try:
-        header = json.loads(content[start : start + length])
         nq, movers = int(header["nq"]), int(header["movers"])
     except (ValueError, TypeError, KeyError) as error:
         raise UsageError(f"{path} has no whole header") from error
-    width = 1 + nq + 2 * movers
-    first = start + length
-    if first > len(content) or nq < 0 or movers < 0:
+    if nq < 0 or movers < 0:
         raise UsageError(f"{path} has no whole header")
-    rows = (len(content) - first) // (8 * width)
-    table = np.frombuffer(content, dtype="<f8", count=rows * width, offset=first)
+    width = 1 + nq + 2 * movers
+    rows = len(content) // (8 * width)
+    table = np.frombuffer(content, dtype="<f8", count=rows * width)
     table = table.reshape(rows, width).astype(np.float64)
     return Trajectory(
         time=table[:, 0],

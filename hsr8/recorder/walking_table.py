@@ -1,14 +1,12 @@
 """How a run walked, in columns: what plots are drawn from afterwards.
 
-A file of rows: time [s] as a little-endian double, then every other column as a single. It
-begins with a magic word, the length of a JSON header and that header, which names the columns
-and holds what does not change. A file cut anywhere loses its last row at most.
+A file of rows: time [s] as a little-endian double, then every other column as a single. Its
+header names the columns and holds what does not change.
 
 Points are in W. What the robot knows in its odometry frame is put there by its true pose of
 the moment, so that planned and true curves can be compared.
 """
 
-import json
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.recorder.headed_file import HeadedWriter, read_headed
 from hsr8.recorder.record import TickRecord
-from hsr8.recorder.writing import writing
 from hsr8.world.index import ModelIndex
 from walking.admission import Limit
 from walking.joints import JOINT_NAMES
@@ -30,7 +28,6 @@ from walking.state import Phase
 Array = NDArray[np.float64]
 
 MAGIC = b"HSR8WLK1"
-_LENGTH = struct.Struct("<Q")
 FLUSH_PERIOD = 1.0  # a killed run loses so much at most [s]
 LEG_JOINTS = JOINT_NAMES[:12]
 PHASES = tuple(Phase)
@@ -111,26 +108,18 @@ class WalkingTableWriter:
 
     def __init__(self, path: Path, model: mujoco.MjModel, index: ModelIndex) -> None:
         sole = index.foot_geoms[0]
-        header = json.dumps(
-            {
-                "columns": COLUMNS,
-                "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
-                "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
-            }
-        ).encode()
-        header += b" " * (-len(header) % 8)
+        header = {
+            "columns": COLUMNS,
+            "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
+            "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
+        }
         self._flushed_at = 0.0
-        self._folder = path.parent
-        with writing(self._folder):
-            self._file = path.open("ab")
-            if not self._file.tell():
-                self._file.write(MAGIC + _LENGTH.pack(len(header)) + header)
+        self._file = HeadedWriter(path, MAGIC, header)
 
     def on_record(self, record: TickRecord) -> None:
         """Append one row."""
-        row = struct.pack("<d", record.time) + np.array(_row(record), dtype="<f4").tobytes()
-        with writing(self._folder):
-            self._file.write(row)
+        row = np.array(_row(record), dtype="<f4").tobytes()
+        self._file.write(struct.pack("<d", record.time) + row)
         if record.time - self._flushed_at >= FLUSH_PERIOD:
             self._flushed_at = record.time
             self.flush()
@@ -140,13 +129,11 @@ class WalkingTableWriter:
 
     def flush(self) -> None:
         """Hand everything to the operating system."""
-        with writing(self._folder):
-            self._file.flush()
+        self._file.flush()
 
     def close(self, exit_reason: str) -> None:
         """Finish the file."""
-        with writing(self._folder):
-            self._file.close()
+        self._file.close()
 
 
 def read_walking_table(path: Path) -> WalkingTable:
@@ -155,27 +142,17 @@ def read_walking_table(path: Path) -> WalkingTable:
     Raises:
         UsageError: it is missing, or no such table.
     """
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
+    if not path.exists():
         raise UsageError(
             f"{path.parent} does not tell how it walked: it has no {path.name}; run it again"
-        ) from None
-    except OSError as error:
-        raise UsageError(f"cannot read {path}: {error.strerror}") from error
-    start = len(MAGIC) + _LENGTH.size
-    if len(content) < start or not content.startswith(MAGIC):
-        raise UsageError(f"{path} is no walking table of this version of hsr8")
-    (length,) = _LENGTH.unpack_from(content, len(MAGIC))
+        )
+    header, content = read_headed(path, MAGIC, "walking table")
     try:
-        header = json.loads(content[start : start + length])
         names = [str(name) for name in header["columns"]]
         centre, half_length, half_width = map(float, header["sole"])
         limits = dict(zip(LEG_JOINTS, map(float, header["torque_limit"]), strict=True))
     except (ValueError, TypeError, KeyError) as error:
         raise UsageError(f"{path} has no whole header") from error
-    if start + length > len(content):
-        raise UsageError(f"{path} has no whole header")
     missing = [name for name in COLUMNS if name not in names]
     if missing:
         raise UsageError(
@@ -183,8 +160,7 @@ def read_walking_table(path: Path) -> WalkingTable:
             "run it again"
         )
     row = np.dtype([("time", "<f8"), ("values", "<f4", (len(names),))])
-    rows = (len(content) - start - length) // row.itemsize
-    table = np.frombuffer(content, dtype=row, count=rows, offset=start + length)
+    table = np.frombuffer(content, dtype=row, count=len(content) // row.itemsize)
     values = table["values"].astype(np.float64)
     return WalkingTable(
         time=table["time"].astype(np.float64),
