@@ -144,7 +144,7 @@ class BeliefLayer:
         places = np.concatenate(positions) if clouds else np.zeros((0, 2))
         weights = np.concatenate(shares) if clouds else np.zeros(0)
         colours = [
-            palette.packed(palette.of_label(t.label))
+            palette.packed(palette.darker(palette.of_label(t.label)))
             for t, cloud in clouds
             for _ in range(len(cloud.weights))
         ]

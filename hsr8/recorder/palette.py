@@ -29,6 +29,12 @@ def of_label(label: str) -> Colour:
     return LABELS.get(label.partition("/")[0], UNKNOWN)
 
 
+def darker(colour: Colour) -> Colour:
+    """The colour of what lies on a disc of `colour`."""
+    red, green, blue = colour
+    return red // 2, green // 2, blue // 2
+
+
 def packed(colour: Colour, alpha: int = 255) -> int:
     """0xRRGGBBAA."""
     red, green, blue = colour
