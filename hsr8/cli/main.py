@@ -114,7 +114,7 @@ def _parsed(given: list[str]) -> options.Command | int:
 def _with_kind_of_view(given: list[str]) -> list[str]:
     """``--view`` alone means the window; `tyro` knows no options with an optional value."""
     words: list[str] = []
-    for word, following in zip(given, [*given[1:], ""], strict=True):
+    for word, following in zip(given, [*given, ""][1:], strict=True):
         words += ["--view", "native"] if word == "--view" and following not in VIEWS else [word]
     return words
 
