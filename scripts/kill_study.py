@@ -164,6 +164,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
     draw, rows = random.Random(arguments.seed), []
+    made_with = Definition.now("quick", (), dump(load("quick"))).made_with()
     for k in range(arguments.kills):
         seed, full = arguments.seed + k, k < arguments.full
         length = f"duration={arguments.duration}"
@@ -183,12 +184,11 @@ def main() -> None:
             )
         )
         print(rows[-1][1], flush=True)
-        write(arguments, rows)
+        write(arguments, made_with, rows)
 
 
-def write(arguments: argparse.Namespace, rows: list[tuple[Left, str]]) -> None:
+def write(arguments: argparse.Namespace, made_with: str, rows: list[tuple[Left, str]]) -> None:
     """The page, also of a study that is not over."""
-    made_with = Definition.now("quick", (), dump(load("quick"))).made_with()
     lefts = [left for left, _ in rows]
     gone_on = [left for left in lefts if left.resumed != "none"]
     lines = [

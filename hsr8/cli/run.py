@@ -71,7 +71,7 @@ def _resume(options: Run) -> int:
     if reason not in (RUNNING, FAILED, "interrupted"):
         raise UsageError(f"{run.path} has nothing to go on with: it ended by {reason!r}")
     manifest = Manifest.read(run.manifest, run.path)
-    recording, simulation = _recording(options, load(str(run.scenario_file), seed=run.seed))
+    recording, simulation = _recording(options, run.scenario())
     options = replace(options, no_log=options.no_log or not run.log_files)
     with _view(options) as view:
         with CrashReport(run.path), _interruptible(simulation):

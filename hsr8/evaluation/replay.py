@@ -20,7 +20,6 @@ from hsr8.recorder.measurements import Measured, read_measurements
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import HASH, Block, read_tape
 from hsr8.robot_builder import build_decisions, build_estimator, build_script
-from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
 from hsr8.world.physics import CONTROL_PERIOD
@@ -70,7 +69,7 @@ def replay(run: Run) -> tuple[Replayed, ...]:
 
 def replay_physics(run: Run, tape: list[Block]) -> Replayed:
     """Give a body in the same world the same set-points, and compare the hash each second."""
-    scenario = load(str(run.scenario_file), seed=run.seed)
+    scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     body = build_body(scenario, run.seed, layout, build_model(scenario, layout))
     ticks = 0
@@ -104,7 +103,7 @@ def replay_mind(run: Run, measured: list[Measured]) -> tuple[Replayed, Replayed]
 
 def _differences(run: Run, measured: list[Measured]) -> Iterator[tuple[str, int, str]]:
     """Stage, frame and channel of everything that comes out differently."""
-    scenario = load(str(run.scenario_file), seed=run.seed)
+    scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
     script = build_script(scenario, named_rng(run.seed, "command"))

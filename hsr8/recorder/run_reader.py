@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hsr8.errors import UsageError
+from hsr8.errors import ScenarioError, UsageError
 from hsr8.recorder import run_folder
 from hsr8.recorder.frame_summary import FrameSummary, from_line
 from hsr8.recorder.json_lines import read_lines
 from hsr8.recorder.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.walking_table import WalkingTable, read_walking_table
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from hsr8.version import VERSION
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +37,23 @@ class Run:
     def scenario_file(self) -> Path:
         """The resolved scenario."""
         return self.path / run_folder.SCENARIO
+
+    def scenario(self) -> Scenario:
+        """What was run, with the seed of the run.
+
+        Raises:
+            ScenarioError: this version does not understand it.
+        """
+        try:
+            return load(str(self.scenario_file), seed=self.seed)
+        except ScenarioError as error:
+            made_by = (
+                f"hsr8 {self.manifest.get('hsr8', '?')} of {self.manifest.get('started', '?')}"
+            )
+            raise ScenarioError(
+                f"{error}\n  the run was made by {made_by}, this is hsr8 {VERSION}: "
+                "run it again, or read it with the version it was made by"
+            ) from error
 
     @property
     def log_files(self) -> list[Path]:

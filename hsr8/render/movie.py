@@ -18,7 +18,6 @@ from hsr8.render.scene_pictures import Pictures
 from hsr8.render.segments import Segments, join
 from hsr8.render.stage import Image
 from hsr8.render.video import VideoWriter
-from hsr8.scenario.loader import load
 from hsr8.version import VERSION
 from hsr8.world.generator import draw_layout
 
@@ -92,7 +91,7 @@ def film(run: Run, shot: Shot, out: Path, tell: Tell) -> Film:
     kind = out.suffix.lower()
     if kind == ".png":
         times = times[:1]
-    scenario = load(str(run.scenario_file))
+    scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     with Pictures(
         run,

@@ -165,3 +165,16 @@ def test_a_link_in_a_run_folder_is_not_followed(run, tmp_path, capfd, monkeypatc
     assert entry([*words, str(copy)]) == 2
     assert "tape.bin is a link" in capfd.readouterr().err
     assert secret.read_bytes() == b"x" * 1_000_000
+
+
+@pytest.mark.parametrize("words", [["check", "replay"], ["run", "--resume"], ["render"]])
+def test_a_key_of_another_version_is_named_with_both_versions(run, tmp_path, capfd, words):
+    copy = tmp_path / "copy"
+    shutil.copytree(run, copy)
+    file = copy / "scenario.toml"
+    file.write_text(file.read_text().replace("footstep_time", "step_time"))
+    assert entry([*words, str(copy)]) == 2
+    said = capfd.readouterr().err
+    assert "walking.gait.step_time: unknown key" in said
+    assert "was made by hsr8 0." in said
+    assert "this is hsr8 0." in said
