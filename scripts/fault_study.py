@@ -13,16 +13,14 @@ already among the rows are not made again.
 
 import argparse
 import json
-import platform
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import version
 from math import hypot
 from pathlib import Path
 
 import numpy as np
-from study_page import add_seeds
+from study_page import add_seeds, environment
 
 from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.wilson import wilson
@@ -73,17 +71,21 @@ LADDERS = {
     "imu-tilt roll": Ladder("rad", 'axis="roll",size={}', (0.02, 0.04, 0.08, 0.12)),
     "imu-turn": Ladder("rad/s", "size={}", (0.02, 0.05, 0.1, 0.2, 0.4)),
     "imu-frozen": Ladder("duration [s]", "duration={}", (0.1, 0.3, 1, 3)),
-    "encoder-offset ankle": Ladder("rad", 'joint="l_ankle_pitch",size={}', (0.02, 0.05, 0.1, 0.2)),
+    "encoder-offset ankle": Ladder(
+        "rad", 'joint="l_ankle_pitch",size={}', (0.02, 0.05, 0.1, 0.2, 0.4)
+    ),
     "encoder-frozen": Ladder("duration [s]", "duration={}", (0.05, 0.1, 0.3, 1)),
     "foot-dead": Ladder("duration [s]", 'foot="left",duration={}', (0.2, 0.5, 1, 3)),
     "foot-gain weaker": Ladder("gain", 'foot="left",size={}', (0.7, 0.5, 0.3, 0.1)),
     "foot-gain stronger": Ladder("gain", 'foot="left",size={}', (1.5, 2, 4, 8)),
     "servo-weak": Ladder("share left", "size={}", (0.6, 0.5, 0.4, 0.3, 0.2)),
-    "servo-stuck knee": Ladder("duration [s]", 'joint="l_knee",duration={}', (0.05, 0.1, 0.2, 0.5)),
-    "servo-late": Ladder("s", "size={}", (0.005, 0.01, 0.015, 0.02, 0.03)),
+    "servo-stuck knee": Ladder(
+        "duration [s]", 'joint="l_knee",duration={}', (0.05, 0.1, 0.2, 0.5, 1, 2)
+    ),
+    "servo-late": Ladder("s", "size={}", (0.005, 0.01, 0.015, 0.02, 0.03, 0.06, 0.1)),
     "push": Ladder("N s", "direction_deg=90.0,size={}", (0.8, 1.6, 2.4, 3.2)),
     "slippery": Ladder("friction", "size={}", (0.4, 0.2, 0.1, 0.05)),
-    "bump": Ladder("m", "size={}", (0.004, 0.008, 0.012, 0.02)),
+    "bump": Ladder("m", "size={}", (0.004, 0.008, 0.012, 0.02, 0.03, 0.05)),
     "mover-appears": Ladder("gap [m]", "mover=0", (0.5, 0.3, 0.2, 0.1, 0.03)),
 }
 
@@ -193,13 +195,11 @@ def rows(names: list[str], seeds: list[int], known: list[dict]) -> Iterator[dict
 
 def page(known: list[dict], command: str) -> str:
     """The page of results."""
-    versions = ", ".join(f"{p} {version(p)}" for p in ("hsr8", "mujoco", "numpy"))
     seeds = sorted({row["seed"] for row in known})
     lines = [
         "# Faults: the limits at which they break the robot",
         "",
-        f"{versions}; Python {platform.python_version()}, {platform.machine()}; seeds "
-        f"{', '.join(map(str, seeds))}.",
+        f"{environment()}; seeds {', '.join(map(str, seeds))}.",
         "",
         *command.splitlines(),
         "",
