@@ -128,9 +128,8 @@ def test_of_plateaus_equally_far_the_smaller_pan_wins():
 def test_a_bent_plateau_gives_its_member_nearest_the_centroid():
     g = grid()
     gm = np.zeros((17, 37))
-    gm[4:9, 10] = gm[8, 10:15] = 1.0  # centroid (6.44, 11.56), not of the plateau
-    gm[7, 11] = 1.0
-    assert g.highest_centre(gm, 0.0, 0.0) == (g.pan[11], g.tilt[7])
+    gm[4:9, 10] = gm[8, 10:17] = 1.0  # centroid (7.1, 11.9), not of the plateau
+    assert g.highest_centre(gm, 0.0, 0.0) == (g.pan[12], g.tilt[8])
 
 
 def test_no_votes_ask_for_nothing():

@@ -14,6 +14,7 @@ from navigation.motion_field import FieldScene, MotionField
 from navigation.move_to_goal import muf
 from navigation.obstacle_set import ObstacleSet
 from navigation.univector import normalized, weighted_sum
+from navigation.virtual_obstacle import oval
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
 TARGET = np.array([2.0, 0.0])
@@ -172,3 +173,53 @@ def test_the_printed_virtual_obstacle_acts_before_a_mover_head_on(lateral, track
     assert without[1] == pytest.approx(0.0)
     away = np.copysign(1.0, lateral) if abs(lateral) > 0.01 else 1.0
     assert -0.25 - 1e-9 <= away * with_it[1] < -0.2
+
+
+@pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
+def test_rigid_motion_moves_field_and_forces_along(p, track):
+    a, shift = 0.7, np.array([3.0, -1.0])
+    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    rng = np.random.default_rng(6)
+    acting = 0
+    for _ in range(40):
+        centre, velocity = rng.uniform((0.3, -0.4), (1.2, 0.4)), rng.normal((-0.1, 0.0), 0.04)
+        pose, walking = np.array([*rng.normal(0.0, 0.1, 2), 0.2]), np.array([0.15, 0.02])
+        turned = np.array([*(r @ pose[:2] + shift), pose[2] + a])
+        here = scene([track(centre, velocity), track((0.5, 0.6))], p, TARGET, 0.3)
+        there = scene(
+            [track(r @ centre + shift, r @ velocity), track(r @ [0.5, 0.6] + shift)],
+            p, r @ TARGET + shift, 0.3 + a,
+        )  # fmt: skip
+        forces = []
+        for s, at, v in ((here, pose, walking), (there, turned, r @ walking)):
+            field = MotionField(p.univector, p.mover)
+            if p is PAPER:
+                found = field.printed_forces(at, v, s, (0,))
+            else:
+                found = field.own_forces(at, v, s)
+            # The printed circle goes through the robot: rounding decides whether it is inside.
+            u = field.at(at[:2], at[2], s, () if p is PAPER else found)
+            forces.append((found, u))
+        (own, u), (moved, u_moved) = forces
+        assert u_moved == pytest.approx(r @ u, abs=1e-9)
+        for f, g in zip(own, moved, strict=True):
+            acting += 1
+            assert g.obstacle.position == pytest.approx(r @ f.obstacle.position + shift)
+            assert (g.obstacle.radius, g.weight) == pytest.approx((f.obstacle.radius, f.weight))
+            assert np.exp(1j * (g.direction - f.direction - a)) == pytest.approx(1.0)
+            assert np.exp(1j * (g.outward - f.outward - a)) == pytest.approx(1.0)
+    assert acting > 15
+
+
+def test_the_own_force_has_the_oval_of_its_relative_speed(track):
+    p = EXTENDED
+    s = scene([track((1.0, 0.1), (-0.1, 0.0))])
+    (force,) = MotionField(p.univector, p.mover).own_forces(np.zeros(3), np.array([0.15, 0.0]), s)
+    length = p.mover.path_time * 0.25
+    assert force.weight == pytest.approx(oval(1.0 / length, p.mover.xi))
+    assert force.obstacle.radius == pytest.approx(force.weight * s.s_oe[0])
+    unsure = replace(s, psi=np.ones(1))
+    (force,) = MotionField(p.univector, p.mover).own_forces(
+        np.zeros(3), np.array([0.15, 0.0]), unsure
+    )
+    assert force.weight == pytest.approx(oval(1.0 / (length + p.univector.eta_imp), p.mover.xi))
