@@ -12,8 +12,8 @@ import tyro
 
 from hsr8.cli import options
 from hsr8.cli.crash import CrashReport
+from hsr8.cli.guidance import hints, no_command
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.suggestion import suggestion
 from hsr8.version import VERSION
 
 DESCRIPTION = f"""hsr8 {VERSION}: a small humanoid walks among moving obstacles and sees \
@@ -98,16 +98,21 @@ def _answer(given: list[str]) -> int:
 
 def _parsed(given: list[str]) -> options.Command | int:
     """The command, or the exit code where help or a mistake has been told instead."""
+    if given[:1] in (["--version"], ["version"]):
+        print(f"hsr8 {VERSION}")
+        return 0
+    if given[:1] == ["help"]:
+        given = [*given[1:2], "--help"]
     if given and not given[0].startswith("-") and given[0] not in COMMANDS:
-        raise UsageError(
-            f"there is no command {given[0]!r}{suggestion(given[0], list(COMMANDS))} "
-            f"(commands: {', '.join(COMMANDS)})"
-        )
-    given = _with_kind_of_view(given)
+        raise UsageError(no_command(given[0], given[1:], list(COMMANDS)))
+    given = _with_kind_of_view(given or ["--help"])
     try:
-        command: options.Command = parse(given or ["--help"])
+        command: options.Command = parse(given)
     except SystemExit as stop:
-        return stop.code if isinstance(stop.code, int) else 2
+        code = stop.code if isinstance(stop.code, int) else 2
+        for hint in hints(given) if code else ():
+            print(f"hsr8: {hint}", file=sys.stderr)
+        return code
     return command
 
 

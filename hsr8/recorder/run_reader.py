@@ -119,7 +119,9 @@ def open_run(path: str | Path) -> Run:
         if (path / run_folder.MANIFEST).is_file():
             return _run(path)
         if not path.exists():
-            raise UsageError(f"there is no run folder {path}{_known(path.parent)}")
+            raise UsageError(f"there is no run folder {path}{_known(path)}")
+        if path.is_file():
+            raise UsageError(f"{path} is a file: give the run folder it lies in, {path.parent}")
         files = [file for file in path.glob(f"**/{run_folder.MANIFEST}") if file.is_file()]
         runs = sorted(files, key=lambda file: file.stat().st_mtime_ns)
     except OSError as error:
@@ -156,9 +158,15 @@ def _event(line: str) -> dict[str, Any]:
     return {"time": float(event["time"]), "kind": str(event["kind"]), "text": str(event["text"])}
 
 
-def _known(parent: Path) -> str:
+def _known(path: Path) -> str:
+    """Where the run may be instead, or how to make one."""
+    for folder in (Path("runs"), Path("sweeps")):
+        if (folder / path).is_dir():
+            return f"; did you mean {folder / path}?"
+    parent = path.parent
     names = sorted(p.name for p in parent.iterdir() if p.is_dir()) if parent.is_dir() else []
-    return f"; {parent} holds {', '.join(names[-8:])}" if names else ""
+    held = f"{parent} holds {', '.join(names[-8:])}" if names else "`hsr8 run SCENARIO` makes one"
+    return f"; {held}"
 
 
 def _json(path: Path) -> dict[str, Any]:

@@ -136,17 +136,25 @@ def _find(name_or_path: str) -> FilePath:
     path = FilePath(name_or_path)
     if path.suffix == ".toml" or len(path.parts) > 1:
         return path
-    hint = suggestion(name_or_path, names)
+    hint = suggestion(f"{name_or_path}.toml", _files(path.parent))
+    hint = suggestion(name_or_path, names) or hint
     raise ScenarioError(
         f"no scenario is called {name_or_path!r}{hint} "
         f"(built in: {', '.join(names)}; or give a .toml file)"
     )
 
 
+def _files(folder: FilePath) -> list[str]:
+    """Names of the scenario files in a folder."""
+    return sorted(file.name for file in folder.glob("*.toml"))
+
+
 def _read(file: FilePath, above: tuple[FilePath, ...]) -> _Draft:
     try:
         if not file.is_file():
-            reason = "is no file" if file.exists() else "does not exist"
+            reason = f"does not exist{suggestion(file.name, _files(file.parent))}"
+            if file.exists():
+                reason = "is no file; give a scenario's name or a .toml file"
             raise ScenarioError(f"scenario file {str(file)!r} {reason}")
         with file.open("rb") as stream:
             raw = stream.read(LARGEST + 1)

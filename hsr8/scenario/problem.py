@@ -57,7 +57,9 @@ def _problem(details: ErrorDetails, data: Mapping[str, Any]) -> Problem:
     meaning = "" if node is None else _meaning(node)
     if kind in _UNKNOWN:
         known = keys_at(path[:-1], data)
-        hint = suggestion(str(path[-1]), known)
+        elsewhere = ".".join(_elsewhere(str(path[-1]), data))
+        meant = f"; did you mean '{elsewhere}'?" if elsewhere else ""
+        hint = suggestion(str(path[-1]), known) or meant
         return Problem(path, f"unknown key{hint or ''} (known here: {', '.join(known)})")
     if kind == "missing":
         return Problem(path, f"is missing{meaning}")
@@ -87,6 +89,17 @@ def _problem(details: ErrorDetails, data: Mapping[str, Any]) -> Problem:
     what = _KINDS.get(type(given), "")
     got = f", got {what + ' ' if what and kind.endswith('_type') else ''}{shown(given)}"
     return Problem(path, f"{text[:1].lower()}{text[1:]}{got}{wanted}{meaning}")
+
+
+def _elsewhere(key: str, data: Any) -> Sequence[str]:
+    """Where in a scenario a key of this name is, the uppermost one; empty if nowhere."""
+    paths: list[tuple[str, ...]] = [()]
+    for path in paths:  # grows while it is gone through
+        keys = keys_at(path, data)
+        if path and key in keys:
+            return (*path, key)
+        paths += [(*path, k) for k in keys]
+    return ()
 
 
 def _meaning(node: Mapping[str, Any]) -> str:
