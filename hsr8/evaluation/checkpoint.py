@@ -11,6 +11,7 @@ from hsr8.evaluation.metrics import Metrics
 from hsr8.loop import TICKS_A_SECOND, Simulation
 from hsr8.recorder import atomic, run_folder
 from hsr8.recorder.manifest import versions
+from hsr8.recorder.reading import read_bytes
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.writing import writing
 from hsr8.robot_builder import robot_model
@@ -120,7 +121,7 @@ def read_checkpoint(run: Run, simulation: Simulation) -> Checkpoint:
     """
     file = run.path / FILE
     try:
-        content = file.read_bytes()
+        content = read_bytes(file, snapshot.LARGEST + 1024)
     except FileNotFoundError:
         raise UsageError(
             f"{run.path} has no checkpoint to go on from: it was run without --checkpoint, or "

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hsr8.errors import UsageError
+from hsr8.recorder.reading import read_bytes
 from hsr8.recorder.writing import writing
 
 _GUARD = struct.Struct("<II")  # length [byte] and CRC-32 of the payload
@@ -64,7 +65,7 @@ def read_payloads(
         UsageError: it is missing, damaged, or another kind of file.
     """
     try:
-        content = path.read_bytes()
+        content = read_bytes(path)
     except OSError as error:
         raise UsageError(f"cannot read the {file} {path}: {error.strerror}") from error
     if not content.startswith(magic):

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import UsageError
+from hsr8.recorder.reading import read_bytes
 from hsr8.recorder.writing import writing
 
 _LENGTH = struct.Struct("<Q")
@@ -65,7 +66,7 @@ def read_headed(path: Path, magic: bytes, file: str) -> tuple[dict[str, Any], by
         UsageError: it is missing, cut off in its header, or another kind of file.
     """
     try:
-        content = path.read_bytes()
+        content = read_bytes(path)
     except OSError as error:
         raise UsageError(f"cannot read the {file} {path}: {error.strerror}") from error
     start = len(magic) + _LENGTH.size

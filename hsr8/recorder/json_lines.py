@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from hsr8.errors import UsageError
+from hsr8.recorder.reading import must_fit
 
 T = TypeVar("T")
 
@@ -15,6 +16,10 @@ def read_lines(path: Path, parse: Callable[[str], T]) -> Iterator[T]:
     Raises:
         UsageError: a line is not what it should be; the message names it.
     """
+    try:
+        must_fit(path)
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}") from error
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(file, start=1):
             if not line.endswith("\n"):

@@ -9,6 +9,7 @@ from hsr8.errors import ScenarioError, UsageError
 from hsr8.recorder import run_folder
 from hsr8.recorder.frame_summary import FrameSummary, from_line
 from hsr8.recorder.json_lines import read_lines
+from hsr8.recorder.reading import LARGEST_JSON, read_bytes
 from hsr8.recorder.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.walking_table import WalkingTable, read_walking_table
 from hsr8.scenario.loader import load
@@ -171,7 +172,7 @@ def _known(path: Path) -> str:
 
 def _json(path: Path) -> dict[str, Any]:
     try:
-        value = json.loads(path.read_text(encoding="utf-8"))
+        value = json.loads(read_bytes(path, LARGEST_JSON).decode("utf-8"))
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {path}: {error}") from error
     if not isinstance(value, dict):

@@ -178,3 +178,27 @@ def test_a_key_of_another_version_is_named_with_both_versions(run, tmp_path, cap
     assert "walking.gait.step_time: unknown key" in said
     assert "was made by hsr8 0." in said
     assert "this is hsr8 0." in said
+
+
+SIZES = {
+    "walking.bin": ["plot"],
+    "tape.bin": ["check", "replay"],
+    "measurements.bin": ["check", "replay"],
+    "checkpoint.bin": ["run", "--resume"],
+    "trajectory.bin": ["render"],
+    "frames.jsonl": ["render"],
+    "events.jsonl": ["info"],
+    "manifest.json": ["info"],
+    "metrics.json": ["info"],
+}
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_a_file_of_any_size_does_not_take_all_memory(run, tmp_path, capfd, name):
+    """A hole of a terabyte takes no room on the disk."""
+    copy = tmp_path / "copy"
+    shutil.copytree(run, copy)
+    with (copy / name).open("ab") as file:
+        file.truncate(2**40)
+    assert entry([*SIZES[name], str(copy)]) == 2
+    assert "larger than" in capfd.readouterr().err

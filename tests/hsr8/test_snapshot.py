@@ -1,3 +1,4 @@
+import io
 import os
 import pickle
 import struct
@@ -93,3 +94,15 @@ def test_whatever_is_forged_is_one_clear_error(payload):
     except UsageError:
         return
     assert isinstance(parts, dict)
+
+
+@pytest.mark.parametrize("pid", [("owner", ""), ("owner", "run"), ("model", "__class__")])
+def test_the_run_itself_is_out_of_reach(pid):
+    class Writer(pickle.Pickler):
+        def persistent_id(self, obj):
+            return pid if obj == "anchor" else None
+
+    buffer = io.BytesIO()
+    Writer(buffer, 5).dump({"a": "anchor"})
+    with pytest.raises(UsageError, match="is refused: it asks for the method"):
+        decode(forged(buffer.getvalue()), ANCHORS, "x")

@@ -1,0 +1,28 @@
+"""Files of a run folder, which may come from anywhere, read up to a size."""
+
+import errno
+from pathlib import Path
+
+LARGEST = 2**31  # no record of a run is larger [byte]
+LARGEST_JSON = 2**24  # nor a manifest or a table of results [byte]
+
+
+def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
+    """Content of `path`.
+
+    Raises:
+        OSError: it cannot be read, or is larger than it can be; a hole of any size takes no
+            room on a disk, but all memory.
+    """
+    must_fit(path, largest)
+    return path.read_bytes()
+
+
+def must_fit(path: Path, largest: int = LARGEST) -> None:
+    """Refuse a file that is larger than it can be.
+
+    Raises:
+        OSError: it is, or there is none.
+    """
+    if path.stat().st_size > largest:
+        raise OSError(errno.EFBIG, f"it is larger than {largest:,} bytes", str(path))
