@@ -14,7 +14,9 @@ from hsr8.world.canvas import Colour, Image
 Array = NDArray[np.float64]
 
 SUBPIXEL = 3  # bits of a pixel that OpenCV draws with
-WINDOW = 0.45  # half a gaze window as a share of the field of view, as in the log
+WINDOW = (
+    0.36  # half a window as a share of the field of view; that of the votes would not be seen whole
+)
 CORNER = 0.30  # length of its corners as a share of its sides
 BEHIND = 0.1  # cosine below which a direction is no longer drawn
 TAG = (24, 26, 30)
