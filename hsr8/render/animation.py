@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 
 COLOURS = 96  # of a GIF, chosen for all of its pictures
-WEBP = {"quality": "45", "compression_level": "6", "preset": "picture"}
+WEBP = {"quality": "30", "compression_level": "6", "preset": "picture"}
 KINDS = (".gif", ".webp")
 
 

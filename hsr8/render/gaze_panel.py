@@ -13,8 +13,8 @@ from hsr8.world.canvas import Image
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)
 OPACITY = 0.86
-EVALUATIONS = ("map", "self", "obstacles", "way")
-"""What psi_lm, psi_sf, psi_ob and psi_way speak of."""
+EVALUATIONS = ("ψ lm", "ψ sf", "ψ ob", "ψ way")
+"""Of the local map, of the robot's own place, of obstacles, of the way."""
 
 
 class GazePanel:

@@ -90,7 +90,7 @@ def film(run: Run, shot: Shot, out: Path, tell: Tell) -> Film:
     times, speed = instants(run.trajectory().time, shot)
     kind = out.suffix.lower()
     if kind == ".png":
-        times = times[:1]
+        times, speed = times[:1], 1.0
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     with Pictures(

@@ -27,8 +27,8 @@ from hsr8.world.layout import Layout
 Array = NDArray[np.float64]
 
 CYCLE = 34  # records per gait cycle
-FINER = {True: 2.0, False: 1.25}  # fine and quick pictures are drawn so much finer than shown
-SMALL = 2.0  # as is the head camera's view in the dashboard: it costs little
+FINER = {True: 2.0, False: 1.0}  # fine and quick pictures are drawn so much finer than shown
+SMALL = 1.5  # as is the head camera's view in the dashboard: it costs little
 
 
 class Pictures:

@@ -21,6 +21,7 @@ ARROW = np.array([0.90, 0.20, 0.45, 1.0], dtype=np.float32)  # colour of arrows
 ARROW_RADIUS = 0.012  # [m]
 SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick pictures [texel]
 SHADOW_CONE = 0.48  # share of the sun's cone that is searched for shadows
+EDGE = 24  # a pixel that differs so much from the mean of its neighbours is on an edge, of 255
 LARGEST = 8192  # side of what is drawn before it is scaled down [pixel]
 
 
@@ -59,7 +60,7 @@ class Stage:
             dtype=np.intp,
         )
         visual = self.model.vis
-        self._size = size
+        self._size, self._soft = size, quality == "show"
         finer = min(finer, LARGEST / max(size))
         width, height = (round(finer * side) for side in size)
         visual.global_.offwidth, visual.global_.offheight = width, height
@@ -101,6 +102,8 @@ class Stage:
         image: Image = self._renderer.render()
         if image.shape[1::-1] != self._size:
             image = cv2.resize(image, self._size, interpolation=cv2.INTER_AREA)
+        elif self._soft:
+            soften(image)
         return image
 
     def require_camera(self, name: str) -> None:
@@ -117,3 +120,12 @@ class Stage:
     def close(self) -> None:
         """Free the OpenGL context."""
         self._renderer.close()
+
+
+def soften(image: Image) -> None:
+    """Blur the edges in `image` (height, width, 3), whose steps show where it is drawn once.
+
+    It costs a tenth of what drawing finer does.
+    """
+    edges = np.abs(cv2.Laplacian(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), cv2.CV_16S)) > EDGE
+    cv2.copyTo(cv2.GaussianBlur(image, (3, 3), 0.0), edges.astype(np.uint8), image)

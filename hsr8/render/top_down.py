@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from math import cos, pi, sin
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,7 +26,8 @@ AHEAD = 3  # way points shown
 SIGMAS = 2.0
 VELOCITY = 2.0  # a line shows the way of so many seconds [s]
 LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
-THIN = 400  # in pictures lower than this lines are one pixel wide, in higher ones two [pixel]
+FINER = 2  # drawn so many times as fine as shown, or small circles are none
+STROKE = 300  # lines are a pixel wide for so many pixels of height
 
 
 class TopDown:
@@ -38,10 +40,11 @@ class TopDown:
 
     def __init__(self, layout: Layout, size: tuple[int, int]) -> None:
         self._layout = layout
-        self._width = 1 + int(size[1] >= THIN)
-        self._letters = size_of(size[1] / 27)
-        self._ground = Canvas(layout.field_size, size, PAPER)
-        self._ground.field(FIELD, RIM, 1)
+        self._size = size
+        self._width = max(FINER, round(FINER * size[1] / STROKE))
+        self._letters = FINER * size_of(size[1] / 27)
+        self._ground = Canvas(layout.field_size, (FINER * size[0], FINER * size[1]), PAPER)
+        self._ground.field(FIELD, RIM, self._width)
         for beacon in layout.beacons:
             top, bottom = palette.of_label(beacon.top), palette.of_label(beacon.bottom)
             self._ground.beacon(beacon.position, top, bottom)
@@ -76,7 +79,8 @@ class TopDown:
         canvas.area(_robot(frame.pose), palette.BELIEF)
         canvas.outline(_robot(frame.truth), INK, width)
         self._draw_covariance(canvas, frame.pose[:2], frame.covariance)
-        return canvas.image
+        shown: Image = cv2.resize(canvas.image, self._size, interpolation=cv2.INTER_AREA)
+        return shown
 
     def _draw_way_points(self, canvas: Canvas, passed: int) -> None:
         """The next few, numbered; the paper's tour has ninety."""
@@ -95,7 +99,8 @@ class TopDown:
         pale = tuple((channel + 2 * 246) // 3 for channel in strong)
         canvas.disc(track.position, track.radius, strong if track.visible else pale)
         canvas.ring(track.position, track.radius, strong, self._width)
-        self._draw_covariance(canvas, track.position, track.covariance)
+        if SIGMAS**2 * (track.covariance[0] + track.covariance[2]) > track.radius**2:
+            self._draw_covariance(canvas, track.position, track.covariance)
         if track.motion != "static":
             tip = np.add(track.position, VELOCITY * np.array(track.velocity))
             canvas.line((track.position, tip), palette.BELIEF, self._width)
