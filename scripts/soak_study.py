@@ -30,6 +30,7 @@ STAND_INS = ('robot.body="kinematic"', 'camera.source="analytic"')
 MB = 1024.0 * 1024.0
 PAGE_SIZE = os.sysconf("SC_PAGE_SIZE")
 WINDOWS = 10  # parts of a run that are told apart
+HOUR = 3600.0  # of which the long runs are the beginning [s]
 WARM = 0.2  # share of a run that is its warm-up
 
 
@@ -66,9 +67,10 @@ def _alive(context: object) -> bool:
 class Watch:
     """Samples a simulation now and then, from inside it."""
 
-    def __init__(self, simulation: Simulation, period: float) -> None:
+    def __init__(self, simulation: Simulation, duration: float) -> None:
         self.samples: list[Sample] = []
-        self._simulation, self._period = simulation, round(period) * TICKS_A_SECOND
+        self._simulation, self._last = simulation, round(duration * TICKS_A_SECOND)
+        self._period = self._last // WINDOWS
         self._times: list[float] = []
         self._step, simulation.step = simulation.step, self.step
 
@@ -79,6 +81,8 @@ class Watch:
             times = 1e3 * np.array(self._times)
             self.samples.append(held(simulation.time, float(times.mean())))
             self._times.clear()
+        if simulation.tick >= self._last:
+            simulation.interrupt()
         began = thread_time()
         record = self._step()
         self._times.append(thread_time() - began)
@@ -99,8 +103,8 @@ def recorded(simulation: Simulation, folder: str) -> str:
 
 
 def long_run(seed: int, duration: float, settings: tuple[str, ...]) -> tuple[list[Sample], str]:
-    simulation = simulation_of("paper", seed, duration, settings)
-    watch = Watch(simulation, duration / WINDOWS)
+    simulation = simulation_of("paper", seed, HOUR, settings)
+    watch = Watch(simulation, duration)
     with tempfile.TemporaryDirectory() as folder:
         reason = recorded(simulation, folder)
     return watch.samples, f"{reason} at {simulation.time:.0f} s"
@@ -171,7 +175,8 @@ def main() -> None:
             "",
             f"{environment(('hsr8', 'mujoco', 'numpy', 'rerun-sdk'))}.",
             "",
-            "Scenario `paper` (an endless tour) for the long runs and `course` for the short "
+            "Scenario `paper` (an endless tour) for the long runs, the beginning of an hour "
+            "each, and `course` for the short "
             "ones, with every record, the log and a checkpoint every 10 s. Of each row the first "
             f"{WARM:.0%} are the warm-up. Of the short runs, one in ten has full physics "
             "and rendered camera. Memory is resident memory after a collection.",

@@ -191,4 +191,4 @@ def test_a_remembered_side_turns_a_whole_turn_the_other_way():
 def test_k_rho_is_linear_up_to_its_distance():
     p = replace(EXTENDED, slow_share=0.2, slow_distance=0.4)
     assert arrival_gain(0.1, True, p) == pytest.approx(0.4)
-    assert arrival_gain(0.1, False, p) == 1.0
+    assert arrival_gain(0.1, False, p) == arrival_gain(2.0, True, p) == 1.0
