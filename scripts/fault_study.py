@@ -28,12 +28,10 @@ from hsr8.loop import Simulation
 from hsr8.recorder.record import TickRecord
 from hsr8.scenario.loader import load
 from hsr8.scenario.world import ROBOT_RADIUS
-from hsr8.world.generator import draw_layout
 
 START = 2.0  # of a fault, in the walk [s]
 DURATION = 40.0  # the goal is reached in 10 s as a rule [s]
-AHEAD = 0.5  # where a bump lies on the way to the first point [m]
-BUMP_RADIUS = 0.15  # wide enough to be stepped on [m]
+BUMP_X, BUMP_RADIUS = -0.4, 0.15  # where a bump lies on a straight way, and its radius [m]
 STRAIGHT = (
     "world.n_static=0",
     "world.n_moving=0",
@@ -144,12 +142,8 @@ def settings_of(name: str, size: float, seed: int) -> list[str]:
         common = [*common[:-1], *STRAIGHT]
         start = _time_at(MOVER_X - MOVER_RADIUS - ROBOT_RADIUS - size, seed, common)
     if kind == "bump":
-        layout = draw_layout(load("quick", common), seed)
-        begin = np.array(layout.start[:2])
-        way = layout.waypoints[0] - begin
-        place = begin + AHEAD * way / np.linalg.norm(way)
-        fault += f",radius={BUMP_RADIUS},place={place.round(3).tolist()}"
-        start = 0.0
+        common = [*common[:-1], *STRAIGHT[:-1], "world.mover=[]"]
+        fault += f",radius={BUMP_RADIUS},place=[{BUMP_X},0.0]"
     return [*common, f'fault=[{{kind="{kind}",start={start},{fault}}}]']
 
 
@@ -206,7 +200,7 @@ def page(known: list[dict], command: str) -> str:
         "Scenario `quick` without its via point, full physics, analytic camera; rendered images",
         "for camera-light and a kinematic body for the other faults of the camera. A fault begins",
         "after 2 s, in the walk, and lasts to the end, unless its size is a duration. A bump lies",
-        "on the way, 0.5 m from the start. `mover-appears` is a straight walk: the gap is from",
+        "on a straight way, and on such a one a mover appears: the gap is from",
         "body to mover when it appears. Unharmed: the goal is reached without a fall or a contact.",
         "The limit lies between the last size that every seed gets over and the first that one",
         "does not. A ladder ends at the first size that nobody gets over.",
