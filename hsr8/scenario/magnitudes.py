@@ -10,6 +10,7 @@ from hsr8.scenario.toml_lines import Path
 
 SECTIONS = ("sensors", "walking", "vision", "belief", "navigation")
 LARGEST = 1e6  # of any parameter, in its unit
+SLOWEST = 0.05  # of the robot's speeds [m/s, rad/s, m/s²]: its ways are searched in time, too
 SMALLEST = 1e-9  # of any that is not zero
 
 # Parameters that time and memory go with, and what a run can still bear.
@@ -37,6 +38,9 @@ BOUNDS: dict[Path, tuple[float, float]] = {
 
 def magnitudes(scenario: Scenario) -> Iterator[Problem]:
     """Every parameter of the libraries that is out of all bounds."""
+    for key, value in scenario.robot.speed:
+        if value < SLOWEST:
+            yield Problem(("robot", "speed", key), f"must be at least {SLOWEST:g}, got {value:g}")
     for name in SECTIONS:
         yield from _within((name,), getattr(scenario, name))
 

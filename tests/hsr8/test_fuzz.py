@@ -95,6 +95,8 @@ def test_no_number_is_out_of_all_bounds(key, value):
     "setting",
     [
         "walking.pattern.lipm_height=1e-9",
+        "robot.speed.turn=1e-09",
+        "robot.speed.forward=1e-05",
         "walking.gait.preview_steps=100000000",
         "belief.tracking.particles=1000000000",
         "navigation.mover.samples=1000000000",
