@@ -12,6 +12,7 @@ from hsr8.loop import TICKS_A_SECOND, Simulation
 from hsr8.recorder import atomic, run_folder
 from hsr8.recorder.manifest import versions
 from hsr8.recorder.reading import read_bytes
+from hsr8.recorder.record import FrameRecord
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.writing import writing
 from hsr8.robot_builder import robot_model
@@ -94,6 +95,12 @@ class Checkpoint:
     parts: dict[str, Any]
     metrics: Metrics
     sizes: dict[str, int]
+
+    @property
+    def frame(self) -> FrameRecord | None:
+        """Camera frame that was published last."""
+        frame = self.parts.get("_published")
+        return frame if isinstance(frame, FrameRecord) else None
 
     def cut_back(self, folder: Path) -> None:
         """Forget what the run wrote after the checkpoint.

@@ -104,7 +104,9 @@ class Recording:
             RecordingFailed: the folder cannot be written.
         """
         simulation, scenario = self._simulation, self._simulation.scenario
-        folder = RunFolder(path, manifest, dump(scenario), len(simulation.layout.movers))
+        before = None if self._checkpoint is None else self._checkpoint.frame
+        movers = len(simulation.layout.movers)
+        folder = RunFolder(path, manifest, dump(scenario), movers, before)
         self._folder = folder
         with self._failure_noted():
             table = WalkingTableWriter(

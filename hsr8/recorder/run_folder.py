@@ -31,7 +31,7 @@ from hsr8.errors import UsageError
 from hsr8.recorder import atomic, frame_summary
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.measurements import MeasurementWriter
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.recorder.trajectory import TrajectoryWriter
 from hsr8.recorder.writing import NO_ROOM, failure, writing
 
@@ -62,17 +62,26 @@ class RunFolder:
         manifest: of the run; written at once.
         scenario: the resolved scenario as TOML.
         movers: number of movers; they are the last of the obstacles.
+        before: camera frame told last, of a run that goes on.
 
     Raises:
         RecordingFailed: here and in every method, the folder cannot be written.
     """
 
-    def __init__(self, path: Path, manifest: Manifest, scenario: str, movers: int) -> None:
+    def __init__(
+        self,
+        path: Path,
+        manifest: Manifest,
+        scenario: str,
+        movers: int,
+        before: FrameRecord | None = None,
+    ) -> None:
         self.path = path
         self._manifest = manifest
         self._n_movers = movers
         self._trajectory: TrajectoryWriter | None = None
-        self._gaze_map: Array | None = None  # told last; a gaze rests for many frames
+        # Told last; a gaze rests for many frames.
+        self._gaze_map: Array | None = None if before is None else before.gaze.gaze_map
         self._flushed_at = 0.0
         with writing(path):
             manifest.write(path / MANIFEST)
