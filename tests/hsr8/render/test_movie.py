@@ -57,7 +57,7 @@ def run(tmp_path_factory):
 
 
 @pytest.mark.gl
-@pytest.mark.parametrize("camera", ["dashboard", "follow", "head", "top"])
+@pytest.mark.parametrize("camera", ["dashboard", "follow", "head", "top", "corner", "front"])
 def test_every_camera_draws(run, camera, tmp_path):
     done = []
     shot = Shot(camera=camera, size=(192, 108), fps=5)
