@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
+from study_page import command_line
+
 from hsr8.cli.main import entry
 from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.evaluation.sweep.definition import Definition
@@ -194,7 +196,7 @@ def write(arguments: argparse.Namespace, made_with: str, rows: list[tuple[Left, 
     lines = [
         "# Runs killed at random times",
         "",
-        f"    python scripts/kill_study.py {' '.join(sys.argv[1:])}",
+        f"    {command_line()}",
         "",
         f"{made_with}.",
         "",
