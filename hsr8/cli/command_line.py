@@ -2,8 +2,10 @@
 
 import shlex
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from hsr8.cli.options import Check, Run, Sweep
+from hsr8.recorder.log_level import LogLevel
 
 
 def settings(options: Run | Check | Sweep) -> tuple[str, ...]:
@@ -42,3 +44,20 @@ def run_command(options: Run | Check, seed: int) -> tuple[str, ...]:
     head, name, scenario, *rest = run_words(options)
     words = [head, name, scenario, "--seed", str(seed), *rest]
     return tuple(shlex.quote(word) for word in words)
+
+
+def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
+    """What the options set in the scenario, by option; ``--set`` comes after them."""
+    tables: dict[str, dict[str, Any]] = {}
+    if options.duration is not None:
+        tables["--duration"] = {"duration": options.duration}
+    if options.body is not None:
+        tables["--body"] = {"robot": {"body": options.body}}
+    if options.camera is not None:
+        tables["--camera"] = {"camera": {"source": options.camera}}
+    return tables
+
+
+def log_level(options: Run) -> LogLevel | None:
+    """How much is logged; None for nothing."""
+    return None if options.no_log else LogLevel(options.log_level)

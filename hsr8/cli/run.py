@@ -1,38 +1,16 @@
-"""``hsr8 run``: one run, its folder and its result."""
+"""``hsr8 run``: what was asked for is checked before anything heavy is loaded."""
 
-import signal
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
-from pathlib import Path
-from types import FrameType
-from typing import Any
+from collections.abc import Sequence
 
-from hsr8.cli import report
-from hsr8.cli.command_line import run_command, settings
+from hsr8.cli.command_line import log_level, option_tables, run_command, settings
 from hsr8.cli.cost import estimate
-from hsr8.cli.crash import CrashReport
-from hsr8.cli.options import Run, Sweep
-from hsr8.cli.verify import Verified, verify
+from hsr8.cli.options import Run
 from hsr8.errors import UsageError
-from hsr8.evaluation.recording import Recording, Result, renderer_of
-from hsr8.evaluation.verdict import Check, exit_code
-from hsr8.loop import Simulation
 from hsr8.recorder import atomic
-from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.manifest import RUNNING, Manifest
-from hsr8.recorder.progress import Progress
-from hsr8.recorder.run_folder import RunFolder
-from hsr8.recorder.run_reader import open_run
-from hsr8.recorder.writing import FAILED
-from hsr8.render.live_view import LiveView, live_view
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.generator import draw_layout
-
-ENDED = (0, 1)  # exit codes of runs that came to their end
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 def main(options: Run) -> int:
@@ -45,7 +23,9 @@ def main(options: Run) -> int:
     if options.checkpoint < 0:
         raise UsageError(f"--checkpoint {options.checkpoint}: give seconds, 1 or more")
     if options.resume:
-        return _resume(options)
+        from hsr8.cli.recorded_run import resume  # noqa: PLC0415  takes seconds
+
+        return resume(options)
     scenario = load(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
@@ -53,114 +33,17 @@ def main(options: Run) -> int:
     if options.dry_run:
         _tell_cost(options, scenario, command)
         return 0
-    manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
-    recording, simulation = _recording(options, scenario)
-    with _view(options) as view:
-        path = RunFolder.create(options.out, scenario.name, scenario.seed)
-        with CrashReport(path), _interruptible(simulation):
-            _record(recording, path, manifest, options, view)
-            result = recording.run()
-        return _told(options, result, manifest, view)
+    if not options.quiet:
+        print(f"{scenario.name}, seed {scenario.seed}", file=sys.stderr, flush=True)
+    from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
-
-def _resume(options: Run) -> int:
-    """Go on with a run that was killed."""
-    _alone(options)
-    run = open_run(Path(options.scenario))
-    reason = run.manifest.get("exit_reason")
-    if reason not in (RUNNING, FAILED, "interrupted"):
-        raise UsageError(f"{run.path} has nothing to go on with: it ended by {reason!r}")
-    manifest = Manifest.read(run.manifest, run.path)
-    recording, simulation = _recording(options, run.scenario())
-    options = replace(options, no_log=options.no_log or not run.log_files)
-    with _view(options) as view:
-        with CrashReport(run.path), _interruptible(simulation):
-            recording.resume(run)
-            _record(recording, run.path, manifest, options, view)
-            result = recording.run()
-        return _told(options, result, manifest, view)
-
-
-def _alone(options: Run) -> None:
-    """A run goes on as what it was."""
-    given = option_tables(options).keys() | ({"--set"} if options.set else set())
-    given |= {"--seed"} if options.seed is not None else set()
-    given |= {"--dry-run"} if options.dry_run else set()
-    if given:
-        raise UsageError(f"{', '.join(sorted(given))} cannot be given with --resume")
-
-
-def _recording(options: Run, scenario: Scenario) -> tuple[Recording, Simulation]:
-    simulation = Simulation(scenario, scenario.seed)
-    watchers = () if options.quiet else (Progress(scenario.duration),)
-    return Recording(simulation, watchers), simulation
-
-
-def _record(
-    recording: Recording, path: Path, manifest: Manifest, options: Run, view: LiveView | None
-) -> None:
-    live = "" if view is None else view.address
-    recording.into(path, manifest, log=_level(options), live=live, checkpoint=options.checkpoint)
-
-
-def _level(options: Run) -> LogLevel | None:
-    return None if options.no_log else LogLevel(options.log_level)
-
-
-@contextmanager
-def _view(options: Run) -> Iterator[LiveView | None]:
-    """The viewer that was asked for, if one was."""
-    if options.view is None:
-        yield None
-        return
-    if options.no_log:
-        raise UsageError("--view shows the log, and --no-log writes none: leave one of them out")
-    with live_view(options.view) as view:
-        if view.page:
-            print(f"watch it in a browser on this machine:  {view.page}", file=sys.stderr)
-        yield view
-
-
-def _told(options: Run, result: Result, manifest: Manifest, view: LiveView | None) -> int:
-    """Verify and report, and leave time to look; the exit code."""
-    assert result.folder is not None
-    results, checks = result.metrics, result.checks
-    code = exit_code(result.exit_reason, checks)
-    if options.verify_determinism and code in ENDED:
-        verified = verify(result.folder)
-        results["deterministic"] = verified.equal
-        checks = (*checks, _deterministic(verified))
-        code = exit_code(result.exit_reason, checks)
-    if result.diverged:
-        print(f"hsr8: {result.diverged}", file=sys.stderr)
-    if options.json:
-        print(atomic.dumps(results))
-    elif not options.quiet:
-        report.show(
-            f"{manifest.scenario}, seed {manifest.seed}",
-            results=results,
-            checks=checks,
-            path=result.folder,
-            command=manifest.command.split(),
-        )
-    if view is not None and result.exit_reason != "interrupted":
-        print(f"{'Ctrl-C' if view.page else 'closing the window'} ends the viewer", file=sys.stderr)
-        view.wait()
-    return code
-
-
-def _deterministic(verified: Verified) -> Check:
-    """The second run as one more criterion."""
-    found = f"{verified.hashes} hashes equal"
-    if not verified.equal:
-        found = f"{verified.difference}; second run: {verified.second}"
-    return Check("the same in another process", "every bit", found, verified.equal)
+    return start(options, scenario, command)
 
 
 def _tell_cost(options: Run, scenario: Scenario, command: Sequence[str]) -> None:
     """What the run would take; its world is drawn, so that it can be."""
     draw_layout(scenario, scenario.seed)
-    cost = estimate(scenario, log=_level(options))
+    cost = estimate(scenario, log=log_level(options))
     folder = options.out / scenario.name
     if options.json:
         told = {
@@ -178,31 +61,3 @@ def _tell_cost(options: Run, scenario: Scenario, command: Sequence[str]) -> None
     print(f"simulated   {cost.simulated:g} s at most")
     print(f"takes       about {cost.wall:.0f} s on two cores, {cost.disk:.0f} MB")
     print(f"for real    {' '.join(command)}")
-
-
-def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
-    """What the options set in the scenario, by option; ``--set`` comes after them."""
-    tables: dict[str, dict[str, Any]] = {}
-    if options.duration is not None:
-        tables["--duration"] = {"duration": options.duration}
-    if options.body is not None:
-        tables["--body"] = {"robot": {"body": options.body}}
-    if options.camera is not None:
-        tables["--camera"] = {"camera": {"source": options.camera}}
-    return tables
-
-
-@contextmanager
-def _interruptible(simulation: Simulation) -> Iterator[None]:
-    """Ctrl-C or SIGTERM ends the run after the present tick, a second one at once."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        signal.signal(number, signal.default_int_handler)
-        simulation.interrupt()
-
-    before = {number: signal.signal(number, interrupt) for number in SIGNALS}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

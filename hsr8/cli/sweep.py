@@ -15,9 +15,8 @@ from types import FrameType
 from rich.console import Console
 from rich.table import Table
 
-from hsr8.cli.command_line import flat, run_words, settings
+from hsr8.cli.command_line import flat, option_tables, run_words, settings
 from hsr8.cli.options import Sweep
-from hsr8.cli.run import option_tables
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, code_digest
 from hsr8.evaluation.sweep.driver import drive, pending

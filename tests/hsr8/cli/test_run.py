@@ -5,9 +5,9 @@ import tomllib
 
 import pytest
 
+from hsr8.cli.command_line import option_tables
 from hsr8.cli.main import entry
 from hsr8.cli.options import Run
-from hsr8.cli.run import option_tables
 from hsr8.errors import SimulationDiverged
 from hsr8.loop import Simulation
 from hsr8.recorder.run_reader import open_run

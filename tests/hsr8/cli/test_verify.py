@@ -38,7 +38,7 @@ def test_a_run_that_cannot_be_repeated_is_found_out(tmp_path, capsys):
 
 def test_a_difference_fails_the_run(tmp_path, monkeypatch, capsys):
     found = module.Verified("tick 7 (0.035 s), set-point", 3, tmp_path)
-    monkeypatch.setattr("hsr8.cli.run.verify", lambda folder: found)
+    monkeypatch.setattr("hsr8.cli.recorded_run.verify", lambda folder: found)
     settings = ["--set", "criteria.goal_reached=false"]
     assert entry([*FAST, "--out", str(tmp_path), *settings, "--verify-determinism"]) == 1
     assert "tick 7" in capsys.readouterr().out
