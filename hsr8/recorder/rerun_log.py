@@ -7,6 +7,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import rerun as rr
+import rerun_bindings
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
@@ -67,6 +68,8 @@ class RerunLog:
         index: bool = True,
     ) -> None:
         self._rates = rates = RATES[level]
+        # Rerun keeps the threads of a stream that nobody holds any more until it is asked.
+        rerun_bindings.flush_and_cleanup_orphaned_recordings()
         self._stream = rr.RecordingStream("hsr8", recording_id=path.parent.name)
         self._stream.set_log_time_enabled(False)
         sinks = [rr.FileSink(str(path), write_footer=index), *([rr.GrpcSink(live)] if live else [])]
