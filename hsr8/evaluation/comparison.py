@@ -113,7 +113,7 @@ def open_side(path: Path) -> Side:
     parts = sorted(file.parent.name for file in path.glob(f"*/{DEFINITION}"))
     if parts or not any(path.glob(f"**/{run_folder.MANIFEST}")):
         hint = f": give one of its parts, {', '.join(parts)}" if parts else ""
-        if (Path("sweeps") / path).is_dir():
+        if not path.is_absolute() and (Path("sweeps") / path).is_dir():
             hint = f"; did you mean {Path('sweeps') / path}?"
         raise UsageError(f"{path} is neither a sweep's folder nor a run folder{hint}")
     run = open_run(path)

@@ -52,11 +52,12 @@ def _within(path: Path, value: Any) -> Iterator[Problem]:
         return
     if not isinstance(value, int | float) or isinstance(value, bool):
         return
-    if path in BOUNDS:
+    tiny = 0.0 < abs(value) < SMALLEST and path[0] != "sensors"  # a noise may be next to none
+    if tiny:
+        yield Problem(path, f"{value:g} is too small to mean anything: at least {SMALLEST:g}")
+    elif path in BOUNDS:
         low, high = BOUNDS[path]
         if not low <= value <= high:
             yield Problem(path, f"must be from {low:g} to {high:g}, got {value:g}")
     elif abs(value) > LARGEST:
         yield Problem(path, f"{value:g} is out of all bounds: at most {LARGEST:g}")
-    elif 0.0 < abs(value) < SMALLEST and path[0] != "sensors":  # a noise may be next to none
-        yield Problem(path, f"{value:g} is too small to mean anything: at least {SMALLEST:g}")
