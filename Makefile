@@ -6,8 +6,8 @@ SOURCES := $(PACKAGES) scripts tests
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
-# More test processes only pay for long suites: make test-all XDIST="-n 2"
-XDIST ?=
+# Two test processes, a file each; in one process, which debuggers want: make test XDIST=
+XDIST ?= -n 2 --dist loadfile
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run test test-all lint types layers fix lock build clean
