@@ -2,12 +2,12 @@
 
 from fractions import Fraction
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import av
 import numpy as np
 from numpy.typing import NDArray
+
+from hsr8.render.keeping import KeptIfWhole
 
 Image = NDArray[np.uint8]
 
@@ -16,7 +16,7 @@ WEBP = {"quality": "30", "compression_level": "6", "preset": "picture"}
 KINDS = (".gif", ".webp")
 
 
-class AnimationWriter:
+class AnimationWriter(KeptIfWhole):
     """Collects pictures; the file appears, repeating without end, when it is complete.
 
     Args:
@@ -94,14 +94,3 @@ class AnimationWriter:
                 break
             container.mux(stream.encode(frame))
         container.mux(stream.encode(None))
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close(keep=error is None)

@@ -3,12 +3,12 @@
 from concurrent.futures import Future, ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import av
 import numpy as np
 from numpy.typing import NDArray
+
+from hsr8.render.keeping import KeptIfWhole
 
 Image = NDArray[np.uint8]
 
@@ -16,7 +16,7 @@ OPTIONS = {"preset": "veryfast", "crf": "21", "threads": "1"}
 OPTIONS_OF_CONTAINER = {"movflags": "+faststart"}  # a page plays it while it loads
 
 
-class VideoWriter:
+class VideoWriter(KeptIfWhole):
     """Writes frames; the file appears under its name when it is complete.
 
     Args:
@@ -71,14 +71,3 @@ class VideoWriter:
                     self._draft.replace(self._path)
             finally:
                 self._draft.unlink(missing_ok=True)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close(keep=error is None)
