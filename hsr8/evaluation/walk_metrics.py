@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_tally import WalkTally
-from hsr8.world.truth import Saturation
+from hsr8.world.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
 from walking.joints import JOINT_NAMES
 
@@ -114,7 +114,7 @@ class WalkMetrics:
         self._meter = StrideMeter()
         self._steps = 0
         self._tally: WalkTally | None = None
-        self._saturation: Saturation | None = None
+        self._saturation: SaturationWatch | None = None
         self._pushes = 0
 
     def add(self, record: TickRecord) -> None:
@@ -140,7 +140,7 @@ class WalkMetrics:
         if self._tally is not None and self._tally.ticks:
             results |= _counted(self._tally)
         if self._saturation is not None:
-            results |= _saturated(self._saturation)
+            results |= _saturated(self._saturation.so_far())
             if self._tally is not None and self._tally.ticks:
                 results |= _timed(self._tally)
         return results

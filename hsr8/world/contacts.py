@@ -27,18 +27,20 @@ class ContactWatch:
         self._first_obstacle = int(min(index.obstacle_geoms, default=model.ngeom))
         self._obstacles: list[int] = index.obstacle_geoms.tolist()
         self._robot_geoms: list[int] = index.robot_geoms.tolist()
+        self._obstacle_of: list[int] = index.obstacle_of_geom.tolist()
+        self._spheres = model.geom_rbound[index.robot_geoms].copy()
         self._sizes = model.geom_size[index.obstacle_geoms, 0].copy()
 
     def watch(self, data: mujoco.MjData) -> None:
         """Note the present contacts with obstacles."""
-        pairs = data.contact.geom
-        if len(pairs) == 0 or pairs.max() < self._first_obstacle:
-            return
-        obstacles = self._index.obstacle_of_geom[pairs]
-        for i in np.flatnonzero(obstacles.max(axis=1) >= 0).tolist():
-            first, second = obstacles[i].tolist()
+        for i, (one, other) in enumerate(data.contact.geom.tolist()):
+            if one < self._first_obstacle and other < self._first_obstacle:
+                continue
+            first, second = self._obstacle_of[one], self._obstacle_of[other]
             obstacle = max(first, second)
-            geom = int(pairs[i][1] if first >= 0 else pairs[i][0])
+            if obstacle < 0:
+                continue
+            geom = other if first >= 0 else one
             key = (obstacle, geom)
             mujoco.mj_contactForce(self._model, data, i, self._force)
             force = float(self._force[0])
@@ -73,12 +75,16 @@ class ContactWatch:
         if gaps[nearest] > NEAR:
             return float(gaps[nearest])
         model, obstacle, fromto = self._model, self._obstacles[nearest], self._fromto
-        return float(
-            min(
-                mujoco.mj_geomDistance(model, data, geom, obstacle, NEAR, fromto)
-                for geom in self._robot_geoms
-            )
-        )
+        # By spheres around the geoms no gap is less than this: most need no closer look.
+        away = data.geom_xpos[self._index.robot_geoms, :2] - data.geom_xpos[obstacle, :2]
+        bounds = np.hypot(away[:, 0], away[:, 1]) - self._spheres - self._sizes[nearest]
+        least = NEAR
+        for bound, geom in sorted(zip(bounds.tolist(), self._robot_geoms, strict=True)):
+            if bound >= least:
+                break
+            gap = mujoco.mj_geomDistance(model, data, geom, obstacle, NEAR, fromto)
+            least = min(least, gap)
+        return float(least)
 
     def feet(self, data: mujoco.MjData) -> tuple[Array, Array]:
         """Normal force under each foot (2,) [N] and the centre of pressure (2,) [m]."""

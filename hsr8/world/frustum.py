@@ -39,10 +39,18 @@ class Frustum:
         self._inward = np.array([*sides, [0.0, 0.0, -1.0]]).T
         # A plane has no radius: it is everywhere.
         self._reach = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)
+        # A camera looks out of the shapes of its own body, which are seen from outside only.
+        self._reach[model.geom_bodyid == model.cam_bodyid[self._camera]] = -np.inf
+        # Boxes of the world that are not turned are long and thin: spheres say little of them.
+        straight = (np.abs(model.geom_quat[:, 0]) == 1.0) & (model.geom_bodyid == 0)
+        self._boxes = np.flatnonzero(straight & (model.geom_type == mujoco.mjtGeom.mjGEOM_BOX))
+        self._halves = model.geom_size[self._boxes].copy()
 
     def misses(self, data: mujoco.MjData) -> Bools:
-        """Which geoms lie wholly outside, by spheres around them (ngeom,)."""
+        """Which geoms lie wholly outside, by spheres around them or as boxes (ngeom,)."""
         inward = data.cam_xmat[self._camera].reshape(3, 3) @ self._inward
         depth = (data.geom_xpos - data.cam_xpos[self._camera]) @ inward
         missed: Bools = depth.min(axis=1) < -self._reach
+        reach = self._halves @ np.abs(inward)
+        missed[self._boxes] = (depth[self._boxes] < -reach).any(axis=1)
         return missed

@@ -162,7 +162,7 @@ class PhysicsBody:
                 data.qpos[root + 2] < self._lying or up_component(quaternion) < FALLEN_TILT
             ),
             pushes=self._pusher.take(),
-            saturation=self._saturation.so_far(),
+            saturation=self._saturation,
         )
 
     def state_bytes(self) -> bytes:
@@ -172,7 +172,7 @@ class PhysicsBody:
 
     def _guard(self) -> None:
         # A sum is finite only if all of its terms are.
-        if not self.data.warning.number.any() and isfinite(self.data.qacc.sum()):
+        if not any(self.data.warning.number.tolist()) and isfinite(self.data.qacc.sum()):
             return
         speeds = np.abs(self.data.qvel)
         dof = int(np.argmax(np.where(np.isfinite(speeds), speeds, np.inf)))

@@ -6,6 +6,8 @@ from math import degrees, hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world.saturation import SaturationWatch
+
 Array = NDArray[np.float64]
 
 
@@ -64,31 +66,6 @@ class PushActing:
 
 
 @dataclass(frozen=True, slots=True)
-class Saturation:
-    """What was asked of the servos since the start of the run, order of ``JOINT_NAMES``.
-
-    Attributes:
-        torque_any: control ticks with any joint at its largest torque.
-        torque_ticks: the same by joint (26,).
-        stop_any: control ticks with any joint at the end of its range.
-        stop_ticks: the same by joint (26,).
-        clip_any: control ticks with any set-point cut off at the end of a joint's range.
-        clip_ticks: the same by joint (26,).
-        peak_torque: largest share of the largest torque (26,) [1].
-        peak_speed: largest speed (26,) [rad/s].
-    """
-
-    torque_any: int
-    torque_ticks: NDArray[np.int64]
-    stop_any: int
-    stop_ticks: NDArray[np.int64]
-    clip_any: int
-    clip_ticks: NDArray[np.int64]
-    peak_torque: Array
-    peak_speed: Array
-
-
-@dataclass(frozen=True, slots=True)
 class Truth:
     """State of the world at one instant.
 
@@ -105,7 +82,7 @@ class Truth:
         zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.
         fallen: whether the robot lies.
         pushes: those that acted since the previous record.
-        saturation: of the servos; a body without dynamics has none.
+        saturation: of the servos, since the start; it counts on. A body without dynamics has none.
     """
 
     time: float
@@ -120,4 +97,4 @@ class Truth:
     zmp: Array
     fallen: bool
     pushes: tuple[PushActing, ...] = ()
-    saturation: Saturation | None = None
+    saturation: SaturationWatch | None = None

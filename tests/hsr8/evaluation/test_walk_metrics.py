@@ -7,7 +7,8 @@ import pytest
 
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.walk_tally import WalkTally
-from hsr8.world.truth import PushActing, Saturation
+from hsr8.world.saturation import Saturation
+from hsr8.world.truth import PushActing
 from walking.admission import Limit
 from walking.command import VelocityCommand
 from walking.state import Phase
@@ -116,7 +117,8 @@ def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
     none = np.zeros(26, dtype=np.int64)
     saturation = Saturation(7, ticks, 0, none, 7, ticks, peak, 5.0 * peak)
     push = PushActing(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
-    record = fake.record(0.0, saturation=saturation, pushes=(push,))
+    watch = SimpleNamespace(so_far=lambda: saturation)
+    record = fake.record(0.0, saturation=watch, pushes=(push,))
     results = results_of([replace(record, tally=tally)])
     assert results["torque_saturated_by"] == results["clipped_target_by"] == {"l_knee": 7}
     assert (results["clipped_target_ticks"], results["joint_stop_by"]) == (7, {})

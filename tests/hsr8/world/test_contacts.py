@@ -96,3 +96,15 @@ def test_a_robot_that_stands_carries_its_weight_on_both_feet_and_on_no_obstacle(
     assert np.hypot(*(pressure - data.qpos[:2])) < 0.08
     watch.watch(data)
     assert watch.take() == ()
+
+
+def test_clearance_is_the_least_distance_of_any_geom_of_the_robot(placed):
+    for turn in np.linspace(0.0, 6.0, 7):
+        x, y = 0.3 * np.cos(turn), 0.3 * np.sin(turn)
+        watch, data, model = placed(Obstacle((x, y), 0.08, 0.25, "red"))
+        index = ModelIndex.of(model, 1, 0)
+        nearest = min(
+            mujoco.mj_geomDistance(model, data, geom, index.obstacle_geoms[0], 0.5, np.zeros(6))
+            for geom in index.robot_geoms.tolist()
+        )
+        assert watch.clearance(data, np.zeros(3)) == nearest

@@ -1,3 +1,5 @@
+from dataclasses import astuple
+
 import mujoco
 import numpy as np
 import pytest
@@ -64,3 +66,20 @@ def test_a_set_point_beyond_a_joints_range_is_counted(watched):
     assert seen.clip_any == 2
     assert np.flatnonzero(seen.clip_ticks).tolist() == [KNEE]
     assert seen.clip_ticks[KNEE] == 2
+
+
+def test_it_does_not_matter_when_one_asks(watched):
+    model, data, index, often = watched
+    seldom = SaturationWatch(model, index)
+    rng = np.random.default_rng(0)
+    for _ in range(150):
+        data.ctrl[:] = rng.normal(0.0, 1.5, model.nu)
+        data.actuator_force[:] = rng.normal(0.0, 3.0, model.nu)
+        data.qpos[7:] = rng.normal(0.0, 1.0, model.nq - 7)
+        data.qvel[:] = rng.normal(0.0, 1.0, model.nv)
+        often.watch(data)
+        seldom.watch(data)
+        often.so_far()
+    for one, other in zip(astuple(often.so_far()), astuple(seldom.so_far()), strict=True):
+        assert np.array_equal(one, other)
+        assert np.any(one)
