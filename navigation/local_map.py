@@ -8,12 +8,17 @@ that time: no frame rate enters.
 from math import floor
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from navigation.belief_parameters import LocalMapParameters
 from navigation.visibility import Mask, Viewpoint
+from navigation.visibility_kernel import COVERED, UNSEEN, Marks
 
 Array = NDArray[np.float64]
+
+
+_CROSS = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
 
 
 class LocalMap:
@@ -91,13 +96,12 @@ class LocalMap:
 
     def free_at(self, points: ArrayLike) -> Mask:
         """Whether all the floor around points in W (n, 2) was once seen empty (n,)."""
-        centres = np.asarray(points, float).reshape(-1, 2)
-        free = np.ones(len(centres), np.bool_)
-        for offset in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.0, 0.0)):
-            rows, columns, inside = self._cells_of(centres + self.cell * np.array(offset))
-            known = np.zeros(len(centres), np.bool_)
-            known[inside] = self._log_odds[rows[inside], columns[inside]] < 0.0
-            free &= known
+        rows, columns, _ = self._cells_of(points)
+        n = self._count
+        free = np.empty(len(rows), np.bool_)
+        for k, (row, column) in enumerate(zip(rows.tolist(), columns.tolist(), strict=True)):
+            inside = 0 < row < n - 1 and 0 < column < n - 1
+            free[k] = inside and all(self._log_odds[row + i, column + j] < 0.0 for i, j in _CROSS)
         return free
 
     def update(
@@ -121,23 +125,9 @@ class LocalMap:
         dt = min(time - self._time, p.look)
         self._time = time
         self._roll(centre)
-        x: Array = (self._corner[0] + np.arange(self._count, dtype=np.float64) + 0.5) * self.cell
-        y: Array = (self._corner[1] + np.arange(self._count, dtype=np.float64) + 0.5) * self.cell
-        rows, columns = np.nonzero(viewpoint.contains_grid(x[None, :], y[:, None]))
-        points = np.stack([x[columns], y[rows]], axis=1)
-        reach = (radii + 0.5 * self.cell) ** 2
-        dx = points[:, 0, None] - obstacles[:, 0]
-        dy = points[:, 1, None] - obstacles[:, 1]
-        occupied: Mask = np.any(dx * dx + dy * dy < reach, axis=1)
-        # The ground under a detected obstacle counts as seen, although it hides half of it.
-        seen = np.logical_or(occupied, ~viewpoint.hidden(points, obstacles, radii))
-        rows, columns = rows[seen], columns[seen]
-        self._seen_at[rows, columns] = time
-        change = dt * np.where(occupied[seen], p.occupied_rate, p.free_rate)
-        limit = p.evidence_limit
-        self._log_odds[rows, columns] = np.clip(
-            self._log_odds[rows, columns] + change, -limit, limit
-        )
+        marks = viewpoint.searched(self._corner, p.cell, self._count, obstacles, radii)
+        evidence = (dt * p.free_rate, dt * p.occupied_rate, p.evidence_limit)
+        _take_in(marks, self._seen_at, self._log_odds, time, evidence)
 
     def tobytes(self) -> bytes:
         """All that the map holds, as bits."""
@@ -182,6 +172,30 @@ class LocalMap:
         self._corner = corner
         self._seen_at = _shifted(self._seen_at, shift_y, shift_x, -np.inf)
         self._log_odds = _shifted(self._log_odds, shift_y, shift_x, 0.0)
+
+
+@njit(cache=True)
+def _take_in(
+    marks: Marks, seen_at: Array, log_odds: Array, time: float, evidence: tuple[float, float, float]
+) -> None:
+    """Write one look into the map.
+
+    Args:
+        marks: what it showed (n, n), see `Viewpoint.searched`.
+        seen_at: when each cell was seen last (n, n) [s], changed.
+        log_odds: of occupancy (n, n), changed.
+        time: of the look [s].
+        evidence: change of the log odds of a cell seen free and of one covered, and their
+            largest absolute value [1].
+    """
+    free, occupied, limit = evidence
+    for row in range(len(marks)):
+        for column in range(len(marks)):
+            mark = marks[row, column]
+            if mark != UNSEEN:
+                seen_at[row, column] = time
+                odds = log_odds[row, column] + (occupied if mark == COVERED else free)
+                log_odds[row, column] = min(max(odds, -limit), limit)
 
 
 def _shifted(cells: Array, rows: int, columns: int, empty: float) -> Array:

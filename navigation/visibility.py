@@ -6,6 +6,7 @@ from math import cos, pi, sin, tan
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation import visibility_kernel
 from navigation.observation import CameraView
 
 Array = NDArray[np.float64]
@@ -64,29 +65,8 @@ class Viewpoint:
         Returns:
             One truth value per point (n,).
         """
-        return self.contains_grid(points[:, 0], points[:, 1], height, margin)
-
-    def contains_grid(self, x: Array, y: Array, height: float = 0.0, margin: float = 0.0) -> Mask:
-        """`contains` for coordinates that broadcast against each other [m]."""
-        dx = x - self.position[0]
-        dy = y - self.position[1]
-        if self.horizontal_half >= 0.5 * pi:
-            near: Mask = np.broadcast_to(
-                dx * dx + dy * dy <= self.range**2, np.broadcast(x, y).shape
-            )
-            return near.copy()
-        dz = height - float(self.position[2])
-        R = self.rotation.tolist()
-        forward = (R[0][2] * dx + R[2][2] * dz) + R[1][2] * dy
-        right = (R[0][0] * dx + R[2][0] * dz) + R[1][0] * dy
-        down = (R[0][1] * dx + R[2][1] * dz) + R[1][1] * dy
-        inside: Mask = (
-            (forward > 0.0)
-            & (np.abs(right) <= tan(max(self.horizontal_half - margin, 0.0)) * forward)
-            & (np.abs(down) <= tan(max(self.vertical_half - margin, 0.0)) * forward)
-            & (dx * dx + dy * dy <= self.range**2)
-        )
-        return inside
+        camera = self._camera(height, margin)
+        return visibility_kernel.contains(np.ascontiguousarray(points), self.position, camera)
 
     def hidden(self, points: Array, centres: Array, radii: Array, slack: float = 0.0) -> Mask:
         """Whether a nearer disc stands between the camera and each point.
@@ -102,21 +82,7 @@ class Viewpoint:
         Returns:
             One truth value per point (n,).
         """
-        if len(centres) == 0 or len(points) == 0:
-            return np.zeros(len(points), dtype=bool)
-        eye = self.position[:2]
-        a = centres - eye
-        px = points[:, 0, None] - eye[0]
-        py = points[:, 1, None] - eye[1]
-        ax, ay = a[:, 0], a[:, 1]
-        along = px * ax + py * ay
-        across = px * ay - py * ax
-        # The ray to the point passes the disc's centre at |across| / |p|.
-        p2 = px * px + py * py
-        reach = (radii + slack) ** 2
-        nearer = along > ax * ax + ay * ay
-        blocked: Mask = (nearer & (across * across < reach * p2)).any(axis=1)
-        return blocked
+        return visibility_kernel.hidden(points, self.position, centres, radii, slack)
 
     def expects(
         self, points: Array, centres: Array, radii: Array, *, margin: float, slack: float
@@ -133,7 +99,32 @@ class Viewpoint:
         Returns:
             One truth value per point (n,).
         """
-        inside = self.contains(points, margin=margin)
-        if inside.any():
-            inside[inside] = ~self.hidden(points[inside], centres, radii, slack)
-        return inside
+        camera = self._camera(0.0, margin)
+        return visibility_kernel.expects(points, self.position, camera, centres, radii, slack)
+
+    def searched(
+        self, corner: tuple[int, int], cell: float, count: int, centres: Array, radii: Array
+    ) -> visibility_kernel.Marks:
+        """What a look shows of the cells of a grid: UNSEEN, FREE or COVERED (count, count).
+
+        Args:
+            corner: number of the first column and row from the origin of W.
+            cell: side of a cell [m].
+            count: cells along a side.
+            centres: of the discs in the frame, in W (m, 2) [m].
+            radii: (m,) [m].
+        """
+        camera = self._camera(0.0, 0.0)
+        first = np.array(corner, np.float64)
+        return visibility_kernel.searched(first, cell, count, self.position, camera, centres, radii)
+
+    def _camera(self, height: float, margin: float) -> Array:
+        """Camera as `visibility_kernel.contained` wants it (13,)."""
+        wide = self.horizontal_half >= 0.5 * pi
+        camera = np.empty(13)
+        camera[:9] = self.rotation.ravel()
+        camera[9] = height - float(self.position[2])
+        camera[10] = -1.0 if wide else tan(max(self.horizontal_half - margin, 0.0))
+        camera[11] = tan(max(self.vertical_half - margin, 0.0))
+        camera[12] = self.range
+        return camera
