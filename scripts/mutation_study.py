@@ -32,7 +32,6 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "results" / "mutation.md"
 TESTS = {  # where they are not those of the same name
     "walking/foot_placement": ("walking/test_transition", "walking/test_admission"),
-    "walking/zmp_program": ("walking/test_zmp_fit",),
 }
 MODULES = (
     "navigation/partial_evaluation",
@@ -49,9 +48,8 @@ MODULES = (
     "navigation/motion_modes",
     "navigation/local_map",
     "walking/lipm",
-    "walking/zmp_fit",
     "walking/zmp_reference",
-    "walking/zmp_program",
+    "walking/zmp_kernel",
     "walking/foot_placement",
     "walking/estimator",
 )

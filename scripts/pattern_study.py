@@ -19,7 +19,6 @@ import numpy as np
 from scipy.spatial import ConvexHull
 from study_page import add_seeds, command_line, environment
 
-from walking import zmp_program
 from walking.command import Command, CommandState, VelocityCommand
 from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
@@ -79,18 +78,6 @@ class TracedLipm(Lipm):
         return points
 
 
-class CountingFit(zmp_program.ZmpFit):
-    """A program that adds up how often gradients are evaluated."""
-
-    total = 0
-
-    def solve(self, start: Point) -> bool:
-        """As the program."""
-        solved = super().solve(start)
-        CountingFit.total += self.evaluations
-        return solved
-
-
 class CountingRegion:
     """A support region that notes by how much it had to clip."""
 
@@ -128,6 +115,11 @@ class Walker:
         self.state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
         self.clipped = self.cost = self.late = self.missed = 0.0
         self.feet: tuple[Footstep, ...] = stance
+
+    @property
+    def evaluations(self) -> int:
+        """Of the gradient of the generator's program so far."""
+        return getattr(self.generator, "evaluations", 0)
 
     def tick(self, command: Command) -> list[Point]:
         """One control tick; the ZMP walked in it."""
@@ -231,9 +223,9 @@ def every_tick(name: str, sole: Sole, seeds: list[int], duration: float) -> Tall
     for seed in seeds:
         walker = Walker(name, sole)
         for command in commands_of(seed, duration):
-            before, CountingFit.total = walker.gait.completed, 0
+            before, evaluated = walker.gait.completed, walker.evaluations
             points = walker.tick(command)
-            tally.evaluations.append(CountingFit.total)
+            tally.evaluations.append(walker.evaluations - evaluated)
             distance = walker.outside(points)
             tally.ticks += 1
             tally.outside += distance > OUTSIDE
@@ -337,7 +329,6 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.relative_to(ROOT)}")
     parser.add_argument("--generators", nargs="+", choices=GENERATORS, default=GENERATORS)
     options = parser.parse_args()
-    zmp_program.ZmpFit = CountingFit
     sole = RobotModel.from_mjcf(ROBOT).sole
     first = second = [""]
     if options.study in ("every-tick", "all"):

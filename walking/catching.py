@@ -1,10 +1,12 @@
 """The pendulum of the plan, and that of a body which has left the plan to be caught."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from walking.gait import Gait
 from walking.lipm import Lipm
-from walking.pattern import DcmTracker, PatternGenerator, PendulumState, ZmpRamp
+from walking.pattern import DcmTracker, PatternGenerator, PendulumState
+from walking.ramps import ZmpRamp
 from walking.state import Footstep
 from walking.support import SupportRegion
 
@@ -47,7 +49,7 @@ class CatchingPendulum:
         """Whether the body has left the plan."""
         return self.planned is not self.state
 
-    def advance(self, ramps: list[ZmpRamp], landing: Footstep, region: SupportRegion) -> None:
+    def advance(self, ramps: Sequence[ZmpRamp], landing: Footstep, region: SupportRegion) -> None:
         """One tick.
 
         Args:

@@ -1,11 +1,14 @@
 """Foot placement: where the swing foot lands and when, by plan or to catch the body."""
 
+from collections.abc import Sequence
+
 from walking.admission import Limit
 from walking.catching import CatchingPendulum
 from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
 from walking.lipm import Lipm
-from walking.pattern import PatternGenerator, ZmpRamp, dcm_reference
+from walking.pattern import PatternGenerator, dcm_reference
+from walking.ramps import ZmpRamp
 from walking.stabilizer import Capture, Stabilizer
 from walking.state import Footstep
 from walking.stride import Strides, Velocity
@@ -78,7 +81,7 @@ class FootPlacement:
         region: SupportRegion,
         *,
         moving: bool,
-    ) -> list[ZmpRamp]:
+    ) -> Sequence[ZmpRamp]:
         """One tick; the gait has the landing and the times decided on.
 
         Args:
@@ -110,7 +113,7 @@ class FootPlacement:
 
     def _reference(
         self, wish: Strides, velocity: Velocity, region: SupportRegion
-    ) -> tuple[list[ZmpRamp], Footstep]:
+    ) -> tuple[Sequence[ZmpRamp], Footstep]:
         """Reference of the plan that the generator admits, and the landing in it."""
         gait, transition = self._gait, self._transition
         if not self._selects:
@@ -140,8 +143,8 @@ class FootPlacement:
         return gait.adjustable and not self._planner.same(gait.nominal(wish), transition.landing)
 
     def _catch(
-        self, landing: Footstep, ramps: list[ZmpRamp], wish: Strides, error: Point
-    ) -> list[ZmpRamp]:
+        self, landing: Footstep, ramps: Sequence[ZmpRamp], wish: Strides, error: Point
+    ) -> Sequence[ZmpRamp]:
         """Aim at the landing that catches the body; the reference that goes with it."""
         gait, caught = self._gait, landing
         capture = self._capture(landing, ramps, error)
@@ -163,7 +166,7 @@ class FootPlacement:
             ramps = gait.plan(gait.landing, wish, moving=self.moving)
         return ramps
 
-    def _capture(self, landing: Footstep, ramps: list[ZmpRamp], error: Point) -> Capture:
+    def _capture(self, landing: Footstep, ramps: Sequence[ZmpRamp], error: Point) -> Capture:
         """What the footholds of the plan do not catch of the measured DCM."""
         gait, w = self._gait, self._lipm.omega
         pendulum = self._catching.state

@@ -3,7 +3,7 @@
 from walking.footstep_clock import Clock, SwingWindow, WeightShift
 from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import ZmpRamp
+from walking.ramps import ZmpRamp
 from walking.state import Footstep, Phase
 from walking.stride import Strides, Timing
 from walking.swing import FootReference, least_ticks, lift_profile, moved

@@ -14,12 +14,14 @@ so a walking state wanted at touch-down is two linear equations in the ZMP funct
 function scaled down, and the command is feasible exactly if the scale is at most one.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, exp, inf, log, sin, sqrt
 
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, PatternParameters
-from walking.pattern import DcmGenerator, PendulumState, ZmpRamp, dcm_reference
+from walking.pattern import DcmGenerator, PendulumState, dcm_reference
+from walking.ramps import ZmpRamp
 from walking.support import SupportRegion
 
 SAME_TARGET = 1e-7  # change of a walking state that is rounding [m]
@@ -105,7 +107,7 @@ class PaperGenerator:
         self._functions = (ZmpFunction(0.0, 0.0), ZmpFunction(0.0, 0.0))
         self._residual = (0.0, 0.0)
 
-    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+    def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
         """Whether ZMP functions inside the sole lead to the walking state of a reference."""
         ramp = ramps[0]
         if ramp.feet[0] is not ramp.feet[1]:
@@ -124,7 +126,7 @@ class PaperGenerator:
     def advance(
         self,
         state: PendulumState,
-        ramps: list[ZmpRamp],
+        ramps: Sequence[ZmpRamp],
         region: SupportRegion,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
@@ -144,13 +146,13 @@ class PaperGenerator:
             self._catch(state, ramps, region)
         self._follow(state, ramp)
 
-    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         """The pendulum's own DCM, less what the ZMP functions could not bring about."""
         w = self._lipm.omega
         rx, ry = self._residual
         return state.x + state.vx / w - rx, state.y + state.vy / w - ry
 
-    def holds(self, ramps: list[ZmpRamp]) -> bool:
+    def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
         """Whether the ZMP functions under way lead to a walking state."""
         return self._residual == (0.0, 0.0)
 
@@ -158,7 +160,7 @@ class PaperGenerator:
         """Give up the ZMP functions under way."""
         self._target, self._residual = None, (0.0, 0.0)
 
-    def _walking_target(self, ramps: list[ZmpRamp]) -> WalkingTarget:
+    def _walking_target(self, ramps: Sequence[ZmpRamp]) -> WalkingTarget:
         """DCM that walks the footholds to come, and ζ of the periodic walk they lead to."""
         first = ramps[0]
         if len(ramps) == 1:
@@ -167,7 +169,7 @@ class PaperGenerator:
         xi = _turned(-first.feet[0].yaw, x - first.bx, y - first.by)
         return WalkingTarget(xi, self._periodic(ramps))
 
-    def _periodic(self, ramps: list[ZmpRamp]) -> tuple[float, float] | None:
+    def _periodic(self, ramps: Sequence[ZmpRamp]) -> tuple[float, float] | None:
         """ζ at the end of the last single support on the same side, in the frame of its foot."""
         x, y = ramps[0].bx, ramps[0].by
         side, found = ramps[0].feet[0].left, None
@@ -200,7 +202,7 @@ class PaperGenerator:
                 functions.append(zmp_function(w, time, a, b))
         return functions[0], functions[1]
 
-    def _catch(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> None:
+    def _catch(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> None:
         """A reference that cannot be had: its DCM as nearly as a constant ZMP can."""
         ramp = ramps[0]
         target = WalkingTarget(self._walking_target(ramps).xi, None)

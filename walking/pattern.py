@@ -4,48 +4,25 @@ Both generators preview the same piecewise-linear reference and are recomputed f
 every control tick, so a foothold may move at any time.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from walking import zmp_kernel
 from walking.lipm import Lipm
-from walking.parameters import PatternParameters
+from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.preview import preview_gains
-from walking.state import Footstep
+from walking.ramps import ZmpRamp, table_of
 from walking.support import SupportRegion
-from walking.value import value
 
 
-@value
-class ZmpRamp:
-    """A stretch of the ZMP reference, linear in time.
-
-    Attributes:
-        ticks: its duration in control ticks.
-        ax, ay: ZMP at its start [m].
-        bx, by: ZMP at its end [m].
-        feet: the unloading and the loading foot, the same foot twice in single support.
-    """
-
-    ticks: int
-    ax: float
-    ay: float
-    bx: float
-    by: float
-    feet: tuple[Footstep, Footstep]
-
-
-def dcm_reference(lipm: Lipm, ramps: list[ZmpRamp]) -> tuple[float, float]:
+def dcm_reference(lipm: Lipm, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
     """DCM from which the reference is walked for ever: the recursion run backward.
 
     Beyond the last ramp the ZMP stays and the DCM rests on it; a reference s seconds ahead
     weighs ω e^{-ωs}, which is preview control in the limit of free jerk.
     """
-    x, y = ramps[-1].bx, ramps[-1].by
-    for ramp in reversed(ramps):
-        c = lipm.ramp(ramp.ticks)
-        x = (x + c.first * ramp.ax + c.last * ramp.bx) / c.growth
-        y = (y + c.first * ramp.ay + c.last * ramp.by) / c.growth
-    return x, y
+    return zmp_kernel.dcm(table_of(ramps), lipm.omega * CONTROL_PERIOD)
 
 
 @dataclass(slots=True)
@@ -78,7 +55,7 @@ class DcmTracker:
         self._lipm = lipm
         self._gain = gain
 
-    def follow(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> None:
+    def follow(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> None:
         """Advance `state` along a reference, as near to it as the region lets the ZMP go."""
         first = ramps[0]
         middle = 0.5 / first.ticks
@@ -119,7 +96,7 @@ class PatternGenerator(Protocol):
 
     selective: bool
 
-    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+    def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
         """Whether the pendulum can go over to a reference with the ZMP in the soles.
 
         Args:
@@ -131,7 +108,7 @@ class PatternGenerator(Protocol):
     def advance(
         self,
         state: PendulumState,
-        ramps: list[ZmpRamp],
+        ramps: Sequence[ZmpRamp],
         region: SupportRegion,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
@@ -142,10 +119,10 @@ class PatternGenerator(Protocol):
             region: where the ZMP may be.
         """
 
-    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         """DCM [m] that the generator holds for right in the tick of a reference."""
 
-    def holds(self, ramps: list[ZmpRamp]) -> bool:
+    def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
         """Whether the plan under way can be carried on under a reference."""
 
     def forget(self) -> None:
@@ -157,11 +134,11 @@ class TrackingGenerator:
 
     selective = False
 
-    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+    def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
         """Always: a reference that asks too much is tracked late."""
         return True
 
-    def holds(self, ramps: list[ZmpRamp]) -> bool:
+    def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
         """Always: there is no plan but the reference."""
         return True
 
@@ -184,7 +161,7 @@ class DcmGenerator(TrackingGenerator):
     def advance(
         self,
         state: PendulumState,
-        ramps: list[ZmpRamp],
+        ramps: Sequence[ZmpRamp],
         region: SupportRegion,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
@@ -196,7 +173,7 @@ class DcmGenerator(TrackingGenerator):
         """
         self._tracker.follow(state, ramps, region)
 
-    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         """The DCM of the footholds: the pendulum is late only after a disturbance."""
         return dcm_reference(self._lipm, ramps)
 
@@ -219,7 +196,7 @@ class PreviewGenerator(TrackingGenerator):
     def advance(
         self,
         state: PendulumState,
-        ramps: list[ZmpRamp],
+        ramps: Sequence[ZmpRamp],
         region: SupportRegion,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
@@ -240,12 +217,12 @@ class PreviewGenerator(TrackingGenerator):
         state.y, state.vy = lipm.step(state.y, state.vy, py)
         state.zmp_x, state.zmp_y = px, py
 
-    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         """The pendulum's own DCM: weighing the ZMP's change, it keeps off that of the footholds."""
         w = self._lipm.omega
         return state.x + state.vx / w, state.y + state.vy / w
 
-    def _preview(self, ramps: list[ZmpRamp]) -> tuple[float, float]:
+    def _preview(self, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         """Σ_j f_j p_ref(j) over the horizon; the rest weighs on its last point."""
         sums, moments = self._gains.sums, self._gains.moments
         horizon = len(sums) - 1

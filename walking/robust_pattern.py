@@ -16,31 +16,41 @@ equations and bounds. Its dual has two unknowns, found by Newton's method; witho
 bounds that is one division.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+
+import numpy as np
+from numpy.typing import NDArray
+
+from walking import zmp_kernel
 from walking.lipm import Lipm
-from walking.parameters import PatternParameters
-from walking.pattern import DcmTracker, PendulumState, ZmpRamp, dcm_reference
+from walking.parameters import CONTROL_PERIOD, PatternParameters
+from walking.pattern import DcmTracker, PendulumState, dcm_reference
+from walking.ramps import ZmpRamp, table_of
 from walking.robot_model import Sole
-from walking.state import Footstep
 from walking.support import SupportRegion
-from walking.value import value
-from walking.zmp_program import Knot, ZmpProgram
 
-Feet = tuple[Footstep, Footstep]
+Array = NDArray[np.float64]
+
+AHEAD = 5  # ramps of a plan that are looked at to tell whether it can be carried on
 
 
-@value
+@dataclass(slots=True)
 class ZmpPlan:
     """Knots from now on, and what they were made for.
 
     Attributes:
-        knots: ticks since the one before, x, y [m].
-        supports: end of the first ramps in ticks from now, and their feet.
-        dual: of its program, see `ZmpFit` [1/m].
+        knots: ticks since the one before, x, y [m] (n, 3); see `next`.
+        ramps: reference that the plan was made for, see `Ramps` (m, 13).
+        dual: λ of its program, see `walking.zmp_kernel` [1/m].
+        next: index of the first knot to come.
     """
 
-    knots: list[Knot]
-    supports: list[tuple[int, Feet]]
+    knots: Array
+    ramps: Array
     dual: tuple[float, float]
+    next: int = 0
 
 
 class RobustGenerator:
@@ -50,22 +60,28 @@ class RobustGenerator:
         lipm: pendulum.
         parameters: margin and largest rate of the ZMP.
         sole: rectangle of the soles.
+
+    Attributes:
+        evaluations: of the program's gradient so far.
     """
 
     selective = True
 
     def __init__(self, lipm: Lipm, parameters: PatternParameters, sole: Sole) -> None:
         self._lipm = lipm
-        self._parameters = parameters
         self._sole = sole
+        self._sole_margin, self._plan_margin = parameters.sole_margin, parameters.plan_margin
+        self._wh = lipm.omega * CONTROL_PERIOD
+        self._rate = parameters.zmp_rate * CONTROL_PERIOD
         self._tracker = DcmTracker(lipm, parameters.dcm_gain)
         self._plan: ZmpPlan | None = None
         self._age = 0
-        self._candidate: tuple[list[ZmpRamp], ZmpPlan] | None = None
+        self._candidate: tuple[Sequence[ZmpRamp], ZmpPlan] | None = None
+        self.evaluations = 0
 
-    def admits(self, state: PendulumState, ramps: list[ZmpRamp], region: SupportRegion) -> bool:
+    def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
         """Whether a plan with all knots in place leads into a reference."""
-        plan = self._solve(state, ramps, self._parameters.plan_margin)
+        plan = self._solve(state, ramps, self._plan_margin)
         if plan is not None:
             self._candidate = (ramps, plan)
         return plan is not None
@@ -73,7 +89,7 @@ class RobustGenerator:
     def advance(
         self,
         state: PendulumState,
-        ramps: list[ZmpRamp],
+        ramps: Sequence[ZmpRamp],
         region: SupportRegion,
     ) -> None:
         """Advance `state` in place; its ZMP never leaves `region`.
@@ -91,10 +107,10 @@ class RobustGenerator:
         if self._plan is None:
             self._tracker.follow(state, ramps, region)
             return
-        self._follow(state, self._plan.knots)
+        self._follow(state, self._plan)
         self._age += 1
 
-    def planned_dcm(self, state: PendulumState, ramps: list[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         """The pendulum's own DCM under a plan, that of the footholds without one."""
         if self._plan is None:
             return dcm_reference(self._lipm, ramps)
@@ -105,52 +121,60 @@ class RobustGenerator:
         """Give up the plan under way: the pendulum has been moved."""
         self._plan, self._age = None, 0
 
-    def holds(self, ramps: list[ZmpRamp]) -> bool:
+    def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
         """Whether there is a plan under way, and for the supports of a reference."""
         plan, age = self._plan, self._age
-        if plan is None or not plan.knots:
+        if plan is None or plan.next == len(plan.knots):
             return False
-        return all((end + age, feet) in plan.supports for end, feet in _supports(ramps)[:2])
+        planned = _supports(plan.ramps[:AHEAD])
+        return all((end + age, feet) in planned for end, feet in _supports(table_of(ramps)[:2]))
 
-    def _follow(self, state: PendulumState, knots: list[Knot]) -> None:
+    def _follow(self, state: PendulumState, plan: ZmpPlan) -> None:
         """One tick along a plan, which loses its first segment when that is over."""
         lipm = self._lipm
         px, py = state.zmp_x, state.zmp_y
-        if knots:
-            ticks, x, y = knots[0]
-            if ticks == 1:
+        if plan.next < len(plan.knots):
+            knot = plan.knots[plan.next]
+            ticks, x, y = knot.tolist()
+            if ticks == 1.0:
                 px, py = x, y
-                del knots[0]
+                plan.next += 1
             else:
                 px, py = px + (x - px) / ticks, py + (y - py) / ticks
-                knots[0] = (ticks - 1, x, y)
+                knot[0] = ticks - 1.0
         state.x, state.vx = lipm.slide(state.x, state.vx, state.zmp_x, px)
         state.y, state.vy = lipm.slide(state.y, state.vy, state.zmp_y, py)
         state.zmp_x, state.zmp_y = px, py
 
-    def _replan(self, state: PendulumState, ramps: list[ZmpRamp]) -> None:
+    def _replan(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> None:
         """A plan for what nobody has asked about, or the one under way, or none."""
-        p = self._parameters
-        plan = self._solve(state, ramps, p.plan_margin)
+        plan = self._solve(state, ramps, self._plan_margin)
         if plan is None and not self.holds(ramps):
-            plan = self._solve(state, ramps, p.sole_margin)
+            plan = self._solve(state, ramps, self._sole_margin)
             self._plan = None
         if plan is not None or self._plan is None:
             self._plan, self._age = plan, 0
 
-    def _solve(self, state: PendulumState, ramps: list[ZmpRamp], margin: float) -> ZmpPlan | None:
+    def _solve(
+        self, state: PendulumState, ramps: Sequence[ZmpRamp], margin: float
+    ) -> ZmpPlan | None:
         """The plan nearest to a reference, or None if none leads into it."""
-        program = ZmpProgram(self._lipm, self._parameters, self._sole, state, ramps, margin=margin)
+        w, sole, table = self._lipm.omega, self._sole, table_of(ramps)
         growth = self._lipm.ramp(self._age).growth
         lx, ly = self._plan.dual if self._plan is not None else (0.0, 0.0)
-        if not program.fit.solve((lx / growth, ly / growth)):
-            return None
-        return ZmpPlan(program.knots(), _supports(ramps), program.fit.dual)
+        feasible, lx, ly, evaluations, knots = zmp_kernel.plan(
+            table,
+            (state.x, state.y, state.vx / w, state.vy / w, state.zmp_x, state.zmp_y),
+            (sole.centre, sole.half_length - margin, sole.half_width - margin),
+            self._wh,
+            self._rate,
+            (lx / growth, ly / growth),
+        )
+        self.evaluations += evaluations
+        return ZmpPlan(knots, table, (lx, ly)) if feasible else None
 
 
-def _supports(ramps: list[ZmpRamp]) -> list[tuple[int, Feet]]:
-    ends, now = [], 0
-    for ramp in ramps[:5]:
-        now += ramp.ticks
-        ends.append((now, ramp.feet))
-    return ends
+def _supports(ramps: Array) -> list[tuple[float, list[float]]]:
+    """End of each ramp in ticks from now, and its feet."""
+    rows = ramps.tolist()
+    return list(zip(accumulate(row[0] for row in rows), (row[5:] for row in rows), strict=True))

@@ -1,8 +1,11 @@
 """From the plan of the last tick to the one now wanted, as far as the ZMP allows."""
 
+from collections.abc import Sequence
+
 from walking.footstep_clock import Clock
 from walking.gait import Gait
-from walking.pattern import PatternGenerator, PendulumState, ZmpRamp
+from walking.pattern import PatternGenerator, PendulumState
+from walking.ramps import ZmpRamp
 from walking.state import Footstep
 from walking.stride import Strides
 from walking.support import SupportRegion
@@ -75,7 +78,7 @@ class Transition:
         *,
         moving: bool,
         caught: bool = False,
-    ) -> list[ZmpRamp]:
+    ) -> Sequence[ZmpRamp]:
         """Reference of the admitted plan; the gait has its times.
 
         Args:
@@ -106,7 +109,7 @@ class Transition:
 
     def _bisect(
         self, state: PendulumState, region: SupportRegion, old: Course, wanted: Course
-    ) -> list[ZmpRamp]:
+    ) -> Sequence[ZmpRamp]:
         low, high = 0.0, 1.0
         best = None
         for _ in range(BISECTIONS):
@@ -134,11 +137,11 @@ class Transition:
         )
         return Course(landing, old.strides.towards(wanted.strides, share), gait.clock(), old.moving)
 
-    def _plan(self, course: Course) -> list[ZmpRamp]:
+    def _plan(self, course: Course) -> Sequence[ZmpRamp]:
         self._gait.set_clock(course.clock)
         return self._gait.plan(course.landing, course.strides, moving=course.moving)
 
-    def _take(self, course: Course, ramps: list[ZmpRamp], share: float) -> list[ZmpRamp]:
+    def _take(self, course: Course, ramps: Sequence[ZmpRamp], share: float) -> Sequence[ZmpRamp]:
         self.share, self.landing = share, course.landing
         self.moving, self.strides = course.moving, course.strides
         return ramps

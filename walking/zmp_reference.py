@@ -3,7 +3,7 @@
 from math import cos, sin
 
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import ZmpRamp
+from walking.ramps import ZmpRamp
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.stride import Timing

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from walking.lipm import Lipm
 from walking.paper_pattern import PaperGenerator, zmp_function
 from walking.parameters import CONTROL_PERIOD, PatternParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference
+from walking.pattern import PendulumState, dcm_reference
+from walking.ramps import ZmpRamp
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.support import support_region

@@ -6,7 +6,8 @@ import pytest
 from walking.generator import make_generator
 from walking.lipm import Lipm
 from walking.parameters import PatternParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference
+from walking.pattern import PendulumState, dcm_reference
+from walking.ramps import ZmpRamp
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.support import support_region

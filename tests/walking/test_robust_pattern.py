@@ -10,7 +10,8 @@ from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.pattern import PendulumState, ZmpRamp, dcm_reference
+from walking.pattern import PendulumState, dcm_reference
+from walking.ramps import ZmpRamp
 from walking.robot_model import Sole
 from walking.robust_pattern import RobustGenerator
 from walking.state import Footstep, Phase

@@ -1,0 +1,73 @@
+"""The ZMP reference as a table that compiled code reads."""
+
+from collections.abc import Sequence
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from walking.state import Footstep
+from walking.value import value
+
+Array = NDArray[np.float64]
+
+
+@value
+class ZmpRamp:
+    """A stretch of the ZMP reference, linear in time.
+
+    Attributes:
+        ticks: its duration in control ticks.
+        ax, ay: ZMP at its start [m].
+        bx, by: ZMP at its end [m].
+        feet: the unloading and the loading foot, the same foot twice in single support.
+    """
+
+    ticks: int
+    ax: float
+    ay: float
+    bx: float
+    by: float
+    feet: tuple[Footstep, Footstep]
+
+
+class Ramps(Sequence[ZmpRamp]):
+    """A ZMP reference, one ramp after the other.
+
+    Args:
+        table: a row for each: ticks | ax, ay, bx, by [m] | of the unloading and of the loading
+            foot x, y [m], yaw [rad], 1 if it is the left one, 0 if not (n, 13).
+    """
+
+    __slots__ = ("table",)
+
+    def __init__(self, table: Array) -> None:
+        self.table = table
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    @overload
+    def __getitem__(self, index: int) -> ZmpRamp: ...
+    @overload
+    def __getitem__(self, index: slice) -> "Ramps": ...
+    def __getitem__(self, index: int | slice) -> "ZmpRamp | Ramps":
+        if isinstance(index, slice):
+            return Ramps(self.table[index])
+        ticks, ax, ay, bx, by, *feet = self.table[index].tolist()
+        first = second = Footstep(feet[3] > 0.0, *feet[:3])
+        if feet[7] != feet[3]:
+            second = Footstep(feet[7] > 0.0, *feet[4:7])
+        return ZmpRamp(int(ticks), ax, ay, bx, by, (first, second))
+
+
+def table_of(ramps: Sequence[ZmpRamp]) -> Array:
+    """The table of a reference, see `Ramps` (n, 13)."""
+    if isinstance(ramps, Ramps):
+        return ramps.table
+    rows = []
+    for ramp in ramps:
+        one, two = ramp.feet
+        feet = (one.x, one.y, one.yaw, one.left, two.x, two.y, two.yaw, two.left)
+        rows.append((ramp.ticks, ramp.ax, ramp.ay, ramp.bx, ramp.by, *feet))
+    return np.array(rows, dtype=float)
