@@ -31,6 +31,7 @@ from hsr8.world.layout import (
     with_first_moved,
 )
 from hsr8.world.motion import Circle, MotionLaw, Shuttle
+from hsr8.world.passage import Passage
 from hsr8.world.wander import draw_wander
 
 Array = NDArray[np.float64]
@@ -264,7 +265,7 @@ class Attempt:
                     continue
                 reach_x, reach_y = (self._half - radius - 2.0 * OBSTACLE_TO_RIM).tolist()
                 law = passage_through(place, course, time, (reach_x, reach_y))
-                if law is None:
+                if law is None or _startles(law, walk, radius):
                     continue
                 lane = Lane.of(law, radius, self._colour())
                 # It stays where it arrives, which must be out of everybody's way.
@@ -311,3 +312,10 @@ class Attempt:
 
     def _colour(self) -> str:
         return COLOURS[int(self._rng.integers(len(COLOURS)))]
+
+
+def _startles(law: Passage, walk: NominalWalk, radius: float) -> bool:
+    """Whether a mover of some `radius` [m] sets off right beside the robot as it walks by."""
+    (x, y), _ = walk.at(law.depart)
+    gap = float(distance(np.array([law.start]), [(x, y)])[0]) - radius
+    return law.depart > 0.0 and gap < START_TO_MOVER

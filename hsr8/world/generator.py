@@ -7,6 +7,8 @@ The rules, with distances between surfaces unless a point is named:
 * via points and the goal are robot radius and 0.25 m from static obstacles;
 * lanes of movers keep 0.3 m from static obstacles, so that none pins the robot, keep
   clear of one another, and turn about robot radius and 0.3 m from the goal at least;
+* a mover on a collision course that stands at first sets off 0.9 m at least from where
+  the nominal walk is then: nothing that stood still runs at the robot's heels;
 * movers that wander or cross the field may cross lanes, but never meet another mover;
 * a robot that knows everything gets through: a world without a certificate is rejected,
   and the next one is drawn.

@@ -127,6 +127,22 @@ def test_one_way_movers_go_once():
     assert {type(o.motion) for o in layout.movers} == {Passage}
 
 
+@pytest.mark.parametrize("name", ["behind", "conflict"])
+def test_nothing_that_stood_sets_off_beside_the_robot(name):
+    scenario = load(name)
+    pace = scenario.world.encounters.pace * scenario.robot.speed.forward
+    gaps = []
+    for seed in range(4):
+        layout = drawn(scenario, seed)
+        walk = NominalWalk([layout.start[:2], *map(tuple, layout.waypoints)], pace)
+        for mover in layout.movers:
+            if mover.motion.depart > 0.0:
+                there = walk.at(mover.motion.depart)[0]
+                gaps.append(hypot(*np.subtract(mover.position, there)) - mover.radius)
+    assert len(gaps) > 3
+    assert min(gaps) >= fairness.START_TO_MOVER - 1e-9
+
+
 def test_the_robot_cannot_slip_through_a_wall():
     layout = drawn(load("corridor"), 0)
     upper = sorted(o.position for o in layout.static if o.position[1] > 0.0)
