@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from vision.blob import Blob
 from vision.colour import OUTSIDE
-from vision.cylinder import MIN_CLEARANCE, Candidate, RimCue
+from vision.cylinder import Candidate, RimCue
+from vision.cylinder_kernel import MIN_CLEARANCE
 from vision.outline import Outline, Rim, Side
 from vision.parameters import VisionParameters
 from vision.view import View
@@ -111,9 +112,9 @@ class _Grid:
 
     def __init__(self, blob: Blob, outline: Outline, padded: Labels, view: View) -> None:
         left, top, right, bottom = blob.box
-        first, last = blob.row_extents()
+        ends = (bottom - top, 2 * (bottom - top), 2 * (bottom - top) + right - left)
+        first, last, high, low = np.split(blob.extents, ends)
         rows = np.arange(top, bottom) + 0.5
-        high, low = blob.column_extents()
         columns = np.arange(left, right) + 0.5
         azimuths, slopes = view.angles(
             np.concatenate([first, last, columns, columns]).astype(float),

@@ -5,7 +5,7 @@ horizontal plane gives every slope (rise over horizontal run) one distance. Edge
 upright cylinders are therefore measured in (azimuth, slope) and not in pixels.
 """
 
-from math import atan2, pi
+from math import atan2, cos, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,18 @@ class View:
         # The right axis is level but for roll, so it gives the heading even when the
         # camera looks straight down.
         self.heading = atan2(self._R[1][0], self._R[0][0]) + 0.5 * pi
+        self.packed = np.array(
+            [
+                0.5 * camera.width,
+                0.5 * camera.height,
+                camera.focal,
+                *self._R[0],
+                *self._R[1],
+                *self._R[2],
+                cos(self.heading),
+                sin(self.heading),
+            ]
+        )
 
     def angles(self, u: Array, v: Array) -> tuple[Array, Array]:
         """Azimuth from the heading of the camera [rad] and slope [1] of image points."""

@@ -1,3 +1,4 @@
+import cv2
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -29,12 +30,11 @@ def test_extents_bound_every_row_and_column() -> None:
     labels[2:6, 3:7] = 1
     labels[2, 3] = 0
     (blob,) = find_blobs(labels, SMALLEST)
-    first, last = blob.row_extents()
-    assert first.tolist() == [4, 3, 3, 3]
-    assert last.tolist() == [7, 7, 7, 7]
-    high, low = blob.column_extents()
-    assert high.tolist() == [3, 2, 2, 2]
-    assert low.tolist() == [6, 6, 6, 6]
+    first, last, high, low = blob.extents.reshape(4, 4).tolist()
+    assert first == [4, 3, 3, 3]
+    assert last == [7, 7, 7, 7]
+    assert high == [3, 2, 2, 2]
+    assert low == [6, 6, 6, 6]
 
 
 def test_borders_are_flagged_one_by_one() -> None:
@@ -60,3 +60,17 @@ def test_small_blobs_are_left_out() -> None:
     labels[5:8, 5:8] = 1
     assert [blob.area for blob in find_blobs(labels, (4,))] == [9]
     assert [blob.area for blob in find_blobs(labels, (3,))] == [3, 9]
+
+
+@given(seed=st.integers(0, 10_000), share=st.floats(0.2, 1.0))
+def test_blobs_are_the_components_that_opencv_finds(seed: int, share: float) -> None:
+    rng = np.random.default_rng(seed)
+    labels = rng.integers(1, 3, (14, 19)).astype(np.uint8)
+    labels[rng.random(labels.shape) < share] = 0
+    blobs = find_blobs(labels, (2, 2))
+    assert [(b.label, b.box[1]) for b in blobs] == sorted((b.label, b.box[1]) for b in blobs)
+    for label in (1, 2):
+        _, _, stats, _ = cv2.connectedComponentsWithStats((labels == label).astype(np.uint8))
+        rows = ((x, y, x + w, y + h, n) for x, y, w, h, n in stats[1:].tolist() if n >= 2)
+        found = ((*b.box, b.area) for b in blobs if b.label == label)
+        assert sorted(found) == sorted(rows)

@@ -9,7 +9,8 @@ from tests.vision.scene import CAMERA, Cylinder, at, paint, pose
 from vision.blob import find_blobs
 from vision.camera import CameraPose
 from vision.colour import COLOUR_CLASSES, OUTSIDE, ColourTable
-from vision.outline import Outline, independent, trace
+from vision.cylinder_kernel import independent
+from vision.outline import Outline, trace
 from vision.view import View
 
 NAMES = ("", *COLOUR_CLASSES)
@@ -82,9 +83,8 @@ def test_a_side_beyond_the_border_is_not_trusted() -> None:
 
 @given(count=st.integers(1, 80), crossed=st.floats(0.0, 20.0))
 def test_points_with_errors_of_their_own_are_one_at_least_and_all_at_most(count, crossed) -> None:
-    (own,) = independent(np.array([count]), np.array([crossed])).tolist()
-    (straight,) = independent(np.array([count]), np.array([0.0])).tolist()
-    (slanting,) = independent(np.array([count]), np.array([1e3])).tolist()
+    own = independent(float(count), crossed)
+    straight, slanting = independent(float(count), 0.0), independent(float(count), 1e3)
     assert 1.0 <= own <= count * (1 + 1e-12)
     assert straight == pytest.approx(1.0)
     assert slanting == pytest.approx(count)

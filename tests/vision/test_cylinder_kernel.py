@@ -1,0 +1,148 @@
+from math import asin, cos, hypot, sin, sqrt
+
+import numpy as np
+import pytest
+
+from vision.cylinder_kernel import (
+    HIDDEN_WIDTH,
+    ITERATIONS,
+    NO_INFORMATION,
+    OUTER,
+    RIM_WIDTH,
+    UNIFORM,
+    independent,
+    locate,
+)
+
+HEIGHT = 0.47
+OPTIONS = np.array([0.008, 0.02, 4.0])
+POSE = np.array([HEIGHT, 8e-7, 6e-7, 2.5e-7, 9e-8])
+
+
+def rim_run(x, azimuth, sign):
+    """Distance of the near or far half of a circle in a direction."""
+    theta, d, r = x
+    sine = np.clip(d * np.sin(azimuth - theta) / r, -OUTER, OUTER) * r
+    return d * np.cos(azimuth - theta) - sign * np.sqrt(r * r - sine * sine)
+
+
+def rows_of(x, candidate):
+    """What a cylinder at x predicts: two sides, the mean slope of each rim, its radius."""
+    theta, d, r = x
+    rims = [
+        np.mean((height - HEIGHT) / rim_run(x, azimuth, sign))
+        for height, sign, _, azimuth, _ in candidate["rims"]
+    ]
+    return np.array([theta + asin(r / d), theta - asin(r / d), *rims, r])
+
+
+def reference(candidate, x):
+    """Gauss-Newton with numerical derivatives and a full inverse: what the kernel computes."""
+    sides, (prior, prior_sigma, top) = candidate["sides"], candidate["known"]
+    rims, measured, mean_sigma = [], [], []
+    for height, sign, sigma, azimuth, slope in candidate["rims"]:
+        inner = np.abs(np.sin(azimuth - x[0]) * x[1] / x[2]) < RIM_WIDTH
+        rims.append((height, sign, sigma, azimuth[inner], slope[inner]))
+        measured.append(slope[inner].mean())
+        own = independent.py_func(inner.sum(), np.ptp(slope[inner]) / (UNIFORM * sigma))
+        mean_sigma.append(sigma * sqrt(OPTIONS[1] + (1 - OPTIONS[1]) / own))
+    used = {**candidate, "rims": rims}
+    side_sigma = [s * sqrt(OPTIONS[1] + (1 - OPTIONS[1]) / n) for _, s, n, *_ in sides]
+    trusted = [bool(side[5]) for side in sides]
+    z = np.array([sides[0][0], sides[1][0], *measured, prior])
+    for _ in range(ITERATIONS):
+        theta, d, r = x
+        residual = z - rows_of(x, used)
+        steps = 1e-6 * np.eye(3)
+        H = np.stack([(rows_of(x + e, used) - rows_of(x - e, used)) / 2e-6 for e in steps], axis=1)
+        reach = sqrt(d * d - r * r)
+        for j, (side, sigma) in enumerate(zip(sides, side_sigma, strict=True)):
+            slack = 0.5 * sigma
+            seen = side[4] >= -HEIGHT / reach - slack and side[3] <= (top - HEIGHT) / reach + slack
+            trusted[j] = trusted[j] and seen
+        s, c = sin(theta), cos(theta)
+        G, noise = [], []
+        for side, sigma, good in zip(sides, side_sigma, trusted, strict=True):
+            level = max(0.5 * (side[3] + side[4]), -3.0)
+            G.append((-level * s, -level * c, 1.0, 0.0))
+            noise.append(hypot(sigma, OPTIONS[0] * r / d) if good else HIDDEN_WIDTH / d)
+        for (height, *_), sigma in zip(rims, mean_sigma, strict=True):
+            slope = (height - HEIGHT) / d
+            lift = 1.0 + slope * slope
+            G.append((-lift * c, lift * s, 0.0, -1.0 / d))
+            noise.append(hypot(sigma, slope * OPTIONS[0] * r / d))
+        G.append((0.0, 0.0, 0.0, 0.0))
+        noise.append(prior_sigma)
+        G = np.array(G)
+        W = np.linalg.inv(G @ np.diag(POSE[1:]) @ G.T + np.diag(np.square(noise)))
+        P = np.linalg.inv(H.T @ W @ H)
+        x = x + P @ H.T @ W @ residual
+    return x, P, residual @ W @ residual
+
+
+def candidates(seed, n, share=0.7):
+    """Edges of random cylinders, with pixel noise; a share of them is seen."""
+    rng = np.random.default_rng(seed)
+    made = []
+    for _ in range(n):
+        x = np.array([rng.uniform(-0.5, 0.5), rng.uniform(0.6, 3.0), rng.uniform(0.05, 0.12)])
+        half, seen = asin(x[2] / x[1]), rng.random(3) < share
+        span = (-HEIGHT / (x[1] - x[2]), (0.3 - HEIGHT) / (x[1] + x[2]))
+        sides = [
+            (x[0] + sign * half + 5e-4 * rng.standard_normal(), 1e-3, rng.uniform(1, 9), *span, ok)
+            for sign, ok in ((1.0, seen[0] or not seen[1]), (-1.0, seen[1]))
+        ]
+        rims = []
+        for height, sign in ((0.0, 1.0), (0.3, -1.0)):
+            if sign > 0.0 or seen[2]:
+                azimuth = x[0] + half * np.linspace(-0.9, 0.9, rng.integers(5, 40))
+                slope = (height - HEIGHT) / rim_run(x, azimuth, sign)
+                slope += 1e-3 * rng.standard_normal(len(slope))
+                rims.append((height, sign, 1e-3, azimuth, slope))
+        made.append({"sides": sides, "known": (0.085, 0.02, 0.3), "rims": rims, "truth": x})
+    return made
+
+
+def packed(made):
+    rims = [rim for candidate in made for rim in candidate["rims"]]
+    return (
+        np.array([[tuple(map(float, s)) for s in c["sides"]] for c in made]),
+        np.array([c["known"] for c in made]),
+        np.array([rim[:3] for rim in rims]),
+        np.cumsum([0, *(len(c["rims"]) for c in made)]),
+        np.cumsum([0, *(len(rim[3]) for rim in rims)]),
+        np.concatenate([rim[3] for rim in rims]),
+        np.concatenate([rim[4] for rim in rims]),
+        POSE,
+        OPTIONS,
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_compiled_and_plain_agree(seed):
+    arguments = packed(candidates(seed, 12))
+    for compiled, plain in zip(locate(*arguments), locate.py_func(*arguments), strict=True):
+        np.testing.assert_allclose(compiled, plain, rtol=1e-9, atol=1e-15)
+
+
+def test_steps_are_those_of_least_squares_with_the_whole_covariance():
+    made = candidates(5, 40, share=1.0)
+    results, covariances = locate(*packed(made))
+    assert results[:, 3].max() < NO_INFORMATION
+    start = locate.py_func.__globals__["_guess"].py_func
+    for candidate, result, covariance in zip(made, results, covariances, strict=True):
+        sides, known, rims, _, points, _, slope, *_ = packed([candidate])
+        x = np.empty(3)
+        start(x, sides[0], known[0], rims, points, slope, HEIGHT)
+        x, P, misfit = reference(candidate, x)
+        np.testing.assert_allclose(result[:3], x, rtol=1e-5)
+        np.testing.assert_allclose(covariance, P, rtol=1e-3, atol=1e-3 * np.abs(P).max())
+        assert result[3] == pytest.approx(misfit, rel=1e-3, abs=1e-6)
+        assert np.all(np.abs(result[:3] - candidate["truth"]) < 4.5 * np.sqrt(np.diag(covariance)))
+
+
+def test_what_stands_beside_it_changes_no_cylinder():
+    made = candidates(7, 6)
+    together, _ = locate(*packed(made))
+    alone = np.concatenate([locate(*packed([candidate]))[0] for candidate in made])
+    assert np.array_equal(together, alone)

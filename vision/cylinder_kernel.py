@@ -1,0 +1,388 @@
+"""Cylinders located from their edges, compiled: the Gauss-Newton steps of `vision.cylinder`."""
+
+from math import asin, cos, hypot, inf, sin, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Table = NDArray[np.int64]
+
+ITERATIONS = 3
+MAX_RIMS = 3  # a beacon shows three
+SIDES = 2
+PRIOR = SIDES + MAX_RIMS  # row of the prior of the radius
+ROWS = PRIOR + 1
+NO_INFORMATION = 1e3  # standard deviation of what was not measured
+RIM_WIDTH = 0.75  # share of the half width within which points of a rim are used
+OUTER = 0.92  # share of the half width where a rim is too steep to predict
+HIDDEN_WIDTH = 0.08  # how far a hidden side may reach beyond what is seen [m]
+MIN_DISTANCE, MAX_DISTANCE = 0.10, 12.0  # [m]
+MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
+MIN_HALF, MAX_HALF = 1e-3, 1.2  # bounds of the first half width [rad]
+FAR_SLOPE = -0.5  # a thing whose foot is seen less steeply is far
+MIN_SLOPE = 1e-6
+MIN_RUN = 0.02  # [m]
+STEEPEST = -3.0  # slope at which a side is taken to be seen at most
+UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
+MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
+TURNS = 3.0  # an edge that crosses a pixel errs so many times less, and one time less
+
+
+@njit(cache=True)
+def independent(count: float, crossed: float) -> float:
+    """How many of an edge's points have errors of their own.
+
+    A pixel tells only that the edge passes through it, with an error that is uniform over
+    the pixel. An edge that runs along the pixels passes through all of them at the same
+    place and errs everywhere alike; one that crosses from pixel to pixel errs by turns.
+
+    Args:
+        count: points of the edge, one at least.
+        crossed: how many pixels it crosses, at right angles to itself.
+    """
+    alike = 1.0 / (1.0 + TURNS * crossed)
+    return 1.0 / max(1.0 / count, alike * alike)
+
+
+@njit(cache=True)
+def _of_mean(count: float, common: float) -> float:
+    """Standard deviation of the mean of so many points, relative to that of one."""
+    return sqrt(common + (1.0 - common) / count)
+
+
+@njit(cache=True)
+def _rim_distance(rims: Array, points: Table, slope: Array, h: float, radius: float) -> float:
+    """First distance from the rims of a candidate, 0 if they tell none; see `locate`."""
+    lowest = highest = -1
+    for j in range(len(rims)):
+        if points[j] < points[j + 1] and abs(rims[j, 0] - h) >= MIN_CLEARANCE:
+            lowest = j if lowest < 0 else lowest
+            highest = j
+    if lowest < 0:
+        return 0.0
+    low = slope[(points[lowest] + points[lowest + 1]) // 2]
+    high = slope[(points[highest] + points[highest + 1]) // 2]
+    if low > FAR_SLOPE and high > low:
+        # Far away an error of the tilt spoils each slope, but not their difference.
+        return float(min((rims[highest, 0] - rims[lowest, 0]) / (high - low), MAX_DISTANCE))
+    for j in range(lowest, highest + 1):
+        if points[j] == points[j + 1] or abs(rims[j, 0] - h) < MIN_CLEARANCE:
+            continue
+        middle = slope[(points[j] + points[j + 1]) // 2]
+        run = (rims[j, 0] - h) / (middle if middle != 0.0 else MIN_SLOPE)
+        if MIN_DISTANCE < run < MAX_DISTANCE:
+            return float(run + rims[j, 1] * radius)
+    return 0.0
+
+
+@njit(cache=True)
+def _guess(
+    x: Array, sides: Array, known: Array, rims: Array, points: Table, slope: Array, h: float
+) -> None:
+    """Fill the first azimuth, distance and radius of a candidate; see `locate`."""
+    left, right, radius = sides[0, 0], sides[1, 0], known[0]
+    left_trusted, right_trusted = sides[0, 5] != 0.0, sides[1, 5] != 0.0
+    half = min(max(0.5 * (left - right), MIN_HALF), MAX_HALF)
+    distance = _rim_distance(rims, points, slope, h, radius)
+    if distance == 0.0:
+        distance = radius / sin(half)
+    if left_trusted and right_trusted:
+        radius = min(max(distance * sin(half), 0.7 * known[0]), 1.5 * known[0])
+    distance = max(distance, MIN_DISTANCE + radius)
+    azimuth = 0.5 * (left + right)
+    if left_trusted != right_trusted:
+        reach = asin(min(radius / distance, 0.9))
+        azimuth = left - reach if left_trusted else right + reach
+    x[0], x[1], x[2] = azimuth, distance, radius
+
+
+@njit(cache=True)
+def _keep_inner(
+    keep: Bools,
+    mean_sigma: Array,
+    x: Array,
+    rims: Array,
+    points: Table,
+    azimuth: Array,
+    slope: Array,
+    h: float,
+    common: float,
+) -> None:
+    """Tell the points not near the ends of their rims, and how well their means are known.
+
+    Args:
+        keep: to fill, which points are used.
+        mean_sigma: to fill, standard deviation of the mean slope of each rim (3,) [1].
+        x: first azimuth, distance and radius.
+        rims: as for `locate`, of one candidate.
+        points: first point of each of its rims, and the end of the last.
+        azimuth: as for `locate`.
+        slope: as for `locate`.
+        h: height of the camera [m].
+        common: correlation of the errors of two points of one edge [1].
+    """
+    theta, d, r = x[0], x[1], x[2]
+    mean_sigma[:] = NO_INFORMATION
+    for j in range(len(rims)):
+        count, low, high = 0, inf, -inf
+        clear = abs(rims[j, 0] - h) >= MIN_CLEARANCE
+        for i in range(points[j], points[j + 1]):
+            keep[i] = clear and abs(sin(azimuth[i] - theta) * d / r) < RIM_WIDTH
+            if keep[i]:
+                count += 1
+                low, high = min(low, slope[i]), max(high, slope[i])
+        if count:
+            own = independent(float(count), (high - low) / (UNIFORM * rims[j, 2]))
+            mean_sigma[j] = rims[j, 2] * _of_mean(own, common)
+
+
+@njit(cache=True)
+def _linearise(
+    H: Array,
+    residual: Array,
+    point_residual: Array,
+    x: Array,
+    sides: Array,
+    prior: float,
+    keep: Bools,
+    rims: Array,
+    points: Table,
+    azimuth: Array,
+    slope: Array,
+    h: float,
+) -> None:
+    """Fill the Jacobian (6, 3) and the residuals (6,) of a candidate at x, and of its points."""
+    theta, d, r = x[0], x[1], x[2]
+    H[:] = 0.0
+    residual[:] = 0.0
+    reach, half = sqrt(d * d - r * r), asin(r / d)
+    residual[0] = sides[0, 0] - theta - half
+    residual[1] = sides[1, 0] - theta + half
+    H[0, 0] = H[1, 0] = H[PRIOR, 2] = 1.0
+    H[0, 1], H[0, 2] = -r / (d * reach), 1.0 / reach
+    H[1, 1], H[1, 2] = r / (d * reach), -1.0 / reach
+    residual[PRIOR] = prior - r
+    for j in range(len(rims)):
+        sign, drop = rims[j, 1], rims[j, 0] - h
+        count, total, by_theta, by_d, by_r = 0, 0.0, 0.0, 0.0, 0.0
+        for i in range(points[j], points[j + 1]):
+            if not keep[i]:
+                continue
+            phi = azimuth[i] - theta
+            sine, cosine = sin(phi), cos(phi)
+            t = min(max(d * sine / r, -OUTER), OUTER)
+            c = sqrt(1.0 - t * t)
+            lean = sign * t / c
+            run = max(d * cosine - sign * r * c, MIN_RUN)
+            predicted = drop / run
+            gain = -predicted / run  # d slope / d run
+            point_residual[i] = slope[i] - predicted
+            total += point_residual[i]
+            by_theta += gain * d * (sine - lean * cosine)
+            by_d += gain * (cosine + lean * sine)
+            by_r -= gain * sign / c
+            count += 1
+        if count:
+            k = SIDES + j
+            residual[k] = total / count
+            H[k, 0], H[k, 1], H[k, 2] = by_theta / count, by_d / count, by_r / count
+
+
+@njit(cache=True)
+def _covariance(
+    R: Array,
+    G: Array,
+    x: Array,
+    sides: Array,
+    side_sigma: Array,
+    trusted: Bools,
+    known: Array,
+    rims: Array,
+    mean_sigma: Array,
+    pose_variance: Array,
+    roundness: float,
+    h: float,
+) -> None:
+    """Fill the covariance of the measurements (6, 6): pixels, roundness and camera pose."""
+    theta, d, r = x[0], x[1], x[2]
+    s, c = sin(theta), cos(theta)
+    R[:] = 0.0
+    G[:] = 0.0  # by small rotations of the camera, tilt, roll and yaw, and by its height
+    for j in range(SIDES):
+        level = max(0.5 * (sides[j, 3] + sides[j, 4]), STEEPEST)
+        G[j, 0], G[j, 1], G[j, 2] = -level * s, -level * c, 1.0
+        sigma = hypot(side_sigma[j], roundness * r / d) if trusted[j] else HIDDEN_WIDTH / d
+        R[j, j] = sigma * sigma
+    for j in range(MAX_RIMS):
+        k = SIDES + j
+        R[k, k] = NO_INFORMATION * NO_INFORMATION
+        if j >= len(rims) or mean_sigma[j] == NO_INFORMATION:
+            continue
+        slope = (rims[j, 0] - h) / d
+        lift = 1.0 + slope * slope
+        G[k, 0], G[k, 1], G[k, 3] = -lift * c, lift * s, -1.0 / d
+        sigma = hypot(mean_sigma[j], slope * roundness * r / d)
+        R[k, k] = sigma * sigma
+    R[PRIOR, PRIOR] = known[1] * known[1]
+    for i in range(PRIOR):
+        for j in range(i + 1):
+            for k in range(4):
+                R[i, j] += G[i, k] * pose_variance[k] * G[j, k]
+
+
+@njit(cache=True)
+def _whiten(R: Array, H: Array, residual: Array) -> None:
+    """Cholesky factor of R in its lower half, and its inverse applied to H and to the residual."""
+    for i in range(ROWS):
+        for j in range(i + 1):
+            total = R[i, j]
+            for k in range(j):
+                total -= R[i, k] * R[j, k]
+            R[i, j] = sqrt(total) if i == j else total / R[j, j]
+        for j in range(3):
+            total = H[i, j]
+            for k in range(i):
+                total -= R[i, k] * H[k, j]
+            H[i, j] = total / R[i, i]
+        total = residual[i]
+        for k in range(i):
+            total -= R[i, k] * residual[k]
+        residual[i] = total / R[i, i]
+
+
+@njit(cache=True)
+def _step(x: Array, P: Array, H: Array, residual: Array) -> None:
+    """One step of x to the least squares of whitened rows; fill its covariance P (3, 3)."""
+    N, g = np.zeros((3, 3)), np.zeros(3)
+    for i in range(ROWS):
+        for j in range(3):
+            g[j] += H[i, j] * residual[i]
+            for k in range(3):
+                N[j, k] += H[i, j] * H[i, k]
+    for i in range(3):
+        a, b = (i + 1) % 3, (i + 2) % 3
+        for j in range(3):
+            c, e = (j + 1) % 3, (j + 2) % 3
+            P[j, i] = N[a, c] * N[b, e] - N[a, e] * N[b, c]
+    determinant = N[0, 0] * P[0, 0] + N[0, 1] * P[1, 0] + N[0, 2] * P[2, 0]
+    for i in range(3):
+        for j in range(3):
+            P[i, j] /= determinant
+    for i in range(3):
+        x[i] += P[i, 0] * g[0] + P[i, 1] * g[1] + P[i, 2] * g[2]
+    x[2] = min(max(x[2], MIN_RADIUS), MAX_RADIUS)
+    x[1] = min(max(x[1], 1.1 * x[2], MIN_DISTANCE), MAX_DISTANCE)
+
+
+@njit(cache=True)
+def _astray(
+    residual: Array, means: Array, keep: Bools, rims: Array, points: Table, stray: float
+) -> float:
+    """Share of the used points of a candidate off their rim; see `locate`."""
+    total = strays = 0
+    for j in range(len(rims)):
+        for i in range(points[j], points[j + 1]):
+            if keep[i]:
+                total += 1
+                strays += abs(residual[i] - means[j]) > stray * rims[j, 2]
+    return strays / max(total, 1)
+
+
+@njit(cache=True)
+def locate(
+    sides: Array,
+    known: Array,
+    rims: Array,
+    owned: Table,
+    points: Table,
+    azimuth: Array,
+    slope: Array,
+    pose: Array,
+    options: Array,
+) -> tuple[Array, Array]:
+    """Cylinders that explain the edges of each candidate best.
+
+    Args:
+        sides: azimuth [rad], its standard deviation for one point [rad], points with errors of
+            their own, lowest and highest slope and whether it is trusted, of the left and the
+            right side of each candidate (n, 2, 6).
+        known: radius, its standard deviation and height of each candidate (n, 3) [m].
+        rims: height [m], 1 for the near half of the circle and -1 for the far one, and standard
+            deviation of one slope, of all rims, from low to high for each candidate (m, 3).
+        owned: first rim of each candidate, and m (n + 1,).
+        points: first point of each rim, and their number (m + 1,).
+        azimuth: of the points of the rims [rad].
+        slope: of the points of the rims [1].
+        pose: height of the camera [m]; variances of its tilt, roll, yaw [rad²], height [m²].
+        options: roundness, edge correlation and stray as for `vision.cylinder.locate` (3,).
+
+    Returns:
+        Azimuth [rad], distance [m], radius [m], misfit and share of points astray (n, 5); and
+        the covariance of the first three (n, 3, 3).
+    """
+    n = len(sides)
+    result, covariances = np.empty((n, 5)), np.empty((n, 3, 3))
+    keep, point_residual = np.empty(len(slope), np.bool_), np.empty(len(slope))
+    H, residual = np.empty((ROWS, 3)), np.empty(ROWS)
+    R, G = np.empty((ROWS, ROWS)), np.empty((ROWS, 4))
+    mean_sigma, means = np.empty(MAX_RIMS), np.empty(MAX_RIMS)
+    side_sigma, trusted = np.empty(SIDES), np.empty(SIDES, np.bool_)
+    h, roundness, common, stray = pose[0], options[0], options[1], options[2]
+    for k in range(n):
+        side, x = sides[k], result[k, :3]
+        rim, ends = rims[owned[k] : owned[k + 1]], points[owned[k] : owned[k + 1] + 1]
+        _guess(x, side, known[k], rim, ends, slope, h)
+        _keep_inner(keep, mean_sigma, x, rim, ends, azimuth, slope, h, common)
+        for j in range(SIDES):
+            side_sigma[j] = side[j, 1] * _of_mean(side[j, 2], common)
+            trusted[j] = side[j, 5] != 0.0
+        for _ in range(ITERATIONS):
+            _linearise(
+                H,
+                residual,
+                point_residual,
+                x,
+                side,
+                known[k, 0],
+                keep,
+                rim,
+                ends,
+                azimuth,
+                slope,
+                h,
+            )
+            means[:] = residual[SIDES:PRIOR]
+            # A side not seen between foot and head is not to be trusted.
+            reach = sqrt(x[1] * x[1] - x[2] * x[2])
+            for j in range(SIDES):
+                slack = 0.5 * side_sigma[j]
+                trusted[j] = (
+                    trusted[j]
+                    and side[j, 4] >= -h / reach - slack
+                    and side[j, 3] <= (known[k, 2] - h) / reach + slack
+                )
+            _covariance(
+                R,
+                G,
+                x,
+                side,
+                side_sigma,
+                trusted,
+                known[k],
+                rim,
+                mean_sigma,
+                pose[1:],
+                roundness,
+                h,
+            )
+            _whiten(R, H, residual)
+            _step(x, covariances[k], H, residual)
+        misfit = 0.0
+        for i in range(ROWS):
+            misfit += residual[i] * residual[i]
+        result[k, 3] = misfit
+        result[k, 4] = _astray(point_residual, means, keep, rim, ends, stray)
+    return result, covariances

@@ -1,0 +1,225 @@
+"""Outlines of blobs, compiled: from pixels to sides and rims in azimuth and slope.
+
+A view is a packed array here: half width, half height and focal length of the camera [pixel],
+the nine elements of R_RC row by row, and the cosine and the sine of its heading.
+"""
+
+from math import atan2, hypot, inf, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Labels = NDArray[np.uint8]
+Table = NDArray[np.int32]
+
+OUTSIDE = 255  # as in `vision.colour`
+MIN_RUN = 1e-6  # horizontal part of a ray below which its slope is cut off
+LOW_SHARE = 0.25  # share of a side, from below, that tells whether a nearer thing hides it
+END_SHARE = 0.1  # share of the width near each side that is left out of rims
+END_PIXELS = 0.8  # and at least so much of it [pixel]
+NOWHERE = -9.0  # an azimuth that no point has [rad]
+ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [pixel]
+MAX_OVERHANG = 2.5  # a side does not lie farther inside what is seen than this [pixel]
+CUT = 4  # an edge has at least one point for so many at the border; fewer are noise there
+OUTLIERS = 8  # one pixel in so many may stick out of a side
+
+
+@njit(cache=True)
+def _angles(view: Array, u: float, v: float) -> tuple[float, float]:
+    """Azimuth from the heading of the camera [rad] and slope [1] of an image point."""
+    x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
+    X = view[3] * x + view[4] * y + view[5]
+    Y = view[6] * x + view[7] * y + view[8]
+    Z = view[9] * x + view[10] * y + view[11]
+    forward, left = view[12] * X + view[13] * Y, view[12] * Y - view[13] * X
+    return atan2(left, forward), Z / max(hypot(X, Y), MIN_RUN)
+
+
+@njit(cache=True)
+def _resolution(view: Array, u: float, v: float) -> tuple[float, float, float, float]:
+    """How much azimuth [rad] and slope [1] change per pixel.
+
+    Returns:
+        Magnitudes of d azimuth / du, d azimuth / dv, d slope / du, d slope / dv.
+    """
+    x, y, f = (u - view[0]) / view[2], (v - view[1]) / view[2], view[2]
+    X = view[3] * x + view[4] * y + view[5]
+    Y = view[6] * x + view[7] * y + view[8]
+    Z = view[9] * x + view[10] * y + view[11]
+    run2 = max(X * X + Y * Y, MIN_RUN**2)
+    run = sqrt(run2)
+    slope = Z / run
+    return (
+        abs((X * view[6] - Y * view[3]) / (run2 * f)),
+        abs((X * view[7] - Y * view[4]) / (run2 * f)),
+        abs((view[9] / run - slope * (X * view[3] + Y * view[6]) / run2) / f),
+        abs((view[10] / run - slope * (X * view[4] + Y * view[7]) / run2) / f),
+    )
+
+
+@njit(cache=True)
+def _upright(view: Array, u: float, v: float) -> bool:
+    """Whether vertical lines run rather along columns than along rows at (u, v)."""
+    x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
+    return bool(abs(view[10] - y * view[11]) >= abs(view[9] - x * view[11]))
+
+
+@njit(cache=True)
+def _edge(
+    points: Array, outer: Labels, box: Table, extents: Table, padded: Labels, view: Array, e: int
+) -> tuple[float, float]:
+    """Fill the points of one of the four edges of a blob (n, 3) and the labels beyond them (n,).
+
+    Returns:
+        How much azimuth [rad] and slope [1] change per pixel in its middle.
+    """
+    left, top = box[0], box[1]
+    azimuth_pixel = slope_pixel = 0.0
+    for i in range(len(points)):
+        end = extents[i]
+        # The frame shifts pixel (row, column) to (row + 1, column + 1).
+        if e < 2:
+            u, v = float(end), top + i + 0.5
+            outer[i] = padded[top + i + 1, end if e == 0 else end + 1]
+        else:
+            u, v = left + i + 0.5, float(end)
+            outer[i] = padded[end if e == 2 else end + 1, left + i + 1]
+        points[i, 0], points[i, 1] = _angles(view, u, v)
+        # Ends of rows are known along u, ends of columns along v.
+        points[i, 2] = u if e < 2 else v
+        if i == len(points) // 2:
+            au, av, su, sv = _resolution(view, u, v)
+            azimuth_pixel, slope_pixel = (au, su) if e < 2 else (av, sv)
+    return azimuth_pixel, slope_pixel
+
+
+@njit(cache=True)
+def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) -> None:
+    """Fill one side (8,) from the points of an edge; see `trace`.
+
+    Args:
+        side: to fill.
+        points: azimuth [rad], slope [1] and image coordinate across the edge [pixel] (n, 3).
+        outer: labels beyond the points (n,).
+        pixel: azimuth of one pixel [rad].
+        sign: 1 of a left side, -1 of a right one.
+    """
+    n = len(points)
+    bottom, top, furthest = inf, -inf, -inf
+    free = cut = 0
+    ranked = np.empty(n)
+    for i in range(n):
+        outwards, slope = sign * points[i, 0], points[i, 1]
+        bottom, top, furthest = min(bottom, slope), max(top, slope), max(furthest, outwards)
+        ranked[i] = outwards if outer[i] == 0 else NOWHERE
+        free += outer[i] == 0
+        cut += outer[i] == OUTSIDE
+    ranked.sort()
+    # The side is the median of the free points near the outermost of them.
+    outermost = ranked[n - 1 - free // OUTLIERS]
+    limit, low_limit = outermost - ENVELOPE * pixel, bottom + LOW_SHARE * (top - bottom)
+    low = covered = chosen = 0
+    bottom, top, lowest, highest = inf, -inf, inf, -inf
+    for i in range(n):
+        outwards, slope = sign * points[i, 0], points[i, 1]
+        if slope <= low_limit:
+            low += 1
+            covered += outer[i] != 0 and outer[i] != OUTSIDE
+        if (outwards if outer[i] == 0 else NOWHERE) >= limit:
+            chosen += 1
+            bottom, top = min(bottom, slope), max(top, slope)
+            lowest, highest = min(lowest, points[i, 2]), max(highest, points[i, 2])
+    # Where a thing reaches furthest next to something else, it goes on behind it.
+    trusted = furthest <= outermost + MAX_OVERHANG * pixel and CUT * chosen >= cut
+    median = 0.5 * (ranked[n - 1 - (chosen - 1) // 2] + ranked[n - 1 - chosen // 2])
+    side[0] = sign * (median if trusted else furthest)
+    side[1] = pixel
+    side[2] = max(chosen, 1)
+    side[3] = max(highest - lowest, 0.0)
+    side[4] = bottom
+    side[5] = top
+    side[6] = trusted
+    side[7] = 2 * covered > low
+
+
+@njit(cache=True)
+def _rim(
+    rims: Array, rim_outer: Labels, points: Array, outer: Labels, right: float, left: float
+) -> int:
+    """Fill a rim from the points of an edge between two azimuths; return their number.
+
+    The ends are left out, where it may run along a side.
+    """
+    count = cut = 0
+    for i in range(len(points)):
+        if outer[i] == OUTSIDE:
+            cut += 1
+        elif right < points[i, 0] < left:
+            rims[0, count], rims[1, count] = points[i, 0], points[i, 1]
+            rim_outer[count] = outer[i]
+            count += 1
+    return count if CUT * count >= cut else 0
+
+
+@njit(cache=True)
+def trace(
+    boxes: Table, extents: Table, padded: Labels, view: Array
+) -> tuple[Array, Table, Array, Array, Labels]:
+    """Sides and rims of all blobs of an image.
+
+    A blob has four edges: the two ends of its rows and the two ends of its columns. Two are
+    sides and two are rims; which of them depends on how vertical lines run there.
+
+    Args:
+        boxes: left, top, right, bottom of the blobs (n, 4) [pixel].
+        extents: of the blobs, one after the other.
+        padded: labels of the image with a frame of `OUTSIDE` one pixel wide (h + 2, w + 2).
+        view: packed.
+
+    Returns:
+        The left and the right side of each blob (n, 2, 8): azimuth [rad], azimuth of a pixel
+        [rad], number of points, pixels it crosses, lowest and highest slope, whether it is
+        trusted, whether it is hidden. Of the lower and the upper rim the number of points
+        (n, 2) and the slope of a pixel (n, 2); azimuth and slope (2, m) and outer label (m,) of
+        the points of all rims, one after the other.
+    """
+    n = len(boxes)
+    sides, counts, sizes = np.empty((n, 2, 8)), np.empty((n, 2), np.int32), np.empty((n, 2))
+    points, outer = np.empty((len(extents), 3)), np.empty(len(extents), np.uint8)
+    rims, rim_outer = np.empty((2, len(extents))), np.empty(len(extents), np.uint8)
+    pixel = np.empty((4, 2))
+    starts = np.zeros(5, np.int64)
+    m = 0
+    for k in range(n):
+        left, top, right, bottom = boxes[k, 0], boxes[k, 1], boxes[k, 2], boxes[k, 3]
+        starts[0] = starts[4]
+        for e in range(4):
+            a = starts[e]
+            b = starts[e + 1] = a + (bottom - top if e < 2 else right - left)
+            pixel[e] = _edge(points[a:b], outer[a:b], boxes[k], extents[a:b], padded, view, e)
+        middle = (starts[:4] + starts[1:]) // 2
+        side, rim = (0, 2) if _upright(view, 0.5 * (left + right), 0.5 * (top + bottom)) else (2, 0)
+        swapped = 0 if points[middle[side], 0] >= points[middle[side + 1], 0] else 1
+        for j in range(2):
+            e = side + (j ^ swapped)
+            a, b = starts[e], starts[e + 1]
+            _side(sides[k, j], points[a:b], outer[a:b], pixel[e, 0], 1.0 - 2.0 * j)
+        leftmost, rightmost = sides[k, 0, 0], sides[k, 1, 0]
+        margin = max(END_SHARE * (leftmost - rightmost), END_PIXELS * pixel[side + swapped, 0])
+        swapped = 0 if points[middle[rim + 1], 1] >= points[middle[rim], 1] else 1
+        for j in range(2):
+            e = rim + (j ^ swapped)
+            a, b = starts[e], starts[e + 1]
+            counts[k, j] = _rim(
+                rims[:, m:],
+                rim_outer[m:],
+                points[a:b],
+                outer[a:b],
+                rightmost + margin,
+                leftmost - margin,
+            )
+            m += counts[k, j]
+            sizes[k, j] = pixel[e, 1]
+    return sides, counts, sizes, rims[:, :m], rim_outer[:m]
