@@ -1,88 +1,25 @@
 """Localization: an unscented Kalman filter of the pose with known beacons.
 
-filterpy's filter with Julier's sigma points, the distribution-approximation filter of
-Yoo & Kim. State: x, y, heading of R in W. What the measurements share is modelled once:
-all bearings of a frame contain the same error of the camera's direction, so the beacons of
-a frame are one measurement.
+What the measurements share is modelled once: all bearings of a frame contain the same error
+of the camera's direction, so the beacons of a frame are one measurement.
 """
 
-from collections.abc import Mapping, Sequence
-from functools import partial
-from math import cos, isfinite, sin
+from collections.abc import Mapping
+from math import cos, sin
 
 import numpy as np
-from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter
 from numpy.typing import NDArray
 
-from navigation.angles import wrap, wrap_array
+from navigation.angles import wrap
 from navigation.belief_parameters import LocalizationParameters
-from navigation.landmark import sighting
 from navigation.observation import Frame, Observation
+from navigation.pose_filter import PoseFilter
 from navigation.relocalization import Relocalization
 
 Array = NDArray[np.float64]
-Landmarks = Sequence[tuple[float, float]]
 
-# The state ends with an angle; of a measurement every second entry is one.
-STATE = slice(2, None)
-MEASUREMENT = slice(1, None, 2)
 SHARED_LIMIT = 0.98
 """Largest share of a bearing's variance that may be common to the whole frame [1]."""
-
-
-def _root(covariance: Array) -> Array:
-    """Upper factor of Cholesky's, as scipy's but without the cost of its checks."""
-    return np.asarray(np.linalg.cholesky(covariance).T, np.float64)
-
-
-def _mean(angles: slice, points: Array, weights: Array) -> Array:
-    mean: Array = weights @ points
-    turned = points[:, angles]
-    mean[angles] = np.arctan2(weights @ np.sin(turned), weights @ np.cos(turned))
-    return mean
-
-
-def _difference(angles: slice, a: Array, b: Array) -> Array:
-    difference: Array = a - b
-    difference[angles] = [wrap(v) for v in difference[angles].tolist()]
-    return difference
-
-
-def _moved_on(state: Array, step: Array) -> Array:
-    total: Array = state + step
-    total[2] = wrap(float(total[2]))
-    return total
-
-
-def _transform(
-    points: Array,
-    mean_weights: Array,
-    covariance_weights: Array,
-    noise: Array,
-    _mean_fn: object,
-    _residual_fn: object,
-    *,
-    angles: slice,
-) -> tuple[Array, Array]:
-    """Unscented transform of all points at once; filterpy's own loops over them."""
-    mean = _mean(angles, points, mean_weights)
-    spread = points - mean
-    spread[:, angles] = wrap_array(spread[:, angles])
-    return mean, (spread.T * covariance_weights) @ spread + noise
-
-
-def _moved(pose: Array, _dt: float, increment: tuple[float, float, float]) -> Array:
-    """Pose after an odometry increment in R, midpoint rule."""
-    x, y, heading = pose.tolist()
-    forward, left, turn = increment
-    middle = heading + 0.5 * turn
-    c, s = cos(middle), sin(middle)
-    return np.array([x + c * forward - s * left, y + s * forward + c * left, heading + turn])
-
-
-def _seen(pose: Array, landmarks: Landmarks) -> Array:
-    x = pose.tolist()
-    return np.array([v for landmark in landmarks for v in sighting(x, landmark)])
 
 
 class Localizer:
@@ -105,19 +42,7 @@ class Localizer:
         self._parameters = parameters
         self._beacons = {name: (float(x), float(y)) for name, (x, y) in beacons.items()}
         self._relocalization = Relocalization(parameters, self._beacons)
-        self._filter = UnscentedKalmanFilter(
-            dim_x=3,
-            dim_z=2,
-            dt=1.0,
-            hx=_seen,
-            fx=_moved,
-            points=JulierSigmaPoints(3, kappa=0.0, sqrt_method=_root),
-            x_mean_fn=partial(_mean, STATE),
-            z_mean_fn=partial(_mean, MEASUREMENT),
-            residual_x=partial(_difference, STATE),
-            residual_z=partial(_difference, MEASUREMENT),
-            state_add=_moved_on,
-        )
+        self._filter = PoseFilter()
         self._set(np.asarray(pose, float), np.asarray(covariance, float))
         self._previous: tuple[float, list[float]] | None = None
         self._lost = False
@@ -206,55 +131,30 @@ class Localizer:
         turn = odometry[2] - last[2]
         middle = last[2] + 0.5 * turn
         c, s = cos(middle), sin(middle)
-        increment = (c * dx + s * dy, c * dy - s * dx, turn)
-        heading = float(self._filter.x[2])
-        c, s = cos(heading), sin(heading)
-        to_world = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        increment = np.array([c * dx + s * dy, c * dy - s * dx, turn])
         unseen = self._parameters.drift**2 * (frame.time - previous[0])
-        self._filter.Q = to_world @ frame.motion_covariance @ to_world.T + unseen * np.eye(3)
-        self._filter.predict(UT=partial(_transform, angles=STATE), increment=increment)
-        self._tidy()
+        self._filter.move(increment, frame.motion_covariance, unseen)
+        self._sound = self._filter.x.copy()
 
     def _correct(self, frame: Frame, beacons: list[Observation]) -> list[str]:
         """Take in all beacons that fit, as one measurement; return their names."""
         f = self._filter
-        # filterpy keeps the sigma points of the prediction; they must follow every update.
-        f.sigmas_f = f.points_fn.sigma_points(f.x, f.P)
-        fit = [o for o in beacons if self._distance(o) <= self._parameters.gate]
-        if not fit:
+        f.spread()
+        z = np.array([(o.distance, o.bearing) for o in beacons])
+        noise = np.array([o.covariance for o in beacons])
+        places = np.array([self._beacons[o.label] for o in beacons])
+        # A distance that is not a number does not fit either.
+        fit = np.flatnonzero(f.distances(z, noise, places) <= self._parameters.gate)
+        if len(fit) == 0:
             return []
         R = np.zeros((2 * len(fit), 2 * len(fit)))
-        smallest = min(float(o.covariance[1, 1]) for o in fit)
+        smallest = float(noise[fit, 1, 1].min())
         R[1::2, 1::2] = min(frame.view.yaw_sigma**2, SHARED_LIMIT * smallest)
-        for i, o in enumerate(fit):
-            R[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = o.covariance
-        f.update(
-            np.array([v for o in fit for v in (o.distance, o.bearing)]),
-            R=R,
-            UT=partial(_transform, angles=MEASUREMENT),
-            landmarks=[self._beacons[o.label] for o in fit],
-        )
-        self._tidy()
-        return [o.label for o in fit]
-
-    def _distance(self, observation: Observation) -> float:
-        """Normalised innovation squared of one beacon; infinite if it is not finite."""
-        f = self._filter
-        landmarks = [self._beacons[observation.label]]
-        points = np.array([_seen(point, landmarks) for point in f.sigmas_f])
-        R = observation.covariance
-        mean, S = _transform(points, f.Wm, f.Wc, R, None, None, angles=MEASUREMENT)
-        u = observation.distance - float(mean[0])
-        w = wrap(observation.bearing - float(mean[1]))
-        (a, b), (_, d) = S.tolist()
-        nis = (d * u * u - 2.0 * b * u * w + a * w * w) / (a * d - b * b)
-        return nis if isfinite(nis) else float("inf")
-
-    def _tidy(self) -> None:
-        f = self._filter
-        f.x[2] = wrap(float(f.x[2]))
-        f.P = 0.5 * (f.P + f.P.T)
+        for i, k in enumerate(fit.tolist()):
+            R[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = noise[k]
+        f.correct(z[fit], R, places[fit])
         self._sound = f.x.copy()
+        return [beacons[k].label for k in fit.tolist()]
 
     def _judge(self, time: float, beacons: list[Observation], accepted: list[str]) -> None:
         rejected = [o.label for o in beacons if o.label not in accepted]

@@ -118,13 +118,13 @@ class Viewpoint:
         first = np.array(corner, np.float64)
         return visibility_kernel.searched(first, cell, count, self.position, camera, centres, radii)
 
-    def _camera(self, height: float, margin: float) -> Array:
-        """Camera as `visibility_kernel.contained` wants it (13,)."""
+    def _camera(self, height: float, margin: float) -> visibility_kernel.Camera:
+        """Camera as `visibility_kernel.contained` wants it (13)."""
         wide = self.horizontal_half >= 0.5 * pi
-        camera = np.empty(13)
-        camera[:9] = self.rotation.ravel()
-        camera[9] = height - float(self.position[2])
-        camera[10] = -1.0 if wide else tan(max(self.horizontal_half - margin, 0.0))
-        camera[11] = tan(max(self.vertical_half - margin, 0.0))
-        camera[12] = self.range
-        return camera
+        return (
+            *self.rotation.ravel().tolist(),
+            height - float(self.position[2]),
+            -1.0 if wide else tan(max(self.horizontal_half - margin, 0.0)),
+            tan(max(self.vertical_half - margin, 0.0)),
+            float(self.range),
+        )

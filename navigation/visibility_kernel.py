@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Marks = NDArray[np.uint8]
+Camera = tuple[float, ...]
 
 UNSEEN, FREE, COVERED = 0, 1, 2
 
 
 @njit(cache=True)
-def contained(dx: float, dy: float, camera: Array) -> bool:
+def contained(dx: float, dy: float, camera: Camera) -> bool:
     """Whether one point projects into the image and lies within range.
 
     Args:
@@ -20,7 +21,7 @@ def contained(dx: float, dy: float, camera: Array) -> bool:
         dy: the same along y [m].
         camera: rows of R_WC (9,), height of the point above the camera [m], tangents of half
             the fields of view, the horizontal one negative for a camera that sees all around,
-            and range [m] (13,).
+            and range [m] (13).
     """
     if dx * dx + dy * dy > camera[12] * camera[12]:
         return False
@@ -75,7 +76,7 @@ def from_camera(eye: Array, centres: Array, radii: Array, slack: float) -> Array
 
 
 @njit(cache=True)
-def contains(points: Array, eye: Array, camera: Array) -> Mask:
+def contains(points: Array, eye: Array, camera: Camera) -> Mask:
     """`contained` for points in W (n, 2) [m] and the camera at `eye` (3,): (n,)."""
     inside = np.empty(len(points), np.bool_)
     for i in range(len(points)):
@@ -95,7 +96,7 @@ def hidden(points: Array, eye: Array, centres: Array, radii: Array, slack: float
 
 @njit(cache=True)
 def expects(
-    points: Array, eye: Array, camera: Array, centres: Array, radii: Array, slack: float
+    points: Array, eye: Array, camera: Camera, centres: Array, radii: Array, slack: float
 ) -> Mask:
     """Whether points are contained and not hidden; arguments as above (n,)."""
     discs = from_camera(eye, centres, radii, slack)
@@ -108,7 +109,7 @@ def expects(
 
 @njit(cache=True)
 def searched(
-    corner: Array, cell: float, count: int, eye: Array, camera: Array, centres: Array, radii: Array
+    corner: Array, cell: float, count: int, eye: Array, camera: Camera, centres: Array, radii: Array
 ) -> Marks:
     """What a look shows of the cells of a square grid.
 
