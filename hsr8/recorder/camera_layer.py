@@ -20,6 +20,10 @@ CAMERA = "egocentric"
 WINDOW = 0.45  # half a gaze window as a share of the field of view, where GM is summed
 PAN_LIMIT = radians(90.0)  # the gaze map spans the head's range [rad]
 TILT_MIN, TILT_MAX = radians(-60.0), radians(20.0)
+EDGE, ONE = np.linspace(-1.0, 1.0, 7), np.ones(7)
+OUTLINE = np.concatenate(  # of the square from -1 to 1 (28, 2)
+    [np.column_stack(s) for s in ((EDGE, ONE), (ONE, -EDGE), (-EDGE, -ONE), (-ONE, EDGE))]
+)
 
 
 class CameraLayer:
@@ -154,11 +158,7 @@ def _window(frame: FrameRecord) -> Array:
     """Outline of the gaze window that was chosen: pan and tilt (n, 2) [rad]."""
     view, gaze = frame.belief.view, frame.gaze
     half = WINDOW * np.minimum([view.horizontal_fov, view.vertical_fov], pi)
-    edge = np.linspace(-1.0, 1.0, 7)
-    one = np.ones_like(edge)
-    sides = ((edge, one), (one, -edge), (-edge, -one), (-one, edge))
-    outline = np.concatenate([np.column_stack(side) for side in sides])
-    found: Array = outline * half + (gaze.pan, gaze.tilt)
+    found: Array = OUTLINE * half + (gaze.pan, gaze.tilt)
     return found
 
 

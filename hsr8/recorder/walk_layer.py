@@ -13,6 +13,7 @@ from hsr8.recorder.channel import Channel
 from hsr8.recorder.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walking_table import LEG_JOINTS, OdometryToWorld
+from navigation.angles import wrap
 from walking.admission import Limit
 
 Array = NDArray[np.float64]
@@ -194,7 +195,7 @@ class _Speedometer:
     def add(self, record: TickRecord) -> tuple[float, list[float]] | None:
         """Middle of the stride [s] and velocity in it, when there is one."""
         x, y, yaw = record.truth.robot.tolist()
-        self._yaw += float(np.angle(np.exp(1j * (yaw - self._yaw))))
+        self._yaw += wrap(yaw - self._yaw)
         pose = np.array([x, y, self._yaw])
         waited = not self._marks or record.time - self._marks[-1][0] >= PATIENCE - 1e-9
         if record.walking.step_count == self._steps and not waited:
