@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from hsr8.gl import choose_backend
+from hsr8.kernel_cache import choose_kernel_cache
 from hsr8.version import VERSION
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ _PLACES = {
 }
 
 choose_backend()
+choose_kernel_cache()
 
 
 def __getattr__(name: str) -> Any:
