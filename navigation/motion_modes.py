@@ -13,18 +13,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation import track_filter
+from navigation import mode_kernel
 from navigation.belief_parameters import TrackingParameters
-from navigation.track_filter import Innovation
+from navigation.mode_kernel import BACK, ON, STILL
 
 Array = NDArray[np.float64]
 
-STILL, ON, BACK = range(3)
+__all__ = ["BACK", "ON", "STILL", "Modes"]
+
 FLOOR = 1e-6
 """Least probability of a mode."""
-# What a change from mode i to mode j does to (x, y, vx, vy).
-_STOP, _KEEP, _TURN = (1.0, 1.0, 0.0, 0.0), (1.0, 1.0, 1.0, 1.0), (1.0, 1.0, -1.0, -1.0)
-_CHANGE = np.array([[_STOP, _STOP, _STOP], [_STOP, _KEEP, _TURN], [_STOP, _TURN, _KEEP]])
 
 
 class Modes(NamedTuple):
@@ -78,87 +76,55 @@ def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
             [stops, turns, 1.0 - stops - turns],
         ]
     )
-    joint = modes.weights[:, :, None] * change
-    weights = joint.sum(axis=1)
-    share = (joint / weights[:, None, :])[..., None]
-    from_states = modes.states[:, :, None] * _CHANGE
-    # It turned at any time since: on average half way, so that it now is where it was.
-    forth = dt * modes.states[:, ON:, 2:]
-    from_states[:, (ON, BACK), (BACK, ON), :2] += forth
-    states = (share * from_states).sum(axis=1)
-    spread = from_states - states[:, None]
-    from_covariances = modes.covariances[:, :, None] * _CHANGE[..., None] * _CHANGE[..., None, :]
-    from_covariances = from_covariances + spread[..., None] * spread[..., None, :]
-    from_covariances[:, (ON, BACK), (BACK, ON), :2, :2] += (
-        forth[..., None] * forth[..., None, :] / 3.0
+    mixed = Modes(*mode_kernel.interact(*modes, change, dt, p.velocity_sigma**2))
+    mode_kernel.move_on(
+        mixed.states, mixed.covariances, dt, p.acceleration_noise, p.static_diffusion
     )
-    for axis in (2, 3):
-        from_covariances[:, STILL, ON, axis, axis] += p.velocity_sigma**2
-    covariances = (share[..., None] * from_covariances).sum(axis=1)
-    covariances[:, STILL, :2, :2] += p.static_diffusion * dt * np.eye(2)
-    n = len(weights)
-    moved, grown = track_filter.predict_moving(
-        states[:, ON:].reshape(2 * n, 4),
-        covariances[:, ON:].reshape(2 * n, 4, 4),
-        dt,
-        p.acceleration_noise,
-    )
-    states[:, ON:] = moved.reshape(n, 2, 4)
-    covariances[:, ON:] = grown.reshape(n, 2, 4, 4)
-    return Modes(weights, states, covariances)
+    return mixed
 
 
-def innovation(modes: Modes, z: Array, R: Array) -> Innovation:
-    """Innovations of every mode, fields (n, 3, ...), for positions z (n, 2) or (1, 2)."""
-    return track_filter.innovation(
-        modes.states[..., :2], modes.covariances[..., :2, :2], z[:, None], R[:, None]
-    )
+def surprise(modes: Modes, z: Array, R: Array) -> Array:
+    """Squared Mahalanobis distance of each obstacle's position to its nearest mode (n,).
+
+    Args:
+        modes: predicted.
+        z: positions (n, 2) [m].
+        R: their covariances (n, 2, 2) [m²].
+    """
+    return mode_kernel.surprise(modes.states, modes.covariances, z, R)
 
 
-def update(modes: Modes, R: Array, seen: Innovation, limit: float) -> Modes:
+def costs(modes: Modes, z: Array, R: Array, gate: float) -> Array:
+    """Minus twice the log likelihood of every position, infinite beyond the gate (n, m).
+
+    Args:
+        modes: predicted.
+        z: positions (m, 2) [m].
+        R: their covariances (m, 2, 2) [m²].
+        gate: squared Mahalanobis distance above which no mode explains a position [1].
+    """
+    return mode_kernel.costs(*modes, z, R, gate)
+
+
+def update(modes: Modes, z: Array, R: Array, limit: float) -> Modes:
     """Correct the filters, and weigh the modes by their likelihoods.
 
     Args:
         modes: predicted.
-        R: covariances of the positions measured (n, 2, 2) [m²].
-        seen: their innovations with the same `R`.
+        z: positions (n, 2) [m].
+        R: their covariances (n, 2, 2) [m²].
         limit: largest ratio of the modes' likelihoods, logarithm [1].
     """
-    n = len(modes.weights)
-    states, covariances = track_filter.update(
-        modes.states.reshape(3 * n, 4),
-        modes.covariances.reshape(3 * n, 4, 4),
-        np.repeat(R, 3, axis=0),
-        Innovation(
-            seen.residual.reshape(3 * n, 2),
-            seen.inverse.reshape(3 * n, 2, 2),
-            seen.distance.reshape(3 * n),
-            seen.log_det.reshape(3 * n),
-        ),
-    )
-    gain = seen.log_likelihood - seen.log_likelihood.max(axis=1, keepdims=True)
-    weights = modes.weights * np.exp(np.maximum(gain, -limit))
-    weights = np.maximum(weights / weights.sum(axis=1, keepdims=True), FLOOR)
-    return Modes(
-        weights / weights.sum(axis=1, keepdims=True),
-        states.reshape(n, 3, 4),
-        covariances.reshape(n, 3, 4, 4),
-    )
+    corrected = Modes(*(part.copy() for part in modes))
+    mode_kernel.update(*corrected, z, R, limit, FLOOR)
+    return corrected
 
 
 def mean(modes: Modes) -> Array:
     """Mean (4,) of one obstacle, given that it moves."""
-    on, back = modes.weights[ON:].tolist()
-    mixed: Array = (on * modes.states[ON] + back * modes.states[BACK]) / (on + back)
-    return mixed
+    return mode_kernel.mean(modes.weights, modes.states)
 
 
 def moments(modes: Modes) -> tuple[Array, Array]:
     """Mean (4,) and covariance (4, 4) of one obstacle, given that it moves."""
-    on, back = modes.weights[ON:].tolist()
-    on, back = on / (on + back), back / (on + back)
-    mean: Array = on * modes.states[ON] + back * modes.states[BACK]
-    apart = modes.states[ON] - modes.states[BACK]
-    covariance: Array = on * modes.covariances[ON] + back * modes.covariances[BACK]
-    covariance += (on * back) * (apart[:, None] * apart)
-    return mean, covariance
+    return mode_kernel.moments(*modes)

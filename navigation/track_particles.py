@@ -11,6 +11,7 @@ from math import exp
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation import particle_kernel
 from navigation.belief import Particles
 from navigation.motion_modes import Modes
 from navigation.visibility import Mask
@@ -41,9 +42,14 @@ def spawn(modes: Modes, count: int, rng: np.random.Generator) -> Particles:
 
 def advance(cloud: Particles, dt: float, rate: float, rng: np.random.Generator) -> Particles:
     """Move on for `dt` [s], each particle turning back at `rate` [1/s]."""
-    turned = rng.random(len(cloud.weights)) < 1.0 - exp(-rate * dt)
-    velocities = np.where(turned[:, None], -cloud.velocities, cloud.velocities)
-    return Particles(cloud.positions + dt * velocities, velocities, cloud.weights)
+    positions, velocities = particle_kernel.advance(
+        cloud.positions,
+        cloud.velocities,
+        rng.random(len(cloud.weights)),
+        1.0 - exp(-rate * dt),
+        dt,
+    )
+    return Particles(positions, velocities, cloud.weights)
 
 
 def refute(cloud: Particles, expected: Mask, survival: float) -> tuple[Particles, float]:
@@ -123,11 +129,7 @@ def chosen(cloud: Particles, indices: NDArray[np.intp]) -> Particles:
 
 def moments(cloud: Particles) -> tuple[Array, Array]:
     """Mean (4,) and covariance (4, 4) of x, y, vx, vy over the particles."""
-    values = np.concatenate([cloud.positions, cloud.velocities], axis=1)
-    mean = cloud.weights @ values
-    spread = values - mean
-    covariance: Array = (spread.T * cloud.weights) @ spread
-    return mean, 0.5 * (covariance + covariance.T)
+    return particle_kernel.moments(cloud.positions, cloud.velocities, cloud.weights)
 
 
 def log_density(cloud: Particles, z: Array, variance: Array) -> Array:
@@ -144,12 +146,18 @@ def log_density(cloud: Particles, z: Array, variance: Array) -> Array:
     Returns:
         (m,).
     """
-    spread = cloud.positions - cloud.weights @ cloud.positions
-    extent = 0.5 * float(cloud.weights @ np.sum(spread * spread, axis=1))
-    share = float(cloud.weights @ cloud.weights) ** (1.0 / 3.0)
-    wide = variance + extent * share + POSITION_JITTER**2
-    difference = cloud.positions[:, None, :] - z
-    squared = np.sum(difference * difference, axis=2)
-    density = cloud.weights @ (np.exp(-0.5 * squared / wide) / wide)
-    log_density: Array = np.log(np.maximum(density, 1e-30))
-    return log_density
+    return particle_kernel.log_density(cloud.positions, cloud.weights, z, variance, POSITION_JITTER)
+
+
+def costs(cloud: Particles, z: Array, variance: Array, lost: tuple[Array, float, float]) -> Array:
+    """Minus twice the log likelihood of sightings, up to log(2 pi) (m,).
+
+    Args:
+        cloud: n particles.
+        z: sightings (m, 2) [m].
+        variance: of each (m,) [m²].
+        lost: where it was seen last (2,) [m], how far it may have got [m], and the probability
+            that it is anywhere so far, not where the particles are [1].
+    """
+    centre, reach, anywhere = lost
+    return particle_kernel.costs(log_density(cloud, z, variance), z, centre, reach, anywhere)

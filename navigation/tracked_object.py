@@ -6,7 +6,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation import motion_modes, track_particles
+from navigation import mode_kernel, motion_modes, track_particles
 from navigation.belief import Motion, Particles, Track
 from navigation.belief_parameters import TrackingParameters
 from navigation.motion_modes import STILL, Modes
@@ -77,10 +77,13 @@ class TrackedObject:
         """Mean (4,) and covariance (4, 4) of x, y, vx, vy under the verdict."""
         if self.motion is not Motion.STATIC:
             return motion_modes.moments(self.modes)
-        covariance = self.modes.covariances[STILL].copy()
-        covariance[:2, :2] += p.lasting_error**2 * self.best_covariance
-        covariance[2, 2] = covariance[3, 3] = STANDING_SPEED_SIGMA**2
-        return self.modes.states[STILL].copy(), covariance
+        return mode_kernel.standing(
+            self.modes.states,
+            self.modes.covariances,
+            self.best_covariance,
+            p.lasting_error**2,
+            STANDING_SPEED_SIGMA**2,
+        )
 
     def reach(self, time: float, p: TrackingParameters) -> float:
         """Radius of the disc about its last sighting that it cannot have left [m]."""
@@ -118,8 +121,8 @@ class TrackedObject:
         return Track(
             id=self.id,
             label=self.label,
-            position=mean[:2].copy(),
-            velocity=mean[2:].copy(),
+            position=mean[:2],
+            velocity=mean[2:],
             covariance=covariance,
             radius=self.radius,
             radius_sigma=self.radius_sigma,

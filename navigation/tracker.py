@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation import motion_modes, track_particles
-from navigation.association import assign
+from navigation.association import assign, overlapping
 from navigation.belief import Motion, Track
 from navigation.belief_parameters import TrackingParameters
 from navigation.correlated_noise import variance_inflation
@@ -66,10 +66,12 @@ class Tracker:
         self._freed = np.zeros(len(seen.radii), np.bool_) if freed is None else freed
         dt = 0.0 if self._time is None else time - self._time
         self._time = time
-        if self._objects and dt > 0.0:
-            self._predict(dt)
-        pairs = assign(self._costs(time, seen))
-        self._correct(time, [(self._objects[row], column) for row, column in pairs], seen)
+        if self._objects:
+            modes = self._predict(dt)
+            pairs = assign(self._costs(time, seen, modes))
+            self._correct(time, pairs, seen, modes)
+        else:
+            pairs = []
         taken = {column for _, column in pairs}
         self._begin(time, [j for j in range(len(seen.radii)) if j not in taken], seen)
         self._doubt(time, dt, seen, viewpoint)
@@ -81,19 +83,23 @@ class Tracker:
         """Forget all tracks, for instance because the robot was carried away."""
         self._objects.clear()
 
-    def _modes(self) -> Modes:
-        """The filters of all obstacles, stacked."""
-        return _stacked([o.modes for o in self._objects])
-
-    def _predict(self, dt: float) -> None:
+    def _predict(self, dt: float) -> Modes:
+        """Carry everything on by `dt` [s]; the filters of all obstacles, stacked."""
         p = self._parameters
-        modes = motion_modes.predict(self._modes(), dt, p)
-        for i, o in enumerate(self._objects):
-            o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
-            if o.particles is not None:
-                o.particles = track_particles.advance(o.particles, dt, p.reversal_rate, self._rng)
+        # For arrays as small as these np.array is several times faster than np.stack.
+        parts = zip(*(o.modes for o in self._objects), strict=True)
+        modes = Modes(*(np.array(part) for part in parts))
+        if dt > 0.0:
+            modes = motion_modes.predict(modes, dt, p)
+            for i, o in enumerate(self._objects):
+                o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
+                if o.particles is not None:
+                    o.particles = track_particles.advance(
+                        o.particles, dt, p.reversal_rate, self._rng
+                    )
+        return modes
 
-    def _costs(self, time: float, seen: Sightings) -> Array:
+    def _costs(self, time: float, seen: Sightings, modes: Modes) -> Array:
         """Cost of every track with every sighting against the sighting being new (n, m).
 
         A lost track is also a cloud of particles, and with a small probability anywhere
@@ -101,49 +107,45 @@ class Tracker:
         """
         p = self._parameters
         n, m = len(self._objects), len(seen.radii)
-        if n == 0 or m == 0:
-            return np.empty((n, m))
-        modes = self._modes()
-        repeated = Modes(*(np.repeat(a, m, axis=0) for a in modes))
-        fit = motion_modes.innovation(
-            repeated, np.tile(seen.positions, (n, 1)), np.tile(seen.covariances, (n, 1, 1))
-        )
-        likelihood = repeated.weights * np.exp(fit.log_likelihood)
-        near = fit.distance.min(axis=1) < p.gate
-        costs = np.where(near, -2.0 * np.log(likelihood.sum(axis=1) + 1e-30), inf).reshape(n, m)
+        if m == 0:
+            return np.empty((n, 0))
+        costs = motion_modes.costs(modes, seen.positions, seen.covariances, p.gate)
         width = 0.5 * (seen.covariances[:, 0, 0] + seen.covariances[:, 1, 1])
         for i, o in enumerate(self._objects):
             if o.particles is not None:
-                log_density = track_particles.log_density(o.particles, seen.positions, width)
                 reach = p.line_width + REACH * o.speed * (time - o.last_time)
-                within = np.hypot(*(seen.positions - o.last_seen).T) < reach
-                anywhere = p.anywhere * 2.0 / (reach * reach) * within
-                cloud = -2.0 * np.log((1.0 - p.anywhere) * np.exp(log_density) + anywhere + 1e-30)
+                cloud = track_particles.costs(
+                    o.particles, seen.positions, width, (o.last_seen, reach, p.anywhere)
+                )
                 costs[i] = np.minimum(costs[i], cloud)
-        same = np.array([[o.label == s.label for s in seen.observations] for o in self._objects])
         density = np.where(self._freed, p.intruder_density, p.birth_density)
-        return np.where(same, costs + 2.0 * np.log(2.0 * pi * density), inf)
+        costs += 2.0 * np.log(2.0 * pi * density)
+        for i, j in np.argwhere(costs < 0.0).tolist():
+            if self._objects[i].label != seen.observations[j].label:
+                costs[i, j] = inf
+        return costs
 
     def _correct(
-        self, time: float, pairs: list[tuple[TrackedObject, int]], seen: Sightings
+        self, time: float, pairs: list[tuple[int, int]], seen: Sightings, predicted: Modes
     ) -> None:
         """Update the filters, verdict and radius of the tracks that were detected."""
         if not pairs:
             return
         p = self._parameters
-        columns = [column for _, column in pairs]
+        rows, columns = (list(indices) for indices in zip(*pairs, strict=True))
+        objects = [self._objects[row] for row in rows]
         z, raw = seen.positions[columns], seen.covariances[columns]
-        inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o, _ in pairs]
+        inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o in objects]
         R = raw * np.array(inflation)[:, None, None]
-        modes = _stacked([o.modes for o, _ in pairs])
-        surprise = motion_modes.innovation(modes, z, raw).distance.min(axis=1)
+        modes = Modes(*(part[rows] for part in predicted))
+        surprise = motion_modes.surprise(modes, z, raw)
         for i in np.flatnonzero(surprise > p.gate).tolist():
             # Nothing explains where it is: what was known of its motion is void.
             moving = max(float(1.0 - modes.weights[i, STILL]), 0.5)
             begun = motion_modes.begun(z[i], raw[i], moving, p.velocity_sigma)
             modes.weights[i], modes.states[i], modes.covariances[i] = begun
-        modes = motion_modes.update(modes, R, motion_modes.innovation(modes, z, R), p.evidence)
-        for i, (o, column) in enumerate(pairs):
+        modes = motion_modes.update(modes, z, R, p.evidence)
+        for i, (o, column) in enumerate(zip(objects, columns, strict=True)):
             o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
             self._widen(o, seen.observations[column], inflation[i])
             o.hits += 1
@@ -151,7 +153,7 @@ class Tracker:
             o.expected_for = 0.0
             o.last_time = time
             o.last_seen, o.seen_covariance = z[i].copy(), raw[i].copy()
-            if np.trace(raw[i]) < np.trace(o.best_covariance):
+            if _trace(raw[i]) < _trace(o.best_covariance):
                 o.best_covariance = o.seen_covariance
             o.particles = None
             o.presence = 1.0
@@ -277,10 +279,9 @@ class Tracker:
         objects = [o for o in self._objects if o.particles is None]
         if len(objects) < 2:
             return
-        places = np.stack([o.position for o in objects])
-        radii = np.array([o.radius for o in objects])
-        apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
-        close = np.argwhere(np.triu(apart < p.overlap * (radii[:, None] + radii), 1))
+        places = np.array([o.position for o in objects])
+        reach = p.overlap * np.array([o.radius for o in objects])
+        close = overlapping(places, reach)
         ended: set[int] = set()
         for i, j in close.tolist():
             a, b = objects[i], objects[j]
@@ -294,6 +295,6 @@ class Tracker:
             self._objects = [o for o in self._objects if o.id not in ended]
 
 
-def _stacked(modes: list[Modes]) -> Modes:
-    # For arrays as small as these np.array is several times faster than np.stack.
-    return Modes(*(np.array(parts) for parts in zip(*modes, strict=True)))
+def _trace(covariance: Array) -> float:
+    (xx, _), (_, yy) = covariance.tolist()
+    return float(xx + yy)

@@ -44,7 +44,7 @@ MODULES = (
     "navigation/virtual_obstacle",
     "navigation/velocity_modification",
     "navigation/localization",
-    "navigation/track_filter",
+    "navigation/mode_kernel",
     "navigation/motion_modes",
     "navigation/local_map",
     "walking/lipm",

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal
 
-from navigation import motion_modes, track_filter
+from navigation import motion_modes
 from navigation.belief_parameters import TrackingParameters
 from navigation.motion_modes import BACK, ON, STILL, Modes
 
@@ -20,8 +21,7 @@ def watch(modes, places, R=R, rng=None):
     for place in places:
         modes = motion_modes.predict(modes, DT, P)
         z = np.array([place]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
-        seen = motion_modes.innovation(modes, z, R[None])
-        modes = motion_modes.update(modes, R[None], seen, P.evidence)
+        modes = motion_modes.update(modes, z, R[None], P.evidence)
     return modes
 
 
@@ -34,11 +34,11 @@ def test_without_change_of_mode_it_is_a_plain_filter():
     p = TrackingParameters(reversal_rate=0.0, start_rate=1e-12, stop_rate=1e-12)
     modes = one()
     predicted = motion_modes.predict(modes, 0.5, p)
-    x, covariance = track_filter.predict_moving(
-        modes.states[:, ON], modes.covariances[:, ON], 0.5, p.acceleration_noise
-    )
-    assert np.allclose(predicted.states[:, ON], x)
-    assert np.allclose(predicted.covariances[:, ON], covariance)
+    F, q = np.eye(4) + 0.5 * np.eye(4, k=2), p.acceleration_noise
+    block = np.array([[0.5**3 / 3, 0.5**2 / 2], [0.5**2 / 2, 0.5]]) * q * q
+    covariance = F @ modes.covariances[0, ON] @ F.T + np.kron(block, np.eye(2))
+    assert np.allclose(predicted.states[0, ON], F @ modes.states[0, ON])
+    assert np.allclose(predicted.covariances[0, ON], covariance)
     assert np.allclose(predicted.states[:, STILL], modes.states[:, STILL])
 
 
@@ -113,8 +113,7 @@ def test_covariances_stay_positive_definite_over_100000_updates():
         Q = np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
         noise = Q @ (sigma[:, :, None] ** 2 * np.eye(2)) @ np.swapaxes(Q, 1, 2)
         z = z + rng.normal(0, 0.03, (n, 2))
-        seen = motion_modes.innovation(modes, z, noise)
-        modes = motion_modes.update(modes, noise, seen, P.evidence)
+        modes = motion_modes.update(modes, z, noise, P.evidence)
         C = modes.covariances
         assert np.array_equal(C, np.swapaxes(C, 2, 3))
         assert np.linalg.eigvalsh(C[:, ON:]).min() > 0.0
@@ -189,10 +188,13 @@ def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit
     modes.states[0, ON, 0] += 0.02
     modes.weights[0] = 0.5, 0.5 - 1e-6, 1e-6
     z = np.array([[1.0, 0.0]])
-    seen = motion_modes.innovation(modes, z, R[None])
-    ratio = seen.log_likelihood[0, STILL] - seen.log_likelihood[0, ON]
+    still, on = (
+        multivariate_normal(modes.states[0, m, :2], modes.covariances[0, m, :2, :2] + R)
+        for m in (STILL, ON)
+    )
+    ratio = still.logpdf(z[0]) - on.logpdf(z[0])
     assert 0.1 < ratio < 2.0
     for limit in (10.0, 0.5 * ratio):
-        after = motion_modes.update(modes, R[None], seen, limit).weights[0]
+        after = motion_modes.update(modes, z, R[None], limit).weights[0]
         assert np.log(after[STILL] / after[ON]) == pytest.approx(min(ratio, limit), abs=1e-4)
         assert after.sum() == pytest.approx(1.0)

@@ -1,0 +1,317 @@
+"""Compiled part of the filters of obstacles: all obstacles and all modes in one pass.
+
+Modes are STILL, ON, BACK, see `motion_modes`; states are (x, y, vx, vy).
+"""
+
+from math import exp, log
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Parts = tuple[Array, Array, Array]
+
+STILL, ON, BACK = 0, 1, 2
+
+
+@njit(cache=True)
+def _reversal(i: int, j: int) -> float:
+    """What a change from mode i to mode j does to the velocity."""
+    if min(i, j) == STILL:
+        return 0.0
+    return 1.0 if i == j else -1.0
+
+
+@njit(cache=True)
+def interact(
+    weights: Array,
+    states: Array,
+    covariances: Array,
+    change: Array,
+    dt: float,
+    start_variance: float,
+) -> Parts:
+    """Mix the modes as an obstacle may have changed its mode (Blom & Bar-Shalom).
+
+    Args:
+        weights: probabilities (n, 3).
+        states: (n, 3, 4).
+        covariances: (n, 3, 4, 4).
+        change: probability of mode j after mode i (3, 3).
+        dt: time for which it may have done so [s].
+        start_variance: of the velocity of what begins to move [m²/s²].
+
+    Returns:
+        Weights, states and covariances, new.
+    """
+    n = len(weights)
+    mixed_weights, mixed = np.zeros((n, 3)), np.zeros((n, 3, 4))
+    spread, parts = np.zeros((n, 3, 4, 4)), np.empty((3, 4))
+    factor, share = np.ones(4), np.empty(3)
+    for k in range(n):
+        for j in range(3):
+            for i in range(3):
+                mixed_weights[k, j] += weights[k, i] * change[i, j]
+            for i in range(3):
+                share[i] = weights[k, i] * change[i, j] / mixed_weights[k, j]
+                velocity = _reversal(i, j)
+                # It turned at any time since: on average half way, so that it now is where
+                # it was.
+                forth = dt if velocity < 0.0 else 0.0
+                for a in range(2):
+                    parts[i, a] = states[k, i, a] + forth * states[k, i, 2 + a]
+                    parts[i, 2 + a] = velocity * states[k, i, 2 + a]
+                for a in range(4):
+                    mixed[k, j, a] += share[i] * parts[i, a]
+            for i in range(3):
+                velocity = _reversal(i, j)
+                factor[2] = factor[3] = velocity
+                forth = dt if velocity < 0.0 else 0.0
+                for a in range(4):
+                    off = parts[i, a] - mixed[k, j, a]
+                    for b in range(4):
+                        part = covariances[k, i, a, b] * factor[a] * factor[b]
+                        part += off * (parts[i, b] - mixed[k, j, b])
+                        if a < 2 and b < 2:
+                            way = forth * states[k, i, 2 + a] * forth * states[k, i, 2 + b]
+                            part += way / 3.0
+                        if a == b and a > 1 and i == STILL and j == ON:
+                            part += start_variance
+                        spread[k, j, a, b] += share[i] * part
+    return mixed_weights, mixed, spread
+
+
+@njit(cache=True)
+def move_on(states: Array, covariances: Array, dt: float, q: float, diffusion: float) -> None:
+    """Constant velocity for ON and BACK, a random walk for STILL, in place.
+
+    Args:
+        states: (n, 3, 4).
+        covariances: (n, 3, 4, 4).
+        dt: [s].
+        q: square root of the density of the white acceleration [m/s^1.5].
+        diffusion: of what stands still [m²/s].
+    """
+    for k in range(len(states)):
+        P = covariances[k, STILL]
+        P[0, 0] += diffusion * dt
+        P[1, 1] += diffusion * dt
+        for mode in range(ON, BACK + 1):
+            x, P = states[k, mode], covariances[k, mode]
+            for a in range(2):
+                x[a] += dt * x[2 + a]
+            # P := F P F' with F = [1 dt; 0 1], rows first.
+            for a in range(2):
+                for b in range(4):
+                    P[a, b] += dt * P[2 + a, b]
+            for a in range(4):
+                for b in range(2):
+                    P[a, b] += dt * P[a, 2 + b]
+            for a in range(2):
+                P[a, a] += dt**3 / 3.0 * (q * q)
+                P[a, 2 + a] += 0.5 * dt * dt * (q * q)
+                P[2 + a, a] += 0.5 * dt * dt * (q * q)
+                P[2 + a, 2 + a] += dt * (q * q)
+
+
+@njit(cache=True)
+def fit(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, float]:
+    """How an innovation fits its covariance.
+
+    Args:
+        u: innovation along x [m].
+        v: the same along y [m].
+        xx: its variance along x [m²].
+        xy: covariance [m²].
+        yy: variance along y [m²].
+
+    Returns:
+        Squared Mahalanobis distance, and log likelihood up to a constant.
+    """
+    det = xx * yy - xy * xy
+    distance = (yy * u * u - 2.0 * xy * u * v + xx * v * v) / det
+    return distance, -0.5 * (distance + log(det))
+
+
+@njit(cache=True)
+def surprise(states: Array, covariances: Array, z: Array, R: Array) -> Array:
+    """Squared Mahalanobis distance of every obstacle's position to its nearest mode (n,).
+
+    Args:
+        states: (n, 3, 4).
+        covariances: (n, 3, 4, 4).
+        z: position of each (n, 2) [m].
+        R: its covariance (n, 2, 2) [m²].
+    """
+    least = np.full(len(z), np.inf)
+    for k in range(len(z)):
+        for mode in range(3):
+            distance, _ = fit(
+                z[k, 0] - states[k, mode, 0],
+                z[k, 1] - states[k, mode, 1],
+                covariances[k, mode, 0, 0] + R[k, 0, 0],
+                covariances[k, mode, 0, 1] + R[k, 0, 1],
+                covariances[k, mode, 1, 1] + R[k, 1, 1],
+            )
+            least[k] = min(least[k], distance)
+    return least
+
+
+@njit(cache=True)
+def costs(
+    weights: Array, states: Array, covariances: Array, z: Array, R: Array, gate: float
+) -> Array:
+    """Minus twice the log likelihood of every position with every obstacle (n, m).
+
+    Args:
+        weights: (n, 3).
+        states: (n, 3, 4).
+        covariances: (n, 3, 4, 4).
+        z: positions (m, 2) [m].
+        R: their covariances (m, 2, 2) [m²].
+        gate: squared Mahalanobis distance to the nearest mode from which the cost is infinite.
+    """
+    cost = np.full((len(weights), len(z)), np.inf)
+    for k in range(len(weights)):
+        for m in range(len(z)):
+            least, likelihood = np.inf, 1e-30
+            for mode in range(3):
+                distance, logarithm = fit(
+                    z[m, 0] - states[k, mode, 0],
+                    z[m, 1] - states[k, mode, 1],
+                    covariances[k, mode, 0, 0] + R[m, 0, 0],
+                    covariances[k, mode, 0, 1] + R[m, 0, 1],
+                    covariances[k, mode, 1, 1] + R[m, 1, 1],
+                )
+                least = min(least, distance)
+                likelihood += weights[k, mode] * exp(logarithm)
+            if least < gate:
+                cost[k, m] = -2.0 * log(likelihood)
+    return cost
+
+
+@njit(cache=True)
+def correct(x: Array, P: Array, z: Array, R: Array) -> float:
+    """Correct one filter by a position, in Joseph's form, in place.
+
+    Args:
+        x: predicted state (4,).
+        P: its covariance (4, 4).
+        z: position measured (2,) [m].
+        R: its covariance (2, 2) [m²].
+
+    Returns:
+        Log likelihood of the position, up to a constant.
+    """
+    a, b, d = P[0, 0] + R[0, 0], P[0, 1] + R[0, 1], P[1, 1] + R[1, 1]
+    det = a * d - b * b
+    u, v = z[0] - x[0], z[1] - x[1]
+    _, likelihood = fit(u, v, a, b, d)
+    K, left = np.empty((4, 2)), np.empty((4, 4))
+    for i in range(4):
+        K[i, 0] = (P[i, 0] * d - P[i, 1] * b) / det
+        K[i, 1] = (P[i, 1] * a - P[i, 0] * b) / det
+    for i in range(4):
+        x[i] += K[i, 0] * u + K[i, 1] * v
+        for j in range(4):
+            left[i, j] = P[i, j] - K[i, 0] * P[0, j] - K[i, 1] * P[1, j]
+    for i in range(4):
+        for j in range(i, 4):
+            # (left - left H' K') + K R K', averaged with its transpose.
+            noise = K[i, 0] * (R[0, 0] * K[j, 0] + R[0, 1] * K[j, 1])
+            noise += K[i, 1] * (R[0, 1] * K[j, 0] + R[1, 1] * K[j, 1])
+            upper = left[i, j] - left[i, 0] * K[j, 0] - left[i, 1] * K[j, 1]
+            lower = left[j, i] - left[j, 0] * K[i, 0] - left[j, 1] * K[i, 1]
+            P[i, j] = P[j, i] = 0.5 * (upper + lower) + noise
+    return likelihood
+
+
+@njit(cache=True)
+def update(
+    weights: Array,
+    states: Array,
+    covariances: Array,
+    z: Array,
+    R: Array,
+    limit: float,
+    floor: float,
+) -> None:
+    """Correct all filters and weigh the modes by their likelihoods, in place.
+
+    Args:
+        weights: (n, 3).
+        states: predicted (n, 3, 4).
+        covariances: (n, 3, 4, 4).
+        z: position of each obstacle (n, 2) [m].
+        R: its covariance (n, 2, 2) [m²].
+        limit: largest ratio of the modes' likelihoods, logarithm [1].
+        floor: least probability of a mode [1].
+    """
+    gain = np.empty(3)
+    for k in range(len(weights)):
+        for mode in range(3):
+            gain[mode] = correct(states[k, mode], covariances[k, mode], z[k], R[k])
+        best = max(gain[0], gain[1], gain[2])
+        for mode in range(3):
+            weights[k, mode] *= exp(max(gain[mode] - best, -limit))
+        for least in (0.0, floor):
+            total = 0.0
+            for mode in range(3):
+                weights[k, mode] = max(weights[k, mode], least)
+                total += weights[k, mode]
+            for mode in range(3):
+                weights[k, mode] /= total
+
+
+@njit(cache=True)
+def mean(weights: Array, states: Array) -> Array:
+    """Mean (4,) of one obstacle, given that it moves; weights (3,), states (3, 4)."""
+    moving = weights[ON] + weights[BACK]
+    average = np.empty(4)
+    for a in range(4):
+        average[a] = (weights[ON] * states[ON, a] + weights[BACK] * states[BACK, a]) / moving
+    return average
+
+
+@njit(cache=True)
+def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, Array]:
+    """Mean (4,) and covariance (4, 4) of one obstacle, given that it moves.
+
+    Args:
+        weights: (3,).
+        states: (3, 4).
+        covariances: (3, 4, 4).
+    """
+    on = weights[ON] / (weights[ON] + weights[BACK])
+    back = weights[BACK] / (weights[ON] + weights[BACK])
+    average, covariance = np.empty(4), np.empty((4, 4))
+    for a in range(4):
+        average[a] = on * states[ON, a] + back * states[BACK, a]
+    for a in range(4):
+        for b in range(4):
+            apart = (states[ON, a] - states[BACK, a]) * (states[ON, b] - states[BACK, b])
+            within = on * covariances[ON, a, b] + back * covariances[BACK, a, b]
+            covariance[a, b] = within + (on * back) * apart
+    return average, covariance
+
+
+@njit(cache=True)
+def standing(
+    states: Array, covariances: Array, best: Array, lasting: float, speed_variance: float
+) -> tuple[Array, Array]:
+    """Mean (4,) and covariance (4, 4) of one obstacle that stands still.
+
+    Args:
+        states: (3, 4).
+        covariances: (3, 4, 4).
+        best: covariance of the most precise detection (2, 2) [m²].
+        lasting: share of that variance which no number of detections brings down [1].
+        speed_variance: of each component of the velocity [m²/s²].
+    """
+    average, covariance = states[STILL].copy(), covariances[STILL].copy()
+    for a in range(2):
+        for b in range(2):
+            covariance[a, b] += lasting * best[a, b]
+        covariance[2 + a, 2 + a] = speed_variance
+    return average, covariance
