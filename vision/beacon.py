@@ -47,10 +47,10 @@ def find_posts(
     for i in indices:
         bottom = outlines[i].bottom
         for j in indices:
+            if i == j or not _rests_on(blobs[i], blobs[j]):
+                continue
             seam = bottom.against(blobs[j].label)
             if not seam.slope.size or seam.slope.size < SEAM_SHARE * bottom.slope.size:
-                continue
-            if not _rests_on(blobs[i], blobs[j]):
                 continue
             sides = _common_sides(outlines[i], outlines[j])
             if sides is None:

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from vision import colour_kernel
 from vision.errors import VisionError
 
 Labels = NDArray[np.uint8]
@@ -102,16 +103,7 @@ class ColourTable:
                 "an image must be an RGB array of uint8 of shape (height, width, 3), "
                 f"got {image.dtype} of shape {image.shape}"
             )
-        # A code has 15 bits: there is nothing to clip, and no check that takes time.
-        labels: Labels = np.take(self.labels, pack(image), mode="clip")
-        return labels
-
-
-def pack(image: NDArray[np.uint8]) -> NDArray[np.uint16]:
-    """RGB555 code of every pixel (h, w) of an RGB image (h, w, 3)."""
-    packed = cv2.cvtColor(np.ascontiguousarray(image), cv2.COLOR_RGB2BGR555)
-    codes: NDArray[np.uint16] = packed.view(np.uint16).reshape(image.shape[:2])
-    return codes
+        return colour_kernel.classify(np.ascontiguousarray(image), self.labels)
 
 
 def table_colours() -> NDArray[np.uint8]:

@@ -254,7 +254,6 @@ class Detector:
         if distance > limit or covariance[0, 0] > (parameters.max_relative_sigma * distance) ** 2:
             return None
         blobs = sighting.blobs
-        lefts, tops, rights, bottoms = zip(*(blob.box for blob in blobs), strict=True)
         return Detection(
             kind=sighting.kind,
             label="/".join(self._table.classes[blob.label - 1].name for blob in blobs),
@@ -265,8 +264,16 @@ class Detector:
             radius_sigma=sqrt(float(cylinder.covariance[2, 2])),
             cut=any(blob.cut for blob in blobs),
             occluded=sighting.occluded,
-            box=(min(lefts), min(tops), max(rights), max(bottoms)),
+            box=_around(blobs),
         )
+
+
+def _around(blobs: tuple[Blob, ...]) -> tuple[int, int, int, int]:
+    """Box around all of `blobs`."""
+    if len(blobs) == 1:
+        return blobs[0].box
+    lefts, tops, rights, bottoms = zip(*(blob.box for blob in blobs), strict=True)
+    return min(lefts), min(tops), max(rights), max(bottoms)
 
 
 def _doubted(sighting: _Sighting, cylinder: Cylinder) -> tuple[_Sighting, Cylinder]:

@@ -115,23 +115,18 @@ def trace(
     outlines = []
     start = 0
     for both, count, pixel in zip(sides.tolist(), counts.tolist(), pixels.tolist(), strict=True):
-        left, right = (
-            Side(
-                azimuth=values[0],
-                sigma=edge_sigma * values[1],
-                count=independent(values[2], values[3]),
-                low=values[4],
-                high=values[5],
-                trusted=values[6] != 0.0,
-                hidden=values[7] != 0.0,
-            )
-            for values in both
-        )
-        middle, stop = start + count[0], start + count[0] + count[1]
-        bottom, top = (
-            Rim(azimuth[a:b], slope[a:b], outer[a:b], edge_sigma * size)
-            for a, b, size in ((start, middle, pixel[0]), (middle, stop, pixel[1]))
-        )
+        left, right = (_side(values, edge_sigma) for values in both)
+        middle = start + count[0]
+        stop = middle + count[1]
+        near, far = slice(start, middle), slice(middle, stop)
+        bottom = Rim(azimuth[near], slope[near], outer[near], edge_sigma * pixel[0])
+        top = Rim(azimuth[far], slope[far], outer[far], edge_sigma * pixel[1])
         outlines.append(Outline(left, right, bottom, top))
         start = stop
     return outlines
+
+
+def _side(values: Sequence[float], edge_sigma: float) -> Side:
+    azimuth, pixel, points, crossed, low, high, trusted, hidden = values
+    own = independent(points, crossed)
+    return Side(azimuth, edge_sigma * pixel, own, low, high, trusted != 0.0, hidden != 0.0)

@@ -1,20 +1,22 @@
-"""Outlines of blobs, compiled: from pixels to sides and rims in azimuth and slope.
+"""Outlines of blobs, compiled: from pixels to edges in azimuth and slope.
 
 A view is a packed array here: half width, half height and focal length of the camera [pixel],
 the nine elements of R_RC row by row, and the cosine and the sine of its heading.
 """
 
-from math import atan2, hypot, inf, sqrt
+from math import atan2, ceil, cos, floor, hypot, inf, sin, sqrt
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 Labels = NDArray[np.uint8]
 Table = NDArray[np.int32]
 
 OUTSIDE = 255  # as in `vision.colour`
+MIN_DEPTH = 1e-3  # of a direction before the camera
 MIN_RUN = 1e-6  # horizontal part of a ray below which its slope is cut off
 LOW_SHARE = 0.25  # share of a side, from below, that tells whether a nearer thing hides it
 END_SHARE = 0.1  # share of the width near each side that is left out of rims
@@ -22,12 +24,13 @@ END_PIXELS = 0.8  # and at least so much of it [pixel]
 NOWHERE = -9.0  # an azimuth that no point has [rad]
 ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [pixel]
 MAX_OVERHANG = 2.5  # a side does not lie farther inside what is seen than this [pixel]
+MAX_CELLS = 128  # of the grid of an envelope in each direction
 CUT = 4  # an edge has at least one point for so many at the border; fewer are noise there
 OUTLIERS = 8  # one pixel in so many may stick out of a side
 
 
 @njit(cache=True)
-def _angles(view: Array, u: float, v: float) -> tuple[float, float]:
+def angles(view: Array, u: float, v: float) -> tuple[float, float]:
     """Azimuth from the heading of the camera [rad] and slope [1] of an image point."""
     x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
     X = view[3] * x + view[4] * y + view[5]
@@ -38,7 +41,20 @@ def _angles(view: Array, u: float, v: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _resolution(view: Array, u: float, v: float) -> tuple[float, float, float, float]:
+def pixel(view: Array, azimuth: float, slope: float) -> tuple[float, float, bool]:
+    """Image point (u, v) of a direction, and whether it lies before the camera."""
+    c, s = cos(azimuth), sin(azimuth)
+    X, Y = view[12] * c - view[13] * s, view[13] * c + view[12] * s
+    z = view[5] * X + view[8] * Y + view[11] * slope
+    ahead = z > MIN_DEPTH
+    scale = view[2] / (z if ahead else 1.0)
+    u = view[0] + scale * (view[3] * X + view[6] * Y + view[9] * slope)
+    v = view[1] + scale * (view[4] * X + view[7] * Y + view[10] * slope)
+    return u, v, ahead
+
+
+@njit(cache=True)
+def resolution(view: Array, u: float, v: float) -> tuple[float, float, float, float]:
     """How much azimuth [rad] and slope [1] change per pixel.
 
     Returns:
@@ -60,7 +76,7 @@ def _resolution(view: Array, u: float, v: float) -> tuple[float, float, float, f
 
 
 @njit(cache=True)
-def _upright(view: Array, u: float, v: float) -> bool:
+def upright(view: Array, u: float, v: float) -> bool:
     """Whether vertical lines run rather along columns than along rows at (u, v)."""
     x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
     return bool(abs(view[10] - y * view[11]) >= abs(view[9] - x * view[11]))
@@ -86,11 +102,11 @@ def _edge(
         else:
             u, v = left + i + 0.5, float(end)
             outer[i] = padded[end if e == 2 else end + 1, left + i + 1]
-        points[i, 0], points[i, 1] = _angles(view, u, v)
+        points[i, 0], points[i, 1] = angles(view, u, v)
         # Ends of rows are known along u, ends of columns along v.
         points[i, 2] = u if e < 2 else v
         if i == len(points) // 2:
-            au, av, su, sv = _resolution(view, u, v)
+            au, av, su, sv = resolution(view, u, v)
             azimuth_pixel, slope_pixel = (au, su) if e < 2 else (av, sv)
     return azimuth_pixel, slope_pixel
 
@@ -189,7 +205,7 @@ def trace(
     sides, counts, sizes = np.empty((n, 2, 8)), np.empty((n, 2), np.int32), np.empty((n, 2))
     points, outer = np.empty((len(extents), 3)), np.empty(len(extents), np.uint8)
     rims, rim_outer = np.empty((2, len(extents))), np.empty(len(extents), np.uint8)
-    pixel = np.empty((4, 2))
+    size = np.empty((4, 2))
     starts = np.zeros(5, np.int64)
     m = 0
     for k in range(n):
@@ -198,16 +214,16 @@ def trace(
         for e in range(4):
             a = starts[e]
             b = starts[e + 1] = a + (bottom - top if e < 2 else right - left)
-            pixel[e] = _edge(points[a:b], outer[a:b], boxes[k], extents[a:b], padded, view, e)
+            size[e] = _edge(points[a:b], outer[a:b], boxes[k], extents[a:b], padded, view, e)
         middle = (starts[:4] + starts[1:]) // 2
-        side, rim = (0, 2) if _upright(view, 0.5 * (left + right), 0.5 * (top + bottom)) else (2, 0)
+        side, rim = (0, 2) if upright(view, 0.5 * (left + right), 0.5 * (top + bottom)) else (2, 0)
         swapped = 0 if points[middle[side], 0] >= points[middle[side + 1], 0] else 1
         for j in range(2):
             e = side + (j ^ swapped)
             a, b = starts[e], starts[e + 1]
-            _side(sides[k, j], points[a:b], outer[a:b], pixel[e, 0], 1.0 - 2.0 * j)
+            _side(sides[k, j], points[a:b], outer[a:b], size[e, 0], 1.0 - 2.0 * j)
         leftmost, rightmost = sides[k, 0, 0], sides[k, 1, 0]
-        margin = max(END_SHARE * (leftmost - rightmost), END_PIXELS * pixel[side + swapped, 0])
+        margin = max(END_SHARE * (leftmost - rightmost), END_PIXELS * size[side + swapped, 0])
         swapped = 0 if points[middle[rim + 1], 1] >= points[middle[rim], 1] else 1
         for j in range(2):
             e = rim + (j ^ swapped)
@@ -221,5 +237,78 @@ def trace(
                 leftmost - margin,
             )
             m += counts[k, j]
-            sizes[k, j] = pixel[e, 1]
+            sizes[k, j] = size[e, 1]
     return sides, counts, sizes, rims[:, :m], rim_outer[:m]
+
+
+@njit(cache=True)
+def _label(padded: Labels, view: Array, azimuth: float, slope: float) -> int:
+    """Label of the pixel in a direction, `OUTSIDE` if there is none."""
+    u, v, ahead = pixel(view, azimuth, slope)
+    if not ahead:
+        return OUTSIDE
+    row = int(min(max(floor(v), -1.0), len(padded) - 2.0))
+    column = int(min(max(floor(u), -1.0), padded.shape[1] - 2.0))
+    return padded[row + 1, column + 1]
+
+
+@njit(cache=True)
+def envelopes(
+    box: Table, extents: Table, mask: Bools, padded: Labels, view: Array
+) -> tuple[Array, Array, Bools]:
+    """Lower and upper envelope of a blob on a grid of azimuth and slope.
+
+    There cylinders stand upright, whatever the head does.
+
+    Args:
+        box: left, top, right, bottom of the blob (4,) [pixel].
+        extents: of the blob.
+        mask: which pixels of the box belong to it.
+        padded: labels of the image with a frame of `OUTSIDE` one pixel wide (h + 2, w + 2).
+        view: packed.
+
+    Returns:
+        Right end of the grid [rad], width of its columns [rad] and slope of a pixel [1] (3,);
+        lowest and highest slope of the blob in each column, from right to left (2, n); and
+        whether these are the edge of a thing (2, n).
+    """
+    left, top, right, bottom = box[0], box[1], box[2], box[3]
+    points, outer = np.empty((len(extents), 3)), np.empty(len(extents), np.uint8)
+    a = 0
+    for e in range(4):
+        b = a + (bottom - top if e < 2 else right - left)
+        _edge(points[a:b], outer[a:b], box, extents[a:b], padded, view, e)
+        a = b
+    start, low = points[:, 0].min(), points[:, 1].min()
+    width, height = points[:, 0].max() - start, points[:, 1].max() - low
+    au, av, su, sv = resolution(view, 0.5 * (left + right), 0.5 * (top + bottom))
+    size = max(su, sv)
+    step = max(0.5 * size, height / MAX_CELLS)
+    n = max(1, round(width / max(au, av, width / MAX_CELLS)))
+    # Two more cells below and above tell what lies beyond.
+    cells = ceil(height / step) + 4
+    result, usable = np.empty((2, n)), np.zeros((2, n), np.bool_)
+    for i in range(n):
+        azimuth = start + width / n * (i + 0.5)
+        for j in range(2):
+            # From below for the lower envelope, from above for the upper one.
+            cell, sense = (0, 1) if j == 0 else (cells - 1, -1)
+            filled = False
+            for _ in range(cells):
+                u, v, ahead = pixel(view, azimuth, low + step * (cell - 1.5))
+                filled = (
+                    ahead
+                    and left <= u < right
+                    and top <= v < bottom
+                    and mask[int(v) - top, int(u) - left]
+                )
+                if filled:
+                    break
+                cell += sense
+            if not filled:
+                cell -= sense * cells
+            result[j, i] = low + step * (cell - 1.5) - sense * 0.5 * step
+            beyond = min(max(cell - sense, 0), cells - 1)
+            label = _label(padded, view, azimuth, low + step * (beyond - 1.5))
+            usable[j, i] = filled and (label == 0 if j == 0 else label != OUTSIDE)
+    return np.array([start, width / n, size]), result, usable

@@ -7,22 +7,22 @@ each direction and the upper outline to the farthest. Where one ends, the outlin
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vision.blob import Blob
-from vision.colour import OUTSIDE
 from vision.cylinder import Candidate, RimCue
 from vision.cylinder_kernel import MIN_CLEARANCE
 from vision.outline import Outline, Rim, Side
+from vision.outline_kernel import envelopes
 from vision.parameters import VisionParameters
 from vision.view import View
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.uint8]
 
-MAX_CELLS = 128  # of the grid in each direction
 MIN_COLUMNS = 3  # a piece of an outline needs so many columns
 MIN_INNER = 2  # of them must be left when those at its steps are not used
 EXTRA_RADIUS = 0.04  # a cylinder may seem thicker or thinner by so much when matched [m]
@@ -111,57 +111,17 @@ class _Grid:
     """The blob sampled on a grid of azimuth and slope, where cylinders stand upright."""
 
     def __init__(self, blob: Blob, outline: Outline, padded: Labels, view: View) -> None:
-        left, top, right, bottom = blob.box
-        ends = (bottom - top, 2 * (bottom - top), 2 * (bottom - top) + right - left)
-        first, last, high, low = np.split(blob.extents, ends)
-        rows = np.arange(top, bottom) + 0.5
-        columns = np.arange(left, right) + 0.5
-        azimuths, slopes = view.angles(
-            np.concatenate([first, last, columns, columns]).astype(float),
-            np.concatenate([rows, rows, high, low]).astype(float),
+        grid, ends, usable = envelopes(
+            np.array(blob.box, np.int32), blob.extents, blob.mask, padded, view.packed
         )
-        centre = np.array([0.5 * (left + right)]), np.array([0.5 * (top + bottom)])
-        au, av, su, sv = (float(a[0]) for a in view.resolution(*centre))
-        self.start, width = float(azimuths.min()), float(np.ptp(azimuths))
-        bottom_slope, height = float(slopes.min()), float(np.ptp(slopes))
-        self.azimuth_step = max(au, av, width / MAX_CELLS)
-        self.pixel = max(su, sv)
-        slope_step = max(0.5 * self.pixel, height / MAX_CELLS)
-        n = max(1, round(width / self.azimuth_step))
-        self.azimuth_step = width / n
-        m = int(np.ceil(height / slope_step))
+        self.start, self.azimuth_step, self.pixel = grid.tolist()
+        self.low, self.high = ends.tolist()
+        self.low_usable, self.high_usable = usable.tolist()
         self.outer_right = outline.right.trusted and not outline.right.hidden
         self.outer_left = outline.left.trusted and not outline.left.hidden
-        # Two more cells below and above tell what lies beyond.
-        cells = np.arange(-2, m + 2, dtype=np.float64) + 0.5
-        self.slopes = bottom_slope + slope_step * cells
-        self.azimuths = self.start + self.azimuth_step * (np.arange(n, dtype=np.float64) + 0.5)
-        u, v, ahead = view.pixels(self.azimuths[None, :], self.slopes[:, None])
-        width_px, height_px = view.camera.width, view.camera.height
-        # Beyond the blob all is the same: a frame round its mask stands for it.
-        x = np.minimum(np.maximum(np.floor(u), left - 1), right).astype(np.intp)
-        y = np.minimum(np.maximum(np.floor(v), top - 1), bottom).astype(np.intp)
-        framed = np.zeros((bottom - top + 2, right - left + 2), np.bool_)
-        framed[1:-1, 1:-1] = blob.mask
-        inside = framed.ravel()[(y - (top - 1)) * (right - left + 2) + (x - (left - 1))]
-        inside &= ahead
-        self.filled = inside.any(axis=0)
-        first_cell = inside.argmax(axis=0)
-        last_cell = inside.shape[0] - 1 - inside[::-1].argmax(axis=0)
-        self.low = self.slopes[first_cell] - 0.5 * slope_step
-        self.high = self.slopes[last_cell] + 0.5 * slope_step
-        beside = np.stack(
-            [np.maximum(first_cell - 1, 0), np.minimum(last_cell + 1, len(self.slopes) - 1)]
-        )
-        index = np.arange(n)
-        column = np.minimum(np.maximum(np.floor(u[beside, index]), -1), width_px).astype(np.intp)
-        row = np.minimum(np.maximum(np.floor(v[beside, index]), -1), height_px).astype(np.intp)
-        labels = np.where(ahead[beside, index], padded[row + 1, column + 1], OUTSIDE)
-        self.low_usable = self.filled & (labels[0] == 0)
-        self.high_usable = self.filled & (labels[1] != OUTSIDE)
 
     def pieces(
-        self, envelope: Array, usable: NDArray[np.bool_], drop: float, step: float, nearest: bool
+        self, envelope: list[float], usable: list[bool], drop: float, step: float, nearest: bool
     ) -> list[_Piece]:
         """Pieces of the lower or the upper outline.
 
@@ -172,23 +132,20 @@ class _Grid:
             step: that parts two pieces [pixel].
             nearest: the outline shows the nearest thing of each column, not the farthest.
         """
-        jumps = np.abs(np.diff(envelope))
-        starts = _merge_narrow(
-            [0, *(np.flatnonzero(jumps > step * self.pixel) + 1).tolist()],
-            jumps.tolist(),
-            len(envelope),
-        )
-        ends = [*starts[1:], len(envelope)]
+        n = len(envelope)
+        jumps = [abs(b - a) for a, b in pairwise(envelope)]
+        steps = [i for i, jump in enumerate(jumps, start=1) if jump > step * self.pixel]
+        starts = _merge_narrow([0, *steps], jumps, n)
         pieces = []
-        for a, b in zip(starts, ends, strict=True):
-            chosen = np.flatnonzero(usable[a:b]) + a
+        for a, b in pairwise([*starts, n]):
+            chosen = [i for i in range(a, b) if usable[i]]
             if len(chosen) < MIN_COLUMNS or 2 * len(chosen) < b - a:
                 continue
             # The column at a step shows part of what stands beside it.
-            inner = chosen[((chosen > a) | (a == 0)) & ((chosen < b - 1) | (b == len(envelope)))]
+            inner = [i for i in chosen if (i > a or a == 0) and (i < b - 1 or b == n)]
             chosen = inner if len(inner) >= MIN_INNER else chosen
-            slopes = envelope[chosen]
-            if (slopes * drop <= 0.0).any():
+            slopes = [envelope[i] for i in chosen]
+            if min(slope * drop for slope in slopes) <= 0.0:
                 continue
             pieces.append(
                 _Piece(
@@ -200,17 +157,17 @@ class _Grid:
                     left_true=self._ends(
                         envelope, usable, b - 1, b, nearest=nearest, outer=self.outer_left
                     ),
-                    run=_quantile(drop / slopes, 0.1 if nearest else 0.9),
-                    azimuth=self.azimuths[chosen],
-                    slope=slopes,
+                    run=_quantile([drop / slope for slope in slopes], 0.1 if nearest else 0.9),
+                    azimuth=self.start + self.azimuth_step * (np.array(chosen) + 0.5),
+                    slope=np.array(slopes),
                 )
             )
         return pieces
 
     @staticmethod
     def _ends(
-        envelope: Array,
-        usable: NDArray[np.bool_],
+        envelope: list[float],
+        usable: list[bool],
         last: int,
         beyond: int,
         *,
@@ -223,13 +180,12 @@ class _Grid:
         if not (usable[last] and usable[beyond]):
             return False
         # Slopes are negative: a farther rim has the greater one.
-        farther = bool(envelope[beyond] > envelope[last])
-        return farther if nearest else not farther
+        return (envelope[beyond] > envelope[last]) == nearest
 
 
-def _quantile(values: Array, share: float) -> float:
+def _quantile(values: list[float], share: float) -> float:
     """Value below which such a share of `values` lies, between two of them if need be."""
-    ranked: list[float] = np.sort(values).tolist()
+    ranked = sorted(values)
     whole, part = divmod(share * (len(ranked) - 1), 1.0)
     low, high = ranked[int(whole)], ranked[min(int(whole) + 1, len(ranked) - 1)]
     gap = high - low

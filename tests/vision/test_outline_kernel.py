@@ -4,7 +4,7 @@ import pytest
 from tests.vision.scene import CAMERA, at, paint, pose
 from vision.blob import find_blobs
 from vision.colour import OUTSIDE, ColourTable
-from vision.outline_kernel import trace
+from vision.outline_kernel import angles, envelopes, trace
 from vision.view import View
 
 THINGS = [
@@ -15,19 +15,43 @@ THINGS = [
 ]
 
 
-def arguments(pan, roll):
+def seen(pan, roll):
+    """Blobs, padded labels and packed view of the things."""
     gaze = pose(pan=pan, tilt=-0.3, roll=roll)
     labels = ColourTable().classify(paint(THINGS, gaze))
     blobs = find_blobs(labels, (20,) * 7)
-    boxes = np.array([blob.box for blob in blobs], np.int32)
-    extents = np.concatenate([blob.extents for blob in blobs])
-    padded = np.pad(labels, 1, constant_values=OUTSIDE)
-    return boxes, extents, padded, View(CAMERA, gaze).packed
+    return blobs, np.pad(labels, 1, constant_values=OUTSIDE), View(CAMERA, gaze).packed
 
 
 @pytest.mark.parametrize(("pan", "roll"), [(0.0, 0.0), (0.2, 0.1), (-0.3, 1.5)])
 def test_compiled_and_plain_agree(pan, roll):
-    values = arguments(pan, roll)
-    assert len(values[0]) >= 3
+    blobs, *rest = seen(pan, roll)
+    assert len(blobs) >= 3
+    boxes = np.array([blob.box for blob in blobs], np.int32)
+    values = boxes, np.concatenate([blob.extents for blob in blobs]), *rest
     for compiled, plain in zip(trace(*values), trace.py_func(*values), strict=True):
         np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize(("pan", "roll"), [(0.0, 0.0), (0.2, 0.1), (-0.3, 1.5)])
+def test_compiled_and_plain_envelopes_agree(pan, roll):
+    blobs, *rest = seen(pan, roll)
+    for blob in blobs:
+        values = np.array(blob.box, np.int32), blob.extents, blob.mask, *rest
+        for compiled, plain in zip(envelopes(*values), envelopes.py_func(*values), strict=True):
+            np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-14)
+
+
+def test_envelopes_bound_the_directions_of_all_pixels():
+    """Lowest and highest slope of a blob near each azimuth, from the middles of its pixels."""
+    blobs, padded, view = seen(0.1, 0.05)
+    for blob in blobs:
+        box = np.array(blob.box, np.int32)
+        (start, width, size), (low, high), _ = envelopes(box, blob.extents, blob.mask, padded, view)
+        rows, columns = np.nonzero(blob.mask)
+        middles = np.stack([columns + blob.box[0], rows + blob.box[1]], axis=1) + 0.5
+        for u, v in middles.tolist():
+            azimuth, slope = angles(view, u, v)
+            column = int((azimuth - start) / width)
+            near = slice(max(column - 1, 0), column + 2)
+            assert low[near].min() - size < slope < high[near].max() + size

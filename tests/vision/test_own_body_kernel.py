@@ -1,0 +1,32 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.vision.scene import CAMERA, pose
+from vision.own_body_kernel import LEAST_DEPTH, outline
+
+CENTRES, RADII = np.array([[0.0, 0.09, 0.38], [0.01, 0.1, 0.25]]), np.array([0.03, 0.045])
+MIDDLE = np.array([0.5 * CAMERA.width, 0.5 * CAMERA.height, CAMERA.focal])
+
+
+@given(pan=st.floats(0.3, 1.7), tilt=st.floats(-1.0, 0.0))
+def test_compiled_and_plain_agree(pan, tilt):
+    view = pose(pan, tilt, position=(0.0, 0.03, 0.47))
+    arguments = (CENTRES, RADII, view.position, view.rotation, MIDDLE)
+    np.testing.assert_allclose(outline(*arguments), outline.py_func(*arguments), rtol=1e-9)
+
+
+@given(pan=st.floats(0.9, 1.7), tilt=st.floats(-0.8, -0.2))
+def test_points_lie_beyond_the_tangents_to_their_sphere(pan, tilt):
+    """No ray through a point of the polygon meets the sphere, and its corners are not far off."""
+    view = pose(pan, tilt, position=(0.0, 0.03, 0.47))
+    points = outline(CENTRES, RADII, view.position, view.rotation, MIDDLE).reshape(2, -1, 2)
+    for centre, radius, polygon in zip(CENTRES, RADII, points, strict=True):
+        local = (centre - view.position) @ view.rotation
+        if local[2] - 1.1 * radius < LEAST_DEPTH or np.abs(polygon).max() >= 4096.0:
+            continue
+        rays = CAMERA.rays(polygon[:, 0], polygon[:, 1])
+        rays /= np.linalg.norm(rays, axis=1)[:, None]
+        miss = np.linalg.norm(np.cross(rays, local), axis=1)
+        assert (miss > radius).all()
+        assert (miss < 1.05 * radius).all()

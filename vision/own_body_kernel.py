@@ -1,0 +1,60 @@
+"""Outline of a part of the robot's own body, compiled."""
+
+from math import cos, hypot, pi, sin, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+RIM_POINTS = 12
+LEAST_DEPTH = 0.004  # what is nearer to the plane of the camera is drawn at this depth [m]
+FAR = 4096.0  # image points farther out are drawn here [pixel]
+SWELL = 1.0 / cos(pi / RIM_POINTS)  # the polygon contains the circle
+
+
+@njit(cache=True)
+def outline(centres: Array, radii: Array, position: Array, rotation: Array, camera: Array) -> Array:
+    """Points of the image whose convex hull contains spheres (12 n, 2) [pixel].
+
+    They are polygons round the circles in which the rays of the camera touch the spheres. There
+    are none of spheres behind the camera, and none at all if the camera is in one of them.
+
+    Args:
+        centres: of the spheres (n, 3) [m].
+        radii: of the spheres (n,) [m].
+        position: of the camera (3,) [m].
+        rotation: of the camera, columns are its right, down and forward axes (3, 3).
+        camera: half width, half height and focal length (3,) [pixel].
+    """
+    points = np.empty((RIM_POINTS * len(centres), 2))
+    n = 0
+    p = np.empty(3)
+    for i in range(len(centres)):
+        r = radii[i]
+        for j in range(3):
+            p[j] = 0.0
+            for k in range(3):
+                p[j] += (centres[i, k] - position[k]) * rotation[k, j]
+        distance = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2])
+        if distance <= r:
+            return points[:0]
+        if p[2] <= -r:
+            continue
+        shrink = 1.0 - (r / distance) ** 2
+        radius = SWELL * r * sqrt(shrink)
+        # Two axes at right angles to the direction of the sphere, (x, y, z).
+        x, y, z = p[0] / distance, p[1] / distance, p[2] / distance
+        level = max(hypot(z, x), 1e-9)
+        u, w = z / level, -x / level
+        for k in range(RIM_POINTS):
+            angle = 2.0 * pi * k / RIM_POINTS
+            c, s = radius * cos(angle), radius * sin(angle)
+            X = p[0] * shrink + c * u + s * y * w
+            Y = p[1] * shrink + s * (z * u - x * w)
+            Z = max(p[2] * shrink + c * w - s * y * u, LEAST_DEPTH)
+            points[n, 0] = min(max(camera[0] + camera[2] * X / Z, -FAR), FAR)
+            points[n, 1] = min(max(camera[1] + camera[2] * Y / Z, -FAR), FAR)
+            n += 1
+    return points[:n]
