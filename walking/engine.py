@@ -34,7 +34,7 @@ from walking.stabilizer import Stabilizer
 from walking.state import WalkingState
 from walking.steering import Steering
 from walking.stride import Strides
-from walking.support import Footing, SupportRegion, depth, support_region
+from walking.support import Footing, SupportRegion, depth
 from walking.targets import JointTargets
 from walking.whole_body import WholeBody
 
@@ -151,7 +151,7 @@ class WalkingEngine:
             stepping=self._gait.stepping,
         )
         gait, steering, placement = self._gait, self._steering, self._placement
-        pendulum, whole_body = self._pendulum, self._whole_body
+        pendulum, whole_body, footing = self._pendulum, self._whole_body, self._footing
         slip = body.gyro[2] - whole_body.turn_rate
         error = self._error.update(body, gait, whole_body.com, slip, self._zmp_shift)
         placement.remember()
@@ -160,14 +160,15 @@ class WalkingEngine:
         if not gait.stepping:
             self._maybe_start(error)
         self._feel_floor(body)
-        region = self._region(self._parameters.pattern.sole_margin)
+        footing.stand(gait.support_feet)
+        region = footing.region(self._parameters.pattern.sole_margin)
         ramps = placement.decide(wish, steering.velocity, error, region, moving=steering.moving)
         self._catching.advance(ramps, placement.landing, region)
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
-        reachable = self._region(self._parameters.stabilizer.sole_margin)
+        footing.stand(gait.support_feet)
+        reachable = footing.region(self._parameters.stabilizer.sole_margin)
         self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
-        self._footing.feet = gait.support_feet
         gait.advance(moving=placement.moving)
         if not gait.double and abs(gait.lift - gait.timing.lift) > SAME_LIFT:
             self._bound.append(Limit.SWING_HEIGHT)
@@ -311,10 +312,6 @@ class WalkingEngine:
             force = body.feet[gait.swing].force
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touch_down()
-
-    def _region(self, margin: float) -> SupportRegion:
-        first, second = self._gait.support_feet
-        return support_region(self._robot.sole, first, second, margin)
 
     def _right_load(self, region: SupportRegion, zmp: tuple[float, float]) -> float:
         """Planned share of the weight on the right foot."""

@@ -1,14 +1,12 @@
 """Foot placement: where the swing foot lands and when, by plan or to catch the body."""
 
-from collections.abc import Sequence
-
 from walking.admission import Limit
 from walking.catching import CatchingPendulum
 from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
 from walking.lipm import Lipm
 from walking.pattern import PatternGenerator, dcm_reference
-from walking.ramps import ZmpRamp
+from walking.ramps import Ramps
 from walking.stabilizer import Capture, Stabilizer
 from walking.state import Footstep
 from walking.stride import Strides, Velocity
@@ -81,7 +79,7 @@ class FootPlacement:
         region: SupportRegion,
         *,
         moving: bool,
-    ) -> Sequence[ZmpRamp]:
+    ) -> Ramps:
         """One tick; the gait has the landing and the times decided on.
 
         Args:
@@ -113,7 +111,7 @@ class FootPlacement:
 
     def _reference(
         self, wish: Strides, velocity: Velocity, region: SupportRegion
-    ) -> tuple[Sequence[ZmpRamp], Footstep]:
+    ) -> tuple[Ramps, Footstep]:
         """Reference of the plan that the generator admits, and the landing in it."""
         gait, transition = self._gait, self._transition
         if not self._selects:
@@ -142,9 +140,7 @@ class FootPlacement:
             return True
         return gait.adjustable and not self._planner.same(gait.nominal(wish), transition.landing)
 
-    def _catch(
-        self, landing: Footstep, ramps: Sequence[ZmpRamp], wish: Strides, error: Point
-    ) -> Sequence[ZmpRamp]:
+    def _catch(self, landing: Footstep, ramps: Ramps, wish: Strides, error: Point) -> Ramps:
         """Aim at the landing that catches the body; the reference that goes with it."""
         gait, caught = self._gait, landing
         capture = self._capture(landing, ramps, error)
@@ -166,7 +162,7 @@ class FootPlacement:
             ramps = gait.plan(gait.landing, wish, moving=self.moving)
         return ramps
 
-    def _capture(self, landing: Footstep, ramps: Sequence[ZmpRamp], error: Point) -> Capture:
+    def _capture(self, landing: Footstep, ramps: Ramps, error: Point) -> Capture:
         """What the footholds of the plan do not catch of the measured DCM."""
         gait, w = self._gait, self._lipm.omega
         pendulum = self._catching.state
@@ -179,7 +175,8 @@ class FootPlacement:
             pendulum.x + pendulum.vx / w + error[0] - x,
             pendulum.y + pendulum.vy / w + error[1] - y,
         )
-        ahead = (x - ramps[0].bx, y - ramps[0].by)
+        goal_x, goal_y = ramps.goal
+        ahead = (x - goal_x, y - goal_y)
         return self._stabilizer.capture(
             self._planner, support, landing, off, ahead, ticks_left=gait.ticks_left
         )

@@ -2,12 +2,18 @@
 
 from math import cos, sin, sqrt
 
+import numpy as np
+from numpy.typing import NDArray
+
+from walking import foothold_kernel
 from walking.admission import Limit
 from walking.command import CommandState
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.stride import Placement, Strides, Timing, Velocity
+
+Array = NDArray[np.float64]
 
 STILL: Velocity = (0.0, 0.0, 0.0)
 PLACE_TOLERANCE = 0.024  # between footholds that count as the same, of half the stance [1]
@@ -237,7 +243,7 @@ class FootstepPlanner:
 
     def sequence(
         self, support: Footstep, landing: Footstep, wish: Strides, *, moving: bool
-    ) -> tuple[list[Footstep], bool]:
+    ) -> tuple[Array, bool]:
         """Footholds from `landing` on, and whether the walk ends after the last.
 
         Args:
@@ -245,15 +251,20 @@ class FootstepPlanner:
             landing: where the other foot is about to land.
             wish: strides.
             moving: whether more than closing the stance is wanted.
+
+        Returns:
+            x, y [m], yaw [rad] of each and 1 if it is a left one, 0 if not (n, 4), and whether
+            the walk ends.
         """
-        steps = [landing]
-        before, last = support, landing
-        while len(steps) < self._gait.preview_steps:
-            if not moving and self.parallel(before, last):
-                return steps, True
-            before, last = last, self.landing(last, wish)
-            steps.append(last)
-        return steps, False
+        return foothold_kernel.sequence(
+            support.row,
+            landing.row,
+            (wish.right, wish.left),
+            (self.still.right, self.still.left),
+            (self._near, TURN_TOLERANCE),
+            self._gait.preview_steps,
+            moving,
+        )
 
     def parallel(self, support: Footstep, other: Footstep) -> bool:
         """Whether the two feet stand side by side as for standing."""

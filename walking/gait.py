@@ -1,16 +1,20 @@
 """The gait: which foot carries, where the other lands, and what that asks of the ZMP."""
 
+import numpy as np
+
+from walking import foothold_kernel
 from walking.footstep_clock import Clock, SwingWindow, WeightShift
 from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.ramps import ZmpRamp
-from walking.state import Footstep, Phase
+from walking.ramps import Ramps, ZmpRamp, table_of
+from walking.state import Footstep, Phase, foothold
 from walking.stride import Strides, Timing
 from walking.swing import FootReference, least_ticks, lift_profile, moved
-from walking.swing_reaction import Swing
+from walking.swing_reaction import Swings
 from walking.zmp_reference import ZmpReference
 
 Point = tuple[float, float]
+NO_STEPS = np.empty((0, 4))
 
 
 class Gait:
@@ -69,7 +73,7 @@ class Gait:
         self._shift_fixed = True
         self._single = self._window.single_support(self.timing.single)
         self._lift = self.timing.lift
-        self._future: list[Footstep] = []
+        self._future = NO_STEPS
 
     @property
     def swing(self) -> int:
@@ -80,6 +84,11 @@ class Gait:
     def double(self) -> bool:
         """Whether both feet are meant to carry."""
         return not self.stepping or self._tick < self._shift.end
+
+    @property
+    def flying(self) -> bool:
+        """Whether the swing foot is in the air."""
+        return self.stepping and not self.held and not self.double and 0.0 < self.swing_phase < 1.0
 
     @property
     def phase(self) -> Phase:
@@ -234,60 +243,56 @@ class Gait:
             return wanted
         return moved(landing, wanted, self._move)
 
-    def plan(self, landing: Footstep, wish: Strides, *, moving: bool) -> list[ZmpRamp]:
+    def plan(self, landing: Footstep, wish: Strides, *, moving: bool) -> Ramps:
         """ZMP reference from now on if the swing foot lands at `landing`."""
+        support, swing = self.footholds[self.support], self.footholds[self.swing]
         if not self.stepping:
-            self._future = []
+            self._future = NO_STEPS
             centre = self._reference.between(*self.footholds)
-            feet = (self.footholds[self.support], self.footholds[self.swing])
-            return [ZmpRamp(max(1, -self._elapsed), *self.zmp, *centre, feet)]
-        support = self.footholds[self.support]
+            ramp = ZmpRamp(max(1, -self._elapsed), *self.zmp, *centre, (support, swing))
+            return Ramps(table_of([ramp]))
         self._future, ends = self._planner.sequence(support, landing, wish, moving=moving)
-        last = self.zmp_point(support)
-        carries = (support, support)
-        if self.double:
-            feet = (self.footholds[self.swing], support)
-            ramps = [
-                ZmpRamp(-self._elapsed, *self.zmp, *last, feet),
-                ZmpRamp(self._single.ticks, *last, *last, carries),
-            ]
-        else:
-            ramps = [ZmpRamp(self.ticks_left, *last, *last, carries)]
-        return ramps + self._reference.onwards(support, self._future, self.timing, ends=ends)
+        double = self.double
+        return self._reference.onwards(
+            (swing, support),
+            self._future,
+            self.timing,
+            zmp=self.zmp if double else (0.0, 0.0),
+            left=(-self._elapsed, self._single.ticks) if double else (0, self.ticks_left),
+            ends=ends,
+        )
 
-    def swings(self) -> list[Swing]:
-        """Swings under way and to come."""
-        if not self.stepping or not self._future:
-            return []
-        single = self._single
+    def swings(self) -> Swings | None:
+        """Swings under way and to come, none while the robot stands."""
+        if not self.stepping or not len(self._future):
+            return None
+        single, timing = self._single, self.timing
         begin = single.first - self._elapsed
         ticks = single.last - single.first
         if begin <= 0 and single.origin > 0.0:
             # Retimed in the air: as if it had been so quick from the start.
             ticks = round(ticks / (1.0 - single.origin))
             begin = -round(self.swing_phase * ticks)
-        support, origin = self.footholds[self.support], self.footholds[self.swing]
-        swings = []
-        if not self.held:
-            zmp = self.zmp_point(support)
-            swings.append(Swing(begin, ticks, self._lift, origin, self.landing, zmp))
-        usual = self._window.single_support(self.timing.single)
-        ticks = usual.last - usual.first
-        begin = self.ticks_left + self.timing.double + usual.first
-        landing = self.landing
-        for following in self._future[1:]:
-            zmp = self.zmp_point(landing)
-            swings.append(Swing(begin, ticks, self.timing.lift, support, following, zmp))
-            support, landing = landing, following
-            begin += self.timing.double + self.timing.single
-        return swings
+        usual = self._window.single_support(timing.single)
+        later = self.ticks_left + timing.double + usual.first
+        table = foothold_kernel.swings(
+            self.footholds[self.support].row,
+            self.footholds[self.swing].row,
+            self.landing.row,
+            self._future,
+            (float(begin), self._lift, not self.held),
+            (float(later), float(timing.double + timing.single), timing.lift),
+            self._reference.spot,
+        )
+        each = usual.last - usual.first
+        return Swings(table, each if self.held else ticks, each)
 
     def footsteps(self) -> tuple[Footstep, ...]:
         """Planned footholds in the plan frame, the support foot first."""
         support = self.footholds[self.support]
         if not self.stepping:
             return support, self.footholds[self.swing]
-        return support, *self._future
+        return support, *(foothold(row) for row in self._future.tolist())
 
     def touch_down(self) -> None:
         """The swing foot has met the floor early: leave it where it is."""
@@ -326,7 +331,7 @@ class Gait:
         self.feet[swing].stand(self.landing)
         self.completed += 1
         here = self.zmp_point(self.footholds[support])
-        following = self._future[1] if len(self._future) > 1 else None
+        following = foothold(self._future[1].tolist()) if len(self._future) > 1 else None
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
             self._tick = 0

@@ -2,8 +2,8 @@
 
 from math import cos, sin
 
-from walking.joints import LEFT_LEG, RIGHT_LEG
-from walking.leg_kinematics import Vector, foot_pose
+from walking import leg_kernel
+from walking.leg_kernel import Vector
 from walking.parameters import GRAVITY
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
@@ -69,39 +69,23 @@ def measure(
     robot: RobotModel, sensors: BodySensors, roll: float, pitch: float, heading: float
 ) -> BodyMeasurement:
     """Kinematics of the measured joints under the given tilt [rad]."""
-    cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
-
-    def level(x: float, y: float, z: float) -> Vector:
-        depth = sr * y + cr * z
-        return cp * x + sp * depth, cr * y - sr * z, cp * depth - sp * x
-
-    feet = []
-    for leg, part, pads in zip(
-        robot.legs, (LEFT_LEG, RIGHT_LEG), sensors.foot_force.tolist(), strict=True
-    ):
-        a, b, c, d, e, f = sensors.joint_position[part].tolist()
-        foot = foot_pose(leg, (a, b, c, d, e, f))
-        x, y, z = level(foot.x, foot.y, foot.z)
-        front_left, front_right, back_left, back_right = pads
-        force = sum(pads)
-        pressure = robot.sole.centre, 0.0
-        if force > 0.0:
-            # The floor pushes at the soles' corners.
-            length, width = robot.sole.half_length / force, robot.sole.half_width / force
-            pressure = (
-                robot.sole.centre + length * (front_left + front_right - back_left - back_right),
-                width * (front_left + back_left - front_right - back_right),
-            )
-        feet.append(FootMeasurement(x, y, z, foot.yaw, force, pressure))
+    sole, joints, tilt = robot.sole, sensors.joint_position, (roll, pitch)
+    left, right = leg_kernel.measured_feet(
+        joints,
+        sensors.foot_force,
+        tilt,
+        robot.leg_rows,
+        (sole.centre, sole.half_length, sole.half_width),
+    )
     light = LIGHT_LOAD * robot.mass * GRAVITY
-    on_left, on_right = (max(0.0, foot.force - light) for foot in feet)
+    on_left, on_right = max(0.0, left[4] - light), max(0.0, right[4] - light)
     both = on_left + on_right
     return BodyMeasurement(
         roll=roll,
         pitch=pitch,
         heading=heading,
         gyro=sensors.gyro.tolist(),
-        feet=(feet[0], feet[1]),
-        com=level(*robot.com(sensors.joint_position)),
+        feet=(FootMeasurement(*left[:5], left[5:]), FootMeasurement(*right[:5], right[5:])),
+        com=leg_kernel.level(robot.com(joints), tilt),
         right_load=on_right / both if both > 0.0 else 0.5,
     )

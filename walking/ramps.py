@@ -60,6 +60,12 @@ class Ramps(Sequence[ZmpRamp]):
             second = Footstep(feet[7] > 0.0, *feet[4:7])
         return ZmpRamp(int(ticks), ax, ay, bx, by, (first, second))
 
+    @property
+    def goal(self) -> tuple[float, float]:
+        """ZMP at the end of the first ramp [m]."""
+        x, y = self.table[0, 3:5].tolist()
+        return x, y
+
 
 def table_of(ramps: Sequence[ZmpRamp]) -> Array:
     """The table of a reference, see `Ramps` (n, 13)."""

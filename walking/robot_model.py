@@ -54,6 +54,7 @@ class RobotModel:
     Attributes:
         mass: total mass [kg].
         legs: dimensions of the left and of the right leg.
+        leg_rows: the same as compiled code has it.
         sole: rectangle of either sole.
         ready: joint angles of the ready posture (26,) [rad].
         lower, upper: joint limits (26,) [rad].
@@ -79,6 +80,7 @@ class RobotModel:
         self._camera = self._frame("camera")
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
+        self.leg_rows = (self.legs[0].row, self.legs[1].row)
         self.sole, right = self._sole("l"), self._sole("r")
         if self.sole != right:
             raise ValueError(f"the soles of the robot model differ: {self.sole} and {right}")

@@ -43,6 +43,17 @@ class Footstep:
     y: float
     yaw: float
 
+    @property
+    def row(self) -> tuple[float, float, float, float]:
+        """As compiled code has it: x, y, yaw, and 1 for a left foot, 0 for a right one."""
+        return self.x, self.y, self.yaw, 1.0 if self.left else 0.0
+
+
+def foothold(row: list[float]) -> Footstep:
+    """The foothold of a row, see `Footstep.row`."""
+    x, y, yaw, left = row
+    return Footstep(left > 0.0, x, y, yaw)
+
 
 @dataclass(frozen=True, slots=True)
 class Odometry:

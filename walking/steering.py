@@ -5,10 +5,26 @@ from walking.command import Command, CommandState, VelocityCommand
 from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import LimitParameters
 from walking.stride import Strides, Timing, Velocity
+from walking.value import value
 from walking.velocity import VelocitySlew, limited, speed_limits
 
 SAME_SPEED = 1e-9  # difference of velocities that is rounding
 STRIDE_LIMITS = {Limit.STEP_LENGTH, Limit.STEP_SIDE, Limit.STEP_TURN, Limit.CLEARANCE}
+
+
+@value
+class Steady:
+    """A velocity command that asks for no change: the next tick does what this one did.
+
+    Attributes:
+        command: the command.
+        share: of it to walk at [1].
+        bound: limits that alter it.
+    """
+
+    command: VelocityCommand
+    share: float
+    bound: list[Limit]
 
 
 class Steering:
@@ -29,6 +45,7 @@ class Steering:
         self._asked: Command = VelocityCommand()
         self._state: CommandState | None = None
         self._bound: list[Limit] = []
+        self._steady: Steady | None = None
         self.timing = planner.cadence(self.velocity)
 
     @property
@@ -57,6 +74,7 @@ class Steering:
             balanced: whether the motion may change.
         """
         self._asked, self._bound = command, []
+        steady, self._steady = self._steady, None
         if not balanced:
             self._hold(command)
         elif not settled:
@@ -65,6 +83,8 @@ class Steering:
             self._slew.follow(VelocityCommand())
         elif isinstance(command, CommandState):
             self._follow_state(command)
+        elif steady is not None and steady.command == command and steady.share == share:
+            self._steady, self._bound = steady, steady.bound
         else:
             self._follow_velocity(command, share)
 
@@ -126,7 +146,8 @@ class Steering:
         return max(abs(a - b) for a, b in zip(self.velocity, wanted, strict=True)) > SAME_SPEED
 
     def _follow_velocity(self, command: VelocityCommand, share: float) -> None:
-        self._state = None
+        before, self._state = self._state, None
+        was = self.velocity
         bound, dared = self._bound, command
         if share < 1.0 and command.velocity != STILL:
             forward, left, turn = limited(command, self._limits)
@@ -139,6 +160,8 @@ class Steering:
         if self._differs(wanted):
             bound.append(Limit.ACCELERATION)
         bound.extend(self._planner.stride_limits(given, self.timing.duration))
+        if before is None and given == was:
+            self._steady = Steady(command, share, bound)
 
     def _follow_state(self, command: CommandState) -> None:
         self._state = command

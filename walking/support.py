@@ -81,25 +81,40 @@ def support_region(sole: Sole, first: Footstep, second: Footstep, margin: float)
 
 
 class Footing:
-    """The soles that carry and their hull, computed only when they change.
+    """The soles that carry, what can be said of them computed only when they change.
 
     Args:
         sole: rectangle of either sole.
         feet: the unloading and the loading foot, the same foot twice in single support.
+
+    Attributes:
+        feet: these feet.
     """
 
     def __init__(self, sole: Sole, feet: tuple[Footstep, Footstep]) -> None:
         self._sole = sole
-        self.feet = self._known = feet
-        self._polygon = support_polygon(sole, *feet)
+        self.feet = feet
+        self._polygon: Polygon | None = None
+        self._regions: dict[float, SupportRegion] = {}
+
+    def stand(self, feet: tuple[Footstep, Footstep]) -> None:
+        """Have the feet there."""
+        if feet[0] is not self.feet[0] or feet[1] is not self.feet[1]:
+            self.feet, self._polygon = feet, None
+            self._regions.clear()
 
     def polygon(self) -> Polygon:
         """Hull of the soles."""
-        (first, second), (known_first, known_second) = self.feet, self._known
-        if first is not known_first or second is not known_second:
-            self._known = self.feet
-            self._polygon = support_polygon(self._sole, first, second)
+        if self._polygon is None:
+            self._polygon = support_polygon(self._sole, *self.feet)
         return self._polygon
+
+    def region(self, margin: float) -> SupportRegion:
+        """Region that keeps a margin from the edges of the soles [m]."""
+        found = self._regions.get(margin)
+        if found is None:
+            found = self._regions[margin] = support_region(self._sole, *self.feet, margin)
+        return found
 
 
 def support_polygon(sole: Sole, first: Footstep, second: Footstep) -> Polygon:

@@ -65,6 +65,11 @@ class FootReference:
         self.yaw = MinimumJerk(foothold.yaw)
         self.height = 0.0
 
+    @property
+    def row(self) -> tuple[float, float, float, float]:
+        """As compiled code has it: x, y, yaw, height."""
+        return self.x.position, self.y.position, self.yaw.position, self.height
+
     def stand(self, foothold: Footstep) -> None:
         """Rest on a foothold."""
         self.x.rest(foothold.x)

@@ -18,19 +18,23 @@ ZMP, Takenaka et al. (IROS 2009) from a pendulum with three masses.
 """
 
 from dataclasses import dataclass
-from math import cos, exp, sin
 
 import numpy as np
+from numpy.typing import NDArray
 
+from walking import swing_kernel
 from walking.joints import LEFT_LEG, RIGHT_LEG
 from walking.leg_kinematics import FootPose, leg_angles
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.robot_model import RobotModel
-from walking.state import Footstep
+from walking.swing_kernel import Moment
 from walking.value import value
 
+Array = NDArray[np.float64]
 Point = tuple[float, float]
+NO_SWINGS = np.empty((0, 10))
+RESTING: Moment = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 SMALL = 1e-4  # of a foot's move in finite differences [m]
 
 
@@ -90,42 +94,24 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
 
 
 @value
-class Swing:
-    """A swing of the plan.
+class Swings:
+    """The swings of a plan, the next one first; only that one may be under way.
 
     Attributes:
-        begin: control ticks until the foot lifts; negative while it is in the air [1].
-        ticks: control ticks from lift to landing [1].
-        lift: its height at mid-swing [m].
-        origin, landing: where the foot comes from and goes to.
-        zmp: of the support foot [m].
+        table: of each: control ticks until the foot lifts, negative while it is in the air |
+            height at mid-swing [m] | x, y [m], yaw [rad] of where the foot comes from |
+            the same of where it goes to | ZMP of the support foot, x, y [m] (n, 10).
+        first: control ticks from lift to landing of the first [1].
+        later: the same of all others [1].
     """
 
-    begin: int
-    ticks: int
-    lift: float
-    origin: Footstep
-    landing: Footstep
-    zmp: Point
+    table: Array
+    first: int
+    later: int
 
 
-@dataclass(frozen=True, slots=True)
-class _Profile:
-    """A swing of so many ticks over a unit distance and height, tick by tick.
-
-    Attributes:
-        moved: share of the distance [1].
-        forward, up: second derivatives of distance and height [1/s²].
-        ahead_forward, ahead_up, ahead_both: ∫ ω e^{-ωs} over the rest of the swing of
-            `forward`, of `up` and of `up` times `moved`.
-    """
-
-    moved: list[float]
-    forward: list[float]
-    up: list[float]
-    ahead_forward: list[float]
-    ahead_up: list[float]
-    ahead_both: list[float]
+Profile = list[Moment]
+"""A swing over a unit distance and height, tick by tick, as `swing_kernel.react` wants it."""
 
 
 class SwingCompensation:
@@ -142,60 +128,32 @@ class SwingCompensation:
 
     def __init__(self, lipm: Lipm, reaction: LegReaction) -> None:
         self._lipm = lipm
-        self._reaction = reaction
-        self._share = 1.0 - exp(-lipm.omega * CONTROL_PERIOD)
-        self._profiles: dict[int, _Profile] = {}
+        self._w = (lipm.omega, CONTROL_PERIOD)
+        self._reaction = (reaction.thrust, reaction.weight, reaction.knee)
+        self._profiles: dict[int, Profile] = {}
         self._ahead_before: Point = (0.0, 0.0)
         self.offset: Point = (0.0, 0.0)
         self.acceleration: Point = (0.0, 0.0)
 
-    def advance(self, swings: list[Swing]) -> None:
-        """One tick along a plan, the next swing first."""
-        w = self._lipm.omega
-        x = y = now_x = now_y = 0.0
-        for swing in swings:
-            profile = self._profile(swing.ticks)
-            tick = min(swing.ticks, max(0, -swing.begin))
-            vx, vy = self._moved(
-                swing, profile.ahead_forward[tick], profile.ahead_up[tick], profile.ahead_both[tick]
-            )
-            decay = exp(-w * CONTROL_PERIOD * swing.begin) if swing.begin > 0 else 1.0
-            x -= decay * vx
-            y -= decay * vy
-            if swing.begin <= 0:
-                up = profile.up[tick]
-                now_x, now_y = self._moved(
-                    swing, profile.forward[tick], up, up * profile.moved[tick]
-                )
-        (cx, cy), (bx, by) = self.offset, self._ahead_before
-        self._ahead_before = (x, y)
-        cx += self._share * (0.5 * (bx + x) - cx)
-        cy += self._share * (0.5 * (by + y) - cy)
-        self.offset = (cx, cy)
-        self.acceleration = (w * w * (cx + now_x), w * w * (cy + now_y))
-
-    def _moved(self, swing: Swing, forward: float, up: float, both: float) -> Point:
-        """Move of the ZMP, `both` being the move upwards weighted by the way made."""
-        r, a, b = self._reaction, swing.origin, swing.landing
-        yaw = 0.5 * (a.yaw + b.yaw)
-        weight, knee = r.weight * swing.lift, r.knee * swing.lift * up
-        dx, dy = b.x - a.x, b.y - a.y
-        return (
-            weight * (up * (a.x - swing.zmp[0]) + both * dx)
-            - r.thrust * forward * dx
-            - knee * cos(yaw),
-            weight * (up * (a.y - swing.zmp[1]) + both * dy)
-            - r.thrust * forward * dy
-            - knee * sin(yaw),
+    def advance(self, swings: Swings | None) -> None:
+        """One tick along a plan; none while the robot stands."""
+        table, now, later = NO_SWINGS, RESTING, RESTING
+        if swings is not None:
+            table, first = swings.table, self._profile(swings.first)
+            now = first[min(swings.first, max(0, -int(table[0, 0])))] if len(table) else RESTING
+            later = self._profile(swings.later)[0]
+        found = swing_kernel.react(
+            table, now, later, self._reaction, (*self.offset, *self._ahead_before), self._w
         )
+        self.offset, self.acceleration, self._ahead_before = found[:2], found[2:4], found[4:]
 
-    def _profile(self, ticks: int) -> _Profile:
+    def _profile(self, ticks: int) -> Profile:
         found = self._profiles.get(ticks)
         if found is None:
             found = self._profiles[ticks] = self._make(ticks)
         return found
 
-    def _make(self, ticks: int) -> _Profile:
+    def _make(self, ticks: int) -> Profile:
         u = np.linspace(0.0, 1.0, ticks + 1)
         rest = 1.0 - u
         square = (ticks * CONTROL_PERIOD) ** 2
@@ -203,18 +161,14 @@ class SwingCompensation:
         forward = 60.0 * u * rest * (rest - u) / square
         # Of the profile 64 u³ (1 - u)³.
         up = 384.0 * u * rest * (rest * rest - 3.0 * u * rest + u * u) / square
-        return _Profile(
-            moved.tolist(),
-            forward.tolist(),
-            up.tolist(),
-            self._ahead(forward.tolist()),
-            self._ahead(up.tolist()),
-            self._ahead((up * moved).tolist()),
-        )
+        both = up * moved
+        columns = (self._ahead(forward), self._ahead(up), self._ahead(both), forward, up, both)
+        rows: Profile = list(zip(*(np.asarray(c).tolist() for c in columns), strict=True))
+        return rows
 
-    def _ahead(self, values: list[float]) -> list[float]:
+    def _ahead(self, profile: Array) -> list[float]:
         """∫ ω e^{-ωs} of values linear from tick to tick, from each of them to the last."""
-        c = self._lipm.ramp(1)
+        c, values = self._lipm.ramp(1), profile.tolist()
         sums = [0.0] * len(values)
         for k in range(len(values) - 2, -1, -1):
             sums[k] = (sums[k + 1] + c.first * values[k] + c.last * values[k + 1]) / c.growth

@@ -1,11 +1,9 @@
 """From the plan of the last tick to the one now wanted, as far as the ZMP allows."""
 
-from collections.abc import Sequence
-
 from walking.footstep_clock import Clock
 from walking.gait import Gait
 from walking.pattern import PatternGenerator, PendulumState
-from walking.ramps import ZmpRamp
+from walking.ramps import Ramps
 from walking.state import Footstep
 from walking.stride import Strides
 from walking.support import SupportRegion
@@ -78,7 +76,7 @@ class Transition:
         *,
         moving: bool,
         caught: bool = False,
-    ) -> Sequence[ZmpRamp]:
+    ) -> Ramps:
         """Reference of the admitted plan; the gait has its times.
 
         Args:
@@ -109,7 +107,7 @@ class Transition:
 
     def _bisect(
         self, state: PendulumState, region: SupportRegion, old: Course, wanted: Course
-    ) -> Sequence[ZmpRamp]:
+    ) -> Ramps:
         low, high = 0.0, 1.0
         best = None
         for _ in range(BISECTIONS):
@@ -137,11 +135,11 @@ class Transition:
         )
         return Course(landing, old.strides.towards(wanted.strides, share), gait.clock(), old.moving)
 
-    def _plan(self, course: Course) -> Sequence[ZmpRamp]:
+    def _plan(self, course: Course) -> Ramps:
         self._gait.set_clock(course.clock)
         return self._gait.plan(course.landing, course.strides, moving=course.moving)
 
-    def _take(self, course: Course, ramps: Sequence[ZmpRamp], share: float) -> Sequence[ZmpRamp]:
+    def _take(self, course: Course, ramps: Ramps, share: float) -> Ramps:
         self.share, self.landing = share, course.landing
         self.moving, self.strides = course.moving, course.strides
         return ramps

@@ -2,8 +2,6 @@
 
 from math import cos, sin
 
-import numpy as np
-
 from walking.feedforward import FeedForward
 from walking.gait import Gait
 from walking.lipm import Lipm
@@ -96,8 +94,7 @@ class WholeBody:
         oy += s * offset[0] + c * offset[1]
         self.pelvis = pelvis = self._posture.pelvis(gait, (pendulum.x + ox, pendulum.y + oy))
         self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
-        angles, legs = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
-        position = np.array(angles)
+        position = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
         self._com = self._robot.com(position)
         c, s = cos(pelvis.yaw), sin(pelvis.yaw)
         soles = []
@@ -108,7 +105,7 @@ class WholeBody:
         w2 = self._lipm.omega**2
         ax, ay = w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey
         set_points = self._feedforward.offsets(
-            position, legs, (soles[0], soles[1]), right_load, (c * ax + s * ay, c * ay - s * ax)
+            position, (soles[0], soles[1]), right_load, (c * ax + s * ay, c * ay - s * ax)
         )
         for index, load in ((0, 1.0 - right_load), (1, right_load)):
             ankle = self._stabilizer.ankles(gait.footholds[index], load, zmp_shift, body.gyro)

@@ -2,12 +2,17 @@
 
 from math import cos, sin
 
+import numpy as np
+from numpy.typing import NDArray
+
+from walking import foothold_kernel
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.ramps import ZmpRamp
+from walking.ramps import Ramps
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.stride import Timing
 
+Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 
@@ -19,21 +24,23 @@ class ZmpReference:
         sole: rectangle of the soles.
 
     Attributes:
+        spot: of the ZMP under a foot that carries alone, forward and inward [m].
         stop: control ticks of the last double support [1].
     """
 
     def __init__(self, parameters: WalkingParameters, sole: Sole) -> None:
-        self._forward = sole.centre + parameters.pattern.zmp_forward
-        self._inward = parameters.pattern.zmp_inward
+        pattern = parameters.pattern
+        self.spot = (sole.centre + pattern.zmp_forward, pattern.zmp_inward)
         self.stop = max(1, round(parameters.gait.stop_time / CONTROL_PERIOD))
 
     def under(self, foot: Footstep) -> Point:
         """ZMP under a foot that carries alone [m]."""
-        inward = -self._inward if foot.left else self._inward
+        forward, inward = self.spot
+        inward = -inward if foot.left else inward
         c, s = cos(foot.yaw), sin(foot.yaw)
         return (
-            foot.x + c * self._forward - s * inward,
-            foot.y + s * self._forward + c * inward,
+            foot.x + c * forward - s * inward,
+            foot.y + s * forward + c * inward,
         )
 
     def between(self, one: Footstep, other: Footstep) -> Point:
@@ -42,24 +49,34 @@ class ZmpReference:
         return 0.5 * (ax + bx), 0.5 * (ay + by)
 
     def onwards(
-        self, support: Footstep, steps: list[Footstep], timing: Timing, *, ends: bool
-    ) -> list[ZmpRamp]:
-        """Reference from the end of the single support on `support`.
+        self,
+        feet: tuple[Footstep, Footstep],
+        steps: Array,
+        timing: Timing,
+        *,
+        zmp: Point,
+        left: tuple[int, int],
+        ends: bool,
+    ) -> Ramps:
+        """Reference of a walk from now on.
 
         Args:
-            support: foothold that carries until then.
-            steps: footholds to come.
-            timing: of every footstep.
+            feet: the foot that is about to swing and the one that carries in this footstep.
+            steps: footholds to come, see `FootstepPlanner.sequence` (n, 4).
+            timing: of every footstep to come.
+            zmp: of now, while the weight goes over to the foot that carries [m].
+            left: control ticks of that double support, none in single support, and of the
+                single support after it [1].
             ends: whether the walk ends with both feet carrying alike after the last foothold.
         """
-        ramps = []
-        before, last = support, self.under(support)
-        for step in steps[:-1] if ends else steps:
-            point = self.under(step)
-            ramps.append(ZmpRamp(timing.double, *last, *point, (before, step)))
-            ramps.append(ZmpRamp(timing.single, *point, *point, (step, step)))
-            before, last = step, point
-        if ends:
-            centre = self.between(before, steps[-1])
-            ramps.append(ZmpRamp(self.stop, *last, *centre, (before, steps[-1])))
-        return ramps
+        return Ramps(
+            foothold_kernel.ramps(
+                feet[0].row,
+                feet[1].row,
+                steps,
+                zmp,
+                (*left, timing.double, timing.single, self.stop),
+                self.spot,
+                ends,
+            )
+        )

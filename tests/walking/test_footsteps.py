@@ -10,7 +10,7 @@ from walking.admission import Limit
 from walking.footsteps import FootstepPlanner
 from walking.parameters import GaitParameters, LimitParameters
 from walking.robot_model import Sole
-from walking.state import Footstep
+from walking.state import Footstep, foothold
 
 GAIT, LIMITS = GaitParameters(), LimitParameters()
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
@@ -106,7 +106,7 @@ def test_stopping_closes_the_stance():
     steps, ends = PLANNER.sequence(LEFT, landing, PLANNER.still, moving=False)
     assert ends
     assert len(steps) == 2
-    assert PLANNER.parallel(steps[0], steps[1])
+    assert PLANNER.parallel(*map(foothold, steps.tolist()))
 
 
 def test_walking_on_plans_all_steps_with_alternating_feet():
@@ -114,7 +114,7 @@ def test_walking_on_plans_all_steps_with_alternating_feet():
     strides = PLANNER.strides(velocity, GAIT.footstep_time)
     steps, ends = PLANNER.sequence(LEFT, landed(LEFT, velocity), strides, moving=True)
     assert not ends
-    assert [step.left for step in steps] == [False, True, False, True]
+    assert steps[:, 3].tolist() == [0.0, 1.0, 0.0, 1.0]
 
 
 def test_the_foot_on_the_side_of_the_motion_opens():

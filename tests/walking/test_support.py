@@ -77,5 +77,7 @@ def test_a_footing_follows_its_feet():
     footing = Footing(SOLE, (RIGHT, RIGHT))
     left = Footstep(True, 0.0, 0.042, 0.0)
     for feet in ((RIGHT, left), (left, left), (RIGHT, RIGHT)):
-        footing.feet = feet
+        footing.stand(feet)
         assert footing.polygon() == support_polygon(SOLE, *feet)
+        assert footing.region(0.004) == support_region(SOLE, *feet, 0.004)
+        assert footing.region(0.01) == support_region(SOLE, *feet, 0.01)

@@ -10,7 +10,7 @@ from walking.engine import WalkingEngine
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Footstep
-from walking.swing_reaction import LegReaction, Swing, SwingCompensation, leg_reaction
+from walking.swing_reaction import LegReaction, SwingCompensation, Swings, leg_reaction
 
 LIPM = Lipm(0.19)
 REACTION = LegReaction(thrust=7e-4, weight=0.012, knee=3e-4)
@@ -29,17 +29,11 @@ def swings(k, stride, *, side=1.0, steps=6):
         begin = n * STEP + STEP - TICKS - k
         if begin + TICKS < 0:
             continue
-        planned.append(
-            Swing(
-                begin,
-                TICKS,
-                0.025,
-                foot(flank, (n - 1) * stride, 0.042 * flank),
-                foot(flank, (n + 1) * stride, 0.042 * flank),
-                (n * stride + 0.01, -0.042 * flank),
-            )
-        )
-    return planned
+        origin = foot(flank, (n - 1) * stride, 0.042 * flank)
+        landing = foot(flank, (n + 1) * stride, 0.042 * flank)
+        zmp = (n * stride + 0.01, -0.042 * flank)
+        planned.append([begin, 0.025, *origin.row[:3], *landing.row[:3], *zmp])
+    return Swings(np.array(planned), TICKS, TICKS)
 
 
 def track(stride, count=600, **options):
@@ -53,19 +47,19 @@ def track(stride, count=600, **options):
 
 def reaction_of(k, stride):
     """Move of the ZMP by the swing under way at tick `k`, by the formula."""
-    swing = swings(k, stride)[0]
-    u = -swing.begin / TICKS
+    swing = swings(k, stride).table[0]
+    u = -swing[0] / TICKS
     if not 0.0 <= u <= 1.0:
         return np.zeros(2)
     T = TICKS * CONTROL_PERIOD
     moved = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])
     height = 0.025 * np.polynomial.Polynomial([0, 4, -4]) ** 3
-    a, b = (np.array([f.x, f.y]) for f in (swing.origin, swing.landing))
+    a, b = swing[2:4], swing[5:7]
     place = a + (b - a) * moved(u)
     up = height.deriv(2)(u) / T**2
     return (
         -REACTION.thrust * (b - a) * moved.deriv(2)(u) / T**2
-        + REACTION.weight * up * (place - swing.zmp)
+        + REACTION.weight * up * (place - swing[8:])
         - REACTION.knee * up * np.array([1.0, 0.0])
     )
 
@@ -99,7 +93,7 @@ def test_standing_the_pelvis_comes_back():
     for k in range(200):
         compensation.advance(swings(k, 0.07))
     for _ in range(400):
-        compensation.advance([])
+        compensation.advance(None)
     assert np.abs(compensation.offset).max() < 1e-6
 
 

@@ -2,6 +2,7 @@
 
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from walking.parameters import WalkingParameters
@@ -27,16 +28,25 @@ def test_it_turns_with_the_foot():
     )
 
 
+def onwards(steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
+    table = np.array([step.row for step in steps])
+    return REFERENCE.onwards((RIGHT, LEFT), table, TIMING, zmp=zmp, left=left, ends=ends)
+
+
 @pytest.mark.parametrize("ends", [False, True])
-def test_it_goes_from_foot_to_foot_without_jumps(ends):
+@pytest.mark.parametrize("left", [(0, 30), (5, 54)])
+def test_it_goes_from_foot_to_foot_without_jumps(ends, left):
     steps = [RIGHT, Footstep(True, 0.1, 0.042, 0.0), Footstep(False, 0.1, -0.042, 0.0)]
-    ramps = REFERENCE.onwards(LEFT, steps, TIMING, ends=ends)
-    assert (ramps[0].ax, ramps[0].ay) == REFERENCE.under(LEFT)
+    ramps = onwards(steps, ends=ends, zmp=(0.01, 0.02), left=left)
+    start = (0.01, 0.02) if left[0] else REFERENCE.under(LEFT)
+    assert (ramps[0].ax, ramps[0].ay) == start
     assert all((a.bx, a.by) == (b.ax, b.ay) for a, b in pairwise(ramps))
     end = REFERENCE.between(*steps[1:]) if ends else REFERENCE.under(steps[-1])
     assert (ramps[-1].bx, ramps[-1].by) == end
-    assert sum(r.ticks for r in ramps) == (2 if ends else 3) * 68 + (REFERENCE.stop if ends else 0)
+    rest = (2 if ends else 3) * 68 + (REFERENCE.stop if ends else 0)
+    assert sum(r.ticks for r in ramps) == sum(left) + rest
     assert all(r.feet[0] is r.feet[1] for r in ramps if (r.ax, r.ay) == (r.bx, r.by))
+    assert all(a.feet[1] == b.feet[0] for a, b in pairwise(ramps))
 
 
 def test_both_feet_carry_alike_halfway_between_them():
@@ -52,9 +62,12 @@ def test_under_a_foot_it_is_ahead_of_the_ankle_and_inward():
 
 
 def test_each_step_takes_its_double_and_its_single_support():
-    ramps = REFERENCE.onwards(LEFT, [RIGHT], TIMING, ends=False)
-    assert [r.ticks for r in ramps] == [14, 54]
-    assert ramps[0].feet == (LEFT, RIGHT)
-    last = REFERENCE.onwards(LEFT, [RIGHT], TIMING, ends=True)
-    assert [r.ticks for r in last] == [REFERENCE.stop]
-    assert last[0].feet == (LEFT, RIGHT)
+    ramps = onwards([RIGHT], ends=False)
+    assert [r.ticks for r in ramps] == [30, 14, 54]
+    assert ramps[0].feet == (LEFT, LEFT)
+    assert ramps[1].feet == (LEFT, RIGHT)
+    assert ramps.goal == REFERENCE.under(LEFT)
+    last = onwards([RIGHT], ends=True, zmp=(0.0, 0.01), left=(3, 54))
+    assert [r.ticks for r in last] == [3, 54, REFERENCE.stop]
+    assert last[0].feet == (RIGHT, LEFT)
+    assert last[2].feet == (LEFT, RIGHT)

@@ -1,0 +1,101 @@
+"""Footholds chained and made a reference and swings, against the same in plain Python."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from walking import foothold_kernel
+from walking.footsteps import STILL, TURN_TOLERANCE, FootstepPlanner
+from walking.parameters import WalkingParameters
+from walking.robot_model import Sole
+from walking.state import Footstep, foothold
+
+PARAMETERS = WalkingParameters()
+SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
+PLANNER = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, SOLE)
+SPOT = (0.01, 0.003)
+
+
+def draw(seed):
+    """A stance, strides, and the footholds to come."""
+    rng = np.random.default_rng(seed)
+    left = bool(rng.integers(2))
+    support = Footstep(left, *rng.uniform(-1.0, 1.0, 3).tolist())
+    velocity = tuple((rng.uniform(-1.0, 1.0, 3) * (0.4, 0.15, 1.5)).tolist())
+    strides = PLANNER.strides(STILL if seed % 3 == 0 else velocity, 0.34)
+    landing = PLANNER.landing(support, strides)
+    return rng, support, landing, strides
+
+
+def arguments(support, landing, strides, moving):
+    still = PLANNER.still
+    near = (0.001, TURN_TOLERANCE)
+    pair = (strides.right, strides.left), (still.right, still.left)
+    return support.row, landing.row, *pair, near, 4, moving
+
+
+@given(st.integers(0, 10**6), st.booleans())
+def test_each_foothold_is_the_stride_of_the_one_before(seed, moving):
+    _, support, landing, strides = draw(seed)
+    steps, ends = foothold_kernel.sequence(*arguments(support, landing, strides, moving))
+    feet = [support, *map(foothold, steps.tolist())]
+    assert feet[1] == landing
+    for before, after in pairwise(feet[1:]):
+        expected = PLANNER.landing(before, strides)
+        assert after.left is expected.left
+        assert after.row == pytest.approx(expected.row, abs=1e-12)
+    assert ends == (not moving and len(steps) < 4)
+    if ends:
+        assert PLANNER.parallel(*feet[-2:])
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 10**6), st.booleans())
+def test_compiled_they_are_what_they_say(plainly, seed, ends):
+    rng, support, landing, strides = draw(seed)
+    asked = arguments(support, landing, strides, not ends)
+    steps, over = foothold_kernel.sequence(*asked)
+    plain, plainly_over = plainly(foothold_kernel, "sequence", *asked)
+    np.testing.assert_array_equal(steps, plain)
+    assert over == plainly_over
+    swing = Footstep(not support.left, *rng.uniform(-1.0, 1.0, 3).tolist())
+    asked = (swing.row, support.row, steps, (0.1, 0.2), (int(seed % 2), 30, 10, 58, 60), SPOT, over)
+    found = foothold_kernel.ramps(*asked)
+    np.testing.assert_array_equal(found, plainly(foothold_kernel, "ramps", *asked))
+    feet = support.row, swing.row, landing.row
+    asked = (*feet, steps, (-3.0, 0.02, seed % 2 == 0), (40.0, 68.0, 0.025), SPOT)
+    found = foothold_kernel.swings(*asked)
+    np.testing.assert_array_equal(found, plainly(foothold_kernel, "swings", *asked))
+
+
+def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
+    _, support, landing, strides = draw(4)
+    steps, _ = foothold_kernel.sequence(*arguments(support, landing, strides, True))
+    origin = Footstep(landing.left, 0.3, 0.2, 0.1)
+    table = foothold_kernel.swings(
+        support.row,
+        origin.row,
+        landing.row,
+        steps,
+        (-3.0, 0.02, True),
+        (40.0, 68.0, 0.025),
+        SPOT,
+    )
+    assert table[:, 0].tolist() == [-3.0, 40.0, 108.0, 176.0]
+    assert table[:, 1].tolist() == [0.02, 0.025, 0.025, 0.025]
+    feet = np.array([origin.row, support.row, *steps])
+    np.testing.assert_array_equal(table[:, 2:5], feet[:4, :3])
+    np.testing.assert_array_equal(table[:, 5:8], feet[2:, :3])
+    held = foothold_kernel.swings(
+        support.row,
+        origin.row,
+        landing.row,
+        steps,
+        (-3.0, 0.02, False),
+        (40.0, 68.0, 0.025),
+        SPOT,
+    )
+    np.testing.assert_array_equal(held, table[1:])

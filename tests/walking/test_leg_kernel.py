@@ -1,0 +1,87 @@
+"""The compiled kinematics of a tick against the same in plain Python and in numpy."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from walking import leg_kernel
+from walking.parameters import CONTROL_PERIOD
+
+LEGS = ((0.0, 0.037, -0.02, 0.1, 0.1, 0.03), (0.0, -0.037, -0.02, 0.1, 0.1, 0.03))
+LAW = (0.7, 0.019, 0.3, 0.85, 0.22)
+SEEDS = st.integers(0, 10**6)
+
+
+def draw(seed):
+    rng = np.random.default_rng(seed)
+    feet = tuple(
+        (*rng.uniform(-0.05, 0.05, 2).tolist(), rng.uniform(-0.3, 0.3), abs(rng.normal(0.0, 0.01)))
+        for _ in LEGS
+    )
+    return rng, feet
+
+
+@settings(max_examples=30)
+@given(SEEDS)
+def test_compiled_the_posture_is_what_it_says(plainly, seed):
+    rng, feet = draw(seed)
+    which = (seed % 2, int(rng.integers(-1, 2)))
+    pelvis = (*rng.uniform(-0.02, 0.02, 2).tolist(), 0.1)
+    tilts, tilt = rng.normal(0.0, 0.01, (2, 2)), tuple(rng.normal(0.0, 0.05, 2).tolist())
+    outcomes = []
+    for call in (leg_kernel.pose_legs, lambda *a: plainly(leg_kernel, "pose_legs", *a)):
+        position, own = np.zeros(26), tilts.copy()
+        apart = call(position, own, feet, which, pelvis, tilt, LAW, LEGS)
+        outcomes.append([*position, *own.ravel(), apart])
+    np.testing.assert_allclose(*outcomes, rtol=0.0, atol=1e-12)
+
+
+@settings(max_examples=30)
+@given(SEEDS)
+def test_compiled_the_measurement_is_what_it_says(plainly, seed):
+    rng, _ = draw(seed)
+    joints, pads = rng.uniform(-0.5, 0.5, 26), np.maximum(rng.normal(5.0, 5.0, (2, 4)), 0.0)
+    asked = (joints, pads, (0.1, -0.05), LEGS, (0.01, 0.05, 0.03))
+    found = np.array(leg_kernel.measured_feet(*asked))
+    plain = np.array(plainly(leg_kernel, "measured_feet", *asked))
+    np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
+
+
+def test_rates_are_quotients_of_differences():
+    rng = np.random.default_rng(1)
+    angles = rng.uniform(-0.1, 0.1, (3, 26))
+    before, velocity, acceleration = angles[0].copy(), np.zeros(26), np.zeros(26)
+    for now in angles[1:]:
+        leg_kernel.rates(now, before, velocity, acceleration, 0.5, 1000.0, CONTROL_PERIOD)
+    np.testing.assert_allclose(velocity, (angles[2] - angles[1]) / CONTROL_PERIOD)
+    second = 0.5 * np.diff(angles, n=2, axis=0)[0] / CONTROL_PERIOD**2
+    np.testing.assert_allclose(acceleration, second.clip(-1000.0, 1000.0))
+    np.testing.assert_array_equal(before, angles[2])
+
+
+@settings(max_examples=30)
+@given(SEEDS, st.sampled_from([0.0, 0.3, 1.0]))
+def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
+    rng, _ = draw(seed)
+    torque, wrench = rng.normal(0.0, 1.0, 26), np.array([1.0, 2.0, 54.0, 0.3, -0.2, 0.1])
+    position, velocity = rng.uniform(-0.5, 0.5, 26), rng.normal(0.0, 1.0, 26)
+    servos = (rng.uniform(0.01, 0.1, 26), rng.uniform(0.0, 0.1, 26))
+    soles = ((0.01, 0.04), (0.02, -0.04))
+    asked = (wrench, position, velocity, servos, soles, load, 0.22, LEGS)
+    found, plain = torque.copy(), torque.copy()
+    leg_kernel.offsets(found, *asked)
+    plainly(leg_kernel, "offsets", plain, *asked)
+    np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
+    unloaded = slice(0, 6) if load == 1.0 else slice(12, 26)
+    expected = torque * servos[0] + velocity * servos[1]
+    np.testing.assert_allclose(found[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
+    shares = [abs(found - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
+    assert [share > 1e-6 for share in shares] == [load < 1.0, load > 0.0]
+
+
+@given(SEEDS)
+def test_a_level_point_keeps_its_distance(seed):
+    point = tuple(np.random.default_rng(seed).normal(0.0, 0.1, 3).tolist())
+    levelled = leg_kernel.level(point, (0.2, -0.3))
+    assert np.linalg.norm(levelled) == pytest.approx(np.linalg.norm(point))

@@ -1,0 +1,214 @@
+"""What follows from the footholds to come, compiled: ZMP reference and swings.
+
+A foothold is x, y [m], yaw [rad], and 1 if it is a left one, 0 if not.
+"""
+
+from math import cos, sin
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Foothold = tuple[float, float, float, float]
+Placement = tuple[float, float, float]
+Placements = tuple[Placement, Placement]
+"""Landing in the frame of the support foot, x, y [m] and direction [rad]: the right foot's and the
+left foot's."""
+
+Spot = tuple[float, float]
+"""Where the ZMP is meant to be under a foot: forward and inward of its origin [m]."""
+
+RAMP, SWING = 13, 10  # numbers of a ramp, see `Ramps`, and of a swing, see `Swings`
+
+
+@njit(cache=True)
+def sequence(
+    support: Foothold,
+    landing: Foothold,
+    wish: Placements,
+    still: Placements,
+    near: tuple[float, float],
+    most: int,
+    moving: bool,
+) -> tuple[Array, bool]:
+    """Footholds from `landing` on, and whether the walk ends after the last.
+
+    Args:
+        support: the foot on the floor.
+        landing: where the other foot is about to land.
+        wish: strides.
+        still: strides of stepping in place.
+        near: distance along x and y [m] and angle [rad] at which two footholds are one.
+        most: footholds.
+        moving: whether more than closing the stance is wanted.
+
+    Returns:
+        the footholds (n, 4), and whether the walk ends after the last.
+    """
+    steps = np.empty((most, 4))
+    before, last = support, landing
+    for k in range(most):
+        steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3] = last
+        if k + 1 < most and not moving:
+            rest = _landing(before, still)
+            if (
+                abs(last[0] - rest[0]) < near[0]
+                and abs(last[1] - rest[1]) < near[0]
+                and abs(last[2] - rest[2]) < near[1]
+            ):
+                return steps[: k + 1], True
+        before, last = last, _landing(last, wish)
+    return steps, False
+
+
+@njit(cache=True)
+def ramps(
+    unloading: Foothold,
+    support: Foothold,
+    steps: Array,
+    zmp: tuple[float, float],
+    ticks: tuple[int, int, int, int, int],
+    spot: Spot,
+    ends: bool,
+) -> Array:
+    """ZMP reference of a walk.
+
+    Args:
+        unloading: where the foot stands that is about to swing.
+        support: the foot that carries in this footstep.
+        steps: footholds to come (n, 4).
+        zmp: of now, while the weight goes over to the support foot [m].
+        ticks: left of that double support, zero in single support; left of the single support
+            after it; of a double and a single support to come; of the last double support.
+        spot: of the ZMP under a foot.
+        ends: whether the walk ends with both feet carrying alike after the last foothold.
+
+    Returns:
+        the reference, see `Ramps` (m, 13).
+    """
+    shift, carry, double, single, stop = ticks
+    table = np.empty((2 * steps.shape[0] + 2, RAMP))
+    px, py = _under(support, spot)
+    row = 0
+    if shift > 0:
+        _ramp(table, row, shift, zmp[0], zmp[1], px, py, unloading, support)
+        row += 1
+    _ramp(table, row, carry, px, py, px, py, support, support)
+    row += 1
+    before = support
+    for k in range(steps.shape[0]):
+        step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
+        x, y = _under(step, spot)
+        if ends and k == steps.shape[0] - 1:
+            bx, by = _under(before, spot)
+            _ramp(table, row, stop, px, py, 0.5 * (bx + x), 0.5 * (by + y), before, step)
+            row += 1
+        else:
+            _ramp(table, row, double, px, py, x, y, before, step)
+            _ramp(table, row + 1, single, x, y, x, y, step, step)
+            row += 2
+        before, px, py = step, x, y
+    return table[:row]
+
+
+@njit(cache=True)
+def swings(
+    support: Foothold,
+    origin: Foothold,
+    landing: Foothold,
+    steps: Array,
+    now: tuple[float, float, bool],
+    later: tuple[float, float, float],
+    spot: Spot,
+) -> Array:
+    """Swings under way and to come.
+
+    Args:
+        support: the foot that carries in this footstep.
+        origin: where the other foot swings from.
+        landing: where it is about to land.
+        steps: footholds to come, that of this footstep the first (n, 4).
+        now: begin in ticks from now and lift [m] of this footstep's swing, and whether there is
+            one.
+        later: begin in ticks from now of the swing after that, ticks from one to the next, lift
+            [m].
+        spot: of the ZMP under a foot.
+
+    Returns:
+        the swings, see `Swings` (m, 10).
+    """
+    table = np.empty((steps.shape[0], SWING))
+    row = 0
+    if now[2]:
+        _swing(table, row, now[0], now[1], origin, landing, _under(support, spot))
+        row += 1
+    begin = later[0]
+    for k in range(1, steps.shape[0]):
+        step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
+        _swing(table, row, begin, later[2], support, step, _under(landing, spot))
+        support, landing = landing, step
+        begin += later[1]
+        row += 1
+    return table[:row]
+
+
+@njit(cache=True)
+def _landing(support: Foothold, strides: Placements) -> Foothold:
+    """Next foothold of the foot that is not `support`."""
+    x, y, turned = strides[0] if support[3] > 0.0 else strides[1]
+    c, s = cos(support[2]), sin(support[2])
+    return (
+        support[0] + c * x - s * y,
+        support[1] + s * x + c * y,
+        support[2] + turned,
+        1.0 - support[3],
+    )
+
+
+@njit(cache=True)
+def _under(foot: Foothold, spot: Spot) -> tuple[float, float]:
+    """ZMP under a foot that carries alone [m]."""
+    forward = spot[0]
+    inward = -spot[1] if foot[3] > 0.0 else spot[1]
+    c, s = cos(foot[2]), sin(foot[2])
+    return foot[0] + c * forward - s * inward, foot[1] + s * forward + c * inward
+
+
+@njit(cache=True)
+def _ramp(
+    table: Array,
+    row: int,
+    ticks: int,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    one: Foothold,
+    two: Foothold,
+) -> None:
+    table[row, 0], table[row, 1], table[row, 2], table[row, 3], table[row, 4] = (
+        ticks,
+        ax,
+        ay,
+        bx,
+        by,
+    )
+    table[row, 5], table[row, 6], table[row, 7], table[row, 8] = one
+    table[row, 9], table[row, 10], table[row, 11], table[row, 12] = two
+
+
+@njit(cache=True)
+def _swing(
+    table: Array,
+    row: int,
+    begin: float,
+    lift: float,
+    origin: Foothold,
+    landing: Foothold,
+    zmp: tuple[float, float],
+) -> None:
+    table[row, 0], table[row, 1] = begin, lift
+    for k in range(3):
+        table[row, 2 + k], table[row, 5 + k] = origin[k], landing[k]
+    table[row, 8], table[row, 9] = zmp

@@ -1,0 +1,322 @@
+"""Kinematics of the legs and what is built on them in every control tick, compiled.
+
+A leg is given by the numbers of `LegDimensions`, in their order [m].
+"""
+
+from math import acos, asin, atan2, cos, hypot, sin
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Point = tuple[float, float]
+Vector = tuple[float, float, float]
+Leg = tuple[float, float, float, float, float, float]
+Pose = tuple[float, float, float, float, float, float]
+"""Of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
+
+Angles = tuple[float, float, float, float, float, float]
+"""Hip yaw, roll, pitch, knee, ankle pitch, roll [rad]."""
+
+Foot = tuple[float, float, float, float]
+"""Reference of a foot in the plan frame: x, y [m], yaw [rad], height [m]."""
+
+STILL_TILT = 1e-6  # tilt of a foot that counts as none [rad]
+
+
+@njit(cache=True)
+def leg_angles(leg: Leg, foot: Pose) -> tuple[Angles, bool]:
+    """Joint angles that put the foot where it is asked to be, and whether it is in reach.
+
+    The three hip axes meet in one point and so do the two ankle axes, hence the inverse is
+    analytic: the direction from ankle to hip in the foot's frame gives the ankle roll, the
+    distance gives the knee, the rest is an Euler decomposition at the hip.
+    """
+    hip_x, hip_y, hip_z, l1, l2, h = leg
+    x, y, z, roll, pitch, yaw = foot
+    cr, sr = cos(roll), sin(roll)
+    cp, sp = cos(pitch), sin(pitch)
+    cy, sy = cos(yaw), sin(yaw)
+    # Columns of R_BF.
+    xx, xy, xz = cy * cp, sy * cp, -sp
+    yx, yy, yz = cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr
+    zx, zy, zz = cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr
+    dx = hip_x - x - h * zx
+    dy = hip_y - y - h * zy
+    dz = hip_z - z - h * zz
+    # Ankle to hip in the foot frame.
+    rx = xx * dx + xy * dy + xz * dz
+    ry = yx * dx + yy * dy + yz * dz
+    rz = zx * dx + zy * dy + zz * dz
+    cosine = (rx * rx + ry * ry + rz * rz - l1 * l1 - l2 * l2) / (2.0 * l1 * l2)
+    reachable = -1.0 <= cosine <= 1.0
+    knee = acos(min(1.0, max(-1.0, cosine)))
+    ankle_roll = atan2(ry, rz)
+    ankle_pitch = atan2(-l1 * sin(knee), l2 + l1 * cos(knee)) - atan2(rx, hypot(ry, rz))
+    # R_BF Rx(-ankle_roll) Ry(-knee - ankle_pitch) = Rz(yaw) Rx(roll) Ry(pitch) of the hip.
+    cf, sf = cos(ankle_roll), sin(ankle_roll)
+    cg, sg = cos(knee + ankle_pitch), sin(knee + ankle_pitch)
+    mx, my, mz = cf * yx - sf * zx, cf * yy - sf * zy, cf * yz - sf * zz
+    nz = sf * yz + cf * zz
+    hip_roll = asin(min(1.0, max(-1.0, mz)))
+    hip_yaw = atan2(-mx, my)
+    hip_pitch = atan2(-(cg * xz + sg * nz), cg * nz - sg * xz)
+    return (hip_yaw, hip_roll, hip_pitch, knee, ankle_pitch, ankle_roll), reachable
+
+
+@njit(cache=True)
+def foot_pose(leg: Leg, angles: Angles) -> Pose:
+    """Pose of the foot for given joint angles."""
+    hip_x, hip_y, hip_z, l1, l2, h = leg
+    a, b, c, d, e, f = angles
+    ca, sa, cb, sb, cf, sf = cos(a), sin(a), cos(b), sin(b), cos(f), sin(f)
+    t, g = c + d, c + d + e
+    cg, sg = cos(g), sin(g)
+    x = -l1 * sin(c) - l2 * sin(t) - h * cf * sg
+    z = -l1 * cos(c) - l2 * cos(t) - h * cf * cg
+    y = h * sf
+    y, z = y * cb - z * sb, y * sb + z * cb
+    # Foot axes x and, for the roll, the z components of y and z.
+    ux, uy, uz = cg, sg * sb, -sg * cb
+    return (
+        hip_x + ca * x - sa * y,
+        hip_y + sa * x + ca * y,
+        hip_z + z,
+        atan2(cf * sb + sf * cb * cg, -sf * sb + cf * cb * cg),
+        asin(min(1.0, max(-1.0, -uz))),
+        atan2(sa * ux + ca * uy, ca * ux - sa * uy),
+    )
+
+
+@njit(cache=True)
+def support_torques(leg: Leg, angles: Angles, point: Vector, force: Vector) -> Angles:
+    """Torques [N m] by which a massless leg hands a force of the floor on to the base.
+
+    Args:
+        leg: dimensions.
+        angles: of its joints.
+        point: where the floor pushes, in the base frame [m].
+        force: of the floor on the foot, in the base frame [N].
+    """
+    hip_x, hip_y, hip_z, l1, l2, _ = leg
+    a, b, c, d, e, _ = angles
+    ca, sa, cb, sb = cos(a), sin(a), cos(b), sin(b)
+    sg, cg = sin(c + d + e), cos(c + d + e)
+    fx, fy, fz = force
+    # Arms of the force about hip, knee and ankle.
+    hx, hy, hz = point[0] - hip_x, point[1] - hip_y, point[2] - hip_z
+    along, down = -l1 * sin(c), -l1 * cos(c)
+    kx, ky, kz = hx - ca * along - sa * sb * down, hy - sa * along + ca * sb * down, hz - cb * down
+    along, down = along - l2 * sin(c + d), down - l2 * cos(c + d)
+    ax, ay, az = hx - ca * along - sa * sb * down, hy - sa * along + ca * sb * down, hz - cb * down
+    # Common pitch axis, and the axis of the ankle roll.
+    px, py, pz = -sa * cb, ca * cb, sb
+    rx, ry, rz = ca * cg - sa * sg * sb, sa * cg + ca * sg * sb, -sg * cb
+    mx, my, mz = hy * fz - hz * fy, hz * fx - hx * fz, hx * fy - hy * fx
+    nx, ny, nz = ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx
+    return (
+        -mz,
+        -ca * mx - sa * my,
+        -px * mx - py * my - pz * mz,
+        -px * (ky * fz - kz * fy) - py * (kz * fx - kx * fz) - pz * (kx * fy - ky * fx),
+        -px * nx - py * ny - pz * nz,
+        -rx * nx - ry * ny - rz * nz,
+    )
+
+
+@njit(cache=True)
+def measured_feet(
+    joints: Array,
+    pads: Array,
+    tilt: tuple[float, float],
+    legs: tuple[Leg, Leg],
+    sole: Vector,
+) -> tuple[
+    tuple[float, float, float, float, float, float, float],
+    tuple[float, float, float, float, float, float, float],
+]:
+    """The feet as the sensors have them, in the level frame of the trunk's heading.
+
+    Args:
+        joints: angles (26,) [rad].
+        pads: load on front left, front right, back left and back right of either sole (2, 4) [N].
+        tilt: roll and pitch of the trunk [rad].
+        legs: left and right.
+        sole: its middle ahead of the ankle, half of its length and of its width [m].
+
+    Returns:
+        of either foot x, y, z [m], yaw [rad], load [N], and where in the foot frame that is, x, y
+        [m].
+    """
+    return (
+        _measured_foot(joints[0:6], pads[0], tilt, legs[0], sole),
+        _measured_foot(joints[6:12], pads[1], tilt, legs[1], sole),
+    )
+
+
+@njit(cache=True)
+def _measured_foot(
+    joints: Array, pads: Array, tilt: tuple[float, float], leg: Leg, sole: Vector
+) -> tuple[float, float, float, float, float, float, float]:
+    angles = (joints[0], joints[1], joints[2], joints[3], joints[4], joints[5])
+    x, y, z, _, _, yaw = foot_pose(leg, angles)
+    x, y, z = level((x, y, z), tilt)
+    centre, half_length, half_width = sole
+    front_left, front_right, back_left, back_right = pads[0], pads[1], pads[2], pads[3]
+    force = front_left + front_right + back_left + back_right
+    ahead, aside = centre, 0.0
+    if force > 0.0:
+        # The floor pushes at the soles' corners.
+        length, width = half_length / force, half_width / force
+        ahead = centre + length * (front_left + front_right - back_left - back_right)
+        aside = width * (front_left + back_left - front_right - back_right)
+    return x, y, z, yaw, force, ahead, aside
+
+
+@njit(cache=True)
+def level(point: Vector, tilt: tuple[float, float]) -> Vector:
+    """A point of the base frame in the level frame under a tilt by roll and pitch [rad]."""
+    cr, sr, cp, sp = cos(tilt[0]), sin(tilt[0]), cos(tilt[1]), sin(tilt[1])
+    x, y, z = point
+    depth = sr * y + cr * z
+    return cp * x + sp * depth, cr * y - sr * z, cp * depth - sp * x
+
+
+@njit(cache=True)
+def pose_legs(
+    position: Array,
+    tilts: Array,
+    feet: tuple[Foot, Foot],
+    which: tuple[int, int],
+    pelvis: Vector,
+    tilt: tuple[float, float],
+    law: tuple[float, float, float, float, float],
+    legs: tuple[Leg, Leg],
+) -> float:
+    """Set the joints of the legs.
+
+    A foot in the air stays level with the floor although the trunk is not.
+
+    Args:
+        position: joint angles, of which those of the legs are set (26,) [rad].
+        tilts: roll and pitch by which either foot makes up for the trunk's, brought up to date
+            (2, 2) [rad].
+        feet: references of the left and of the right foot.
+        which: index of the support foot, and of the foot in the air, -1 for none.
+        pelvis: x, y [m], heading [rad] in the plan frame.
+        tilt: measured roll and pitch of the trunk [rad].
+        law: share of the tilt taken out of the foot [1], tilt that is ignored [rad], pull and
+            decay per tick [1], height of the base above the floor [m].
+        legs: left and right.
+
+    Returns:
+        how far the left foot is ahead of the right one along the heading [m].
+    """
+    c, s = cos(pelvis[2]), sin(pelvis[2])
+    gain, zone, pull, decay, base = law
+    support = feet[which[0]]
+    for index in range(2):
+        own = tilts[index]
+        for axis in range(2):
+            if index == which[1]:
+                excess = max(0.0, tilt[axis] - zone) + min(0.0, tilt[axis] + zone)
+                own[axis] += pull * (gain * excess - own[axis])
+            elif own[axis] != 0.0:
+                own[axis] *= decay
+                if abs(own[axis]) < STILL_TILT:
+                    own[axis] = 0.0
+        x, y, yaw, height = feet[index]
+        roll, pitch = own[0], own[1]
+        if roll != 0.0 or pitch != 0.0:
+            ax, ay = x - support[0], y - support[1]
+            height += pitch * (c * ax + s * ay) - roll * (c * ay - s * ax)
+        dx, dy, turned = x - pelvis[0], y - pelvis[1], yaw - pelvis[2]
+        cf, sf = cos(turned), sin(turned)
+        foot = (
+            c * dx + s * dy,
+            c * dy - s * dx,
+            height - base,
+            -(cf * roll + sf * pitch),
+            -(cf * pitch - sf * roll),
+            turned,
+        )
+        angles, _ = leg_angles(legs[index], foot)
+        for joint in range(6):
+            position[6 * index + joint] = angles[joint]
+    return c * (feet[0][0] - feet[1][0]) + s * (feet[0][1] - feet[1][1])
+
+
+@njit(cache=True)
+def rates(
+    position: Array,
+    before: Array,
+    velocity: Array,
+    acceleration: Array,
+    gain: float,
+    limit: float,
+    period: float,
+) -> None:
+    """Bring rates of the joints up to date.
+
+    Args:
+        position: joint angles (26,) [rad].
+        before: those of the last tick, to be those of this one (26,) [rad].
+        velocity: their rates, of the last tick, then of this one (26,) [rad/s].
+        acceleration: set to `gain` of the change of those rates, cut off at `limit` [rad/s²].
+        gain: share [1].
+        limit: of the acceleration [rad/s²].
+        period: of control [s].
+    """
+    for joint in range(position.size):
+        now = (position[joint] - before[joint]) / period
+        change = gain * (now - velocity[joint]) / period
+        acceleration[joint] = min(limit, max(-limit, change))
+        velocity[joint] = now
+        before[joint] = position[joint]
+
+
+@njit(cache=True)
+def offsets(
+    torque: Array,
+    wrench: Array,
+    position: Array,
+    velocity: Array,
+    servos: tuple[Array, Array],
+    soles: tuple[Point, Point],
+    right_load: float,
+    base: float,
+    legs: tuple[Leg, Leg],
+) -> None:
+    """Turn torques into set-point offsets that make up for load and lag of the servos.
+
+    Args:
+        torque: of the joints with nothing touching the feet [N m], to be the offsets [rad] (26,).
+        wrench: force [N] and moment [N m] at the base that its motion takes (6,).
+        position: joint angles (26,) [rad].
+        velocity: their rates (26,) [rad/s].
+        servos: compliance [rad/(N m)] and velocity lag [s] (26,).
+        soles: where the ZMP is meant to be under either foot, in the base frame [m].
+        right_load: share of the weight on the right foot [1].
+        base: its height above the floor [m].
+        legs: left and right.
+    """
+    fx, fy, fz, nx, ny = wrench[0], wrench[1], wrench[2], wrench[3], wrench[4]
+    (lx, ly), (rx, ry) = soles
+    left_load = 1.0 - right_load
+    # The ZMP of the whole body, from where the feet alone would have it.
+    dx = -(ny + base * fx) / fz - left_load * lx - right_load * rx
+    dy = (nx - base * fy) / fz - left_load * ly - right_load * ry
+    for index in range(2):
+        load = right_load if index else left_load
+        if load > 0.0:
+            own = position[6 * index : 6 * index + 6]
+            angles = (own[0], own[1], own[2], own[3], own[4], own[5])
+            point = (soles[index][0] + dx, soles[index][1] + dy, -base)
+            force = (load * fx, load * fy, load * fz)
+            added = support_torques(legs[index], angles, point, force)
+            for joint in range(6):
+                torque[6 * index + joint] += added[joint]
+    compliance, lag = servos
+    for joint in range(torque.size):
+        torque[joint] = torque[joint] * compliance[joint] + velocity[joint] * lag[joint]
