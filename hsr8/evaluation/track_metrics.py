@@ -103,9 +103,11 @@ class _Errors:
 
     def add(self, error: Array, covariance: Array) -> None:
         """Take an error (2,) with its covariance (2, 2)."""
+        x, y = error.tolist()
+        (xx, xy), (yx, yy) = covariance.tolist()
         self._count += 1
-        self._squares += float(error @ error)
-        self._normalised += float(error @ np.linalg.solve(covariance, error)) / 2.0
+        self._squares += x * x + y * y
+        self._normalised += (yy * x * x - (xy + yx) * x * y + xx * y * y) / (xx * yy - xy * yx) / 2
 
     @property
     def rms(self) -> float | None:

@@ -13,27 +13,33 @@ FINGERPRINT = 8  # bytes per channel
 
 def fingerprints(belief: Belief) -> tuple[bytes, ...]:
     """Digest of each channel of a belief, in the order of `CHANNELS`."""
-    tracks = hashlib.blake2b(digest_size=FINGERPRINT)
+    tracks: list[bytes] = []
     for t in belief.tracks:
         told = f"{t.id} {t.label} {t.motion} {t.hits} {t.visible}"
-        tracks.update(told.encode() + struct.pack("<4d", t.radius, t.radius_sigma, t.age, t.reach))
-        for part in (t.position, t.velocity, t.covariance, t.last_seen):
-            tracks.update(part.tobytes())
+        tracks += (told.encode(), struct.pack("<4d", t.radius, t.radius_sigma, t.age, t.reach))
+        parts = [t.position, t.velocity, t.covariance, t.last_seen]
         if t.particles is not None:
-            for part in (t.particles.positions, t.particles.velocities, t.particles.weights):
-                tracks.update(part.tobytes())
+            parts += (t.particles.positions, t.particles.velocities, t.particles.weights)
+        tracks += [part.tobytes() for part in parts]
     state = f"{belief.seen_beacons} {belief.lost} {belief.filter_faults}"
     return (
         _digest(belief.pose.tobytes()),
         _digest(belief.pose_covariance.tobytes()),
-        tracks.digest(),
+        _digest(b"".join(tracks)),
         _digest(belief.local_map.tobytes()),
         _digest(state.encode()),
     )
 
 
-def decision_fingerprints(decided: Decided) -> tuple[bytes, ...]:
-    """Digest of each part of a decision, in the order of `DECISIONS`."""
+def decision_fingerprints(
+    decided: Decided, believed: tuple[bytes, ...] | None = None
+) -> tuple[bytes, ...]:
+    """Digest of each part of a decision, in the order of `DECISIONS`.
+
+    Args:
+        decided: what was decided.
+        believed: fingerprints of the belief in it, where they are known.
+    """
     task, motion, gaze = decided.task, decided.motion, decided.gaze
     place = f"{task.is_goal} {task.index} {task.aligning} {task.done}".encode()
     place += task.target.tobytes() + struct.pack("<d", task.heading)
@@ -45,8 +51,8 @@ def decision_fingerprints(decided: Decided) -> tuple[bytes, ...]:
         move += struct.pack("<qd", track, radius)
     evaluations = (gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
     look = struct.pack("<6d", gaze.pan, gaze.tilt, *evaluations) + gaze.gaze_map.tobytes()
-    believed = _digest(b"".join(fingerprints(decided.belief)))
-    return believed, _digest(place), _digest(move), _digest(look)
+    believed = believed or fingerprints(decided.belief)
+    return _digest(b"".join(believed)), _digest(place), _digest(move), _digest(look)
 
 
 def _digest(content: bytes) -> bytes:

@@ -72,8 +72,10 @@ class MeasurementWriter:
         if record.frame is not None:
             frame = record.frame
             payload = _packed(frame.measured) + _packed_now(frame.now, frame.decided.fresh)
-            payload += b"".join(decision_fingerprints(frame.decided))
-            payload += b"".join(fingerprints(frame.estimate))
+            estimate = fingerprints(frame.estimate)
+            known = estimate if frame.belief is frame.estimate else None
+            payload += b"".join(decision_fingerprints(frame.decided, known))
+            payload += b"".join(estimate)
             self._file.write(payload)
 
     def flush(self) -> None:

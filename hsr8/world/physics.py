@@ -151,7 +151,7 @@ class PhysicsBody:
             time=self.time,
             qpos=data.qpos.copy(),
             robot=robot,
-            obstacle_positions=self._around.positions(self.time),
+            obstacle_positions=self._around.placed(data),
             obstacle_velocities=self._around.velocities(self.time),
             contacts=self._around.watch.take(),
             clearance=self._around.watch.clearance(data, robot),

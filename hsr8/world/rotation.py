@@ -30,7 +30,7 @@ def quaternion_product(a: Array, b: Array) -> Array:
 def small_rotation(roll: float, pitch: float) -> Array:
     """Quaternion of a small rotation about x and y [rad]."""
     norm = sqrt(1.0 + 0.25 * (roll * roll + pitch * pitch))
-    return np.array([1.0, 0.5 * roll, 0.5 * pitch, 0.0]) / norm
+    return np.array([1.0 / norm, 0.5 * roll / norm, 0.5 * pitch / norm, 0.0])
 
 
 def heading(quaternion: Array) -> float:

@@ -9,6 +9,8 @@ from walking.sensing import BodySensors
 
 Array = NDArray[np.float64]
 
+BLOCK = 200  # readings whose errors are drawn at a time
+
 
 class SensorSuite:
     """Adds seeded noise to true readings; one instance a run.
@@ -38,6 +40,8 @@ class SensorSuite:
             self._drift_step,
         )
         self._sigma = np.repeat(sigmas, widths)
+        self._errors = np.zeros((0, len(self._sigma)))  # of the readings to come
+        self._read = 0
 
     def read(
         self,
@@ -51,7 +55,11 @@ class SensorSuite:
     ) -> BodySensors:
         """Turn true values (units as in ``BodySensors``) into one noisy reading."""
         noise = self._noise
-        error = self._sigma * self._rng.standard_normal(69)
+        if self._read == len(self._errors):
+            self._errors = self._sigma * self._rng.standard_normal((BLOCK, len(self._sigma)))
+            self._read = 0
+        error = self._errors[self._read]
+        self._read += 1
         roll, pitch, drift = error[66:].tolist()
         self._yaw_drift += drift + self._bias_step
         tilted = quaternion_product(

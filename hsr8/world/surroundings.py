@@ -55,6 +55,10 @@ class Surroundings:
         """Axes of all obstacles at `time` [s], layout order (n, 2) [m]."""
         return np.concatenate([self._static, self._movers.positions(time)])
 
+    def placed(self, data: mujoco.MjData) -> Array:
+        """Axes of all obstacles where they were put last, layout order (n, 2) [m]."""
+        return np.concatenate([self._static, data.mocap_pos[self.index.mover_mocap, :2]])
+
     def velocities(self, time: float) -> Array:
         """Velocities of all obstacles at `time` [s], layout order (n, 2) [m/s]."""
         return np.concatenate([self._still, self._movers.velocities(time)])
