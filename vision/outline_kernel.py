@@ -249,7 +249,7 @@ def _label(padded: Labels, view: Array, azimuth: float, slope: float) -> int:
         return OUTSIDE
     row = int(min(max(floor(v), -1.0), len(padded) - 2.0))
     column = int(min(max(floor(u), -1.0), padded.shape[1] - 2.0))
-    return padded[row + 1, column + 1]
+    return int(padded[row + 1, column + 1])
 
 
 @njit(cache=True)
