@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from navigation.angles import wrap_array
+from navigation import rollout_kernel
 from navigation.decision import SpeedLimits
 
 Array = NDArray[np.float64]
@@ -34,16 +34,16 @@ def body_velocity(
     Returns:
         forward, left, turn (..., 3) [m/s, m/s, rad/s].
     """
-    error = np.asarray(course) - np.asarray(heading)
-    forward = np.asarray(speed) * np.cos(error)
-    left = np.asarray(speed) * np.sin(error)
-    reach = np.where(forward >= 0.0, limits.forward, limits.backward)
-    excess = np.maximum(np.abs(forward) / reach, np.abs(left) / limits.lateral)
-    scale = 1.0 / np.maximum(1.0, excess)
-    turn = np.clip(
-        turn_gain * wrap_array(np.asarray(facing) - np.asarray(heading)), -limits.turn, limits.turn
-    )
-    return np.stack(np.broadcast_arrays(scale * forward, scale * left, turn), axis=-1)
+    shapes = np.shape(course), np.shape(speed), np.shape(heading), np.shape(facing)
+    asked = np.empty((4, *np.broadcast_shapes(*shapes)))
+    asked[0], asked[1], asked[2], asked[3] = course, speed, heading, facing
+    velocities = rollout_kernel.body_velocities(asked.reshape(4, -1), envelope(limits, turn_gain))
+    return velocities.reshape(*asked.shape[1:], 3)
+
+
+def envelope(limits: SpeedLimits, turn_gain: float) -> rollout_kernel.Envelope:
+    """Envelope as the roll-outs want it; `turn_gain` is the turn rate per heading error [1/s]."""
+    return limits.forward, limits.backward, limits.lateral, limits.turn, turn_gain
 
 
 def idle_velocity(searching: bool, turn: float, limits: SpeedLimits) -> Array:

@@ -6,13 +6,13 @@ then turns as long as it must, then goes straight.
 """
 
 from dataclasses import dataclass
-from math import atan2, hypot, isfinite, pi
+from math import atan2, hypot, nan, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.angles import wrap_array
-from navigation.body_command import body_velocity
+from navigation import rollout_kernel
+from navigation.body_command import envelope
 from navigation.decision import SpeedLimits
 from navigation.decision_parameters import BodyParameters, FilterParameters
 from navigation.hypotheses import Hypotheses
@@ -53,44 +53,9 @@ def contact_times(paths: Paths, position: Array, discs: Hypotheses) -> tuple[Arr
         Time to contact (n, m) [s], infinite for none; closing speed at the start (n, m), of
         discs out of reach of the first piece zero [m/s].
     """
-    k, n = paths.duration.shape
-    first = np.full((n, len(discs)), np.inf)
-    closing = np.zeros_like(first)
-    offset = discs.position - position
-    gap = np.hypot(offset[:, 0], offset[:, 1]) - discs.radius
-    speed = np.hypot(discs.velocity[:, 0], discs.velocity[:, 1])
-    moved, start, fastest = np.zeros((n, 2)), np.zeros(n), 0.0
-    for piece in range(k):
-        velocity, duration = paths.velocity[piece], paths.duration[piece]
-        end = start + duration
-        fastest = max(fastest, float(np.hypot(velocity[:, 0], velocity[:, 1]).max()))
-        latest = float(end.max())
-        # Only these can be touched by then.
-        near = np.arange(len(discs))
-        if isfinite(latest):
-            near = np.nonzero(gap <= (speed + fastest) * latest)[0]
-        u = discs.velocity[near, 0] - velocity[:, 0, None]
-        w = discs.velocity[near, 1] - velocity[:, 1, None]
-        dx = offset[near, 0] + start[:, None] * discs.velocity[near, 0] - moved[:, 0, None]
-        dy = offset[near, 1] + start[:, None] * discs.velocity[near, 1] - moved[:, 1, None]
-        rate = dx * u + dy * w
-        outside = dx * dx + dy * dy - discs.radius[near] ** 2
-        speed2 = u * u + w * w
-        discriminant = rate * rate - speed2 * outside
-        row, column = np.nonzero((rate < 0.0) & ((discriminant > 0.0) | (outside < 0.0)))
-        root = np.sqrt(np.maximum(discriminant[row, column], 0.0))
-        closest = -rate[row, column] - root
-        time = np.maximum(0.0, closest / np.maximum(speed2[row, column], 1e-12))
-        meets = time <= duration[row]
-        row, column, time = row[meets], near[column[meets]], time[meets]
-        first[row, column] = np.minimum(first[row, column], start[row] + time)
-        if piece == 0:
-            distance = np.hypot(offset[near, 0], offset[near, 1])
-            closing[:, near] = np.maximum(0.0, -rate / np.maximum(distance, 1e-6))
-        if piece < k - 1:
-            moved = moved + duration[:, None] * velocity
-            start = end
-    return first, closing
+    return rollout_kernel.contact_times(
+        paths.velocity, paths.duration, position, discs.position, discs.velocity, discs.radius
+    )
 
 
 class CollisionFilter:
@@ -173,48 +138,37 @@ class CollisionFilter:
         time, closing = contact_times(paths, pose[:2], discs)
         offset = discs.position - pose[:2]
         depth = 1.0 - np.hypot(offset[:, 0], offset[:, 1]) / discs.radius
-        weight = np.where(time < p.urgent_time, p.urgent_weight, p.weight)
-        cost = np.maximum(0.0, 1.0 - time / discs.horizon) * weight
-        inside = (depth > 0.0) & (time < discs.horizon)
-        cost += inside * (_INSIDE + _INSIDE_DEPTH * depth + _INSIDE_CLOSING * closing)
-        total: Array = cost @ discs.weight
-        return total
+        return rollout_kernel.penalties(
+            time,
+            closing,
+            depth,
+            discs.horizon,
+            discs.weight,
+            (p.urgent_time, p.urgent_weight, p.weight),
+            (_INSIDE, _INSIDE_DEPTH, _INSIDE_CLOSING),
+        )
 
     def paths(
         self, pose: Array, candidates: Array, course: float, facing: float | None, body_now: Array
     ) -> Paths:
         """Where the body would really go, footstep by footstep, for every candidate."""
         p, limits = self._parameters, self._limits
-        n = len(candidates)
-        speed = np.hypot(candidates[:, 0], candidates[:, 1])
-        standing = speed < 1e-9
-        direction = np.where(standing, course, np.arctan2(candidates[:, 1], candidates[:, 0]))
-        facing_to = direction if facing is None else np.full(n, facing)
-        heading = np.full(n, float(pose[2]))
-        body = np.broadcast_to(np.asarray(body_now, dtype=np.float64), (n, 3))
-        change = limits.acceleration * limits.footstep
-        velocity = np.empty((p.steps + 2, n, 2))
-        duration = np.full((p.steps + 2, n), limits.footstep)
-        for step in range(p.steps):
-            goal = body_velocity(
-                direction, speed, heading, facing_to, limits=limits, turn_gain=self._body.turn_gain
-            )
-            delta = goal - body
-            size = np.hypot(delta[:, 0], delta[:, 1])
-            delta[:, :2] *= np.minimum(1.0, change / np.maximum(size, 1e-9))[:, None]
-            np.clip(delta[:, 2], -p.turn_change, p.turn_change, out=delta[:, 2])
-            body = body + delta
-            middle = heading + 0.5 * body[:, 2] * limits.footstep
-            c, s = np.cos(middle), np.sin(middle)
-            velocity[step, :, 0] = c * body[:, 0] - s * body[:, 1]
-            velocity[step, :, 1] = s * body[:, 0] + c * body[:, 1]
-            heading = heading + body[:, 2] * limits.footstep
-        error = np.abs(wrap_array(direction - heading))
-        wait = np.maximum(0.0, error - self._body.turn_wait) / limits.turn
-        velocity[p.steps] = 0.0
-        duration[p.steps] = np.where(speed > _SIDE_STEP * limits.lateral, wait, 0.0)
-        velocity[p.steps + 1] = candidates
-        duration[p.steps + 1] = np.inf
+        velocity, duration = rollout_kernel.roll_out(
+            candidates,
+            float(pose[2]),
+            course,
+            nan if facing is None else facing,
+            body_now,
+            envelope(limits, self._body.turn_gain),
+            (
+                limits.footstep,
+                limits.acceleration * limits.footstep,
+                p.turn_change,
+                self._body.turn_wait,
+                _SIDE_STEP * limits.lateral,
+            ),
+            p.steps,
+        )
         return Paths(velocity, duration)
 
 

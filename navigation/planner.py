@@ -66,11 +66,12 @@ class Planner:
             turn = self._parameters.body.lost_turn
             self._body = idle_velocity(not task.done, turn, self._limits)
             return MotionDecision(self._body, self._direction, 0.0, "free", (), ())
-        task = self._round_obstacles(belief, task)
-        scene, radii = self._scene(belief, task)
+        obstacles = ObstacleSet.from_tracks(belief.tracks)
+        task = self._round_obstacles(belief, task, obstacles)
+        scene, radii = self._scene(belief, task, obstacles)
         wanted = self._wanted(belief, task, scene)
         facing = self._facing(belief, task)
-        course, speed = self._filtered(belief, wanted, facing)
+        course, speed = self._filtered(belief, wanted, facing, obstacles)
         self._body = body_velocity(
             course,
             speed,
@@ -81,13 +82,12 @@ class Planner:
         )
         return replace(wanted, velocity=self._body, extended_radii=radii)
 
-    def _round_obstacles(self, belief: Belief, task: Task) -> Task:
+    def _round_obstacles(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
         """The task, or one on the way round still obstacles that block the straight way."""
         p = self._parameters
         if not p.way_search.enabled or task.aligning:
             return task
-        still = ObstacleSet.from_tracks(belief.tracks)
-        still = still.where(still.static)
+        still = obstacles.where(obstacles.static)
         radii = physical_radius(still, p.univector) + p.univector.margin
         here = belief.pose[:2]
         point = way_point(here, task.target, still.position, radii, p.way_search)
@@ -97,7 +97,11 @@ class Planner:
         return replace(task, target=point, heading=atan2(dy, dx), is_goal=False)
 
     def _filtered(
-        self, belief: Belief, wanted: MotionDecision, facing: float | None
+        self,
+        belief: Belief,
+        wanted: MotionDecision,
+        facing: float | None,
+        obstacles: ObstacleSet,
     ) -> tuple[float, float]:
         """Direction [rad] and speed [m/s] that touch nothing soon."""
         p = self._parameters
@@ -105,7 +109,7 @@ class Planner:
             return wanted.direction, wanted.speed
         discs = collision_hypotheses(
             belief.tracks,
-            ObstacleSet.from_tracks(belief.tracks),
+            obstacles,
             p.univector.s_robot,
             p.filter,
             belief.local_map,
@@ -121,12 +125,12 @@ class Planner:
         return direction_and_speed(velocity, wanted.direction)
 
     def _scene(
-        self, belief: Belief, task: Task
+        self, belief: Belief, task: Task, obstacles: ObstacleSet
     ) -> tuple[FieldScene, tuple[tuple[int, float], ...]]:
         """The field's obstacles with their extended radii."""
         p = self._parameters
-        known = [t for t in belief.tracks if t.particles is None or t.age <= p.univector.memory]
-        obstacles = ObstacleSet.from_tracks(known)
+        known = [t.particles is None or t.age <= p.univector.memory for t in belief.tracks]
+        obstacles = obstacles.where(np.array(known, dtype=np.bool_))
         psi_sf = psi_self(belief.pose_covariance, p.evaluation)
         psi_ob = psi_obstacle(
             obstacles, belief.pose[:2], self._ground_velocity(belief.pose), p.evaluation
