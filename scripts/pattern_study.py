@@ -109,7 +109,9 @@ class Walker:
         h = gait.half_stance
         stance = (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0))
         self.gait = Gait(self.parameters, self.planner, stance)
-        self.steering = Steering(self.planner, self.parameters.limits)
+        self.steering = Steering(
+            self.planner, self.parameters.limits, selective=self.generator.selective
+        )
         self.transition = Transition(self.gait, self.generator)
         start = self.gait.plan(stance[1], self.planner.still, moving=False)[-1]
         self.state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
@@ -126,7 +128,7 @@ class Walker:
         gait = self.gait
         self.transition.remember()
         self.steering.follow(command, 1.0, settled=True, balanced=True)
-        gait.retime(self.steering.timing)
+        gait.retime(self.steering.pace(gait.timing, stepping=gait.stepping))
         if not gait.stepping and self.steering.moving:
             gait.start(0)
         begin = time.process_time()

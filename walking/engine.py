@@ -69,7 +69,7 @@ class WalkingEngine:
         self._gait = gait = Gait(parameters, planner, stance)
         zmp = gait.plan(stance[1], planner.still, moving=False)[-1]
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
-        self._steering = Steering(planner, parameters.limits)
+        self._steering = Steering(planner, parameters.limits, selective=generator.selective)
         self._stabilizer = Stabilizer(robot, parameters.stabilizer, lipm.omega)
         self._catching = CatchingPendulum(lipm, generator, gait, pattern.dcm_gain, self._pendulum)
         self._placement = FootPlacement(
@@ -246,7 +246,8 @@ class WalkingEngine:
         balanced = off < self._parameters.stabilizer.slew_error
         share = self._caution.update(off)
         self._steering.follow(command, share, settled=settled, balanced=balanced)
-        retimed = self._gait.retime(self._steering.timing)
+        gait = self._gait
+        retimed = gait.retime(self._steering.pace(gait.timing, stepping=gait.stepping))
         self._bound = [] if retimed else [Limit.TIMING]
 
     def _pressure_error(self, body: BodyMeasurement) -> tuple[float, float]:

@@ -39,7 +39,7 @@ def sequence(
         landing: where the other foot is about to land.
         wish: strides.
         still: strides of stepping in place.
-        near: distance along x and y [m] and angle [rad] at which two footholds are one.
+        near: distance along x and y [m] and angle [rad] at which a foothold is one of standing.
         most: footholds.
         moving: whether more than closing the stance is wanted.
 

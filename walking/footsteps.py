@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 STILL: Velocity = (0.0, 0.0, 0.0)
 PLACE_TOLERANCE = 0.024  # between footholds that count as the same, of half the stance [1]
 TURN_TOLERANCE = 1e-3  # between their directions [rad]
+STANCE_TOLERANCE = 0.6  # between footholds and those of standing, of half the stance [1]
+STANCE_TURN = 0.05  # between their directions [rad]
 
 
 class FootstepPlanner:
@@ -41,6 +43,7 @@ class FootstepPlanner:
         self._gait = gait
         self._limits = limits
         self._near = PLACE_TOLERANCE * gait.half_stance
+        self._stance = (STANCE_TOLERANCE * gait.half_stance, STANCE_TURN)
         self.sole = sole
         self._asked: tuple[Velocity, float] = (STILL, gait.footstep_time)
         self.still = self._strides = self._make(STILL, gait.footstep_time)
@@ -261,15 +264,24 @@ class FootstepPlanner:
             landing.row,
             (wish.right, wish.left),
             (self.still.right, self.still.left),
-            (self._near, TURN_TOLERANCE),
+            self._stance,
             self._gait.preview_steps,
             moving,
         )
 
     def parallel(self, support: Footstep, other: Footstep) -> bool:
-        """Whether the two feet stand side by side as for standing."""
-        rest = self.landing(support, self.still)
-        return self.same(other, rest)
+        """Whether the two feet stand side by side as for standing, or nearly so.
+
+        A foot that meets the floor early, or is moved to keep the balance, lands beside its
+        place. The pendulum has been brought to rest by then: another footstep would put it in
+        motion again, from where it cannot swing onto the other foot.
+        """
+        rest, (near, turned) = self.landing(support, self.still), self._stance
+        return (
+            abs(rest.x - other.x) < near
+            and abs(rest.y - other.y) < near
+            and abs(rest.yaw - other.yaw) < turned
+        )
 
     def same(self, one: Footstep, other: Footstep) -> bool:
         """Whether two footholds of a foot differ by no more than counts."""

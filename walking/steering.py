@@ -33,14 +33,19 @@ class Steering:
     Args:
         planner: makes strides of commands.
         limits: speed and acceleration limits.
+        selective: whether the pattern takes of a change only what the legs can do; then to
+            stand is a wish that needs no slew.
 
     Attributes:
         timing: wanted of the footsteps.
     """
 
-    def __init__(self, planner: FootstepPlanner, limits: LimitParameters) -> None:
+    def __init__(
+        self, planner: FootstepPlanner, limits: LimitParameters, *, selective: bool = False
+    ) -> None:
         self._planner = planner
         self._limits = limits
+        self._selective = selective
         self._slew = VelocitySlew(limits)
         self._asked: Command = VelocityCommand()
         self._state: CommandState | None = None
@@ -87,6 +92,20 @@ class Steering:
             self._steady, self._bound = steady, steady.bound
         else:
             self._follow_velocity(command, share)
+
+    def pace(self, before: Timing, *, stepping: bool) -> Timing:
+        """Timing of the footsteps to come.
+
+        Those that only close the stance are no slower than the walk was: while a slow footstep
+        lasts, a body that is still fast gets too far on its way.
+
+        Args:
+            before: timing of the footstep under way.
+            stepping: whether there is one.
+        """
+        if stepping and not self.moving and before.duration < self.timing.duration:
+            return before
+        return self.timing
 
     def wish(self, correction: Velocity) -> Strides:
         """What the footsteps obey.
@@ -153,6 +172,8 @@ class Steering:
             forward, left, turn = limited(command, self._limits)
             dared = VelocityCommand(share * forward, share * left, share * turn)
             bound.append(Limit.BALANCE)
+        if self._selective and command.velocity == STILL:
+            self._slew.start(*STILL)
         wanted = self._slew.follow(dared)
         bound.extend(speed_limits(command, self._limits))
         given = self.velocity

@@ -1,5 +1,8 @@
 """From the plan of the last tick to the one now wanted, as far as the ZMP allows."""
 
+from collections.abc import Callable
+from dataclasses import replace
+
 from walking.footstep_clock import Clock
 from walking.gait import Gait
 from walking.pattern import PatternGenerator, PendulumState
@@ -37,6 +40,9 @@ class Transition:
     (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a disturbance the generator may have
     no plan to carry on; then the wanted one is taken for the generator to come as near to it as
     it can.
+
+    A walk that is to end takes the shortest footstep after which the next one can close the
+    stance: whatever else bends, the body would get farther on its way and take more footsteps.
 
     Args:
         gait: holds the times.
@@ -100,40 +106,67 @@ class Transition:
         if self._generator.admits(state, ramps, region):
             return self._take(wanted, ramps, 1.0)
         old = Course(self.landing, before, self._clock, self.moving)
+        ending = None if moving else self._end(state, region, old, wanted)
+        if ending is not None:
+            return ending
         kept = self._plan(old)
         if self._generator.holds(kept):
             return self._bisect(state, region, old, wanted)
         return self._take(wanted, self._plan(wanted), 1.0)
 
+    def _end(
+        self, state: PendulumState, region: SupportRegion, old: Course, wanted: Course
+    ) -> Ramps | None:
+        """Reference of a walk that ends after the next footstep, None if it cannot yet."""
+
+        def course(share: float) -> Course:
+            return replace(wanted, landing=_landing(old.landing, wanted.landing, share))
+
+        longest = course(0.0)
+        ramps = self._plan(longest)
+        if not self._generator.admits(state, ramps, region):
+            return None
+        found = self._largest(state, region, course)
+        if found is None:
+            self._plan(longest)
+            found = self._take(longest, ramps, 0.0)
+        return found
+
     def _bisect(
         self, state: PendulumState, region: SupportRegion, old: Course, wanted: Course
     ) -> Ramps:
+        gait = self._gait
+
+        def course(share: float) -> Course:
+            gait.set_clock(old.clock)
+            gait.retime(old.clock.timing.towards(wanted.clock.timing, share))
+            return Course(
+                _landing(old.landing, wanted.landing, share),
+                old.strides.towards(wanted.strides, share),
+                gait.clock(),
+                old.moving,
+            )
+
+        return self._largest(state, region, course) or self._take(old, self._plan(old), 0.0)
+
+    def _largest(
+        self, state: PendulumState, region: SupportRegion, course: Callable[[float], Course]
+    ) -> Ramps | None:
+        """Reference of the course with the largest share that the generator admits, if any."""
         low, high = 0.0, 1.0
         best = None
         for _ in range(BISECTIONS):
             share = 0.5 * (low + high)
-            course = self._between(old, wanted, share)
-            trial = self._plan(course)
+            tried = course(share)
+            trial = self._plan(tried)
             if self._generator.admits(state, trial, region):
-                low, best = share, (course, trial)
+                low, best = share, (tried, trial)
             else:
                 high = share
         if best is None:
-            return self._take(old, self._plan(old), 0.0)
+            return None
         self._plan(best[0])
         return self._take(*best, low)
-
-    def _between(self, old: Course, wanted: Course, share: float) -> Course:
-        gait, a, b = self._gait, old.landing, wanted.landing
-        gait.set_clock(old.clock)
-        gait.retime(old.clock.timing.towards(wanted.clock.timing, share))
-        landing = Footstep(
-            left=b.left,
-            x=a.x + share * (b.x - a.x),
-            y=a.y + share * (b.y - a.y),
-            yaw=a.yaw + share * (b.yaw - a.yaw),
-        )
-        return Course(landing, old.strides.towards(wanted.strides, share), gait.clock(), old.moving)
 
     def _plan(self, course: Course) -> Ramps:
         self._gait.set_clock(course.clock)
@@ -143,3 +176,13 @@ class Transition:
         self.share, self.landing = share, course.landing
         self.moving, self.strides = course.moving, course.strides
         return ramps
+
+
+def _landing(a: Footstep, b: Footstep, share: float) -> Footstep:
+    """A landing `share` of the way from `a` to `b`."""
+    return Footstep(
+        left=b.left,
+        x=a.x + share * (b.x - a.x),
+        y=a.y + share * (b.y - a.y),
+        yaw=a.yaw + share * (b.yaw - a.yaw),
+    )

@@ -94,7 +94,9 @@ class Observer:
             )
         else:
             wanted = self._free.strides(command.velocity, timing.duration)
-            timely = timing == self._usual.cadence(command.velocity)
+            usual = self._usual.cadence(command.velocity)
+            # To stand says nothing of the time that it may take but that it may not take longer.
+            timely = timing == usual or (command == STAND and timing.duration < usual.duration)
         made = self._engine._placement._transition.strides
         same = np.allclose(
             (*made.left, *made.right), (*wanted.left, *wanted.right), rtol=0.0, atol=ROUNDING

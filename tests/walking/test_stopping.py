@@ -24,11 +24,11 @@ FASTEST = [
 ]
 
 
-def walk(velocity, stop_at):
+def walk(velocity, stop_at, *, selective):
     """Footsteps completed by the command to stop and by the time of standing."""
     h = PARAMETERS.gait.half_stance
     gait = Gait(PARAMETERS, PLANNER, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
-    steering = Steering(PLANNER, LIMITS)
+    steering = Steering(PLANNER, LIMITS, selective=selective)
     gait.start(0)
     at_stop = 0
     for tick in range(stop_at + 400):
@@ -36,7 +36,7 @@ def walk(velocity, stop_at):
         if tick == stop_at:
             at_stop = gait.completed
         steering.follow(command, settled=True, balanced=True, share=1.0)
-        gait.retime(steering.timing)
+        gait.retime(steering.pace(gait.timing, stepping=gait.stepping))
         wish = steering.wish(STILL)
         if gait.adjustable:
             gait.aim(gait.nominal(wish))
@@ -49,9 +49,10 @@ def walk(velocity, stop_at):
     return at_stop, gait.completed
 
 
+@pytest.mark.parametrize("selective", [False, True])
 @pytest.mark.parametrize("velocity", FASTEST)
-def test_two_footsteps_stop_the_fastest_walk_from_any_phase(velocity):
+def test_two_footsteps_stop_the_fastest_walk_from_any_phase(velocity, selective):
     for stop_at in range(400, 540, 17):
-        before, after = walk(velocity, stop_at)
+        before, after = walk(velocity, stop_at, selective=selective)
         # The footstep under way when the command comes is finished first.
         assert after - before <= 3, (stop_at, before, after)

@@ -52,13 +52,13 @@ def setting(robot):
     return gait, generator, Transition(gait, generator), region
 
 
-def tick(setting, wish, *, caught=False, timing=None):
+def tick(setting, wish, *, caught=False, timing=None, moving=True):
     gait, _, transition, region = setting
     transition.remember()
     if timing is not None:
         gait.retime(timing)
     state = PendulumState(0.0, 0.0)
-    return transition.admit(state, region, wish, moving=True, caught=caught)
+    return transition.admit(state, region, wish, moving=moving, caught=caught)
 
 
 def test_an_admitted_change_is_made_at_once(setting):
@@ -101,6 +101,44 @@ def test_times_change_by_the_same_share(setting):
     tick(setting, FAST, timing=Timing(14, 74, 0.025))
     assert transition.share == 0.5
     assert gait.timing.single == round(0.5 * (usual.single + 74))
+
+
+class FromHere(UpTo):
+    """Also, admits no walk that ends after a footstep shorter than `least`."""
+
+    least = 0.0
+
+    def admits(self, state, ramps, region):
+        ends = len(ramps) < 2 * PARAMETERS.gait.preview_steps
+        return super().admits(state, ramps, region) and not (
+            ends and self.landing(ramps) < self.least
+        )
+
+
+def test_a_walk_ends_by_the_shortest_footstep_from_which_it_can(setting):
+    gait, _, _, region = setting
+    generator = FromHere(gait)
+    transition = Transition(gait, generator)
+    setting = gait, generator, transition, region
+    tick(setting, FAST)
+    fast, still = transition.landing.x, gait._planner.still
+    generator.least = 0.3 * fast
+    ramps = tick(setting, still, moving=False)
+    assert not transition.moving
+    assert transition.strides == still
+    assert 0.3 * fast <= transition.landing.x <= (0.3 + 0.5**BISECTIONS) * fast
+    assert any(ramps is one for one in generator.asked)
+
+
+def test_a_walk_that_cannot_end_yet_goes_on(setting):
+    gait, _, _, region = setting
+    generator = FromHere(gait)
+    transition = Transition(gait, generator)
+    setting = gait, generator, transition, region
+    tick(setting, FAST)
+    generator.least = 2.0 * transition.landing.x
+    tick(setting, gait._planner.still, moving=False)
+    assert transition.moving
 
 
 def test_without_a_plan_to_carry_on_the_wanted_one_is_taken(setting):
