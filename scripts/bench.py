@@ -1,7 +1,8 @@
 """Where the time of the closed loop goes, and how far it is from the floor under it.
 
     python scripts/bench.py                       # `course`, 40 s
-    python scripts/bench.py --obstacles 8 16 32 64 128 --write
+    python scripts/bench.py --obstacles 8 16 32 64 128 --beacons 0 6 --seconds 30 100 300 --write
+    python scripts/bench.py --check               # against the ratios kept with the results
 
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
 images. It runs in turn with the loop, second by second, so that the ratio of the two holds
@@ -10,166 +11,27 @@ threads; the time on the clock is no longer unless other work wants the same cor
 """
 
 import argparse
-import tempfile
-from pathlib import Path
+import json
+from collections.abc import Iterable
 
-import mujoco
-from stopwatch import Stopwatch
-from study_page import command_line, environment
+from loop_bench import Bench
+from study_page import RESULTS, command_line, environment
 
-from hsr8.evaluation.metrics import Metrics
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder import run_folder
-from hsr8.recorder.manifest import Manifest
-from hsr8.recorder.record import TickRecord
-from hsr8.recorder.rerun_log import RerunLog
-from hsr8.recorder.run_folder import RunFolder
-from hsr8.recorder.walking_table import WalkingTableWriter
-from hsr8.scenario.loader import dump, load
+from hsr8.recorder import atomic
+from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
-from hsr8.world.camera import HEAD_CAMERA, RenderedCamera
-from hsr8.world.image_noise import ImageNoise
-from hsr8.world.physics import CONTROL_PERIOD
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "loop-time.md"
-PACKAGES = ("hsr8", "mujoco", "numpy", "rerun-sdk")
+PAGE, BASELINE = RESULTS / "loop-time.md", RESULTS / "loop-ratios.json"
+PACKAGES = ("hsr8", "mujoco", "numba", "numpy", "rerun-sdk")
 EARLIER = "\n## Earlier states\n"  # what the page says from here on is not measured anew
-FLOOR = ("floor: physics", "floor: images")
-SECOND = 1.0  # the floor has its turn after so much simulated time [s]
+ENDLESS = "paper"  # a scenario that goes on for as long as is asked
 MOST_OF_A_KIND = 64  # obstacles of one kind that a world may have
 USUAL = (5.0, 16)  # side of the field [m] and obstacles in it
-
-
-class Floor:
-    """Listener that steps and renders the bare model for as long as the loop has run."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        model = simulation.model
-        self._model, self._data = model, mujoco.MjData(model)
-        mujoco.mj_resetDataKeyframe(model, self._data, model.key("walk_ready").id)
-        camera = simulation.scenario.camera
-        self._rendered = camera.source == "egl"
-        self._renderer = mujoco.Renderer(model, camera.height, camera.width)
-        self._steps = round(CONTROL_PERIOD / model.opt.timestep)
-        self._images = 0
-        self._from = 0.0
-
-    def on_record(self, record: TickRecord) -> None:
-        """Take the turn when it is due."""
-        self._images += self._rendered and record.frame is not None
-        if record.time - self._from < SECOND - 1e-9:
-            return
-        for _ in range(round((record.time - self._from) / CONTROL_PERIOD)):
-            self.physics()
-        for _ in range(self._images):
-            self.image()
-        self._images, self._from = 0, record.time
-
-    def physics(self) -> None:
-        """One control tick."""
-        mujoco.mj_step(self._model, self._data, self._steps)
-
-    def image(self) -> None:
-        """One image."""
-        self._renderer.update_scene(self._data, camera=HEAD_CAMERA)
-        self._renderer.render()
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Nothing."""
-
-    def close(self, exit_reason: str) -> None:
-        """Free the OpenGL context."""
-        self._renderer.close()
-
-
-class Bench:
-    """One run, timed.
-
-    Attributes:
-        watch: time of every stage.
-        simulated: [s].
-    """
-
-    def __init__(self, scenario: Scenario, seed: int) -> None:
-        simulation = Simulation(scenario, seed)
-        floor = Floor(simulation)
-        with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
-            path = RunFolder.create(Path(out), scenario.name, seed)
-            manifest = Manifest.now(scenario.name, seed, "", require_gl())
-            mission = scenario.navigation.mission
-            layout, model, camera = simulation.layout, simulation.model, scenario.camera
-            simulation.listeners += [
-                floor,
-                RunFolder(path, manifest, dump(scenario), len(layout.movers)),
-                Metrics(layout, mission.r_via, mission.r_goal),
-                WalkingTableWriter(path / run_folder.WALKING, model, simulation.index),
-                RerunLog(
-                    path / run_folder.LOG, model, layout, (camera.width, camera.height), "bench"
-                ),
-            ]
-            self.watch = watch
-            self._watch(simulation)
-            outcome = simulation.run()
-        self.simulated = outcome.time
-        self.floor = watch.total(*FLOOR)
-        self.loop = sum(map(sum, watch.times.values())) - self.floor
-
-    @property
-    def ratio(self) -> float:
-        """Loop over floor [1]."""
-        return self.loop / self.floor
-
-    def table(self) -> list[str]:
-        """Rows of the stages, the floor last."""
-        lines = [
-            "| stage | calls | mean [ms] | p99 [ms] | per simulated second [ms] | over the floor |",
-            "|---|---|---|---|---|---|",
-        ]
-        for stage in self.watch.times:
-            calls, mean, late = self.watch.row(stage)
-            if not calls or stage == "the rest of the loop":
-                continue
-            total = self.watch.total(stage)
-            lines.append(
-                f"| {stage} | {calls} | {mean:.3f} | {late:.3f} | "
-                f"{1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
-            )
-        rest = self.watch.total("the rest of the loop")
-        for name, total in (("the rest of the loop", rest), ("whole loop", self.loop)):
-            lines.append(
-                f"| {name} | | | | {1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
-            )
-        return lines
-
-    def _watch(self, simulation: Simulation) -> None:
-        """Watch every stage by the classes that this run has made."""
-        robot = simulation._robot
-        parts = vars(robot) | vars(robot._decisions)
-        stages = [
-            (type(simulation), "step", "the rest of the loop"),
-            (type(simulation._body), "sense", "sense"),
-            (type(parts["_walking"]), "step", "walking tick"),
-            (type(parts["_walking"]), "state", "walking state"),
-            (type(simulation._body), "apply", "physics"),
-            (type(simulation._body), "truth", "truth"),
-            (RenderedCamera, "capture", "render and read"),
-            (ImageNoise, "spoil", "image noise"),
-            (type(parts["_vision"]), "detect", "vision"),
-            (type(parts["_belief"]), "update", "belief"),
-            (type(parts["_mission"]), "update", "mission"),
-            (type(parts["_planner"]), "plan", "planner"),
-            (type(parts["_gaze"]), "choose", "gaze"),
-            (RunFolder, "on_record", "run folder"),
-            (Metrics, "on_record", "metrics"),
-            (WalkingTableWriter, "on_record", "walking table"),
-            (RerunLog, "on_record", "Rerun log"),
-            (Floor, "on_record", "floor: its own turn"),
-            (Floor, "physics", FLOOR[0]),
-            (Floor, "image", FLOOR[1]),
-        ]
-        for owner, method, stage in stages:
-            self.watch.watch(owner, method, stage)
+CHECKED = ("course", 5, "duration=8")  # scenario, seed and length that the check runs
+SLOWER = 1.2  # a stage that takes so many times its ratio of the baseline is told of [1]
+SMALL = 0.04  # stages of less than this are not looked at: chance moves them as far [floors]
 
 
 def world_of(obstacles: int) -> list[str]:
@@ -183,15 +45,92 @@ def world_of(obstacles: int) -> list[str]:
     ]
 
 
+def grown(what: str, sizes: Iterable[int], scenarios: Iterable[Scenario]) -> list[str]:
+    """Table of loop and floor in growing runs."""
+    lines = ["", f"| {what} | loop [ms/s] | floor [ms/s] | ratio |", "|---|---|---|---|"]
+    for size, scenario in zip(sizes, scenarios, strict=True):
+        bench = Bench(scenario, scenario.seed)
+        loop, floor = (1e3 * time / bench.simulated for time in (bench.loop, bench.floor))
+        lines.append(f"| {size} | {loop:.0f} | {floor:.0f} | {bench.ratio:.2f} |")
+        print(lines[-1], flush=True)
+    return lines
+
+
+def growth(options: argparse.Namespace, settings: list[str]) -> list[str]:
+    """Tables of the growth that was asked for."""
+
+    def worlds(changes: Iterable[list[str]]) -> Iterable[Scenario]:
+        for change in changes:
+            yield load(options.scenario, [*settings, *change], options.seed)
+
+    lines: list[str] = []
+    if options.obstacles:
+        dense = worlds(world_of(n) for n in options.obstacles)
+        lines += grown("obstacles", options.obstacles, dense)
+    if options.beacons:
+        lit = worlds([f"world.beacons={str(n > 0).lower()}"] for n in options.beacons)
+        lines += grown("beacons", options.beacons, lit)
+    if options.seconds:
+        tours = (load(ENDLESS, [f"duration={s}"], options.seed) for s in options.seconds)
+        lines += grown(f"`{ENDLESS}` [s]", options.seconds, tours)
+    return lines
+
+
+def warm(scenario: str, seed: int) -> None:
+    """Kernels are compiled, or read from where they are kept, before anything is timed."""
+    Simulation(load(scenario, ["duration=3"], seed), seed).run()
+
+
+def ratios(rounds: int) -> dict[str, float]:
+    """Least ratio of every stage to the floor in so many runs: other work only adds."""
+    name, seed, length = CHECKED
+    runs = [Bench(load(name, [length], seed), seed).ratios() for _ in range(rounds)]
+    return {stage: min(run[stage] for run in runs) for stage in runs[0]}
+
+
+def slower(found: dict[str, float], kept: dict[str, float]) -> list[str]:
+    """A line for every stage that is much slower than it was."""
+    return [
+        f"{stage}: {ratio:.2f} floors, {ratio / kept[stage] - 1.0:.0%} above {kept[stage]:.2f}"
+        for stage, ratio in found.items()
+        if stage in kept and ratio > SLOWER * kept[stage] and ratio > SMALL
+    ]
+
+
+def check() -> None:
+    """Warn of every stage that has become slower; it never fails."""
+    warm(*CHECKED[:2])
+    kept = json.loads(BASELINE.read_text())["ratios"]
+    found = ratios(1)
+    if slower(found, kept):
+        again = ratios(1)
+        found = {stage: min(ratio, again[stage]) for stage, ratio in found.items()}
+    for line in slower(found, kept):
+        print(f"warning: {line}")
+    print(f"the loop takes {found['whole loop']:.2f} floors; {kept['whole loop']:.2f} are kept")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scenario", default="course")
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--duration", type=float, default=40.0, help="simulated [s]")
     parser.add_argument("--obstacles", type=int, nargs="*", default=[], help="worlds to compare")
+    parser.add_argument("--beacons", type=int, choices=(0, 6), nargs="*", default=[])
+    parser.add_argument("--seconds", type=int, nargs="*", default=[], help="lengths to compare")
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE of the scenario")
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
+    parser.add_argument("--check", action="store_true", help=f"compare with {BASELINE.name}")
+    parser.add_argument("--keep", action="store_true", help=f"write {BASELINE.name}")
     options = parser.parse_args()
+    if options.check:
+        check()
+        return
+    warm(options.scenario, options.seed)
+    if options.keep:
+        found = {stage: round(ratio, 3) for stage, ratio in ratios(3).items()}
+        atomic.write_json(BASELINE, {"run": CHECKED, "of": environment(PACKAGES), "ratios": found})
+        return
     settings = [f"duration={options.duration:g}", *options.set]
     bench = Bench(load(options.scenario, settings, options.seed), options.seed)
     lines = [
@@ -202,16 +141,7 @@ def main() -> None:
         *bench.table(),
     ]
     print("\n".join(lines), flush=True)
-    growth = []
-    for obstacles in options.obstacles:
-        scenario = load(options.scenario, [*settings, *world_of(obstacles)], options.seed)
-        grown = Bench(scenario, options.seed)
-        cells = (1e3 * grown.loop / grown.simulated, 1e3 * grown.floor / grown.simulated)
-        growth.append(f"| {obstacles} | {cells[0]:.0f} | {cells[1]:.0f} | {grown.ratio:.2f} |")
-        print(growth[-1], flush=True)
-    if growth:
-        lines += ["", "| obstacles | loop [ms/s] | floor [ms/s] | ratio |", "|---|---|---|---|"]
-        lines += growth
+    lines += growth(options, settings)
     if options.write:
         measured = f"{environment(PACKAGES)}, {require_gl()}."
         text = ["# Time of the closed loop", "", measured, "", f"    {command_line()}", ""]

@@ -1,0 +1,168 @@
+"""One run of the closed loop, timed stage by stage, in turn with the floor under it.
+
+The floor is MuJoCo stepping the same model with constant controls and rendering as many
+images. It runs in turn with the loop, second by second, so that the ratio of the two holds
+on any machine and while other work comes and goes. All times are processor time of all
+threads; the time on the clock is no longer unless other work wants the same cores.
+"""
+
+import tempfile
+from pathlib import Path
+
+import mujoco
+from stopwatch import Stopwatch
+
+from hsr8.evaluation.metrics import Metrics
+from hsr8.gl import require_gl
+from hsr8.loop import Simulation
+from hsr8.recorder import run_folder
+from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.record import TickRecord
+from hsr8.recorder.rerun_log import RerunLog
+from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.walking_table import WalkingTableWriter
+from hsr8.scenario.loader import dump
+from hsr8.scenario.schema import Scenario
+from hsr8.world.camera import HEAD_CAMERA, RenderedCamera
+from hsr8.world.image_noise import ImageNoise
+from hsr8.world.physics import CONTROL_PERIOD
+
+FLOOR = ("floor: physics", "floor: images")
+REST, WHOLE = "the rest of the loop", "whole loop"
+SECOND = 1.0  # the floor has its turn after so much simulated time [s]
+
+
+class Floor:
+    """Listener that steps and renders the bare model for as long as the loop has run."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        model = simulation.model
+        self._model, self._data = model, mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, self._data, model.key("walk_ready").id)
+        camera = simulation.scenario.camera
+        self._rendered = camera.source == "egl"
+        self._renderer = mujoco.Renderer(model, camera.height, camera.width)
+        self._steps = round(CONTROL_PERIOD / model.opt.timestep)
+        self._images = 0
+        self._from = 0.0
+
+    def on_record(self, record: TickRecord) -> None:
+        """Take the turn when it is due."""
+        self._images += self._rendered and record.frame is not None
+        if record.time - self._from < SECOND - 1e-9:
+            return
+        for _ in range(round((record.time - self._from) / CONTROL_PERIOD)):
+            self.physics()
+        for _ in range(self._images):
+            self.image()
+        self._images, self._from = 0, record.time
+
+    def physics(self) -> None:
+        """One control tick."""
+        mujoco.mj_step(self._model, self._data, self._steps)
+
+    def image(self) -> None:
+        """One image."""
+        self._renderer.update_scene(self._data, camera=HEAD_CAMERA)
+        self._renderer.render()
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Nothing."""
+
+    def close(self, exit_reason: str) -> None:
+        """Free the OpenGL context."""
+        self._renderer.close()
+
+
+class Bench:
+    """One run, timed.
+
+    Attributes:
+        watch: time of every stage.
+        simulated: [s].
+    """
+
+    def __init__(self, scenario: Scenario, seed: int) -> None:
+        simulation = Simulation(scenario, seed)
+        floor = Floor(simulation)
+        with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
+            path = RunFolder.create(Path(out), scenario.name, seed)
+            manifest = Manifest.now(scenario.name, seed, "", require_gl())
+            mission = scenario.navigation.mission
+            layout, model, camera = simulation.layout, simulation.model, scenario.camera
+            simulation.listeners += [
+                floor,
+                RunFolder(path, manifest, dump(scenario), len(layout.movers)),
+                Metrics(layout, mission.r_via, mission.r_goal),
+                WalkingTableWriter(path / run_folder.WALKING, model, simulation.index),
+                RerunLog(
+                    path / run_folder.LOG, model, layout, (camera.width, camera.height), "bench"
+                ),
+            ]
+            self.watch = watch
+            self._watch(simulation)
+            outcome = simulation.run()
+        self.simulated = outcome.time
+        self.floor = watch.total(*FLOOR)
+        self.loop = sum(map(sum, watch.times.values())) - self.floor
+
+    @property
+    def ratio(self) -> float:
+        """Loop over floor [1]."""
+        return self.loop / self.floor
+
+    def ratios(self) -> dict[str, float]:
+        """Of every stage and of the whole, over the floor [1]."""
+        stages = [stage for stage in self.watch.times if not stage.startswith("floor")]
+        found = {stage: self.watch.total(stage) / self.floor for stage in stages}
+        return found | {WHOLE: self.ratio}
+
+    def table(self) -> list[str]:
+        """Rows of the stages, the floor last."""
+        lines = [
+            "| stage | calls | mean [ms] | p99 [ms] | per simulated second [ms] | over the floor |",
+            "|---|---|---|---|---|---|",
+        ]
+        for stage in self.watch.times:
+            calls, mean, late = self.watch.row(stage)
+            if not calls or stage == REST:
+                continue
+            total = self.watch.total(stage)
+            lines.append(
+                f"| {stage} | {calls} | {mean:.3f} | {late:.3f} | "
+                f"{1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
+            )
+        for name, total in ((REST, self.watch.total(REST)), (WHOLE, self.loop)):
+            lines.append(
+                f"| {name} | | | | {1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
+            )
+        return lines
+
+    def _watch(self, simulation: Simulation) -> None:
+        """Watch every stage by the classes that this run has made."""
+        robot = simulation._robot
+        parts = vars(robot) | vars(robot._decisions)
+        stages = [
+            (type(simulation), "step", REST),
+            (type(simulation._body), "sense", "sense"),
+            (type(parts["_walking"]), "step", "walking tick"),
+            (type(parts["_walking"]), "state", "walking state"),
+            (type(simulation._body), "apply", "physics"),
+            (type(simulation._body), "truth", "truth"),
+            (RenderedCamera, "capture", "render and read"),
+            (ImageNoise, "spoil", "image noise"),
+            (type(parts["_vision"]), "detect", "vision"),
+            (type(parts["_belief"]), "update", "belief"),
+            (type(parts["_mission"]), "update", "mission"),
+            (type(parts["_planner"]), "plan", "planner"),
+            (type(parts["_gaze"]), "choose", "gaze"),
+            (RunFolder, "on_record", "run folder"),
+            (Metrics, "on_record", "metrics"),
+            (WalkingTableWriter, "on_record", "walking table"),
+            (RerunLog, "on_record", "Rerun log"),
+            (Floor, "on_record", "floor: its own turn"),
+            (Floor, "physics", FLOOR[0]),
+            (Floor, "image", FLOOR[1]),
+        ]
+        for owner, method, stage in stages:
+            self.watch.watch(owner, method, stage)
