@@ -37,6 +37,7 @@ class BeliefLayer:
         self._stream = stream
         self._map_period = map_period
         self._map_at = -np.inf
+        self._map_shape: tuple[int, ...] = ()
         self._motion: MotionDecision | None = None  # whose virtual obstacles are shown
         self._aim: list[float] = []
         solid = rr.components.FillMode.Solid
@@ -170,20 +171,11 @@ class BeliefLayer:
         grid = belief.local_map
         # The first row of an image is its top, the first row of the map its least y.
         cells = np.round(255.0 * grid.confidence[::-1]).astype(np.uint8)
-        image_format = rr.components.ImageFormat(
-            width=cells.shape[1],
-            height=cells.shape[0],
-            color_model=rr.ColorModel.L,
-            channel_datatype=rr.ChannelDatatype.U8,
-        )
+        if cells.shape != self._map_shape:
+            self._map_shape = cells.shape
+            self._stream.log("/belief/local_map", _map_look(grid.cell, cells.shape), static=True)
         self._map.add(
-            time,
-            data=[cells.tobytes()],
-            format=[image_format],
-            cell_size=[grid.cell],
-            translation=[[*grid.origin, MAP_HEIGHT]],
-            opacity=[0.35],
-            colormap=[rr.components.Colormap.Grayscale],
+            time, data=[cells.ravel()], translation=np.array([[*grid.origin, MAP_HEIGHT]])
         )
 
     @staticmethod
@@ -198,6 +190,21 @@ class BeliefLayer:
             half_sizes=np.column_stack([SIGMAS * half, np.full(n, FLAT)]),
             quaternions=quaternions,
         )
+
+
+def _map_look(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
+    """What never changes of a map of so many rows and columns."""
+    return rr.GridMap.from_fields(
+        format=rr.components.ImageFormat(
+            width=shape[1],
+            height=shape[0],
+            color_model=rr.ColorModel.L,
+            channel_datatype=rr.ChannelDatatype.U8,
+        ),
+        cell_size=cell,
+        opacity=0.35,
+        colormap=rr.components.Colormap.Grayscale,
+    )
 
 
 def _rings(colour: palette.Colour, fill: rr.components.FillMode) -> rr.Ellipsoids3D:

@@ -117,16 +117,22 @@ def _belongs(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
 def rotate(q: Array, v: Array) -> Array:
     """Rotate vectors (..., 3) by quaternions w-x-y-z (..., 4)."""
     axis = q[..., 1:]
-    t = 2.0 * np.cross(axis, v)
-    rotated: Array = v + q[..., :1] * t + np.cross(axis, t)
+    t = 2.0 * _cross(axis, v)
+    rotated: Array = v + q[..., :1] * t + _cross(axis, t)
     return rotated
 
 
 def multiply(a: Array, b: Array) -> Array:
     """Hamilton product of quaternions w-x-y-z (..., 4)."""
     w = a[..., :1] * b[..., :1] - (a[..., 1:] * b[..., 1:]).sum(axis=-1, keepdims=True)
-    xyz = a[..., :1] * b[..., 1:] + b[..., :1] * a[..., 1:] + np.cross(a[..., 1:], b[..., 1:])
+    xyz = a[..., :1] * b[..., 1:] + b[..., :1] * a[..., 1:] + _cross(a[..., 1:], b[..., 1:])
     return np.concatenate([w, xyz], axis=-1)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Cross products (..., 3); NumPy's own takes three times as long on arrays so small."""
+    found: Array = a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
+    return found
 
 
 def xyzw(q: Array) -> Array:
