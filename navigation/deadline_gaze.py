@@ -69,7 +69,7 @@ def deadline_votes(
 
 def self_urgency(belief: Belief, parameters: NavigationParameters) -> float:
     """Uncertainty of the pose over what is tolerable, in [0, 1]."""
-    sigma = float(largest_deviation(belief.pose_covariance[:2, :2]))
+    sigma = largest_deviation(belief.pose_covariance[:2, :2])
     turn = float(np.sqrt(max(belief.pose_covariance[2, 2], 0.0)))
     e, d = parameters.evaluation, parameters.gaze.deadline
     return min(1.0, max(sigma / e.t_sf, turn / d.t_heading))

@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import hypot, sqrt
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from navigation.belief import Motion, Track
@@ -47,7 +49,8 @@ class ObstacleSet:
         """Stack `tracks`; a track classified static has speed 0."""
         n = len(tracks)
         static = np.array([t.motion is Motion.STATIC for t in tracks], dtype=np.bool_)
-        covariance = np.array([t.covariance for t in tracks]).reshape(n, 4, 4)
+        covariances = np.array([t.covariance for t in tracks], dtype=np.float64)
+        sigma, speed_sigma = _deviations(covariances.reshape(n, 4, 4))
         velocity = np.array([t.velocity for t in tracks], dtype=np.float64).reshape(n, 2)
         velocity[static] = 0.0
         return cls(
@@ -56,8 +59,8 @@ class ObstacleSet:
             velocity=velocity,
             speed=np.hypot(velocity[:, 0], velocity[:, 1]),
             radius=np.array([t.radius for t in tracks], dtype=np.float64),
-            sigma=largest_deviation(covariance[:, :2, :2]),
-            speed_sigma=largest_deviation(covariance[:, 2:, 2:]),
+            sigma=sigma,
+            speed_sigma=speed_sigma,
             static=static,
             moving=np.array([t.motion is Motion.MOVING for t in tracks], dtype=np.bool_),
             age=np.array([t.age for t in tracks], dtype=np.float64),
@@ -79,10 +82,24 @@ class ObstacleSet:
         )
 
 
-def largest_deviation(covariance: Array) -> Array:
-    """sqrt(lambda_max) of symmetric 2 x 2 matrices of shape (..., 2, 2), shape (...)."""
-    mean = 0.5 * (covariance[..., 0, 0] + covariance[..., 1, 1])
-    half = 0.5 * (covariance[..., 0, 0] - covariance[..., 1, 1])
-    largest = mean + np.hypot(half, covariance[..., 0, 1])
-    deviation: Array = np.sqrt(np.maximum(largest, 0.0))
-    return deviation
+def largest_deviation(covariance: Array) -> float:
+    """sqrt(lambda_max) of a symmetric matrix (2, 2)."""
+    (xx, xy), (_, yy) = covariance.tolist()
+    return _deviation(xx, xy, yy)
+
+
+@njit(cache=True)
+def _deviation(xx: float, xy: float, yy: float) -> float:
+    return sqrt(max(0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy), 0.0))
+
+
+@njit(cache=True)
+def _deviations(covariances: Array) -> tuple[Array, Array]:
+    """sqrt(lambda_max) of the blocks of positions and velocities of (n, 4, 4): (n,), (n,)."""
+    n = len(covariances)
+    places, velocities = np.empty(n), np.empty(n)
+    for i in range(n):
+        P = covariances[i]
+        places[i] = _deviation(P[0, 0], P[0, 1], P[1, 1])
+        velocities[i] = _deviation(P[2, 2], P[2, 3], P[3, 3])
+    return places, velocities

@@ -82,7 +82,7 @@ def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:
         pose_covariance: of x, y, heading (3, 3).
         parameters: thresholds; `t_heading` = 0 ignores the heading.
     """
-    psi = float(largest_deviation(pose_covariance[:2, :2])) / parameters.t_sf
+    psi = largest_deviation(pose_covariance[:2, :2]) / parameters.t_sf
     if parameters.t_heading > 0.0:
         psi = max(psi, float(np.sqrt(max(pose_covariance[2, 2], 0.0))) / parameters.t_heading)
     return min(1.0, psi)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from navigation.belief import Motion
-from navigation.obstacle_set import ObstacleSet, largest_deviation
+from navigation.obstacle_set import ObstacleSet, _deviations, largest_deviation
 
 
 def test_largest_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
@@ -10,10 +10,16 @@ def test_largest_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
     a = rng.normal(size=(50, 2, 2))
     p = a @ a.transpose(0, 2, 1)
     expected = np.sqrt(np.linalg.eigvalsh(p)[:, -1])
-    assert largest_deviation(p) == pytest.approx(expected)
+    assert [largest_deviation(q) for q in p] == pytest.approx(expected)
     c, s = np.cos(0.7), np.sin(0.7)
     turn = np.array([[c, -s], [s, c]])
-    assert largest_deviation(turn @ p @ turn.T) == pytest.approx(expected)
+    assert [largest_deviation(q) for q in turn @ p @ turn.T] == pytest.approx(expected)
+    both = np.zeros((50, 4, 4))
+    both[:, :2, :2], both[:, 2:, 2:] = p, p[::-1]
+    for deviations in (_deviations, _deviations.py_func):
+        places, velocities = deviations(both)
+        assert places == pytest.approx(expected)
+        assert velocities == pytest.approx(expected[::-1])
 
 
 def test_static_tracks_have_no_speed(track):
