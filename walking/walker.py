@@ -10,6 +10,7 @@ from walking.engine import WalkingEngine
 from walking.get_up import GetUp, Outcome
 from walking.odometry import LegOdometry
 from walking.parameters import WalkingParameters
+from walking.rehearsal import rehearse
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 from walking.state import Phase, WalkingState
@@ -34,6 +35,7 @@ class Walker:
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
         self._robot = robot
         self._parameters = parameters
+        rehearse(robot, parameters)
         self._odometry = LegOdometry(parameters.odometry)
         self._engine = WalkingEngine(robot, parameters, self._odometry)
         self.get_up: GetUp | None = None

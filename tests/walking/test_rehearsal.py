@@ -1,0 +1,32 @@
+"""The rehearsal of a walk."""
+
+import pytest
+
+from walking import foothold_kernel, leg_kernel, swing_kernel, zmp_kernel
+from walking.parameters import WalkingParameters
+from walking.rehearsal import rehearse
+
+
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        (zmp_kernel, "plan"),
+        (foothold_kernel, "sequence"),
+        (foothold_kernel, "ramps"),
+        (foothold_kernel, "swings"),
+        (swing_kernel, "react"),
+        (leg_kernel, "measured_feet"),
+        (leg_kernel, "pose_legs"),
+        (leg_kernel, "offsets"),
+    ],
+)
+def test_it_calls_what_a_tick_calls(robot, monkeypatch, module, name):
+    calls, kernel = [], getattr(module, name)
+
+    def counted(*arguments):
+        calls.append(arguments)
+        return kernel(*arguments)
+
+    monkeypatch.setattr(module, name, counted)
+    rehearse(robot, WalkingParameters())
+    assert calls

@@ -1,0 +1,37 @@
+"""A few steps walked in thought, so that the first real tick is as quick as any other."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.robot_model import RobotModel
+from walking.sensing import BodySensors
+
+START = 0.03  # time in double support before the first footstep [s]
+TICKS = 20
+
+
+def rehearse(robot: RobotModel, parameters: WalkingParameters) -> None:
+    """Have everything compiled, or loaded, that a tick calls; the robot does not move.
+
+    Args:
+        robot: the robot's numbers.
+        parameters: of the engine.
+    """
+    at_once = replace(parameters.gait, settle_time=0.0, start_time=START)
+    engine = WalkingEngine(robot, replace(parameters, gait=at_once))
+    sensors = BodySensors(
+        joint_position=robot.ready,
+        joint_velocity=np.zeros_like(robot.ready),
+        gyro=np.zeros(3),
+        accelerometer=np.array([0.0, 0.0, GRAVITY]),
+        orientation=np.array([1.0, 0.0, 0.0, 0.0]),
+        foot_force=np.full((2, 4), robot.mass * GRAVITY / 8.0),
+    )
+    forward = VelocityCommand(parameters.limits.forward_acceleration * CONTROL_PERIOD)
+    for _ in range(TICKS):
+        engine.step(sensors, forward, HeadTarget())
+    engine.state()
