@@ -1,7 +1,6 @@
 """Where the body's mass centre is, seen from the feet that the plan stands on."""
 
-from math import cos, sin
-
+from walking import leg_kernel
 from walking.estimator import ErrorFilter
 from walking.gait import Gait
 from walking.measurement import BodyMeasurement
@@ -41,29 +40,21 @@ class ComError:
         Returns:
             error of the DCM [m].
         """
-        errors, arms = [], []
-        for foot, reference in zip(body.feet, gait.feet, strict=True):
-            # Measured arm from the foot to the mass centre, the foot taken as planned.
-            turned = reference.yaw.position - foot.yaw
-            ct, st = cos(turned), sin(turned)
-            dx, dy = body.com[0] - foot.x, body.com[1] - foot.y
-            arm = (ct * dx - st * dy, st * dx + ct * dy)
-            arms.append(arm)
-            errors.append(
-                (
-                    arm[0] + reference.x.position - planned[0],
-                    arm[1] + reference.y.position - planned[1],
-                )
-            )
+        (left, right), (one, other) = body.feet, gait.feet
+        (lx, ly, lax, lay), (rx, ry, rax, ray) = leg_kernel.com_errors(
+            body.com,
+            ((left.x, left.y, left.yaw), (right.x, right.y, right.yaw)),
+            (one.row, other.row),
+            planned,
+        )
         weight = gait.right_weight
         rest = 1.0 - weight
-        (lx, ly), (rx, ry) = errors
         e, before = self.filter, self._right_weight
         self._right_weight = weight
         if before is not None and weight != before:
             e.shift((weight - before) * (rx - lx), (weight - before) * (ry - ly))
-        arm_x = rest * arms[0][0] + weight * arms[1][0]
-        arm_y = rest * arms[0][1] + weight * arms[1][1]
+        arm_x = rest * lax + weight * rax
+        arm_y = rest * lay + weight * ray
         e.update(
             (rest * lx + weight * rx, rest * ly + weight * ry),
             zmp_shift,

@@ -87,7 +87,8 @@ class SingleSupport:
     def phase(self, elapsed: int) -> float:
         """Progress of the swing, 0 before and 1 after it [1]."""
         share = (elapsed - self.first) / (self.last - self.first)
-        return min(1.0, max(0.0, self.origin + (1.0 - self.origin) * share))
+        phase = self.origin + (1.0 - self.origin) * share
+        return 0.0 if phase < 0.0 else 1.0 if phase > 1.0 else phase
 
 
 class Clock(NamedTuple):

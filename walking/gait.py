@@ -33,6 +33,7 @@ class Gait:
         stepping: whether a footstep is under way.
         support: index of the support foot of this footstep.
         footholds: where the feet stand, or last stood.
+        spots: where the ZMP is meant to be under either of these if it carries alone [m].
         feet: reference of both feet.
         landing: where the swing foot is about to land.
         completed: number of completed footsteps.
@@ -63,6 +64,8 @@ class Gait:
         self.stepping = False
         self.support = 0
         self.footholds = list(stance)
+        under = self._reference.under
+        self.spots = [under(stance[0]), under(stance[1])]
         self.feet = (FootReference(stance[0]), FootReference(stance[1]))
         self.landing = stance[1]
         self.completed = 0
@@ -109,16 +112,14 @@ class Gait:
     def zmp(self) -> Point:
         """Scheduled ZMP [m]."""
         goal = (
-            self.zmp_point(self.footholds[self.support])
-            if self.stepping
-            else self._reference.between(*self.footholds)
+            self.spots[self.support] if self.stepping else self._reference.between(*self.footholds)
         )
         return self._shift.zmp_at(self._tick, goal)
 
     @property
     def swing_phase(self) -> float:
         """Progress of the swing, 0 before and 1 after it [1]."""
-        return self._single.phase(self._elapsed) if self.stepping else 1.0
+        return self._single.phase(self._tick - self._shift.end) if self.stepping else 1.0
 
     @property
     def ticks_left(self) -> int:
@@ -328,9 +329,10 @@ class Gait:
     def _land(self, *, moving: bool) -> None:
         support, swing = self.support, self.swing
         self.footholds[swing] = self.landing
+        self.spots[swing] = self._reference.under(self.landing)
         self.feet[swing].stand(self.landing)
         self.completed += 1
-        here = self.zmp_point(self.footholds[support])
+        here = self.spots[support]
         following = foothold(self._future[1].tolist()) if len(self._future) > 1 else None
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
@@ -351,7 +353,3 @@ class Gait:
         self._single = self._window.single_support(self.timing.single)
         self._lift = self.timing.lift
         self.landing = self.nominal(self._planner.still)
-
-    def zmp_point(self, foot: Footstep) -> Point:
-        """Where the ZMP is meant to be under a foot that carries alone [m]."""
-        return self._reference.under(foot)

@@ -184,6 +184,39 @@ def level(point: Vector, tilt: tuple[float, float]) -> Vector:
 
 
 @njit(cache=True)
+def com_errors(
+    com: Vector, feet: tuple[Vector, Vector], references: tuple[Foot, Foot], planned: Point
+) -> tuple[tuple[float, float, float, float], tuple[float, float, float, float]]:
+    """Where the mass centre is by either foot, that foot taken to stand where it is planned.
+
+    Args:
+        com: measured mass centre in the level frame [m].
+        feet: measured x, y [m] and yaw [rad] of the feet in the same frame.
+        references: of the feet.
+        planned: mass centre [m].
+
+    Returns:
+        for either foot the mass centre less the planned one, and less the foot, in the plan frame
+        x, y, x, y [m].
+    """
+    return (
+        _com_error(com, feet[0], references[0], planned),
+        _com_error(com, feet[1], references[1], planned),
+    )
+
+
+@njit(cache=True)
+def _com_error(
+    com: Vector, foot: Vector, reference: Foot, planned: Point
+) -> tuple[float, float, float, float]:
+    turned = reference[2] - foot[2]
+    c, s = cos(turned), sin(turned)
+    dx, dy = com[0] - foot[0], com[1] - foot[1]
+    x, y = c * dx - s * dy, s * dx + c * dy
+    return x + reference[0] - planned[0], y + reference[1] - planned[1], x, y
+
+
+@njit(cache=True)
 def pose_legs(
     position: Array,
     tilts: Array,

@@ -54,9 +54,8 @@ class PressureHold:
             self._sum[0] += error[0]
             self._sum[1] += error[1]
             self._ticks += 1
-        most = self._step
-        x, y = (
-            now + min(most, max(-most, goal - now))
-            for now, goal in zip(self.offset, self._goal, strict=True)
-        )
-        self.offset = x, y
+        if self.offset != self._goal:
+            most, (x, y), (goal_x, goal_y) = self._step, self.offset, self._goal
+            x += min(most, max(-most, goal_x - x))
+            y += min(most, max(-most, goal_y - y))
+            self.offset = x, y

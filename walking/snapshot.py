@@ -35,9 +35,13 @@ class PlanToOdometry:
         self._x = odometry.x + c * foot.x - s * foot.y - self._c * planned.x + self._s * planned.y
         self._y = odometry.y + s * foot.x + c * foot.y - self._s * planned.x - self._c * planned.y
 
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """A point of the plan frame in the odometry frame [m]."""
+        return self._x + self._c * x - self._s * y, self._y + self._s * x + self._c * y
+
     def point(self, x: float, y: float) -> np.ndarray:
-        """A point of the plan frame in the odometry frame (2,) [m]."""
-        return np.array([self._x + self._c * x - self._s * y, self._y + self._s * x + self._c * y])
+        """The same as an array (2,) [m]."""
+        return np.array(self.place(x, y))
 
     def vector(self, x: float, y: float) -> np.ndarray:
         """A direction of the plan frame in the odometry frame (2,)."""
@@ -45,7 +49,7 @@ class PlanToOdometry:
 
     def footstep(self, step: Footstep) -> Footstep:
         """A foothold of the plan frame in the odometry frame."""
-        x, y = self.point(step.x, step.y).tolist()
+        x, y = self.place(step.x, step.y)
         return Footstep(left=step.left, x=x, y=y, yaw=step.yaw + self.yaw)
 
 
@@ -90,13 +94,13 @@ def balance(
     dcm_x = pendulum.x + error.x + (pendulum.vx + error.vx) / omega
     dcm_y = pendulum.y + error.y + (pendulum.vy + error.vy) / omega
     feet = [
-        (*plan.point(f.x.position, f.y.position), f.height, plan.yaw + f.yaw.position)
+        (*plan.place(f.x.position, f.y.position), f.height, plan.yaw + f.yaw.position)
         for f in gait.feet
     ]
     return Balance(
         com=plan.point(pendulum.x, pendulum.y),
         dcm=plan.point(dcm_x, dcm_y),
-        support=np.array([plan.point(x, y) for x, y in polygon]),
+        support=np.array([plan.place(x, y) for x, y in polygon]),
         zmp_depth=depth(polygon, pendulum.zmp_x, pendulum.zmp_y),
         feet=np.array(feet),
         capture=plan.vector(*capture),

@@ -116,8 +116,9 @@ class Steering:
         """
         time = self.timing.duration
         if self._state is None:
-            a, b, c = (v + more for v, more in zip(self.velocity, correction, strict=True))
-            return self._planner.strides((a, b, c), time)
+            slew, (forward, left, turn) = self._slew, correction
+            wanted = (slew.forward + forward, slew.left + left, slew.turn + turn)
+            return self._planner.strides(wanted, time)
         return self._planner.explicit(self._state, correction[2] * time)[0]
 
     def report(

@@ -8,17 +8,46 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-Moment = tuple[float, float, float, float, float, float]
-"""Of a swing over a unit distance and height, at a moment of it: ∫ ω e^{-ωs} over the rest of it
-of the accelerations forward, upward, and upward times the share of the distance made [1/s²]; then
-those three themselves."""
+
+@njit(cache=True)
+def profile(ticks: int, ramp: tuple[float, float, float], period: float) -> Array:
+    """A swing over a unit distance and height, tick by tick.
+
+    Args:
+        ticks: from lift to landing [1].
+        ramp: growth of the DCM over a tick, and weights of the ZMP at its start and its end, see
+            `RampCoefficients` [1].
+        period: of control [s].
+
+    Returns:
+        at every tick ∫ ω e^{-ωs} over the rest of the swing of the accelerations forward, upward,
+        and upward times the share of the distance made, linear from tick to tick; then those three
+        themselves (ticks + 1, 6) [1/s²].
+    """
+    growth, first, last = ramp
+    table = np.zeros((ticks + 1, 6))
+    square = (ticks * period) ** 2
+    for k in range(ticks + 1):
+        u = k / ticks
+        rest = 1.0 - u
+        moved = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+        # Of the height 64 u³ (1 - u)³.
+        up = 384.0 * u * rest * (rest * rest - 3.0 * u * rest + u * u) / square
+        table[k, 3] = 60.0 * u * rest * (rest - u) / square
+        table[k, 4] = up
+        table[k, 5] = up * moved
+    for k in range(ticks - 1, -1, -1):
+        for column in range(3):
+            now, then = table[k, 3 + column], table[k + 1, 3 + column]
+            table[k, column] = (table[k + 1, column] + first * now + last * then) / growth
+    return table
 
 
 @njit(cache=True)
 def react(
     swings: Array,
-    now: Moment,
-    later: Moment,
+    now: Array,
+    later: Array,
     reaction: tuple[float, float, float],
     state: tuple[float, float, float, float],
     clock: tuple[float, float],
@@ -27,8 +56,8 @@ def react(
 
     Args:
         swings: the next one first, see `Swings` (n, 10).
-        now: of the first.
-        later: of the others, before they begin.
+        now: profile of the first (ticks + 1, 6).
+        later: profile of the others (ticks + 1, 6).
         reaction: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg.
         state: offset of the pelvis x, y, and the ξ of the tick before, x, y [m].
         clock: ω [1/s], control period [s].
@@ -41,15 +70,15 @@ def react(
     x = y = now_x = now_y = 0.0
     for k in range(swings.shape[0]):
         swing = swings[k]
-        forward, up, both = later[0], later[1], later[2]
+        moment = later[0]
         if k == 0:
-            forward, up, both = now[0], now[1], now[2]
-        dx, dy = _moved(swing, reaction, forward, up, both)
+            moment = now[min(now.shape[0] - 1, max(0, -int(swing[0])))]
+        dx, dy = _moved(swing, reaction, moment[0], moment[1], moment[2])
         decay = exp(-w * period * swing[0]) if swing[0] > 0.0 else 1.0
         x -= decay * dx
         y -= decay * dy
         if k == 0 and swing[0] <= 0.0:
-            now_x, now_y = _moved(swing, reaction, now[3], now[4], now[5])
+            now_x, now_y = _moved(swing, reaction, moment[3], moment[4], moment[5])
     share = 1.0 - exp(-w * period)
     cx += share * (0.5 * (before_x + x) - cx)
     cy += share * (0.5 * (before_y + y) - cy)

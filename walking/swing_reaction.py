@@ -28,13 +28,12 @@ from walking.leg_kinematics import FootPose, leg_angles
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.robot_model import RobotModel
-from walking.swing_kernel import Moment
 from walking.value import value
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 NO_SWINGS = np.empty((0, 10))
-RESTING: Moment = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+RESTING = np.zeros((1, 6))
 SMALL = 1e-4  # of a foot's move in finite differences [m]
 
 
@@ -110,10 +109,6 @@ class Swings:
     later: int
 
 
-Profile = list[Moment]
-"""A swing over a unit distance and height, tick by tick, as `swing_kernel.react` wants it."""
-
-
 class SwingCompensation:
     """Moves the pelvis against the swinging legs.
 
@@ -130,7 +125,7 @@ class SwingCompensation:
         self._lipm = lipm
         self._w = (lipm.omega, CONTROL_PERIOD)
         self._reaction = (reaction.thrust, reaction.weight, reaction.knee)
-        self._profiles: dict[int, Profile] = {}
+        self._profiles: dict[int, Array] = {}
         self._ahead_before: Point = (0.0, 0.0)
         self.offset: Point = (0.0, 0.0)
         self.acceleration: Point = (0.0, 0.0)
@@ -139,37 +134,16 @@ class SwingCompensation:
         """One tick along a plan; none while the robot stands."""
         table, now, later = NO_SWINGS, RESTING, RESTING
         if swings is not None:
-            table, first = swings.table, self._profile(swings.first)
-            now = first[min(swings.first, max(0, -int(table[0, 0])))] if len(table) else RESTING
-            later = self._profile(swings.later)[0]
-        found = swing_kernel.react(
-            table, now, later, self._reaction, (*self.offset, *self._ahead_before), self._w
-        )
+            table = swings.table
+            now, later = self._profile(swings.first), self._profile(swings.later)
+        state = (*self.offset, *self._ahead_before)
+        found = swing_kernel.react(table, now, later, self._reaction, state, self._w)
         self.offset, self.acceleration, self._ahead_before = found[:2], found[2:4], found[4:]
 
-    def _profile(self, ticks: int) -> Profile:
+    def _profile(self, ticks: int) -> Array:
         found = self._profiles.get(ticks)
         if found is None:
-            found = self._profiles[ticks] = self._make(ticks)
+            c = self._lipm.ramp(1)
+            ramp = (c.growth, c.first, c.last)
+            found = self._profiles[ticks] = swing_kernel.profile(ticks, ramp, CONTROL_PERIOD)
         return found
-
-    def _make(self, ticks: int) -> Profile:
-        u = np.linspace(0.0, 1.0, ticks + 1)
-        rest = 1.0 - u
-        square = (ticks * CONTROL_PERIOD) ** 2
-        moved = u**3 * (10.0 - 15.0 * u + 6.0 * u * u)
-        forward = 60.0 * u * rest * (rest - u) / square
-        # Of the profile 64 u³ (1 - u)³.
-        up = 384.0 * u * rest * (rest * rest - 3.0 * u * rest + u * u) / square
-        both = up * moved
-        columns = (self._ahead(forward), self._ahead(up), self._ahead(both), forward, up, both)
-        rows: Profile = list(zip(*(np.asarray(c).tolist() for c in columns), strict=True))
-        return rows
-
-    def _ahead(self, profile: Array) -> list[float]:
-        """∫ ω e^{-ωs} of values linear from tick to tick, from each of them to the last."""
-        c, values = self._lipm.ramp(1), profile.tolist()
-        sums = [0.0] * len(values)
-        for k in range(len(values) - 2, -1, -1):
-            sums[k] = (sums[k + 1] + c.first * values[k] + c.last * values[k + 1]) / c.growth
-        return sums

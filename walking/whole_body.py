@@ -97,17 +97,17 @@ class WholeBody:
         position = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
         self._com = self._robot.com(position)
         c, s = cos(pelvis.yaw), sin(pelvis.yaw)
-        soles = []
-        for foot in gait.footholds:
-            x, y = gait.zmp_point(foot)
-            dx, dy = x - pelvis.x, y - pelvis.y
-            soles.append((c * dx + s * dy, c * dy - s * dx))
+        (lx, ly), (rx, ry), px, py = *gait.spots, pelvis.x, pelvis.y
+        left = (c * (lx - px) + s * (ly - py), c * (ly - py) - s * (lx - px))
+        right = (c * (rx - px) + s * (ry - py), c * (ry - py) - s * (rx - px))
         w2 = self._lipm.omega**2
         ax, ay = w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey
         set_points = self._feedforward.offsets(
-            position, (soles[0], soles[1]), right_load, (c * ax + s * ay, c * ay - s * ax)
+            position, (left, right), right_load, (c * ax + s * ay, c * ay - s * ax)
         )
         for index, load in ((0, 1.0 - right_load), (1, right_load)):
+            if load <= 0.0:
+                continue
             ankle = self._stabilizer.ankles(gait.footholds[index], load, zmp_shift, body.gyro)
             set_points[6 * index + 4] += ankle.pitch
             set_points[6 * index + 5] += ankle.roll
