@@ -77,6 +77,8 @@ class Gait:
         self._single = self._window.single_support(self.timing.single)
         self._lift = self.timing.lift
         self._future = NO_STEPS
+        still = planner.still
+        self._nominal = still, stance[0], planner.landing(stance[0], still)
 
     @property
     def swing(self) -> int:
@@ -156,7 +158,11 @@ class Gait:
 
     def nominal(self, wish: Strides) -> Footstep:
         """Landing that the wish asks for."""
-        return self._planner.landing(self.footholds[self.support], wish)
+        support, (known, by, landing) = self.footholds[self.support], self._nominal
+        if wish is not known or support is not by:
+            landing = self._planner.landing(support, wish)
+            self._nominal = wish, support, landing
+        return landing
 
     def retime(self, timing: Timing) -> bool:
         """Take over a timing as far as it may still change.

@@ -159,6 +159,11 @@ class RobotModel:
         base: Array = torque[:6].copy()
         return joints, base
 
+    def moved_com(self) -> tuple[float, float, float]:
+        """Centre of mass in the base frame [m] for the joint angles of `inverse_dynamics`."""
+        x, y, z = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
+        return x, y, z
+
     def pendulum_height(self) -> float:
         """Height of the pendulum that the robot is for its base [m].
 

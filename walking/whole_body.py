@@ -95,7 +95,6 @@ class WholeBody:
         self.pelvis = pelvis = self._posture.pelvis(gait, (pendulum.x + ox, pendulum.y + oy))
         self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
         position = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
-        self._com = self._robot.com(position)
         c, s = cos(pelvis.yaw), sin(pelvis.yaw)
         (lx, ly), (rx, ry), px, py = *gait.spots, pelvis.x, pelvis.y
         left = (c * (lx - px) + s * (ly - py), c * (ly - py) - s * (lx - px))
@@ -105,6 +104,7 @@ class WholeBody:
         set_points = self._feedforward.offsets(
             position, (left, right), right_load, (c * ax + s * ay, c * ay - s * ax)
         )
+        self._com = self._robot.moved_com()
         for index, load in ((0, 1.0 - right_load), (1, right_load)):
             if load <= 0.0:
                 continue
