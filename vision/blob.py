@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from vision.blob_kernel import regions_of
 from vision.colour import Labels
 
-Mask = NDArray[np.bool_]
 Table = NDArray[np.int32]
 
 
@@ -39,15 +38,6 @@ class Blob:
     def cut(self) -> bool:
         """Whether the border of the image cuts it."""
         return any(self.touches)
-
-    @property
-    def mask(self) -> Mask:
-        """Which pixels of the box belong to it (bottom - top, right - left)."""
-        left, top, right, bottom = self.box
-        mask = np.zeros((bottom - top, right - left), np.bool_)
-        for row, start, stop, _ in self.runs.tolist():
-            mask[row - top, start - left : stop - left] = True
-        return mask
 
 
 def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:

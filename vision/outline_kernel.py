@@ -112,6 +112,17 @@ def _edge(
 
 
 @njit(cache=True)
+def _sort(values: Array) -> None:
+    """Sort a few values, by insertion."""
+    for i in range(1, len(values)):
+        value, j = values[i], i
+        while j > 0 and values[j - 1] > value:
+            values[j] = values[j - 1]
+            j -= 1
+        values[j] = value
+
+
+@njit(cache=True)
 def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) -> None:
     """Fill one side (8,) from the points of an edge; see `trace`.
 
@@ -132,7 +143,7 @@ def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) 
         ranked[i] = outwards if outer[i] == 0 else NOWHERE
         free += outer[i] == 0
         cut += outer[i] == OUTSIDE
-    ranked.sort()
+    _sort(ranked)
     # The side is the median of the free points near the outermost of them.
     outermost = ranked[n - 1 - free // OUTLIERS]
     limit, low_limit = outermost - ENVELOPE * pixel, bottom + LOW_SHARE * (top - bottom)
@@ -206,7 +217,7 @@ def trace(
     points, outer = np.empty((len(extents), 3)), np.empty(len(extents), np.uint8)
     rims, rim_outer = np.empty((2, len(extents))), np.empty(len(extents), np.uint8)
     size = np.empty((4, 2))
-    starts = np.zeros(5, np.int64)
+    starts, middle = np.zeros(5, np.int64), np.zeros(4, np.int64)
     m = 0
     for k in range(n):
         left, top, right, bottom = boxes[k, 0], boxes[k, 1], boxes[k, 2], boxes[k, 3]
@@ -214,8 +225,8 @@ def trace(
         for e in range(4):
             a = starts[e]
             b = starts[e + 1] = a + (bottom - top if e < 2 else right - left)
+            middle[e] = (a + b) // 2
             size[e] = _edge(points[a:b], outer[a:b], boxes[k], extents[a:b], padded, view, e)
-        middle = (starts[:4] + starts[1:]) // 2
         side, rim = (0, 2) if upright(view, 0.5 * (left + right), 0.5 * (top + bottom)) else (2, 0)
         swapped = 0 if points[middle[side], 0] >= points[middle[side + 1], 0] else 1
         for j in range(2):
@@ -254,8 +265,8 @@ def _label(padded: Labels, view: Array, azimuth: float, slope: float) -> int:
 
 @njit(cache=True)
 def envelopes(
-    box: Table, extents: Table, mask: Bools, padded: Labels, view: Array
-) -> tuple[Array, Array, Bools]:
+    box: Table, extents: Table, runs: Table, padded: Labels, view: Array
+) -> tuple[float, float, float, Array, Bools]:
     """Lower and upper envelope of a blob on a grid of azimuth and slope.
 
     There cylinders stand upright, whatever the head does.
@@ -263,24 +274,31 @@ def envelopes(
     Args:
         box: left, top, right, bottom of the blob (4,) [pixel].
         extents: of the blob.
-        mask: which pixels of the box belong to it.
+        runs: of the blob.
         padded: labels of the image with a frame of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: packed.
 
     Returns:
-        Right end of the grid [rad], width of its columns [rad] and slope of a pixel [1] (3,);
-        lowest and highest slope of the blob in each column, from right to left (2, n); and
-        whether these are the edge of a thing (2, n).
+        Right end of the grid [rad], width of its columns [rad] and slope of a pixel [1]; lowest
+        and highest slope of the blob in each column, from right to left (2, n); and whether
+        these are the edge of a thing (2, n).
     """
     left, top, right, bottom = box[0], box[1], box[2], box[3]
+    mask = np.zeros((bottom - top, right - left), np.bool_)
+    for i in range(len(runs)):
+        for column in range(runs[i, 1], runs[i, 2]):
+            mask[runs[i, 0] - top, column - left] = True
     points, outer = np.empty((len(extents), 3)), np.empty(len(extents), np.uint8)
     a = 0
     for e in range(4):
         b = a + (bottom - top if e < 2 else right - left)
         _edge(points[a:b], outer[a:b], box, extents[a:b], padded, view, e)
         a = b
-    start, low = points[:, 0].min(), points[:, 1].min()
-    width, height = points[:, 0].max() - start, points[:, 1].max() - low
+    start, end, low, high = inf, -inf, inf, -inf
+    for i in range(len(points)):
+        start, end = min(start, points[i, 0]), max(end, points[i, 0])
+        low, high = min(low, points[i, 1]), max(high, points[i, 1])
+    width, height = end - start, high - low
     au, av, su, sv = resolution(view, 0.5 * (left + right), 0.5 * (top + bottom))
     size = max(su, sv)
     step = max(0.5 * size, height / MAX_CELLS)
@@ -311,4 +329,4 @@ def envelopes(
             beyond = min(max(cell - sense, 0), cells - 1)
             label = _label(padded, view, azimuth, low + step * (beyond - 1.5))
             usable[j, i] = filled and (label == 0 if j == 0 else label != OUTSIDE)
-    return np.array([start, width / n, size]), result, usable
+    return start, width / n, size, result, usable

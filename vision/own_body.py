@@ -34,7 +34,7 @@ class BodyPart:
     def outline(self, camera: PinholeCamera, pose: CameraPose) -> Array:
         """Points of the image whose convex hull contains the part (n, 2) [pixel].
 
-        There are none if the part is behind the camera, or the camera within it.
+        There are none if the part is behind the camera, beside the image or around the camera.
         """
         middle = np.array([0.5 * camera.width, 0.5 * camera.height, camera.focal])
         position, rotation = map(np.ascontiguousarray, (pose.position, pose.rotation))
@@ -62,24 +62,19 @@ def hide(
         Which pixels it became (h, w); None if there are none.
     """
     hidden: NDArray[np.uint8] | None = None
-    boxes = []
     for part in parts:
         points = part.outline(camera, pose)
         if not len(points):
             continue
-        (left, top), (right, bottom) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-        if right < 0 or bottom < 0 or left > camera.width or top > camera.height:
-            continue
         if hidden is None:
             hidden = np.zeros(labels.shape, np.uint8)
-        hull = cv2.convexHull(np.round(points).astype(np.int32))
+        hull = cv2.convexHull(np.rint(points).astype(np.int32))
         cv2.fillConvexPoly(hidden, hull, 1)
-        boxes.append((max(0, round(left)), max(0, round(top)), round(right) + 1, round(bottom) + 1))
     if hidden is None:
         return None
-    lefts, tops, rights, bottoms = zip(*boxes, strict=True)
-    box = slice(min(tops), max(bottoms)), slice(min(lefts), max(rights))
+    left, top, width, height = cv2.boundingRect(hidden)
+    box = slice(top, top + height), slice(left, left + width)
     here, seen = hidden[box], labels[box]
-    here[seen != 0] = 0
+    np.multiply(here, seen == 0, out=here)
     seen += label * here
     return hidden.view(np.bool_)

@@ -1,6 +1,6 @@
 """Outline of a part of the robot's own body, compiled."""
 
-from math import cos, hypot, pi, sin, sqrt
+from math import cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -16,10 +16,11 @@ SWELL = 1.0 / cos(pi / RIM_POINTS)  # the polygon contains the circle
 
 @njit(cache=True)
 def outline(centres: Array, radii: Array, position: Array, rotation: Array, camera: Array) -> Array:
-    """Points of the image whose convex hull contains spheres (12 n, 2) [pixel].
+    """Points whose convex hull contains the image of spheres (12 n, 2) [pixel].
 
     They are polygons round the circles in which the rays of the camera touch the spheres. There
-    are none of spheres behind the camera, and none at all if the camera is in one of them.
+    are none of spheres behind the camera, and none at all if the camera is in one of them or if
+    the points lie beside the image, all on one side of it.
 
     Args:
         centres: of the spheres (n, 3) [m].
@@ -30,6 +31,7 @@ def outline(centres: Array, radii: Array, position: Array, rotation: Array, came
     """
     points = np.empty((RIM_POINTS * len(centres), 2))
     n = 0
+    low_u, high_u, low_v, high_v = inf, -inf, inf, -inf
     p = np.empty(3)
     for i in range(len(centres)):
         r = radii[i]
@@ -54,7 +56,11 @@ def outline(centres: Array, radii: Array, position: Array, rotation: Array, came
             X = p[0] * shrink + c * u + s * y * w
             Y = p[1] * shrink + s * (z * u - x * w)
             Z = max(p[2] * shrink + c * w - s * y * u, LEAST_DEPTH)
-            points[n, 0] = min(max(camera[0] + camera[2] * X / Z, -FAR), FAR)
-            points[n, 1] = min(max(camera[1] + camera[2] * Y / Z, -FAR), FAR)
+            u_image = min(max(camera[0] + camera[2] * X / Z, -FAR), FAR)
+            v_image = min(max(camera[1] + camera[2] * Y / Z, -FAR), FAR)
+            points[n, 0], points[n, 1] = u_image, v_image
+            low_u, high_u = min(low_u, u_image), max(high_u, u_image)
+            low_v, high_v = min(low_v, v_image), max(high_v, v_image)
             n += 1
-    return points[:n]
+    beside = high_u < 0.0 or high_v < 0.0 or low_u > 2.0 * camera[0] or low_v > 2.0 * camera[1]
+    return points[:0] if beside else points[:n]

@@ -111,10 +111,9 @@ class _Grid:
     """The blob sampled on a grid of azimuth and slope, where cylinders stand upright."""
 
     def __init__(self, blob: Blob, outline: Outline, padded: Labels, view: View) -> None:
-        grid, ends, usable = envelopes(
-            np.array(blob.box, np.int32), blob.extents, blob.mask, padded, view.packed
+        self.start, self.azimuth_step, self.pixel, ends, usable = envelopes(
+            np.array(blob.box, np.int32), blob.extents, blob.runs, padded, view.packed
         )
-        self.start, self.azimuth_step, self.pixel = grid.tolist()
         self.low, self.high = ends.tolist()
         self.low_usable, self.high_usable = usable.tolist()
         self.outer_right = outline.right.trusted and not outline.right.hidden

@@ -37,7 +37,7 @@ def test_compiled_and_plain_agree(pan, roll):
 def test_compiled_and_plain_envelopes_agree(pan, roll):
     blobs, *rest = seen(pan, roll)
     for blob in blobs:
-        values = np.array(blob.box, np.int32), blob.extents, blob.mask, *rest
+        values = np.array(blob.box, np.int32), blob.extents, blob.runs, *rest
         for compiled, plain in zip(envelopes(*values), envelopes.py_func(*values), strict=True):
             np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-14)
 
@@ -47,10 +47,13 @@ def test_envelopes_bound_the_directions_of_all_pixels():
     blobs, padded, view = seen(0.1, 0.05)
     for blob in blobs:
         box = np.array(blob.box, np.int32)
-        (start, width, size), (low, high), _ = envelopes(box, blob.extents, blob.mask, padded, view)
-        rows, columns = np.nonzero(blob.mask)
-        middles = np.stack([columns + blob.box[0], rows + blob.box[1]], axis=1) + 0.5
-        for u, v in middles.tolist():
+        start, width, size, (low, high), _ = envelopes(box, blob.extents, blob.runs, padded, view)
+        middles = [
+            (column + 0.5, row + 0.5)
+            for row, first, last, _ in blob.runs.tolist()
+            for column in range(first, last)
+        ]
+        for u, v in middles:
             azimuth, slope = angles(view, u, v)
             column = int((azimuth - start) / width)
             near = slice(max(column - 1, 0), column + 2)
