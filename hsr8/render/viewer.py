@@ -11,11 +11,13 @@ import time as clock
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-
-from rerun.experimental import ViewerClient
+from typing import TYPE_CHECKING
 
 from hsr8.errors import UsageError
 from hsr8.gl import VULKAN_LINE
+
+if TYPE_CHECKING:
+    from rerun.experimental import ViewerClient
 
 TIMELINE = "sim_time"
 START_LIMIT = 30.0  # the viewer must answer within this wall time [s]
@@ -99,7 +101,9 @@ def running(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
         viewer.communicate()
 
 
-def _connect(viewer: subprocess.Popen[bytes], port: int) -> ViewerClient:
+def _connect(viewer: subprocess.Popen[bytes], port: int) -> "ViewerClient":
+    from rerun.experimental import ViewerClient  # noqa: PLC0415  a run without a viewer has no need
+
     connected(viewer, port)
     return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
 
@@ -120,7 +124,7 @@ def connected(viewer: subprocess.Popen[bytes], port: int) -> None:
     raise _failed(viewer)
 
 
-def _wait_for_recording(client: ViewerClient, viewer: subprocess.Popen[bytes], log: Path) -> None:
+def _wait_for_recording(client: "ViewerClient", viewer: subprocess.Popen[bytes], log: Path) -> None:
     end = clock.monotonic() + START_LIMIT
     while clock.monotonic() < end and viewer.poll() is None:
         if client.get_state().recordings:
@@ -131,7 +135,7 @@ def _wait_for_recording(client: ViewerClient, viewer: subprocess.Popen[bytes], l
     raise _failed(viewer)
 
 
-def _stop_at(client: ViewerClient, viewer: subprocess.Popen[bytes], time: float) -> None:
+def _stop_at(client: "ViewerClient", viewer: subprocess.Popen[bytes], time: float) -> None:
     """Go to a time; a recording that is still being read has none for a while."""
     end = clock.monotonic() + START_LIMIT
     while True:

@@ -14,19 +14,19 @@ Node = dict[str, Any]
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
 
 
-class _Plain(Section):
-    """The decisions' parameters without the profile."""
-
-    navigation: NavigationParameters
-
-
 @cache
 def json_schema() -> Node:
     """JSON Schema of a scenario file, for editors and for this module."""
+
+    class Plain(Section):
+        """The decisions' parameters without the profile."""
+
+        navigation: NavigationParameters
+
     schema = Scenario.model_json_schema()
     schema["required"].remove("name")
     # Pydantic reads the docstrings of a dataclass, not those of the one it extends.
-    plain = _Plain.model_json_schema()["$defs"]["NavigationParameters"]["properties"]
+    plain = Plain.model_json_schema()["$defs"]["NavigationParameters"]["properties"]
     for key, node in plain.items():
         schema["$defs"]["Navigation"]["properties"][key]["description"] = node["description"]
     schema["properties"]["extends"] = {
