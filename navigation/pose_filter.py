@@ -32,7 +32,7 @@ def _seen(pose: Array, landmarks: Array) -> Array:
 
 
 def _difference(a: Array, b: Array) -> Array:
-    return pose_kernel.difference(a, b, MEASUREMENT)
+    return pose_kernel.difference(a, b, *MEASUREMENT)
 
 
 def _moved_on(state: Array, step: Array) -> Array:
@@ -42,11 +42,11 @@ def _moved_on(state: Array, step: Array) -> Array:
 
 
 def _state(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
-    return pose_kernel.transform(points, mean, weights, noise, STATE)
+    return pose_kernel.transform(points, mean, weights, noise, *STATE)
 
 
 def _measurement(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
-    return pose_kernel.transform(points, mean, weights, noise, MEASUREMENT)
+    return pose_kernel.transform(points, mean, weights, noise, *MEASUREMENT)
 
 
 class PosePoints(JulierSigmaPoints):  # type: ignore[misc]  # filterpy has no types

@@ -1,7 +1,7 @@
 """Compiled part of localization: what an unscented filter does to all its sigma points.
 
-A vector's angles are its entries `first`, `first` + `step`, ...: the third of a pose, every
-second one of a measurement (distance, bearing, distance, bearing, ...).
+A vector's angles are its entries `first`, `first` + `step`, ...: the third of a pose (2, 3),
+every second one of a measurement (distance, bearing, distance, bearing, ...) (1, 2).
 """
 
 from math import atan2, ceil, cos, hypot, pi, sin, sqrt
@@ -11,7 +11,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Angles = tuple[int, int]
 
 
 @njit(cache=True)
@@ -78,23 +77,25 @@ def sighted(pose: Array, landmarks: Array) -> Array:
 
 
 @njit(cache=True)
-def difference(a: Array, b: Array, angles: Angles) -> Array:
+def difference(a: Array, b: Array, first: int, step: int) -> Array:
     """A - b (n,), angles wrapped."""
-    rest = a - b
-    for i in range(angles[0], len(rest), angles[1]):
+    rest = np.empty(len(a))
+    for i in range(len(a)):
+        rest[i] = a[i] - b[i]
+    for i in range(first, len(a), step):
         rest[i] = wrapped(rest[i])
     return rest
 
 
 @njit(cache=True)
-def mean(points: Array, weights: Array, angles: Angles) -> Array:
+def mean(points: Array, weights: Array, first: int, step: int) -> Array:
     """Weighted mean (n,) of points (m, n); of angles that of their directions."""
     m, n = points.shape
     total = np.zeros(n)
     for k in range(m):
         for i in range(n):
             total[i] += weights[k] * points[k, i]
-    for i in range(angles[0], n, angles[1]):
+    for i in range(first, n, step):
         c = s = 0.0
         for k in range(m):
             c += weights[k] * cos(points[k, i])
@@ -115,17 +116,21 @@ def covariance_of(a: Array, b: Array, weights: Array) -> Array:
 
 
 @njit(cache=True)
-def differences(points: Array, centre: Array, angles: Angles) -> Array:
+def differences(points: Array, centre: Array, first: int, step: int) -> Array:
     """Points (m, n) less a centre (n,), angles wrapped (m, n)."""
-    rest = np.empty_like(points)
-    for k in range(len(points)):
-        rest[k] = difference(points[k], centre, angles)
+    m, n = points.shape
+    rest = np.empty((m, n))
+    for k in range(m):
+        for i in range(n):
+            rest[k, i] = points[k, i] - centre[i]
+        for i in range(first, n, step):
+            rest[k, i] = wrapped(rest[k, i])
     return rest
 
 
 @njit(cache=True)
 def transform(
-    points: Array, mean_weights: Array, weights: Array, noise: Array, angles: Angles
+    points: Array, mean_weights: Array, weights: Array, noise: Array, first: int, step: int
 ) -> tuple[Array, Array]:
     """Unscented transform: mean (n,) and covariance (n, n) of points (m, n) (Julier & Uhlmann).
 
@@ -134,11 +139,16 @@ def transform(
         mean_weights: of the mean (m,).
         weights: of the covariance (m,).
         noise: added to the covariance (n, n).
-        angles: which entries are angles.
+        first: which entry is the first angle.
+        step: from one angle to the next.
     """
-    centre = mean(points, mean_weights, angles)
-    spread = differences(points, centre, angles)
-    return centre, covariance_of(spread, spread, weights) + noise
+    centre = mean(points, mean_weights, first, step)
+    spread = differences(points, centre, first, step)
+    covariance = covariance_of(spread, spread, weights)
+    for i in range(len(centre)):
+        for j in range(len(centre)):
+            covariance[i, j] += noise[i, j]
+    return centre, covariance
 
 
 @njit(cache=True)
@@ -155,7 +165,7 @@ def cross_covariance(
         weights: of the covariance (m,).
     """
     return covariance_of(
-        differences(poses, pose, (2, 3)), differences(seen, mean_seen, (1, 2)), weights
+        differences(poses, pose, 2, 3), differences(seen, mean_seen, 1, 2), weights
     )
 
 
@@ -177,9 +187,9 @@ def distances(
     seen = np.empty((len(poses), 2))
     for i in range(len(landmarks)):
         for k in range(len(poses)):
-            seen[k] = sighted(poses[k], landmarks[i : i + 1])
-        centre, S = transform(seen, mean_weights, weights, noise[i], (1, 2))
-        u, w = difference(z[i], centre, (1, 2))
+            seen[k, 0], seen[k, 1] = sighted(poses[k], landmarks[i : i + 1])
+        centre, S = transform(seen, mean_weights, weights, noise[i], 1, 2)
+        u, w = z[i, 0] - centre[0], wrapped(z[i, 1] - centre[1])
         a, b, d = S[0, 0], S[0, 1], S[1, 1]
         nis[i] = (d * u * u - 2.0 * b * u * w + a * w * w) / (a * d - b * b)
     return nis
