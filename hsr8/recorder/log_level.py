@@ -35,7 +35,7 @@ class LogRates:
 
 
 RATES = {
-    LogLevel.MINIMAL: LogRates(pose=0.04, frame=0.18, map=0.0, jpeg=0),
-    LogLevel.STANDARD: LogRates(pose=0.04, frame=0.18, map=1.0, jpeg=75),
+    LogLevel.MINIMAL: LogRates(pose=0.06, frame=0.18, map=0.0, jpeg=0),
+    LogLevel.STANDARD: LogRates(pose=0.06, frame=0.18, map=1.0, jpeg=75),
     LogLevel.FULL: LogRates(pose=0.0, frame=0.0, map=0.0, jpeg=90),
 }

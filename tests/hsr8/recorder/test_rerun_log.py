@@ -67,24 +67,24 @@ def test_a_run_is_logged_at_its_rates(log, walk):
     listener.close("goal")
     rows = _rows(path)
     assert rows["/events"] == 2
-    # 25 Hz of poses, a third of the camera frames; one row more holds what never changes.
-    assert rows["/world/robot/ellipsoids"] == 76 + 1
-    assert rows["/plots/tilt"] == 76 + 1
+    # 17 Hz of poses, a third of the camera frames; one row more holds what never changes.
+    assert rows["/world/robot/ellipsoids"] == 51 + 1
+    assert rows["/plots/tilt"] == 51 + 1
     assert rows["/world/camera/image"] == 17 + 1
     assert rows["/belief/tracks"] == 17 + 1
     assert rows["/belief/local_map"] >= 3
     assert rows["/world/obstacles/cylinders"] == 1
     assert rows["/world/beacons/cylinders"] == 1
-    assert rows["/world/movers"] == 76 + 1
-    assert rows["/plots/zmp_left"] == rows["/plots/torque_knee"] == 76 + 1
-    assert rows["/world/walking/points"] == 76 + 1
+    assert rows["/world/movers"] == 51 + 1
+    assert rows["/plots/zmp_left"] == rows["/plots/torque_knee"] == 51 + 1
+    assert rows["/world/walking/points"] == 51 + 1
     # The soles that carry are logged once a phase.
     assert 9 <= rows["/world/walking/support"] <= 11
 
 
 def test_a_minimal_log_has_poses_curves_and_events_alone(folder, model, layout, walk):
     rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.MINIMAL))
-    assert rows["/world/robot/ellipsoids"] == rows["/plots/tilt"] == 26 + 1
+    assert rows["/world/robot/ellipsoids"] == rows["/plots/tilt"] == 17 + 1
     assert rows["/state/planner"] == 1 + 1
     assert not [path for path in rows if path.startswith(("/belief", "/plan", "/gaze"))]
     assert "/world/camera/image" not in rows
