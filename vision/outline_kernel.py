@@ -41,10 +41,15 @@ def angles(view: Array, u: float, v: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def pixel(view: Array, azimuth: float, slope: float) -> tuple[float, float, bool]:
-    """Image point (u, v) of a direction, and whether it lies before the camera."""
+def level(view: Array, azimuth: float) -> tuple[float, float]:
+    """Horizontal unit vector (X, Y) of an azimuth from the heading of the camera."""
     c, s = cos(azimuth), sin(azimuth)
-    X, Y = view[12] * c - view[13] * s, view[13] * c + view[12] * s
+    return view[12] * c - view[13] * s, view[13] * c + view[12] * s
+
+
+@njit(cache=True)
+def project(view: Array, X: float, Y: float, slope: float) -> tuple[float, float, bool]:
+    """Image point (u, v) of the direction (X, Y, slope), and whether it lies before the camera."""
     z = view[5] * X + view[8] * Y + view[11] * slope
     ahead = z > MIN_DEPTH
     scale = view[2] / (z if ahead else 1.0)
@@ -253,9 +258,9 @@ def trace(
 
 
 @njit(cache=True)
-def _label(padded: Labels, view: Array, azimuth: float, slope: float) -> int:
-    """Label of the pixel in a direction, `OUTSIDE` if there is none."""
-    u, v, ahead = pixel(view, azimuth, slope)
+def _label(padded: Labels, view: Array, X: float, Y: float, slope: float) -> int:
+    """Label of the pixel in the direction (X, Y, slope), `OUTSIDE` if there is none."""
+    u, v, ahead = project(view, X, Y, slope)
     if not ahead:
         return OUTSIDE
     row = int(min(max(floor(v), -1.0), len(padded) - 2.0))
@@ -307,13 +312,13 @@ def envelopes(
     cells = ceil(height / step) + 4
     result, usable = np.empty((2, n)), np.zeros((2, n), np.bool_)
     for i in range(n):
-        azimuth = start + width / n * (i + 0.5)
+        X, Y = level(view, start + width / n * (i + 0.5))
         for j in range(2):
             # From below for the lower envelope, from above for the upper one.
             cell, sense = (0, 1) if j == 0 else (cells - 1, -1)
             filled = False
             for _ in range(cells):
-                u, v, ahead = pixel(view, azimuth, low + step * (cell - 1.5))
+                u, v, ahead = project(view, X, Y, low + step * (cell - 1.5))
                 filled = (
                     ahead
                     and left <= u < right
@@ -327,6 +332,6 @@ def envelopes(
                 cell -= sense * cells
             result[j, i] = low + step * (cell - 1.5) - sense * 0.5 * step
             beyond = min(max(cell - sense, 0), cells - 1)
-            label = _label(padded, view, azimuth, low + step * (beyond - 1.5))
+            label = _label(padded, view, X, Y, low + step * (beyond - 1.5))
             usable[j, i] = filled and (label == 0 if j == 0 else label != OUTSIDE)
     return start, width / n, size, result, usable

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, pose
-from vision.outline_kernel import angles, pixel, resolution
+from vision.outline_kernel import angles, level, project, resolution
 from vision.view import View
 
 gazes = st.builds(
@@ -21,7 +21,8 @@ def level_part(gaze, u, v):
 @given(gaze=gazes, u=columns, v=rows)
 def test_angles_and_pixels_invert_each_other(gaze, u, v) -> None:
     view = View(CAMERA, gaze).packed
-    back_u, back_v, ahead = pixel(view, *angles(view, u, v))
+    azimuth, slope = angles(view, u, v)
+    back_u, back_v, ahead = project(view, *level(view, azimuth), slope)
     if level_part(gaze, u, v) < 0.02:
         return
     assert ahead
