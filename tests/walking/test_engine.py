@@ -8,6 +8,7 @@ from scipy.spatial import ConvexHull
 
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.footsteps import STANCE_TURN
 from walking.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Phase
@@ -96,7 +97,7 @@ def test_it_stops_with_parallel_feet(robot, ideal_body, generator):
     assert np.hypot(support.x - other.x, support.y - other.y) == pytest.approx(
         2.0 * WalkingParameters().gait.half_stance, abs=1e-3
     )
-    assert support.yaw == pytest.approx(other.yaw, abs=1e-3)
+    assert support.yaw == pytest.approx(other.yaw, abs=STANCE_TURN)
 
 
 def test_mirrored_commands_give_the_mirrored_motion(robot, ideal_body):
