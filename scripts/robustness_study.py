@@ -1,17 +1,20 @@
 """Falls of the engine in full physics under random commands, with and without model errors.
 
     python scripts/robustness_study.py falls --seeds 1000-1019 --duration 300
-    python scripts/robustness_study.py errors --seeds 1000-1033
+    python scripts/robustness_study.py errors --seeds 1000-1039
     python scripts/robustness_study.py errors --seeds 1000-1033 --only bumps
 
 A new command of ±0.4 m/s, ±0.15 m/s, ±2 rad/s every 0.5 to 2 s, 15 % of them stops, 15 %
-extremes; the head looks elsewhere every 0.2 s. Tune on seeds 0-99, report on seeds from 1000.
+extremes; the head looks elsewhere every 0.2 s. A row shows less than one fall in a thousand
+steps at 95 % with none in 2996, with one in 4744: forty seeds of 30 s are 3200. More seeds do, not
+longer walks, which would leave the field of bumps. Tune on seeds 0-99, report on seeds from 1000.
 """
 
 import argparse
 from math import radians
 
 import numpy as np
+from scipy.stats import chi2
 from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import Trace, parameters_of, random_script, walk
@@ -57,10 +60,11 @@ def row(name: str, traces: list[Trace]) -> str:
     falls = [len(trace.falls) for trace in traces]
     tilt = np.concatenate([trace.tilt for trace in traces])
     contacts = sum(trace.self_contacts for trace in traces) / tilt.size
+    most = 1000.0 * chi2.ppf(0.95, 2 * sum(falls) + 2) / (2.0 * steps)
     return (
         f"{name:30} {sum(falls):3} falls in {steps:6} steps, {1000 * sum(falls) / steps:5.2f} a "
-        f"thousand; tilt p99 {np.percentile(tilt, 99):4.1f} deg; self contact {contacts:.2%}; "
-        f"falls per seed {' '.join(map(str, falls))}"
+        f"thousand, below {most:.2f} at 95 %; tilt p99 {np.percentile(tilt, 99):4.1f} deg; "
+        f"self contact {contacts:.2%}; falls per seed {' '.join(map(str, falls))}"
     )
 
 

@@ -2,7 +2,7 @@
 
     python scripts/speed_study.py straight --seeds 1000 1001 --duration 60
     python scripts/speed_study.py box --seeds 1000
-    python scripts/speed_study.py stop --seeds 1000 --count 500
+    python scripts/speed_study.py stop --seeds 1000-1049
     python scripts/speed_study.py odometry --seeds 1000 1001
 
 Sensor noise and leg collisions on. Tune on seeds 0-99, report on seeds from 1000.
@@ -45,6 +45,7 @@ WALKS = {
     "side 0.1": (0.0, 0.1, 0.0),
     "turn 1.0": (0.0, 0.0, 1.0),
 }
+STOPS = (*FAST.values(), (0.45, 0.1, 0.6), (0.3, -0.15, -1.0))
 HORIZONS = (1, 2, 5, 10, 20, 50)
 
 
@@ -185,26 +186,35 @@ class Study:
         rms = 1e3 * np.sqrt((found**2).mean(axis=0))
         print(f"CoP - planned ZMP at 0.2 m/s: rms {rms.round(1).tolist()}, {np.hypot(*rms):.1f} mm")
 
-    def stop(self, seed: int, count: int) -> None:
+    def stop(self, seeds: list[int]) -> None:
         """Stops from full speed in any phase: falls, and footsteps begun after the command."""
-        rng = np.random.default_rng([seed, 13])
-        ways = [*FAST.values(), (0.45, 0.1, 0.6), (0.3, -0.15, -1.0)]
-        begun, falls, stepping = [], 0, 0
-        for k in range(count):
-            moving, at = VelocityCommand(*ways[k % len(ways)]), SETTLED + rng.uniform(0.0, 0.7)
+        walks: list[Walk] = []
+        begun: list[int] = []
+        tilt: list[float] = []
+        for way, velocity in enumerate(STOPS):
+            moving = VelocityCommand(*velocity)
+            for seed in seeds:
+                at = SETTLED + np.random.default_rng([seed, 13, way]).uniform(0.0, 0.7)
 
-            def script(
-                now: float, moving: VelocityCommand = moving, at: float = at
-            ) -> tuple[VelocityCommand, HeadTarget]:
-                return (moving if now < at else VelocityCommand()), HeadTarget()
+                def script(
+                    now: float, moving: VelocityCommand = moving, at: float = at
+                ) -> tuple[VelocityCommand, HeadTarget]:
+                    return (moving if now < at else VelocityCommand()), HeadTarget()
 
-            walk = self.walk(script, seed + k, at + 2.0)
-            falls += walk.fallen
-            stepping += not walk.standing
-            # The footstep under way when the command comes is not one that begins after it.
-            begun.append(walk.steps[-1] - walk.steps[round(at / CONTROL_PERIOD)] - 1)
-        counts = np.bincount(np.maximum(0, begun)).tolist()
-        print(f"{count} stops: {falls} falls, {stepping} still stepping; footsteps begun {counts}")
+                walk = self.walk(script, seed, at + 2.0)
+                tick = round(at / CONTROL_PERIOD)
+                # The footstep under way when the command comes is not one that begins after it.
+                begun.append(max(0, walk.steps[-1] - walk.steps[tick] - 1))
+                tilt += walk.tilt[tick:]
+                walks.append(walk)
+            counts = np.bincount(begun[-len(seeds) :], minlength=3).tolist()
+            print(f"{velocity!s:20} footsteps begun {counts}", flush=True)
+        print(
+            f"{len(walks)} stops: {sum(w.fallen for w in walks)} falls, "
+            f"{sum(not w.standing for w in walks)} still stepping; footsteps begun "
+            f"{np.bincount(begun, minlength=3).tolist()}; tilt from the command on, p99 "
+            f"{np.percentile(tilt, 99):.1f} deg, largest {max(tilt):.1f} deg"
+        )
 
     def odometry(self, seeds: list[int], duration: float) -> None:
         """Error with ideal heading; NEES of increments over footsteps."""
@@ -257,13 +267,12 @@ def main() -> None:
     add_seeds(parser)
     parser.add_argument("--duration", type=float, default=30.0)
     parser.add_argument("--only", nargs="+", choices=FAST, default=list(FAST), help="fast walks")
-    parser.add_argument("--count", type=int, default=50, help="of stops")
     parser.add_argument("--friction", type=float, default=0.8)
     parser.add_argument("--set", nargs="*", default=[], help="parameters, group.name=value")
     options = parser.parse_args()
     study = Study(parameters_of(options.set), options.friction)
     if options.study == "stop":
-        study.stop(options.seeds[0], options.count)
+        study.stop(options.seeds)
     elif options.study == "straight":
         study.straight(options.seeds, options.duration, options.only)
     else:

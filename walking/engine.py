@@ -273,7 +273,8 @@ class WalkingEngine:
             self._pressure.rest()
             return steering.wish(STILL)
         begins = self._cycle.begins(gait.support)
-        disturbed = gait.hurried or self._placement.moved != (0.0, 0.0)
+        moved = hypot(*self._placement.moved)
+        disturbed = gait.hurried or moved > self._parameters.stabilizer.steady_move
         self._pressure.update(self._pressure_error(body), begins=begins, disturbed=disturbed)
         forward, left = self._speed.correction(
             (odometry.x, odometry.y, odometry.yaw),

@@ -201,10 +201,13 @@ class StabilizerParameters:
     """Turn rate per error of the heading [1/s]."""
     heading_rate: Annotated[float, Ge(0.0), RATE] = 0.3
     """Largest turn rate of the heading hold [rad/s]."""
-    speed_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
+    speed_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.5
     """Share of what two footsteps of a steady walk miss of its velocity that is made up for [1]."""
-    speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.02
+    speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.06
     """Most that is made up for, forward and sideways [m/s]."""
+    steady_move: Annotated[float, Ge(0.0), LENGTH] = 0.010
+    """Move of a landing for balance up to which a walk is steady: speed, heading and centre of
+    pressure are held over two of its footsteps [m]."""
     pressure_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
     """Share of the centre of pressure's mean error over two footsteps by which the body moves
     against it [1]."""

@@ -12,6 +12,10 @@ Correction = tuple[float, float]
 class SpeedHold:
     """Velocity that makes up for what the odometry finds missing of a steady command.
 
+    Velocities are those along and across the heading of the moment: a robot that turns does so
+    in one of two footsteps, so its heading at the begin of a cycle is not the mean one, and the
+    way of a cycle seen from there leans to the side.
+
     Args:
         parameters: gain and limit.
     """
@@ -21,13 +25,16 @@ class SpeedHold:
         self._limit = parameters.speed_correction
         self._velocity: Velocity | None = None
         self._correction: Correction = (0.0, 0.0)
-        self._start: Pose | None = None
+        self._pose: Pose | None = None
+        self._way = (0.0, 0.0)
         self._ticks = 0
+        self._whole = False
 
     def rest(self) -> None:
         """Forget everything."""
-        self._velocity = self._start = None
+        self._velocity = self._pose = None
         self._correction = (0.0, 0.0)
+        self._whole = False
 
     def correction(
         self, pose: Pose, velocity: Velocity, *, begins: bool, disturbed: bool
@@ -43,24 +50,28 @@ class SpeedHold:
         if velocity != self._velocity:
             self.rest()
             self._velocity = velocity
-        self._ticks += 1
-        if disturbed:
-            self._start = None
+        if self._pose is not None:
+            self._go(self._pose, pose)
+        self._pose = pose
+        self._whole = self._whole and not disturbed
         if begins:
-            if self._start is not None:
-                self._learn(self._start, pose, velocity)
-            self._start, self._ticks = pose, 0
+            if self._whole:
+                self._learn(velocity)
+            self._whole, self._ticks, self._way = True, 0, (0.0, 0.0)
         return self._correction
 
-    def _learn(self, start: Pose, end: Pose, velocity: Velocity) -> None:
+    def _go(self, start: Pose, end: Pose) -> None:
+        """One tick of the way, seen from the robot."""
         dx, dy = end[0] - start[0], end[1] - start[1]
-        half = 0.5 * (end[2] - start[2])
-        c, s = cos(start[2] + half), sin(start[2] + half)
-        # Along the chord of the arc; the arc is longer.
-        time = self._ticks * CONTROL_PERIOD * (sin(half) / half if half else 1.0)
-        found = (c * dx + s * dy) / time, (c * dy - s * dx) / time
+        middle = 0.5 * (start[2] + end[2])
+        c, s = cos(middle), sin(middle)
+        self._way = self._way[0] + c * dx + s * dy, self._way[1] + c * dy - s * dx
+        self._ticks += 1
+
+    def _learn(self, velocity: Velocity) -> None:
+        time = self._ticks * CONTROL_PERIOD
         forward, left = (
-            min(self._limit, max(-self._limit, now - self._gain * (speed - wanted)))
-            for now, speed, wanted in zip(self._correction, found, velocity[:2], strict=True)
+            min(self._limit, max(-self._limit, now - self._gain * (way / time - wanted)))
+            for now, way, wanted in zip(self._correction, self._way, velocity[:2], strict=True)
         )
         self._correction = forward, left
