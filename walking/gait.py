@@ -60,6 +60,7 @@ class Gait:
         self._window = SwingWindow(gait.swing_start, gait.swing_end, shortest_swing)
         self._speed = gait.swing_speed
         self._move = gait.landing_speed * CONTROL_PERIOD
+        self._turn = gait.landing_turn * CONTROL_PERIOD
         self._lift_change = gait.lift_speed * CONTROL_PERIOD
         self.stepping = False
         self.support = 0
@@ -248,7 +249,7 @@ class Gait:
         """A landing moved towards `wanted` by as much as one tick allows."""
         if self.swing_phase == 0.0:
             return wanted
-        return moved(landing, wanted, self._move)
+        return moved(landing, wanted, self._move, self._turn)
 
     def plan(self, landing: Footstep, wish: Strides, *, moving: bool) -> Ramps:
         """ZMP reference from now on if the swing foot lands at `landing`."""

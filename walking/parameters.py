@@ -65,6 +65,8 @@ class GaitParameters:
     """Share of the swing after which the landing no longer moves [1]."""
     landing_speed: Annotated[float, Gt(0.0), SPEED] = 4.0
     """Fastest move of the landing while the foot is in the air [m/s]."""
+    landing_turn: Annotated[float, Gt(0.0), RATE] = 5.0
+    """Fastest turn of the landing while the foot is in the air [rad/s]."""
     shortest_swing: Annotated[float, Gt(0.0), TIME] = 0.05
     """Time that a foot in the air keeps to come down when a footstep is cut short [s]."""
     swing_speed: Annotated[float, Gt(0.0), SPEED] = 3.0

@@ -6,7 +6,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.state import Footstep
 
 PEAK = 1.875  # of the speed of a minimum-jerk motion over its mean [1]
-ROUNDING = 1e-9  # of a landing that another one is one move away from [m]
+ROUNDING = 1e-7  # of a landing that another one is one move away from, of the move [1]
 
 
 class MinimumJerk:
@@ -95,16 +95,20 @@ def lift_profile(phase: float) -> float:
     return bump * bump * bump
 
 
-def moved(landing: Footstep, wanted: Footstep, most: float) -> Footstep:
-    """A landing moved towards another one by no more than `most` along x and y [m]."""
-    dx, dy = wanted.x - landing.x, wanted.y - landing.y
-    largest = max(abs(dx), abs(dy))
-    if largest <= most + ROUNDING:
+def moved(landing: Footstep, wanted: Footstep, most: float, turn: float) -> Footstep:
+    """A landing moved towards another one.
+
+    By no more than `most` along x and y [m], and by no more than `turn` [rad]; place and
+    direction change together, so that the foot stays clear of the other one.
+    """
+    dx, dy, turned = wanted.x - landing.x, wanted.y - landing.y, wanted.yaw - landing.yaw
+    largest = max(abs(dx) / most, abs(dy) / most, abs(turned) / turn)
+    if largest <= 1.0 + ROUNDING:
         return wanted
-    share = most / largest
+    share = 1.0 / largest
     return Footstep(
         left=wanted.left,
         x=landing.x + share * dx,
         y=landing.y + share * dy,
-        yaw=wanted.yaw,
+        yaw=landing.yaw + share * turned,
     )
