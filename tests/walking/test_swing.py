@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.parameters import CONTROL_PERIOD
-from walking.swing import MinimumJerk, lift_profile
+from walking.state import Footstep
+from walking.swing import MinimumJerk, lift_profile, moved
 
 
 def run(start, targets):
@@ -49,3 +50,11 @@ def test_the_lift_starts_and_ends_at_rest_and_peaks_in_the_middle():
     assert heights.max() == heights[100] == 1.0
     assert abs(heights[1] / 0.005) < 0.01
     assert abs(heights[-2] / 0.005) < 0.01
+
+
+def test_a_landing_moves_and_turns_together_and_no_faster_than_allowed():
+    a, b = Footstep(True, 0.0, 0.0, 0.0), Footstep(True, 0.03, -0.01, 0.6)
+    one = moved(a, b, 0.02, 0.1)
+    assert (one.x, one.y, one.yaw) == pytest.approx((0.005, -0.01 / 6.0, 0.1))
+    assert moved(a, b, 0.01, 10.0).x == pytest.approx(0.01)
+    assert moved(a, b, 0.03, 0.6) is b
