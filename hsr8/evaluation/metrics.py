@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.evaluation.track_metrics import TrackMetrics
 from hsr8.evaluation.walk_metrics import WalkMetrics
+from hsr8.recorder.block import Block
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.world.episodes import Episodes
 from hsr8.world.falls import Falls
@@ -46,6 +47,7 @@ class Metrics:
         self._r_goal = r_goal
         self._started = clock.perf_counter()
         self._wall: float | None = None
+        self._waiting = Block()
         self._episodes = Episodes()
         self._via = 0
         self._via_missed = 0
@@ -72,7 +74,8 @@ class Metrics:
         self._tracks = TrackMetrics(layout.obstacles)
 
     def __getstate__(self) -> dict[str, Any]:
-        """The wall time so far instead of when it began."""
+        """The wall time so far instead of when it began; no record waits."""
+        self._work_off()
         return self.__dict__ | {"_started": clock.perf_counter() - self._started}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -80,17 +83,8 @@ class Metrics:
 
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
-        truth = record.truth
-        self._move(truth)
-        self._walk.add(record)
-        self._episodes.add(truth.time, truth.contacts)
-        self._clearance = min(self._clearance, truth.clearance)
-        self._falls.add(truth.time, fallen=truth.fallen)
-        if not self._falls.lasting(truth.time):
-            self._tilt = max(self._tilt, hypot(record.walking.roll, record.walking.pitch))
-        if record.frame is not None:
-            self._look(record.frame, truth)
-        self._last = truth
+        if self._waiting.add(record):
+            self._work_off()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Events follow from the records."""
@@ -105,6 +99,7 @@ class Metrics:
         What was not measured, for example the localization of a robot without a camera
         frame, is None.
         """
+        self._work_off()
         time = self._last.time if self._last is not None else 0.0
         wall = self._wall if self._wall is not None else clock.perf_counter() - self._started
         collisions = self._episodes.collisions
@@ -148,6 +143,24 @@ class Metrics:
             **self._tracks.result(),
             **self._walk.result(),
         }
+
+    def _work_off(self) -> None:
+        """Count the records that wait."""
+        for record in self._waiting.take():
+            self._add(record)
+
+    def _add(self, record: TickRecord) -> None:
+        truth = record.truth
+        self._move(truth)
+        self._walk.add(record)
+        self._episodes.add(truth.time, truth.contacts)
+        self._clearance = min(self._clearance, truth.clearance)
+        self._falls.add(truth.time, fallen=truth.fallen)
+        if not self._falls.lasting(truth.time):
+            self._tilt = max(self._tilt, hypot(record.walking.roll, record.walking.pitch))
+        if record.frame is not None:
+            self._look(record.frame, truth)
+        self._last = truth
 
     def _via_total(self) -> int:
         """Via points of the mission; of a tour, those of one round."""

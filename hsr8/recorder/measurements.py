@@ -20,7 +20,7 @@ from hsr8.recorder.fingerprints import (
     fingerprints,
 )
 from hsr8.recorder.guarded_file import GuardedWriter, read_payloads
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import FrameRecord
 from navigation.observation import CameraView, Frame, Observation
 
 Array = NDArray[np.float64]
@@ -67,16 +67,14 @@ class MeasurementWriter:
     def __init__(self, path: Path) -> None:
         self._file = GuardedWriter(path, MAGIC)
 
-    def on_record(self, record: TickRecord) -> None:
-        """Append the camera frame, if there is one."""
-        if record.frame is not None:
-            frame = record.frame
-            payload = _packed(frame.measured) + _packed_now(frame.now, frame.decided.fresh)
-            estimate = fingerprints(frame.estimate)
-            known = estimate if frame.belief is frame.estimate else None
-            payload += b"".join(decision_fingerprints(frame.decided, known))
-            payload += b"".join(estimate)
-            self._file.write(payload)
+    def add(self, frame: FrameRecord) -> None:
+        """Append a camera frame."""
+        payload = _packed(frame.measured) + _packed_now(frame.now, frame.decided.fresh)
+        estimate = fingerprints(frame.estimate)
+        known = estimate if frame.belief is frame.estimate else None
+        payload += b"".join(decision_fingerprints(frame.decided, known))
+        payload += b"".join(estimate)
+        self._file.write(payload)
 
     def flush(self) -> None:
         """Hand everything to the operating system."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.belief_layer import BeliefLayer
+from hsr8.recorder.block import PERIOD, Block
 from hsr8.recorder.blueprint import blueprint
 from hsr8.recorder.camera_layer import CameraLayer
 from hsr8.recorder.channel import TIMELINE, Channel
@@ -29,8 +30,7 @@ from walking.state import Footstep
 Array = NDArray[np.float64]
 
 APRON = 1.0  # the floor shown is larger than the field by this [m]
-BLOCK = 1.0  # rows are sent in blocks of this length; a kill loses the last one [s]
-LIVE_BLOCK = 0.5  # shorter while somebody watches [s]
+LIVE_BLOCK = 0.5  # rows are sent in shorter blocks while somebody watches [s]
 FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
 LABELLED = 12  # more way points than this are shown without their numbers
 PATIENCE = 20.0  # a block must be with the operating system within this wall time [s]
@@ -102,21 +102,33 @@ class RerunLog:
         self._trail: list[list[float]] = []
         self._log_way_points(layout)
         self._trail_at = -np.inf
-        self._block = LIVE_BLOCK if live else BLOCK
-        self._block_at: float | None = None
+        self._waiting = Block(LIVE_BLOCK if live else PERIOD)
         self._time = 0.0
         self._pose_at = -np.inf
         self._frame_at = -np.inf
 
     def on_record(self, record: TickRecord) -> None:
         """Log one record."""
+        if self._waiting.add(record):
+            self._flush()
+
+    def on_event(self, time: float, kind: str, text: str) -> None:
+        """Log one event."""
+        self._stream.set_time(TIMELINE, duration=time)
+        level = LEVELS.get(kind, "INFO")
+        self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
+
+    def close(self, exit_reason: str) -> None:
+        """Write what is left and finish the file."""
+        try:
+            self._flush()
+            self.on_event(self._time, "end", exit_reason)
+        finally:
+            self._stream.disconnect()
+
+    def _add(self, record: TickRecord) -> None:
         time, truth = record.time, record.truth
         self._time = time
-        if self._block_at is None:
-            self._block_at = time
-        if time - self._block_at >= self._block - 1e-9:
-            self._flush()
-            self._block_at = time
         if time - self._pose_at >= self._rates.pose - 1e-9:
             self._pose_at = time
             movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
@@ -129,20 +141,6 @@ class RerunLog:
         if record.frame is not None and time - self._frame_at >= self._rates.frame - 1e-9:
             self._frame_at = time
             self._add_frame(record, record.frame)
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Log one event."""
-        self._stream.set_time(TIMELINE, duration=time)
-        level = LEVELS.get(kind, "INFO")
-        self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
-
-    def close(self, exit_reason: str) -> None:
-        """Write what is left and finish the file."""
-        try:
-            self.on_event(self._time, "end", exit_reason)
-            self._flush()
-        finally:
-            self._stream.disconnect()
 
     def _add_frame(self, record: TickRecord, frame: FrameRecord) -> None:
         if self._camera is not None:
@@ -168,6 +166,8 @@ class RerunLog:
         )
 
     def _flush(self) -> None:
+        for record in self._waiting.take():
+            self._add(record)
         if self._trail:
             self._path.add(
                 self._time,

@@ -14,7 +14,8 @@
     checkpoint.bin   where the run can go on, with ``--checkpoint``
     crash.txt        traceback of an internal error, if there was one
 
-Everything is written as it happens, so a killed run leaves a folder that can be read.
+Events are written as they happen and records in blocks, so a killed run leaves a folder that can
+be read up to its last second.
 """
 
 import errno
@@ -29,6 +30,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic, frame_summary
+from hsr8.recorder.block import Block
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.measurements import MeasurementWriter
 from hsr8.recorder.record import FrameRecord, TickRecord
@@ -51,7 +53,6 @@ VIDEO = "video.mp4"
 CRASH = "crash.txt"
 
 MOST_PARTS = 1000  # of a run that is resumed again and again
-FLUSH_PERIOD = 1.0  # a killed run loses so much of its motion at most [s]
 
 
 class RunFolder:
@@ -82,7 +83,7 @@ class RunFolder:
         self._trajectory: TrajectoryWriter | None = None
         # Told last; a gaze rests for many frames.
         self._gaze_map: Array | None = None if before is None else before.gaze.gaze_map
-        self._flushed_at = 0.0
+        self._waiting = Block()
         with writing(path):
             manifest.write(path / MANIFEST)
             atomic.write_text(path / SCENARIO, scenario)
@@ -118,10 +119,10 @@ class RunFolder:
 
     def on_record(self, record: TickRecord) -> None:
         """Append the motion and, if there is one, the camera frame."""
-        with writing(self.path):
-            self._add(record)
-        if record.time - self._flushed_at >= FLUSH_PERIOD:
-            self._flushed_at = record.time
+        if self._trajectory is None:
+            file = self.path / TRAJECTORY
+            self._trajectory = TrajectoryWriter(file, len(record.truth.qpos), self._n_movers)
+        if self._waiting.add(record):
             self.flush()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
@@ -135,6 +136,7 @@ class RunFolder:
         with writing(self.path):
             if not (self.path / MANIFEST).exists():  # open files outlive their folder
                 raise FileNotFoundError(errno.ENOENT, "it is no longer there")
+            self._work_off()
             if self._trajectory is not None:
                 self._trajectory.flush()
             self._frames.flush()
@@ -149,25 +151,31 @@ class RunFolder:
             farewell.callback(self._frames.close)
             if self._trajectory is not None:
                 farewell.callback(self._trajectory.close)
+            farewell.callback(self._work_off)
 
     def note(self, exit_reason: str) -> None:
         """Note how the run ended."""
         with writing(self.path):
             self._manifest.ended(exit_reason).write(self.path / MANIFEST)
 
-    def _add(self, record: TickRecord) -> None:
-        truth = record.truth
-        movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
-        if self._trajectory is None:
-            self._trajectory = TrajectoryWriter(
-                self.path / TRAJECTORY, len(truth.qpos), self._n_movers
+    def _work_off(self) -> None:
+        """Write the records that wait."""
+        records = self._waiting.take()
+        if self._trajectory is not None and records:
+            truths = [record.truth for record in records]
+            first = len(truths[0].obstacle_positions) - self._n_movers
+            self._trajectory.extend(
+                [record.time for record in records],
+                [truth.qpos for truth in truths],
+                [truth.obstacle_positions[first:] for truth in truths],
             )
-        self._trajectory.append(record.time, truth.qpos, movers)
-        self._measurements.on_record(record)
-        if record.frame is not None:
-            gaze_map = record.frame.gaze.gaze_map
+        seen = [(record.frame, record.truth) for record in records if record.frame is not None]
+        for frame, _ in seen:
+            self._measurements.add(frame)
+        for frame, truth in seen:
+            gaze_map = frame.gaze.gaze_map
             new = gaze_map is not self._gaze_map
-            self._frames.write(frame_summary.to_line(record.frame, truth, new_map=new) + "\n")
+            self._frames.write(frame_summary.to_line(frame, truth, new_map=new) + "\n")
             self._gaze_map = gaze_map
 
 

@@ -52,10 +52,13 @@ class TrajectoryWriter:
     def __init__(self, path: Path, nq: int, movers: int) -> None:
         self._file = HeadedWriter(path, MAGIC, {"nq": nq, "movers": movers})
 
-    def append(self, time: float, qpos: Array, movers: Array) -> None:
-        """Add one row."""
-        row = np.concatenate(([time], qpos, movers.ravel()), dtype="<f8")
-        self._file.write(row.tobytes())
+    def extend(
+        self, times: Sequence[float], qpos: Sequence[Array], movers: Sequence[Array]
+    ) -> None:
+        """Add n rows: times [s], configurations (nq,), places of the movers (movers, 2) [m]."""
+        n = len(times)
+        columns = np.reshape(times, (n, 1)), np.array(qpos), np.reshape(movers, (n, -1))
+        self._file.write(np.hstack(columns, dtype="<f8").tobytes())
 
     def flush(self) -> None:
         """Hand everything to the operating system."""

@@ -7,7 +7,6 @@ Points are in W. What the robot knows in its odometry frame is put there by its 
 the moment, so that planned and true curves can be compared.
 """
 
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, sin
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
+from hsr8.recorder.block import Block
 from hsr8.recorder.headed_file import HeadedWriter, read_headed
 from hsr8.recorder.record import TickRecord
 from hsr8.world.index import ModelIndex
@@ -28,7 +28,6 @@ from walking.state import Phase
 Array = NDArray[np.float64]
 
 MAGIC = b"HSR8WLK1"
-FLUSH_PERIOD = 1.0  # a killed run loses so much at most [s]
 LEG_JOINTS = JOINT_NAMES[:12]
 PHASES = tuple(Phase)
 LIMITS = tuple(Limit)
@@ -113,15 +112,12 @@ class WalkingTableWriter:
             "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
             "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
         }
-        self._flushed_at = 0.0
+        self._waiting = Block()
         self._file = HeadedWriter(path, MAGIC, header)
 
     def on_record(self, record: TickRecord) -> None:
         """Append one row."""
-        row = np.array(_row(record), dtype="<f4").tobytes()
-        self._file.write(struct.pack("<d", record.time) + row)
-        if record.time - self._flushed_at >= FLUSH_PERIOD:
-            self._flushed_at = record.time
+        if self._waiting.add(record):
             self.flush()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
@@ -129,11 +125,23 @@ class WalkingTableWriter:
 
     def flush(self) -> None:
         """Hand everything to the operating system."""
+        self._work_off()
         self._file.flush()
 
     def close(self, exit_reason: str) -> None:
         """Finish the file."""
-        self._file.close()
+        try:
+            self._work_off()
+        finally:
+            self._file.close()
+
+    def _work_off(self) -> None:
+        """Write the rows of the records that wait."""
+        records = self._waiting.take()
+        table = np.empty(len(records), dtype=_row_type(len(COLUMNS)))
+        table["time"] = [record.time for record in records]
+        table["values"] = np.reshape([_row(record) for record in records], (-1, len(COLUMNS)))
+        self._file.write(table.tobytes())
 
 
 def read_walking_table(path: Path) -> WalkingTable:
@@ -159,7 +167,7 @@ def read_walking_table(path: Path) -> WalkingTable:
             f"{path} is of another version of hsr8: it has no column {', '.join(missing)}; "
             "run it again"
         )
-    row = np.dtype([("time", "<f8"), ("values", "<f4", (len(names),))])
+    row = _row_type(len(names))
     table = np.frombuffer(content, dtype=row, count=len(content) // row.itemsize)
     values = table["values"].astype(np.float64)
     return WalkingTable(
@@ -221,3 +229,8 @@ def _row(record: TickRecord) -> list[float]:
         row += [0.0] * 8
     row += truth.joint_torque[: len(LEG_JOINTS)].tolist()
     return row
+
+
+def _row_type(columns: int) -> np.dtype[np.void]:
+    """A row of the file."""
+    return np.dtype([("time", "<f8"), ("values", "<f4", (columns,))])

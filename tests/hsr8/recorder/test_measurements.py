@@ -34,8 +34,7 @@ def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
     frame = fake.frame(0.06, (0.1, 0.2, 0.3))
     frame = replace(frame, measured=replace(frame.measured, observations=(seen,)))
     writer = MeasurementWriter(file)
-    writer.on_record(fake.record(0.06, frame=frame))
-    writer.on_record(fake.record(0.08))
+    writer.add(frame)
     writer.close()
     (back,) = read_measurements(file, whole=True)
     a, b = back.frame, frame.measured

@@ -15,7 +15,7 @@ def _write(path, rows, nq=5, movers=2):
     qpos, places = rng.normal(size=(rows, nq)), rng.normal(size=(rows, movers, 2))
     with closing(TrajectoryWriter(path, nq, movers)) as writer:
         for k in range(rows):
-            writer.append(0.02 * k, qpos[k], places[k])
+            writer.extend([0.02 * k], qpos[k : k + 1], places[k : k + 1])
     return qpos, places
 
 
