@@ -7,10 +7,10 @@ import numpy as np
 from walking.admission import AdmissionReport, Limit
 from walking.catching import CatchingPendulum
 from walking.caution import Caution
-from walking.com_error import ComError
 from walking.command import Command, HeadTarget
 from walking.cycle import Cycle
-from walking.estimator import TiltFilter, TouchDown
+from walking.estimation import Estimation
+from walking.estimator import TouchDown
 from walking.foot_placement import FootPlacement
 from walking.footsteps import STILL, FootstepPlanner
 from walking.gait import Gait
@@ -19,14 +19,13 @@ from walking.head import Head
 from walking.heading_hold import HeadingHold
 from walking.joints import HEAD
 from walking.lipm import Lipm
-from walking.measurement import BodyMeasurement, measure
+from walking.measurement import BodyMeasurement
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import PendulumState
 from walking.posture import ready_stance
 from walking.pressure_hold import PressureHold
 from walking.robot_model import RobotModel
-from walking.rotation import roll_pitch_yaw
 from walking.sensing import BodySensors
 from walking.snapshot import PlanToOdometry, balance, camera_pose
 from walking.speed_hold import SpeedHold
@@ -83,8 +82,6 @@ class WalkingEngine:
             gait=gait,
             pendulum=self._pendulum,
         )
-        self._tilt = TiltFilter(parameters.estimator)
-        self._error = ComError(lipm.omega, parameters.estimator)
         self._touch = TouchDown(parameters.estimator)
         self._caution = Caution(parameters.stabilizer)
         self._cycle = Cycle()
@@ -92,15 +89,16 @@ class WalkingEngine:
         self._speed = SpeedHold(parameters.stabilizer)
         self._pressure = PressureHold(parameters.stabilizer)
         self._odometry = odometry or LegOdometry(parameters.odometry)
+        self._estimation = Estimation(robot, lipm.omega, parameters.estimator, self._odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
         self._footing = Footing(robot.sole, gait.support_feet)
+        self._fall_tilt = parameters.estimator.fall_tilt
         self._zmp_shift = (0.0, 0.0)
         self._bound: list[Limit] = []
         self._last_opening_left = False
         self._ticks = 0
         self._sensors: BodySensors | None = None
-        self._body: BodyMeasurement | None = None
 
     @property
     def parameters(self) -> WalkingParameters:
@@ -143,20 +141,12 @@ class WalkingEngine:
             set-points of all joints.
         """
         body = self._sense(sensors)
-        left, right = body.feet
-        self._odometry.update(
-            body.heading,
-            ((left.x, left.y), (right.x, right.y)),
-            body.right_load,
-            stepping=self._gait.stepping,
-        )
+        error = self._estimation.dcm_error
         gait, steering, placement = self._gait, self._steering, self._placement
         pendulum, whole_body, footing = self._pendulum, self._whole_body, self._footing
-        slip = body.gyro[2] - whole_body.turn_rate
-        error = self._error.update(body, gait, whole_body.com, slip, self._zmp_shift)
         placement.remember()
         self._command(command, error)
-        wish = self._wish(body)
+        wish = self._wish()
         if not gait.stepping:
             self._maybe_start(error)
         self._feel_floor(body)
@@ -184,7 +174,9 @@ class WalkingEngine:
 
     def observe(self, sensors: BodySensors) -> None:
         """A tick in which something else moves the joints: only the attitude is followed."""
-        self._sense(sensors)
+        self._estimation.observe(sensors)
+        self._sensors = sensors
+        self._ticks += 1
 
     def state(self) -> WalkingState:
         """Snapshot after the last tick; it changes nothing.
@@ -192,9 +184,10 @@ class WalkingEngine:
         Raises:
             RuntimeError: no tick has been made yet.
         """
-        if self._sensors is None or self._body is None:
+        body = self._estimation.body
+        if self._sensors is None or body is None:
             raise RuntimeError("the walking engine has no state before its first tick")
-        body, gait, pendulum = self._body, self._gait, self._pendulum
+        gait, pendulum = self._gait, self._pendulum
         odometry = self._odometry.pose()
         plan = PlanToOdometry(gait.footholds[gait.support], body, gait.support, odometry)
         w = self._lipm.omega
@@ -217,7 +210,7 @@ class WalkingEngine:
                 plan,
                 gait,
                 pendulum,
-                error=self._error.filter,
+                error=self._estimation.com_error,
                 omega=w,
                 footing=self._footing,
                 capture=self._placement.moved,
@@ -228,15 +221,25 @@ class WalkingEngine:
     @property
     def fallen(self) -> bool:
         """Whether the trunk is tilted so far that the robot must have fallen."""
-        limit = self._parameters.estimator.fall_tilt
-        return hypot(self._tilt.roll, self._tilt.pitch) > limit
+        body = self._estimation.body
+        return body is not None and hypot(body.roll, body.pitch) > self._fall_tilt
 
     def _sense(self, sensors: BodySensors) -> BodyMeasurement:
-        w, x, y, z = sensors.orientation.tolist()
-        roll, pitch, heading = roll_pitch_yaw((w, x, y, z))
-        self._tilt.update(roll, pitch, sensors.gyro.tolist())
-        body = measure(self._robot, sensors, self._tilt.roll, self._tilt.pitch, heading)
-        self._sensors, self._body = sensors, body
+        gait, whole_body, pendulum = self._gait, self._whole_body, self._pendulum
+        (left, right), pelvis = gait.feet, whole_body.pelvis
+        plan = (
+            pelvis.x,
+            pelvis.y,
+            pelvis.yaw,
+            *whole_body.com,
+            pendulum.zmp_x,
+            pendulum.zmp_y,
+            *self._zmp_shift,
+            whole_body.turn_rate,
+            gait.right_weight,
+        )
+        body = self._estimation.update(sensors, (left.row, right.row), plan, stepping=gait.stepping)
+        self._sensors = sensors
         self._ticks += 1
         return body
 
@@ -250,19 +253,10 @@ class WalkingEngine:
         retimed = gait.retime(self._steering.pace(gait.timing, stepping=gait.stepping))
         self._bound = [] if retimed else [Limit.TIMING]
 
-    def _pressure_error(self, body: BodyMeasurement) -> tuple[float, float]:
-        """Centre of pressure less planned ZMP, along and across the heading [m]."""
-        found, pendulum = body.pressure(self._gait.feet), self._pendulum
-        if found is None:
-            return 0.0, 0.0
-        x, y = found[0] - pendulum.zmp_x, found[1] - pendulum.zmp_y
-        c, s = cos(self._whole_body.pelvis.yaw), sin(self._whole_body.pelvis.yaw)
-        return c * x + s * y, c * y - s * x
-
-    def _wish(self, body: BodyMeasurement) -> Strides:
+    def _wish(self) -> Strides:
         """What the footsteps obey, making up for what the feet slip."""
-        odometry, gait, steering = self._odometry, self._gait, self._steering
-        ahead = self._whole_body.pelvis.yaw - odometry.yaw
+        estimation, gait, steering = self._estimation, self._gait, self._steering
+        ahead = self._whole_body.pelvis.yaw - estimation.pose[2]
         if not gait.stepping:
             # Standing, the plan takes the heading as it is.
             self._heading.rest(ahead)
@@ -275,9 +269,9 @@ class WalkingEngine:
         begins = self._cycle.begins(gait.support)
         moved = hypot(*self._placement.moved)
         disturbed = gait.hurried or moved > self._parameters.stabilizer.steady_move
-        self._pressure.update(self._pressure_error(body), begins=begins, disturbed=disturbed)
+        self._pressure.update(estimation.pressure_error, begins=begins, disturbed=disturbed)
         forward, left = self._speed.correction(
-            (odometry.x, odometry.y, odometry.yaw),
+            estimation.pose,
             steering.velocity,
             begins=begins,
             disturbed=disturbed,

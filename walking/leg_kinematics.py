@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from walking import leg_kernel
+from walking import estimation_kernel, leg_kernel
 from walking.leg_kernel import Angles as LegAngles
 from walking.leg_kernel import Leg, Vector
 from walking.value import value
@@ -71,7 +71,7 @@ def leg_angles(leg: LegDimensions, foot: FootPose) -> tuple[LegAngles, bool]:
 
 def foot_pose(leg: LegDimensions, angles: LegAngles) -> FootPose:
     """Pose of the foot frame in the base frame for given joint angles [rad]."""
-    return FootPose(*leg_kernel.foot_pose(leg.row, angles))
+    return FootPose(*estimation_kernel.foot_pose(leg.row, angles))
 
 
 def support_torques(

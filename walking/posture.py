@@ -40,7 +40,7 @@ class Posture:
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
-        self._com_ahead = robot.com(robot.ready)[0]
+        self._com_ahead = float(robot.com(robot.ready)[0])
         self._ready = robot.ready
         self._legs = robot.leg_rows
         self._arms = parameters.arms

@@ -124,12 +124,12 @@ class RobotModel:
         ordered = np.array([gains[name] for name in JOINT_NAMES])
         return cls(model, ordered[:, 0], ordered[:, 1])
 
-    def com(self, joint_position: Array) -> tuple[float, float, float]:
-        """Centre of mass in the base frame [m] for joint angles (26,) [rad]."""
+    def com(self, joint_position: Array) -> Array:
+        """Centre of mass in the base frame (3,) [m] for joint angles (26,) [rad]."""
         q = self._q
         q[self._q_index] = joint_position
-        x, y, z = pin.centerOfMass(self._model, self._data, q, False).tolist()
-        return x, y, z
+        com: Array = pin.centerOfMass(self._model, self._data, q, False)
+        return com
 
     def inverse_dynamics(
         self,

@@ -4,7 +4,6 @@ from math import cos, sin
 
 import numpy as np
 
-from walking.estimator import ErrorFilter
 from walking.gait import Gait
 from walking.joints import HEAD
 from walking.measurement import BodyMeasurement
@@ -74,7 +73,7 @@ def balance(
     gait: Gait,
     pendulum: PendulumState,
     *,
-    error: ErrorFilter,
+    error: tuple[float, float, float, float],
     omega: float,
     footing: Footing,
     capture: tuple[float, float],
@@ -85,14 +84,15 @@ def balance(
         plan: transform from the plan frame.
         gait: references of the feet.
         pendulum: planned motion.
-        error: of the body against it.
+        error: of the body against it, x, y [m], vx, vy [m/s].
         omega: of the pendulum [1/s].
         footing: soles that carry.
         capture: what balance adds to the landing, plan frame [m].
     """
     polygon = footing.polygon()
-    dcm_x = pendulum.x + error.x + (pendulum.vx + error.vx) / omega
-    dcm_y = pendulum.y + error.y + (pendulum.vy + error.vy) / omega
+    ex, ey, evx, evy = error
+    dcm_x = pendulum.x + ex + (pendulum.vx + evx) / omega
+    dcm_y = pendulum.y + ey + (pendulum.vy + evy) / omega
     feet = [
         (*plan.place(f.x.position, f.y.position), f.height, plan.yaw + f.yaw.position)
         for f in gait.feet

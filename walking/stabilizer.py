@@ -72,7 +72,11 @@ class Stabilizer:
         return x - zmp[0], y - zmp[1]
 
     def ankles(
-        self, foot: Footstep, load: float, shift: tuple[float, float], gyro: list[float]
+        self,
+        foot: Footstep,
+        load: float,
+        shift: tuple[float, float],
+        gyro: tuple[float, float, float],
     ) -> AnkleOffsets:
         """Set-points that move the ZMP of a foot carrying a share `load` of the weight."""
         if load <= 0.0:

@@ -31,6 +31,7 @@ class WholeBody:
     Attributes:
         pelvis: of the last tick.
         turn_rate: planned, of the trunk [rad/s].
+        com: mass centre of the last tick's posture in the base frame, x, y [m].
         compensation: motion of the pelvis against the swinging legs.
     """
 
@@ -55,14 +56,8 @@ class WholeBody:
         self.compensation = SwingCompensation(lipm, leg_reaction(robot, base, parameters.gait.lift))
         self.pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
         self.turn_rate = 0.0
-        self._com = robot.com(robot.ready)
-
-    @property
-    def com(self) -> Point:
-        """Mass centre of the last tick's posture in the plan frame [m]."""
-        pelvis, (x, y, _) = self.pelvis, self._com
-        c, s = cos(pelvis.yaw), sin(pelvis.yaw)
-        return pelvis.x + c * x - s * y, pelvis.y + s * x + c * y
+        x, y, _ = robot.com(robot.ready).tolist()
+        self.com: Point = x, y
 
     def follow(
         self,
@@ -104,7 +99,8 @@ class WholeBody:
         set_points = self._feedforward.offsets(
             position, (left, right), right_load, (c * ax + s * ay, c * ay - s * ax)
         )
-        self._com = self._robot.moved_com()
+        x, y, _ = self._robot.moved_com()
+        self.com = x, y
         for index, load in ((0, 1.0 - right_load), (1, right_load)):
             if load <= 0.0:
                 continue

@@ -1,7 +1,6 @@
 """The compiled kinematics of a tick against the same in plain Python and in numpy."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -37,17 +36,6 @@ def test_compiled_the_posture_is_what_it_says(plainly, seed):
     np.testing.assert_allclose(*outcomes, rtol=0.0, atol=1e-12)
 
 
-@settings(max_examples=30)
-@given(SEEDS)
-def test_compiled_the_measurement_is_what_it_says(plainly, seed):
-    rng, _ = draw(seed)
-    joints, pads = rng.uniform(-0.5, 0.5, 26), np.maximum(rng.normal(5.0, 5.0, (2, 4)), 0.0)
-    asked = (joints, pads, (0.1, -0.05), LEGS, (0.01, 0.05, 0.03))
-    found = np.array(leg_kernel.measured_feet(*asked))
-    plain = np.array(plainly(leg_kernel, "measured_feet", *asked))
-    np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
-
-
 def test_rates_are_quotients_of_differences():
     rng = np.random.default_rng(1)
     angles = rng.uniform(-0.1, 0.1, (3, 26))
@@ -78,10 +66,3 @@ def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
     np.testing.assert_allclose(found[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
     shares = [abs(found - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
     assert [share > 1e-6 for share in shares] == [load < 1.0, load > 0.0]
-
-
-@given(SEEDS)
-def test_a_level_point_keeps_its_distance(seed):
-    point = tuple(np.random.default_rng(seed).normal(0.0, 0.1, 3).tolist())
-    levelled = leg_kernel.level(point, (0.2, -0.3))
-    assert np.linalg.norm(levelled) == pytest.approx(np.linalg.norm(point))

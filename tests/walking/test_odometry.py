@@ -6,10 +6,16 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
+from walking import estimation_kernel
 from walking.odometry import LegOdometry, increment
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 
 PARAMETERS = OdometryParameters()
+
+
+def update(odometry, heading, feet, load, *, stepping):
+    """One tick."""
+    estimation_kernel.reckon(odometry.state, heading, feet, load, stepping, odometry.growth)
 
 
 def feet_in_body(body, feet):
@@ -23,7 +29,7 @@ def test_a_body_over_fixed_feet_is_followed_exactly():
     feet = ((0.0, 0.04), (0.02, -0.04))
     for k in range(200):
         body = (0.01 * sin(0.1 * k), 0.02 * cos(0.05 * k) - 0.02, 0.3 * sin(0.02 * k))
-        odometry.update(body[2], feet_in_body(body, feet), (k % 10) / 10.0, stepping=True)
+        update(odometry, body[2], feet_in_body(body, feet), (k % 10) / 10.0, stepping=True)
     pose = odometry.pose()
     assert (pose.x, pose.y, pose.yaw) == pytest.approx(body, abs=1e-12)
 
@@ -32,19 +38,19 @@ def test_a_foot_without_load_may_move_as_it_likes():
     odometry = LegOdometry(PARAMETERS)
     for k in range(50):
         body = (0.001 * k, 0.0, 0.0)
-        odometry.update(
-            0.0, feet_in_body(body, ((0.0, 0.04), (0.01 * k, -0.3))), 0.0, stepping=True
+        update(
+            odometry, 0.0, feet_in_body(body, ((0.0, 0.04), (0.01 * k, -0.3))), 0.0, stepping=True
         )
-    assert odometry.x == pytest.approx(0.049)
-    assert odometry.y == pytest.approx(0.0)
+    assert odometry.pose().x == pytest.approx(0.049)
+    assert odometry.pose().y == pytest.approx(0.0)
 
 
 def test_heading_is_unwrapped_and_starts_at_zero():
     odometry = LegOdometry(PARAMETERS)
     for k in range(100):
         yaw = (2.0 + 0.1 * k + pi) % (2.0 * pi) - pi
-        odometry.update(yaw, ((0.0, 0.04), (0.0, -0.04)), 0.5, stepping=False)
-    assert odometry.yaw == pytest.approx(9.9)
+        update(odometry, yaw, ((0.0, 0.04), (0.0, -0.04)), 0.5, stepping=False)
+    assert odometry.pose().yaw == pytest.approx(9.9)
 
 
 def driven(path, parameters=PARAMETERS, *, stepping=True):
@@ -53,7 +59,7 @@ def driven(path, parameters=PARAMETERS, *, stepping=True):
     readings = []
     for body in path:
         foot = feet_in_body(body, ((0.0, 0.0), (0.0, 0.0)))
-        odometry.update(body[2], foot, 0.5, stepping=stepping)
+        update(odometry, body[2], foot, 0.5, stepping=stepping)
         readings.append(odometry.pose())
     return readings
 
@@ -141,13 +147,13 @@ def test_an_interruption_keeps_the_place_and_admits_what_it_hides():
     feet = ((0.0, 0.04), (0.02, -0.04))
     for k in range(100):
         body = (0.002 * k, 0.001 * k, 0.3)
-        odometry.update(body[2] - 0.3, feet_in_body(body, feet), 0.5, stepping=True)
+        update(odometry, body[2] - 0.3, feet_in_body(body, feet), 0.5, stepping=True)
     before = odometry.pose()
     odometry.interrupt(0.3, 0.05)
     # It stands up elsewhere, turned by half a radian.
     elsewhere = (1.0, -2.0, 0.8)
     at_feet = feet_in_body(elsewhere, ((1.0, -1.96), (1.02, -2.04)))
-    odometry.update(elsewhere[2] - 0.3, at_feet, 0.5, stepping=False)
+    update(odometry, elsewhere[2] - 0.3, at_feet, 0.5, stepping=False)
     after = odometry.pose()
     assert (after.x, after.y) == pytest.approx((before.x, before.y))
     assert after.yaw - before.yaw == pytest.approx(0.5)
@@ -161,8 +167,8 @@ def test_a_foot_that_slides_while_it_is_loaded_does_not_count():
         body, load = 0.001 * k, 0.007 * k
         slid = 0.1 + 0.0002 * k
         feet = feet_in_body((body, 0.0, 0.0), ((0.0, 0.04), (slid, -0.04)))
-        odometry.update(0.0, feet, load, stepping=True)
-    assert odometry.x == pytest.approx(0.1)
+        update(odometry, 0.0, feet, load, stepping=True)
+    assert odometry.pose().x == pytest.approx(0.1)
 
 
 def stepped(slip, parameters):
@@ -171,7 +177,7 @@ def stepped(slip, parameters):
     loads = [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
     for k, load in enumerate(loads):
         slid = slip * min(1.0, max(0.0, (k - 2) / 3.0))
-        odometry.update(0.0, ((slid, 0.04), (0.1, -0.04)), load, stepping=True)
+        update(odometry, 0.0, ((slid, 0.04), (0.1, -0.04)), load, stepping=True)
         if k == 0:
             before = odometry.pose()
     return increment(before, odometry.pose()).covariance
@@ -187,6 +193,6 @@ def test_feet_that_slide_against_each_other_are_held_against_the_odometry():
 def test_a_foot_in_the_air_does_not_slip():
     odometry, still = LegOdometry(PARAMETERS), LegOdometry(PARAMETERS)
     for k in range(100):
-        odometry.update(0.0, ((0.0, 0.04), (0.001 * k, -0.04)), 0.1, stepping=True)
-        still.update(0.0, ((0.0, 0.04), (0.0, -0.04)), 0.1, stepping=True)
+        update(odometry, 0.0, ((0.0, 0.04), (0.001 * k, -0.04)), 0.1, stepping=True)
+        update(still, 0.0, ((0.0, 0.04), (0.0, -0.04)), 0.1, stepping=True)
     assert odometry.pose().covariance == pytest.approx(still.pose().covariance, abs=1e-18)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from walking import foothold_kernel, leg_kernel, swing_kernel, zmp_kernel
+from walking import estimation_kernel, foothold_kernel, leg_kernel, swing_kernel, zmp_kernel
 from walking.parameters import WalkingParameters
 from walking.rehearsal import rehearse
 
@@ -15,7 +15,7 @@ from walking.rehearsal import rehearse
         (foothold_kernel, "ramps"),
         (foothold_kernel, "swings"),
         (swing_kernel, "react"),
-        (leg_kernel, "measured_feet"),
+        (estimation_kernel, "estimate"),
         (leg_kernel, "pose_legs"),
         (leg_kernel, "offsets"),
     ],

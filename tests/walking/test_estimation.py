@@ -1,0 +1,93 @@
+"""Sensors in the level frame of the heading, and the body against the plan."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from walking.estimation import Estimation
+from walking.odometry import LegOdometry
+from walking.parameters import WalkingParameters
+
+PARAMETERS = WalkingParameters()
+STILL = (0.0,) * 11
+
+
+def estimation(robot):
+    return Estimation(robot, 7.2, PARAMETERS.estimator, LegOdometry(PARAMETERS.odometry))
+
+
+def observed(robot, sensors, **changes):
+    return estimation(robot).observe(replace(sensors, **changes))
+
+
+def pressure(robot, sensors, force, feet):
+    estimate = estimation(robot)
+    estimate.update(replace(sensors, foot_force=force), feet, STILL, stepping=False)
+    return estimate.pressure_error
+
+
+def test_a_tilted_body_over_flat_feet_is_seen_level(robot, ideal_body):
+    sensors = ideal_body.sense()
+    level = observed(robot, sensors)
+    pitched = np.array([np.cos(0.05), 0.0, np.sin(0.05), 0.0])
+    tilted = observed(robot, sensors, orientation=pitched)
+    assert (tilted.roll, tilted.pitch, tilted.heading) == pytest.approx((0.0, 0.1, 0.0))
+    # Pitching forward carries the mass centre ahead of the feet.
+    assert tilted.com[0] - tilted.feet[0].x > level.com[0] - level.feet[0].x + 0.01
+    arm = np.hypot(level.com[0] - level.feet[0].x, level.com[2] - level.feet[0].z)
+    assert np.hypot(
+        tilted.com[0] - tilted.feet[0].x, tilted.com[2] - tilted.feet[0].z
+    ) == pytest.approx(arm)
+
+
+def test_light_pad_noise_is_no_load(robot, ideal_body):
+    sensors = ideal_body.sense()
+    force = np.zeros((2, 4))
+    force[1] = 12.0
+    force[0, 0] = 0.8
+    body = observed(robot, sensors, foot_force=force)
+    assert body.right_load == 1.0
+    assert (body.feet[0].force, body.feet[1].force) == pytest.approx((0.8, 48.0))
+    assert observed(robot, sensors, foot_force=np.zeros((2, 4))).right_load == 0.5
+
+
+def test_the_centre_of_pressure_is_under_the_loaded_corner_and_between_loaded_feet(
+    robot, ideal_body
+):
+    sensors, sole = ideal_body.sense(), robot.sole
+    feet = ((0.0, 0.0, 0.3, 0.0), (0.1, 0.0, 0.3, 0.0))
+    force = np.zeros((2, 4))
+    force[0, 1] = 10.0
+    corner = np.array([sole.centre + sole.half_length, -sole.half_width])
+    R = np.array([[np.cos(0.3), -np.sin(0.3)], [np.sin(0.3), np.cos(0.3)]])
+    assert pressure(robot, sensors, force, feet) == pytest.approx(tuple(R @ corner))
+    force[1, 1] = 10.0
+    both = pressure(robot, sensors, force, feet)
+    assert both == pytest.approx(tuple(R @ corner + [0.05, 0.0]))
+    assert pressure(robot, sensors, np.zeros((2, 4)), feet) == (0.0, 0.0)
+
+
+def test_observing_leaves_odometry_and_error_alone(robot, ideal_body):
+    estimate, sensors = estimation(robot), ideal_body.sense()
+    feet = ((0.0, 0.042, 0.0, 0.0), (0.0, -0.042, 0.0, 0.0))
+    estimate.update(sensors, feet, STILL, stepping=False)
+    pose, error = estimate.pose, estimate.com_error
+    moved = replace(sensors, joint_position=sensors.joint_position + 0.1)
+    body = estimate.observe(moved)
+    assert (estimate.pose, estimate.com_error) == (pose, error)
+    assert body.com != estimation(robot).observe(sensors).com
+
+
+def test_weight_going_over_to_a_foot_is_no_motion_of_the_body(robot, ideal_body):
+    """Seen from a foot half a centimetre off its place, the body is off by as much, at once."""
+    estimate, sensors = estimation(robot), ideal_body.sense()
+    body = estimate.observe(sensors)
+    places = [(foot.x, foot.y, foot.yaw, 0.0) for foot in body.feet]
+    feet = (places[0], (places[1][0] + 0.005, *places[1][1:]))
+    planned = (0.0, 0.0, 0.0, *body.com[:2], *(0.0,) * 5)
+    estimate.update(sensors, feet, (*planned, 0.0), stepping=True)
+    assert estimate.com_error == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-12)
+    estimate.update(sensors, feet, (*planned, 1.0), stepping=True)
+    assert estimate.com_error[:2] == pytest.approx((0.005, 0.0), abs=1e-5)
+    assert abs(estimate.com_error[2]) < 0.01

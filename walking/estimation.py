@@ -1,0 +1,120 @@
+"""What the body really does: attitude, feet, odometry, and the error against the plan."""
+
+import numpy as np
+
+from walking import estimation_kernel
+from walking.estimation_kernel import FOUND, Foot, Plan
+from walking.estimator import steady_gains
+from walking.measurement import BodyMeasurement, body_of
+from walking.odometry import LegOdometry
+from walking.parameters import CONTROL_PERIOD, GRAVITY, EstimatorParameters
+from walking.robot_model import RobotModel
+from walking.sensing import BodySensors
+
+Point = tuple[float, float]
+
+LIGHT_LOAD = 0.074  # noise of a foot's pads stays below this share of the weight [1]
+
+
+class Estimation:
+    """Filters the sensors, and compares the body with what it was meant to do.
+
+    Args:
+        robot: dimensions and masses.
+        omega: of the pendulum [1/s].
+        parameters: noise levels.
+        odometry: dead reckoning, brought up to date.
+
+    Attributes:
+        body: of the last tick, None before the first.
+        dcm_error: of the body against the plan [m].
+        pressure_error: centre of pressure less planned ZMP, forward and left; none in the air [m].
+        pose: by odometry (x, y, heading) [m, m, rad].
+    """
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        omega: float,
+        parameters: EstimatorParameters,
+        odometry: LegOdometry,
+    ) -> None:
+        self._robot = robot
+        self._odometry = odometry
+        self._tilt, self._error = np.zeros(3), np.zeros(5)
+        self._error[4] = -1.0
+        sole, gains = robot.sole, steady_gains(omega, parameters)
+        light = LIGHT_LOAD * robot.mass * GRAVITY
+        self._body = (
+            parameters.tilt_gain,
+            light,
+            sole.centre,
+            sole.half_length,
+            sole.half_width,
+        )
+        self._gains = (gains.position, gains.velocity, omega)
+        self._found = np.zeros(FOUND)
+        self.body: BodyMeasurement | None = None
+        self.dcm_error: Point = (0.0, 0.0)
+        self.pressure_error: Point = (0.0, 0.0)
+        self.pose = (0.0, 0.0, 0.0)
+
+    @property
+    def com_error(self) -> tuple[float, float, float, float]:
+        """Measured less planned mass centre and its rate, x, y [m], vx, vy [m/s]."""
+        x, y, vx, vy, _ = self._error.tolist()
+        return x, y, vx, vy
+
+    def observe(self, sensors: BodySensors) -> BodyMeasurement:
+        """A tick in which there is no plan: only the body is seen, and its tilt filtered."""
+        robot, found = self._robot, self._found
+        estimation_kernel.observe(
+            (
+                sensors.joint_position,
+                sensors.foot_force,
+                sensors.orientation,
+                sensors.gyro,
+            ),
+            robot.com(sensors.joint_position),
+            self._tilt,
+            robot.leg_rows,
+            self._body,
+            CONTROL_PERIOD,
+            found,
+        )
+        self.body = body = body_of(found.tolist())
+        return body
+
+    def update(
+        self, sensors: BodySensors, feet: tuple[Foot, Foot], plan: Plan, *, stepping: bool
+    ) -> BodyMeasurement:
+        """One tick of a walk.
+
+        Args:
+            sensors: read at its start.
+            feet: references of the left and of the right foot.
+            plan: of the tick before, see `estimation_kernel.Plan`.
+            stepping: whether the feet leave the floor.
+        """
+        robot, odometry, found = self._robot, self._odometry, self._found
+        self.dcm_error, self.pressure_error, self.pose = estimation_kernel.estimate(
+            (
+                sensors.joint_position,
+                sensors.foot_force,
+                sensors.orientation,
+                sensors.gyro,
+            ),
+            robot.com(sensors.joint_position),
+            (self._tilt, odometry.state, self._error),
+            robot.leg_rows,
+            self._body,
+            odometry.growth,
+            self._gains,
+            feet,
+            plan,
+            stepping,
+            CONTROL_PERIOD,
+            found,
+        )
+        self.body = body = body_of(found.tolist())
+        return body
