@@ -129,10 +129,9 @@ class LocalMap:
         evidence = (dt * p.free_rate, dt * p.occupied_rate, p.evidence_limit)
         _take_in(marks, self._seen_at, self._log_odds, time, evidence)
 
-    def tobytes(self) -> bytes:
-        """All that the map holds, as bits."""
-        place = np.array([*self._corner, self._time])
-        return place.tobytes() + self._seen_at.tobytes() + self._log_odds.tobytes()
+    def contents(self) -> tuple[Array, Array, Array]:
+        """All that the map holds, to compare it bit by bit; do not write into it."""
+        return np.array([*self._corner, self._time]), self._seen_at, self._log_odds
 
     def snapshot(self) -> "LocalMap":
         """Copy that later updates of this map leave as it is."""

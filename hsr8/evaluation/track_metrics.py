@@ -128,12 +128,17 @@ def owners(tracks: Sequence[Track], colours: Sequence[str], places: Array) -> di
         colours: of the obstacles (n).
         places: of the obstacles in W (n, 2) [m].
     """
-    pairs = sorted(
-        (distance, k, i)
-        for k, track in enumerate(tracks)
-        for i, distance in enumerate(np.hypot(*(places - track.position).T).tolist())
-        if distance < NEAR and colours[i] == track.label
-    )
+    alike: dict[str, list[tuple[int, float, float]]] = {}
+    for i, (colour, (x, y)) in enumerate(zip(colours, places.tolist(), strict=True)):
+        alike.setdefault(colour, []).append((i, x, y))
+    pairs = []
+    for k, track in enumerate(tracks):
+        believed_x, believed_y = track.position.tolist()
+        for i, x, y in alike.get(track.label, ()):
+            distance = hypot(x - believed_x, y - believed_y)
+            if distance < NEAR:
+                pairs.append((distance, k, i))
+    pairs.sort()
     found: dict[int, Track] = {}
     taken: set[int] = set()
     for _, k, i in pairs:

@@ -26,7 +26,7 @@ def fingerprints(belief: Belief) -> tuple[bytes, ...]:
         _digest(belief.pose.tobytes()),
         _digest(belief.pose_covariance.tobytes()),
         _digest(b"".join(tracks)),
-        _digest(belief.local_map.tobytes()),
+        _digest(*(part.data for part in belief.local_map.contents())),
         _digest(state.encode()),
     )
 
@@ -55,5 +55,8 @@ def decision_fingerprints(
     return _digest(b"".join(believed)), _digest(place), _digest(move), _digest(look)
 
 
-def _digest(content: bytes) -> bytes:
-    return hashlib.blake2b(content, digest_size=FINGERPRINT).digest()
+def _digest(*parts: bytes | memoryview) -> bytes:
+    found = hashlib.blake2b(digest_size=FINGERPRINT)
+    for part in parts:
+        found.update(part)
+    return found.digest()

@@ -31,7 +31,7 @@ _VIEW = 9 + 3 + 5  # doubles of a camera view
 _FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame apart from its observations
 _NOW = 1 + 3 + _VIEW  # doubles of the moment of a decision
 _STEP = struct.Struct("<q?")
-_SEEN = 8  # doubles of an observation
+_SEEN = struct.Struct("<8d")  # an observation
 _KINDS = ("obstacle", "beacon")
 
 
@@ -120,8 +120,9 @@ def _packed(frame: Frame) -> bytes:
     for o in frame.observations:
         label = o.label.encode()
         flags = _KINDS.index(o.kind) | o.cut << 1 | o.occluded << 2
-        values = (o.distance, o.bearing, *o.covariance.ravel().tolist(), o.radius, o.radius_sigma)
-        parts.append(bytes((flags, len(label))) + label + np.array(values, "<f8").tobytes())
+        (xx, xy), (yx, yy) = o.covariance.tolist()
+        seen = _SEEN.pack(o.distance, o.bearing, xx, xy, yx, yy, o.radius, o.radius_sigma)
+        parts.append(bytes((flags, len(label))) + label + seen)
     return b"".join(parts)
 
 
@@ -151,16 +152,15 @@ def _unpacked(payload: bytes) -> Measured:
         flags, length = payload[place], payload[place + 1]
         place += 2 + length
         label = payload[place - length : place].decode()
-        values = np.frombuffer(payload, "<f8", _SEEN, place).astype(np.float64)
-        place += 8 * _SEEN
-        distance, bearing, radius, radius_sigma = values[[0, 1, 6, 7]].tolist()
+        distance, bearing, *covariance, radius, radius_sigma = _SEEN.unpack_from(payload, place)
+        place += _SEEN.size
         observations.append(
             Observation(
                 kind="beacon" if flags & 1 else "obstacle",
                 label=label,
                 distance=distance,
                 bearing=bearing,
-                covariance=values[2:6].reshape(2, 2),
+                covariance=np.reshape(covariance, (2, 2)),
                 radius=radius,
                 radius_sigma=radius_sigma,
                 cut=bool(flags & 2),

@@ -1,5 +1,8 @@
 import json
+from dataclasses import replace
+from math import inf, isnan, nan
 
+import numpy as np
 import pytest
 
 from hsr8.recorder.frame_summary import from_line, to_line
@@ -46,6 +49,24 @@ def test_a_line_of_an_older_run_tells_less(line):
         del row[key]
     frame = from_line(json.dumps(row))
     assert (frame.captured, frame.look, frame.blobs, frame.gaze_map) == (0.6, None, (), None)
+
+
+def test_numbers_of_tracks_are_rounded_and_may_be_none_or_endless(fake):
+    frame = fake.frame(0.6, (0.1, 0.2, 0.3))
+    track = replace(
+        frame.belief.tracks[0],
+        label='a "new" colour',
+        position=np.array([1.23456, -0.00004]),
+        velocity=np.array([nan, -inf]),
+        radius=inf,
+    )
+    decided = replace(frame.decided, belief=replace(frame.belief, tracks=(track,)))
+    truth = fake.record(0.6).truth
+    (found,) = from_line(to_line(replace(frame, decided=decided), truth)).tracks
+    assert found.label == 'a "new" colour'
+    assert found.position == (1.2346, 0.0)
+    assert isnan(found.velocity[0])
+    assert (found.velocity[1], found.radius) == (-inf, inf)
 
 
 def test_a_gaze_map_is_told_when_it_is_new(line, fake):
