@@ -10,6 +10,7 @@ from walking.robot_model import RobotModel
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
+Vector = tuple[float, float, float]
 
 
 class FeedForward:
@@ -30,16 +31,16 @@ class FeedForward:
             parameters.load_gain / robot.stiffness,
             share * robot.damping / robot.stiffness,
         )
-        self._gain, self._limit = parameters.inertia_gain, parameters.inertia_limit
+        self._law = (parameters.inertia_gain, parameters.inertia_limit, CONTROL_PERIOD)
         self._started = False
         self._position = np.zeros(robot.damping.size)
         self._velocity = np.zeros(robot.damping.size)
-        self._acceleration = np.zeros(robot.damping.size)
 
     def offsets(
         self,
         position: Array,
-        soles: tuple[Point, Point],
+        pelvis: Vector,
+        spots: tuple[Point, Point],
         right_load: float,
         acceleration: Point,
     ) -> Array:
@@ -50,27 +51,33 @@ class FeedForward:
 
         Args:
             position: joint angles of this tick (26,) [rad].
-            soles: where the ZMP is meant to be under either foot, in the base frame [m].
+            pelvis: x, y [m], heading [rad] in the plan frame.
+            spots: where the ZMP is meant to be under either foot, in the plan frame [m].
             right_load: planned share of the weight on the right foot [1].
             acceleration: planned, of the base, forward and left [m/s²].
         """
         if not self._started:
             self._started = True
             self._position[:] = position
-        velocity, change = self._velocity, self._acceleration
+        robot = self._robot
         leg_kernel.rates(
-            position, self._position, velocity, change, self._gain, self._limit, CONTROL_PERIOD
-        )
-        torque, wrench = self._robot.inverse_dynamics(position, velocity, change, acceleration)
-        leg_kernel.offsets(
-            torque,
-            wrench,
             position,
-            velocity,
+            self._position,
+            self._velocity,
+            robot.motion,
+            robot.indices,
+            acceleration,
+            self._law,
+        )
+        return leg_kernel.offsets(
+            robot.forces(),
+            robot.indices[1],
+            position,
+            self._velocity,
             self._servos,
-            soles,
+            pelvis,
+            spots,
             right_load,
             self._height,
-            self._robot.leg_rows,
+            robot.leg_rows,
         )
-        return torque

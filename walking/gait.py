@@ -66,7 +66,7 @@ class Gait:
         self.support = 0
         self.footholds = list(stance)
         under = self._reference.under
-        self.spots = [under(stance[0]), under(stance[1])]
+        self.spots = (under(stance[0]), under(stance[1]))
         self.feet = (FootReference(stance[0]), FootReference(stance[1]))
         self.landing = stance[1]
         self.completed = 0
@@ -336,7 +336,8 @@ class Gait:
     def _land(self, *, moving: bool) -> None:
         support, swing = self.support, self.swing
         self.footholds[swing] = self.landing
-        self.spots[swing] = self._reference.under(self.landing)
+        under = self._reference.under(self.landing)
+        self.spots = (self.spots[0], under) if swing else (under, self.spots[1])
         self.feet[swing].stand(self.landing)
         self.completed += 1
         here = self.spots[support]

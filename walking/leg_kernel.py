@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
 Leg = tuple[float, float, float, float, float, float]
@@ -170,57 +171,73 @@ def rates(
     position: Array,
     before: Array,
     velocity: Array,
-    acceleration: Array,
-    gain: float,
-    limit: float,
-    period: float,
+    motion: tuple[Array, Array, Array],
+    where: tuple[Indices, Indices],
+    base: tuple[float, float],
+    law: Vector,
 ) -> None:
-    """Bring rates of the joints up to date.
+    """Bring rates of the joints up to date and tell the robot's model of the motion.
 
     Args:
         position: joint angles (26,) [rad].
         before: those of the last tick, to be those of this one (26,) [rad].
         velocity: their rates, of the last tick, then of this one (26,) [rad/s].
-        acceleration: set to `gain` of the change of those rates, cut off at `limit` [rad/s²].
-        gain: share [1].
-        limit: of the acceleration [rad/s²].
-        period: of control [s].
+        motion: position, velocity and acceleration of the model, set.
+        where: of the joints, in its position and in its velocity (26,).
+        base: acceleration of the base, forward and left [m/s²].
+        law: share of the joints' acceleration that is told [1], its limit [rad/s²], period of
+            control [s].
     """
+    gain, limit, period = law
+    q, v, a = motion
+    a[0], a[1] = base
     for joint in range(position.size):
         now = (position[joint] - before[joint]) / period
         change = gain * (now - velocity[joint]) / period
-        acceleration[joint] = min(limit, max(-limit, change))
         velocity[joint] = now
         before[joint] = position[joint]
+        q[where[0][joint]] = position[joint]
+        v[where[1][joint]] = now
+        a[where[1][joint]] = min(limit, max(-limit, change))
 
 
 @njit(cache=True)
 def offsets(
-    torque: Array,
-    wrench: Array,
+    forces: Array,
+    where: Indices,
     position: Array,
     velocity: Array,
     servos: tuple[Array, Array],
-    soles: tuple[Point, Point],
+    pelvis: Vector,
+    spots: tuple[Point, Point],
     right_load: float,
     base: float,
     legs: tuple[Leg, Leg],
-) -> None:
-    """Turn torques into set-point offsets that make up for load and lag of the servos.
+) -> Array:
+    """Set-point offsets that make up for load and lag of the servos.
 
     Args:
-        torque: of the joints with nothing touching the feet [N m], to be the offsets [rad] (26,).
-        wrench: force [N] and moment [N m] at the base that its motion takes (6,).
+        forces: generalised, that the motion takes with nothing touching the feet: force [N] and
+            moment [N m] at the base first.
+        where: of the joints in these (26,).
         position: joint angles (26,) [rad].
         velocity: their rates (26,) [rad/s].
         servos: compliance [rad/(N m)] and velocity lag [s] (26,).
-        soles: where the ZMP is meant to be under either foot, in the base frame [m].
+        pelvis: x, y [m], heading [rad] in the plan frame.
+        spots: where the ZMP is meant to be under either foot, in the plan frame [m].
         right_load: share of the weight on the right foot [1].
         base: its height above the floor [m].
         legs: left and right.
+
+    Returns:
+        the offsets (26,) [rad].
     """
-    fx, fy, fz, nx, ny = wrench[0], wrench[1], wrench[2], wrench[3], wrench[4]
-    (lx, ly), (rx, ry) = soles
+    found = np.empty(position.size)
+    for joint in range(position.size):
+        found[joint] = forces[where[joint]]
+    fx, fy, fz, nx, ny = forces[0], forces[1], forces[2], forces[3], forces[4]
+    lx, ly = _in_base(pelvis, spots[0])
+    rx, ry = _in_base(pelvis, spots[1])
     left_load = 1.0 - right_load
     # The ZMP of the whole body, from where the feet alone would have it.
     dx = -(ny + base * fx) / fz - left_load * lx - right_load * rx
@@ -230,11 +247,21 @@ def offsets(
         if load > 0.0:
             own = position[6 * index : 6 * index + 6]
             angles = (own[0], own[1], own[2], own[3], own[4], own[5])
-            point = (soles[index][0] + dx, soles[index][1] + dy, -base)
+            x, y = (rx, ry) if index else (lx, ly)
+            point = (x + dx, y + dy, -base)
             force = (load * fx, load * fy, load * fz)
             added = support_torques(legs[index], angles, point, force)
             for joint in range(6):
-                torque[6 * index + joint] += added[joint]
+                found[6 * index + joint] += added[joint]
     compliance, lag = servos
-    for joint in range(torque.size):
-        torque[joint] = torque[joint] * compliance[joint] + velocity[joint] * lag[joint]
+    for joint in range(position.size):
+        found[joint] = found[joint] * compliance[joint] + velocity[joint] * lag[joint]
+    return found
+
+
+@njit(cache=True)
+def _in_base(pelvis: Vector, point: Point) -> Point:
+    """A point of the plan frame in the frame of the base [m]."""
+    c, s = cos(pelvis[2]), sin(pelvis[2])
+    x, y = point[0] - pelvis[0], point[1] - pelvis[1]
+    return c * x + s * y, c * y - s * x

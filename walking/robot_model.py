@@ -57,6 +57,9 @@ class RobotModel:
         leg_rows: the same as compiled code has it.
         sole: rectangle of either sole.
         ready: joint angles of the ready posture (26,) [rad].
+        motion: position, velocity and acceleration of the level base and the joints as Pinocchio
+            orders them, to be set for `forces`.
+        indices: of the joints in its position and in its velocity (26,).
         lower, upper: joint limits (26,) [rad].
         stiffness: of each servo (26,) [N m/rad].
         damping: of each servo with its joint (26,) [N m s/rad].
@@ -76,7 +79,8 @@ class RobotModel:
         self._q_index = np.array([model.joints[i].idx_q for i in ids])
         self._v_index = np.array([model.joints[i].idx_v for i in ids])
         self._q = pin.neutral(model)
-        self._v, self._a = np.zeros(model.nv), np.zeros(model.nv)
+        self.motion = self._q, np.zeros(model.nv), np.zeros(model.nv)
+        self.indices = self._q_index, self._v_index
         self._camera = self._frame("camera")
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
@@ -150,17 +154,23 @@ class RobotModel:
             torque of each joint, gravity included (26,) [N m]; force [N] and moment [N m] at the
             base, in its frame and about its origin (6,).
         """
-        self._q[self._q_index] = position
-        self._v[self._v_index] = velocity
-        self._a[self._v_index] = acceleration
-        self._a[0], self._a[1] = base_acceleration
-        torque = pin.rnea(self._model, self._data, self._q, self._v, self._a)
-        joints: Array = torque[self._v_index]
-        base: Array = torque[:6].copy()
+        q, v, a = self.motion
+        q[self._q_index] = position
+        v[self._v_index] = velocity
+        a[self._v_index] = acceleration
+        a[0], a[1] = base_acceleration
+        forces = self.forces()
+        joints: Array = forces[self._v_index]
+        base: Array = forces[:6].copy()
         return joints, base
 
+    def forces(self) -> Array:
+        """Generalised forces that `motion` takes, nothing touching the feet; the base's first."""
+        forces: Array = pin.rnea(self._model, self._data, *self.motion)
+        return forces
+
     def moved_com(self) -> tuple[float, float, float]:
-        """Centre of mass in the base frame [m] for the joint angles of `inverse_dynamics`."""
+        """Centre of mass in the base frame [m] for the joint angles of the last `forces`."""
         x, y, z = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
         return x, y, z
 

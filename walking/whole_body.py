@@ -91,13 +91,14 @@ class WholeBody:
         self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
         position = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
         c, s = cos(pelvis.yaw), sin(pelvis.yaw)
-        (lx, ly), (rx, ry), px, py = *gait.spots, pelvis.x, pelvis.y
-        left = (c * (lx - px) + s * (ly - py), c * (ly - py) - s * (lx - px))
-        right = (c * (rx - px) + s * (ry - py), c * (ry - py) - s * (rx - px))
         w2 = self._lipm.omega**2
         ax, ay = w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey
         set_points = self._feedforward.offsets(
-            position, (left, right), right_load, (c * ax + s * ay, c * ay - s * ax)
+            position,
+            (pelvis.x, pelvis.y, pelvis.yaw),
+            gait.spots,
+            right_load,
+            (c * ax + s * ay, c * ay - s * ax),
         )
         x, y, _ = self._robot.moved_com()
         self.com = x, y

@@ -15,11 +15,12 @@ def feed(robot, **changes):
     return FeedForward(robot, parameters, PatternParameters().pelvis_height)
 
 
+ORIGIN = (0.0, 0.0, 0.0)
 SOLES = ((0.01, 0.042), (0.01, -0.042))
 
 
 def offsets(robot, soles=SOLES, right_load=0.5, acceleration=(0.0, 0.0)):
-    return feed(robot).offsets(robot.ready, soles, right_load, acceleration)
+    return feed(robot).offsets(robot.ready, ORIGIN, soles, right_load, acceleration)
 
 
 def test_standing_offsets_mirror(robot):
@@ -39,10 +40,10 @@ def test_a_loaded_knee_is_stretched_against_the_weight(robot):
 def test_a_moving_head_is_led_by_its_lag(robot):
     ahead = feed(robot, inertia_gain=0.0)
     q = robot.ready.copy()
-    still = ahead.offsets(q, SOLES, 0.5, (0.0, 0.0))
+    still = ahead.offsets(q, ORIGIN, SOLES, 0.5, (0.0, 0.0))
     moved = q.copy()
     moved[HEAD.start] += 0.01
-    after = ahead.offsets(moved, SOLES, 0.5, (0.0, 0.0))
+    after = ahead.offsets(moved, ORIGIN, SOLES, 0.5, (0.0, 0.0))
     rate = 0.01 / CONTROL_PERIOD
     assert after[HEAD.start] - still[HEAD.start] == pytest.approx(
         rate * robot.damping[HEAD.start] / robot.stiffness[HEAD.start], abs=1e-4
@@ -53,7 +54,7 @@ def test_the_ankle_has_the_moment_of_the_whole_body_about_it(robot):
     """A body that tips sideways in slow motion: at rest over one foot, its mass beside it."""
     compliant = feed(robot, velocity_gain=0.0, inertia_gain=0.0)
     q = robot.ready
-    offset = compliant.offsets(q, SOLES, 0.0, (0.0, 0.0))
+    offset = compliant.offsets(q, ORIGIN, SOLES, 0.0, (0.0, 0.0))
     ankle = robot.com(q)[1] - robot.legs[0].hip_y  # the ankle stands under the hip
     weightless = robot.inverse_dynamics(q, 0.0 * q, 0.0 * q, (0.0, 0.0))[0][5]
     moment = offset[5] * robot.stiffness[5] - weightless
@@ -67,3 +68,12 @@ def test_shared_loads_put_the_zmp_under_either_sole(robot):
     weight = 0.5 * robot.mass * 9.81
     assert (wide - narrow)[5] * robot.stiffness[5] == pytest.approx(-0.02 * weight, rel=0.05)
     assert (wide - narrow)[11] == pytest.approx(-(wide - narrow)[5])
+
+
+def test_offsets_are_those_of_the_robot_wherever_it_stands(robot):
+    x, y, yaw = 0.7, -0.3, 0.4
+    c, s = np.cos(yaw), np.sin(yaw)
+    there = tuple((x + c * u - s * v, y + s * u + c * v) for u, v in SOLES)
+    moved = feed(robot).offsets(robot.ready, (x, y, yaw), there, 0.3, (0.2, -0.1))
+    here = feed(robot).offsets(robot.ready, ORIGIN, SOLES, 0.3, (0.2, -0.1))
+    np.testing.assert_allclose(moved, here, rtol=0.0, atol=1e-12)

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from walking import head_kernel
 from walking.command import HeadTarget
 from walking.head import Head
 from walking.parameters import CONTROL_PERIOD, HeadParameters
@@ -48,3 +49,13 @@ def test_left_and_right_mirror():
     left = follow([HeadTarget(0.7, 0.1)] * 30)
     right = follow([HeadTarget(-0.7, 0.1)] * 30)
     np.testing.assert_allclose(left[:, 0], -right[:, 0])
+
+
+@given(st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6))
+def test_compiled_it_is_what_it_says(plainly, drawn):
+    outcomes = []
+    for call in (head_kernel.advance, lambda *a: plainly(head_kernel, "advance", *a)):
+        position, velocity = np.array(drawn[:2]), np.array(drawn[2:4])
+        told = call(position, velocity, tuple(drawn[4:]), LIMITS, (6.0, 60.0, CONTROL_PERIOD))
+        outcomes.append([*told, *position, *velocity])
+    assert outcomes[0] == outcomes[1]

@@ -2,7 +2,14 @@
 
 import pytest
 
-from walking import estimation_kernel, foothold_kernel, leg_kernel, swing_kernel, zmp_kernel
+from walking import (
+    estimation_kernel,
+    foothold_kernel,
+    head_kernel,
+    leg_kernel,
+    swing_kernel,
+    zmp_kernel,
+)
 from walking.parameters import WalkingParameters
 from walking.rehearsal import rehearse
 
@@ -18,6 +25,7 @@ from walking.rehearsal import rehearse
         (estimation_kernel, "estimate"),
         (leg_kernel, "pose_legs"),
         (leg_kernel, "offsets"),
+        (head_kernel, "advance"),
     ],
 )
 def test_it_calls_what_a_tick_calls(robot, monkeypatch, module, name):
