@@ -1,14 +1,14 @@
 """What the body feels: the only way the world reaches the walking library."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+
+from walking.value import value
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class BodySensors:
     """One reading of all body sensors, taken at the start of a control tick.
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.rotation import quaternion_from_yaw, quaternion_product, small_rotation
+from hsr8.world.sensor_kernel import ATTITUDE, ERRORS, FORCE, GYRO, PADS, RATE, reading
 from walking.sensing import BodySensors
 
 Array = NDArray[np.float64]
@@ -22,11 +22,11 @@ class SensorSuite:
     """
 
     def __init__(self, noise: SensorNoise, rng: np.random.Generator, period: float) -> None:
-        self._noise = noise
+        self._tilt_bias = noise.roll_bias, noise.pitch_bias
+        self._gyro_bias = float(noise.gyro_bias)
         self._rng = rng
-        self._drift_step = noise.yaw_drift * float(np.sqrt(period))
         self._bias_step = noise.gyro_bias * period
-        self._yaw_drift = 0.0
+        self._yaw_drift = 0.0  # at the last of the errors drawn
         self._gain = 1.0 + noise.foot_force_gain * rng.standard_normal((2, 4))
         widths = (26, 26, 3, 3, 8, 1, 1, 1)
         sigmas = (
@@ -37,10 +37,10 @@ class SensorSuite:
             noise.foot_force,
             noise.tilt,
             noise.tilt,
-            self._drift_step,
+            noise.yaw_drift * float(np.sqrt(period)),
         )
         self._sigma = np.repeat(sigmas, widths)
-        self._errors = np.zeros((0, len(self._sigma)))  # of the readings to come
+        self._errors = np.zeros((0, ERRORS))  # of the readings to come
         self._read = 0
 
     def read(
@@ -54,23 +54,35 @@ class SensorSuite:
         foot_force: Array,
     ) -> BodySensors:
         """Turn true values (units as in ``BodySensors``) into one noisy reading."""
-        noise = self._noise
         if self._read == len(self._errors):
-            self._errors = self._sigma * self._rng.standard_normal((BLOCK, len(self._sigma)))
-            self._read = 0
+            self._draw()
         error = self._errors[self._read]
         self._read += 1
-        roll, pitch, drift = error[66:].tolist()
-        self._yaw_drift += drift + self._bias_step
-        tilted = quaternion_product(
-            orientation, small_rotation(noise.roll_bias + roll, noise.pitch_bias + pitch)
+        read = reading(
+            joint_position,
+            joint_velocity,
+            gyro,
+            accelerometer,
+            orientation,
+            foot_force,
+            error,
+            self._gain,
+            self._gyro_bias,
         )
-        force = self._gain * foot_force + error[58:66].reshape(2, 4)
         return BodySensors(
-            joint_position=joint_position + error[0:26],
-            joint_velocity=joint_velocity + error[26:52],
-            gyro=gyro + noise.gyro_bias + error[52:55],
-            accelerometer=accelerometer + error[55:58],
-            orientation=quaternion_product(quaternion_from_yaw(self._yaw_drift), tilted),
-            foot_force=np.maximum(force, 0.0),
+            joint_position=read[:RATE],
+            joint_velocity=read[RATE:GYRO],
+            gyro=read[GYRO:FORCE],
+            accelerometer=read[FORCE:PADS],
+            orientation=read[ATTITUDE:],
+            foot_force=read[PADS:ATTITUDE].reshape(2, 4),
         )
+
+    def _draw(self) -> None:
+        """Draw the errors of the next readings."""
+        errors = self._sigma * self._rng.standard_normal((BLOCK, ERRORS))
+        errors[:, ATTITUDE : ATTITUDE + 2] += self._tilt_bias
+        steps = errors[:, ATTITUDE + 2] + self._bias_step
+        errors[:, ATTITUDE + 2] = np.cumsum([self._yaw_drift, *steps])[1:]
+        self._yaw_drift = float(errors[-1, ATTITUDE + 2])
+        self._errors, self._read = errors, 0

@@ -1,0 +1,77 @@
+"""Noise on one reading of the body's sensors, compiled: it is taken in every control tick.
+
+A row of errors, as a reading, holds joint angles (26) [rad], joint rates (26) [rad/s], turn rates
+(3) [rad/s], specific force (3) [m/s²] and foot forces (8) [N]. Then an error has roll, pitch and
+drift of the heading [rad], a reading the quaternion of its attitude, w-x-y-z.
+"""
+
+from math import cos, sin, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Quaternion = tuple[float, float, float, float]
+
+RATE, GYRO, FORCE, PADS, ATTITUDE = 26, 52, 55, 58, 66  # first column of each but the angles
+ERRORS, WIDTH = ATTITUDE + 3, ATTITUDE + 4  # columns of an error and of a reading
+
+
+@njit(cache=True)
+def _product(a: Quaternion, b: Quaternion) -> Quaternion:
+    """Hamilton product: first `b`, then `a`."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+@njit(cache=True)
+def reading(
+    joint_position: Array,
+    joint_velocity: Array,
+    gyro: Array,
+    accelerometer: Array,
+    orientation: Array,
+    foot_force: Array,
+    error: Array,
+    gain: Array,
+    gyro_bias: float,
+) -> Array:
+    """Turn true values into one noisy reading (`WIDTH`,).
+
+    Args:
+        joint_position: true angles (26,) [rad].
+        joint_velocity: true rates (26,) [rad/s].
+        gyro: true turn rates (3,) [rad/s].
+        accelerometer: true specific force (3,) [m/s²].
+        orientation: true attitude, quaternion w-x-y-z (4,).
+        foot_force: true normal force under each pad (2, 4) [N].
+        error: to add (`ERRORS`,).
+        gain: factor on each foot force (2, 4) [1].
+        gyro_bias: constant error of the turn rates [rad/s].
+    """
+    read = np.empty(WIDTH)
+    for k in range(RATE):
+        read[k] = joint_position[k] + error[k]
+        read[RATE + k] = joint_velocity[k] + error[RATE + k]
+    for k in range(3):
+        read[GYRO + k] = gyro[k] + gyro_bias + error[GYRO + k]
+        read[FORCE + k] = accelerometer[k] + error[FORCE + k]
+    for foot in range(2):
+        for pad in range(4):
+            k = PADS + 4 * foot + pad
+            read[k] = max(gain[foot, pad] * foot_force[foot, pad] + error[k], 0.0)
+    roll, pitch, drift = error[ATTITUDE], error[ATTITUDE + 1], error[ATTITUDE + 2]
+    norm = sqrt(1.0 + 0.25 * (roll * roll + pitch * pitch))
+    tilt = (1.0 / norm, 0.5 * roll / norm, 0.5 * pitch / norm, 0.0)
+    true = (orientation[0], orientation[1], orientation[2], orientation[3])
+    turn = (cos(0.5 * drift), 0.0, 0.0, sin(0.5 * drift))
+    w, x, y, z = _product(turn, _product(true, tilt))
+    read[ATTITUDE], read[ATTITUDE + 1], read[ATTITUDE + 2], read[ATTITUDE + 3] = w, x, y, z
+    return read
