@@ -78,7 +78,6 @@ class WalkingEngine:
             robot,
             parameters,
             lipm=lipm,
-            stabilizer=self._stabilizer,
             gait=gait,
             pendulum=self._pendulum,
         )

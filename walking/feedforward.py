@@ -5,16 +5,15 @@ from numpy.typing import NDArray
 
 from walking import leg_kernel
 from walking.joints import LEFT_LEG, RIGHT_LEG
-from walking.parameters import CONTROL_PERIOD, StabilizerParameters
+from walking.leg_kernel import Balance, Point, Vector
+from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
 from walking.robot_model import RobotModel
 
 Array = NDArray[np.float64]
-Point = tuple[float, float]
-Vector = tuple[float, float, float]
 
 
 class FeedForward:
-    """Load and velocity lag, both divided by the servos' stiffness.
+    """Load and velocity lag, both divided by the servos' stiffness; the ankles' balance on top.
 
     Args:
         robot: masses and servo gains.
@@ -31,6 +30,8 @@ class FeedForward:
             parameters.load_gain / robot.stiffness,
             share * robot.damping / robot.stiffness,
         )
+        pitch, roll = robot.stiffness[4:6].tolist()
+        self._ankles = (robot.mass * GRAVITY, pitch, roll, parameters.gyro_gain)
         self._law = (parameters.inertia_gain, parameters.inertia_limit, CONTROL_PERIOD)
         self._started = False
         self._position = np.zeros(robot.damping.size)
@@ -43,6 +44,8 @@ class FeedForward:
         spots: tuple[Point, Point],
         right_load: float,
         acceleration: Point,
+        *,
+        balance: Balance,
     ) -> Array:
         """Offsets of all set-points (26,) [rad].
 
@@ -54,7 +57,8 @@ class FeedForward:
             pelvis: x, y [m], heading [rad] in the plan frame.
             spots: where the ZMP is meant to be under either foot, in the plan frame [m].
             right_load: planned share of the weight on the right foot [1].
-            acceleration: planned, of the base, forward and left [m/s²].
+            acceleration: planned, of the base, in the plan frame [m/s²].
+            balance: what the ankles are to do besides.
         """
         if not self._started:
             self._started = True
@@ -66,6 +70,7 @@ class FeedForward:
             self._velocity,
             robot.motion,
             robot.indices,
+            pelvis,
             acceleration,
             self._law,
         )
@@ -80,4 +85,6 @@ class FeedForward:
             right_load,
             self._height,
             robot.leg_rows,
+            balance,
+            self._ankles,
         )

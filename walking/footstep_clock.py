@@ -1,14 +1,15 @@
 """The clock of one footstep: the weight goes over to the support foot, then the other swings."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 from walking.stride import Timing
+from walking.value import value
 
 Point = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class WeightShift:
     """ZMP and weight on their way to where they are meant to stay, linear in time.
 
@@ -38,7 +39,7 @@ class WeightShift:
         return self.right_weight + self.share(tick) * (goal - self.right_weight)
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class SwingWindow:
     """What part of single support the foot is in the air.
 
@@ -69,7 +70,7 @@ class SwingWindow:
         return anew
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class SingleSupport:
     """Times of a single support in control ticks since its begin.
 

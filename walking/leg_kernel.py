@@ -23,6 +23,13 @@ Angles = tuple[float, float, float, float, float, float]
 Foot = tuple[float, float, float, float]
 """Reference of a foot in the plan frame: x, y [m], yaw [rad], height [m]."""
 
+Balance = tuple[Point, Point, Vector]
+"""Directions of the left and of the right foot [rad]; by how much the ankles are to move the ZMP,
+in the plan frame [m]; angular velocity of the trunk [rad/s]."""
+
+Ankles = tuple[float, float, float, float]
+"""Weight of the robot [N]; stiffness of pitch and of roll [N m/rad]; damping by the gyro [s]."""
+
 STILL_TILT = 1e-6  # tilt of a foot that counts as none [rad]
 
 
@@ -103,35 +110,85 @@ def support_torques(leg: Leg, angles: Angles, point: Vector, force: Vector) -> A
 
 
 @njit(cache=True)
-def pose_legs(
+def pose(
+    position: Array,
+    tilts: Array,
+    feet: tuple[Foot, Foot],
+    which: tuple[int, int],
+    com: Point,
+    head: Point,
+    tilt: Point,
+    law: tuple[float, float, float, float, float],
+    build: Vector,
+    legs: tuple[Leg, Leg],
+) -> Vector:
+    """Set the joints of legs and head, and swing the arms.
+
+    A foot in the air stays level with the floor although the trunk is not.
+
+    Args:
+        position: joint angles of the ready posture, to be those of this tick (26,) [rad].
+        tilts: roll and pitch by which either foot makes up for the trunk's, brought up to date
+            (2, 2) [rad].
+        feet: references of the left and of the right foot.
+        which: index of the support foot, and of the foot in the air, -1 for none.
+        com: where the body's mass centre is meant to be, x, y in the plan frame [m].
+        head: pan and tilt [rad].
+        tilt: measured roll and pitch of the trunk [rad].
+        law: share of the tilt taken out of the foot [1], tilt that is ignored [rad], pull and
+            decay per tick [1], height of the base above the floor [m].
+        build: mass centre ahead of the base [m]; shoulder pitch per distance between the feet
+            [rad/m] and its limit [rad].
+        legs: left and right.
+
+    Returns:
+        the pelvis: x, y [m], heading [rad] in the plan frame.
+    """
+    pelvis = pelvis_of(feet, com, build[0])
+    apart = _pose_legs(position, tilts, feet, which, pelvis, tilt, law, legs)
+    swing = arm_swing(apart, build[1], build[2])
+    position[12], position[13] = head
+    position[14] += swing
+    position[20] -= swing
+    return pelvis
+
+
+@njit(cache=True)
+def pelvis_of(feet: tuple[Foot, Foot], com: Point, ahead: float) -> Vector:
+    """Pelvis that has the mass centre `ahead` of it at `com`, between the feet's directions."""
+    yaw = 0.5 * (feet[0][2] + feet[1][2])
+    return com[0] - ahead * cos(yaw), com[1] - ahead * sin(yaw), yaw
+
+
+@njit(cache=True)
+def arm_swing(apart: float, gain: float, limit: float) -> float:
+    """Shoulder pitch of the left arm away from the ready posture; the right one mirrors it.
+
+    The arms swing against the legs.
+
+    Args:
+        apart: left foot ahead of the right foot along the heading [m].
+        gain: pitch per distance [rad/m].
+        limit: largest pitch [rad].
+
+    Returns:
+        backward positive [rad].
+    """
+    return min(limit, max(-limit, gain * apart))
+
+
+@njit(cache=True)
+def _pose_legs(
     position: Array,
     tilts: Array,
     feet: tuple[Foot, Foot],
     which: tuple[int, int],
     pelvis: Vector,
-    tilt: tuple[float, float],
+    tilt: Point,
     law: tuple[float, float, float, float, float],
     legs: tuple[Leg, Leg],
 ) -> float:
-    """Set the joints of the legs.
-
-    A foot in the air stays level with the floor although the trunk is not.
-
-    Args:
-        position: joint angles, of which those of the legs are set (26,) [rad].
-        tilts: roll and pitch by which either foot makes up for the trunk's, brought up to date
-            (2, 2) [rad].
-        feet: references of the left and of the right foot.
-        which: index of the support foot, and of the foot in the air, -1 for none.
-        pelvis: x, y [m], heading [rad] in the plan frame.
-        tilt: measured roll and pitch of the trunk [rad].
-        law: share of the tilt taken out of the foot [1], tilt that is ignored [rad], pull and
-            decay per tick [1], height of the base above the floor [m].
-        legs: left and right.
-
-    Returns:
-        how far the left foot is ahead of the right one along the heading [m].
-    """
+    """Set the joints of the legs; how far the left foot is ahead of the right one [m]."""
     c, s = cos(pelvis[2]), sin(pelvis[2])
     gain, zone, pull, decay, base = law
     support = feet[which[0]]
@@ -173,7 +230,8 @@ def rates(
     velocity: Array,
     motion: tuple[Array, Array, Array],
     where: tuple[Indices, Indices],
-    base: tuple[float, float],
+    pelvis: Vector,
+    base: Point,
     law: Vector,
 ) -> None:
     """Bring rates of the joints up to date and tell the robot's model of the motion.
@@ -184,13 +242,15 @@ def rates(
         velocity: their rates, of the last tick, then of this one (26,) [rad/s].
         motion: position, velocity and acceleration of the model, set.
         where: of the joints, in its position and in its velocity (26,).
-        base: acceleration of the base, forward and left [m/s²].
+        pelvis: x, y [m], heading [rad] in the plan frame.
+        base: acceleration of the base in the plan frame [m/s²].
         law: share of the joints' acceleration that is told [1], its limit [rad/s²], period of
             control [s].
     """
     gain, limit, period = law
     q, v, a = motion
-    a[0], a[1] = base
+    c, s = cos(pelvis[2]), sin(pelvis[2])
+    a[0], a[1] = c * base[0] + s * base[1], c * base[1] - s * base[0]
     for joint in range(position.size):
         now = (position[joint] - before[joint]) / period
         change = gain * (now - velocity[joint]) / period
@@ -213,6 +273,8 @@ def offsets(
     right_load: float,
     base: float,
     legs: tuple[Leg, Leg],
+    balance: Balance,
+    ankles: Ankles,
 ) -> Array:
     """Set-point offsets that make up for load and lag of the servos.
 
@@ -228,6 +290,8 @@ def offsets(
         right_load: share of the weight on the right foot [1].
         base: its height above the floor [m].
         legs: left and right.
+        balance: what the ankles are to do besides.
+        ankles: their numbers.
 
     Returns:
         the offsets (26,) [rad].
@@ -256,7 +320,23 @@ def offsets(
     compliance, lag = servos
     for joint in range(position.size):
         found[joint] = found[joint] * compliance[joint] + velocity[joint] * lag[joint]
+    for index in range(2):
+        load = right_load if index else left_load
+        if load > 0.0:
+            pitch, roll = ankle(balance, index, load, ankles)
+            found[6 * index + 4] += pitch
+            found[6 * index + 5] += roll
     return found
+
+
+@njit(cache=True)
+def ankle(balance: Balance, index: int, load: float, ankles: Ankles) -> Point:
+    """Set-points of pitch and roll that move the ZMP of a foot carrying a share `load` [rad]."""
+    yaw, (dx, dy), gyro = balance[0][index], balance[1], balance[2]
+    c, s = cos(yaw), sin(yaw)
+    x, y = c * dx + s * dy, c * dy - s * dx
+    weight, damping = ankles[0] * load, ankles[3] * load
+    return weight / ankles[1] * x + damping * gyro[1], -weight / ankles[2] * y + damping * gyro[0]
 
 
 @njit(cache=True)

@@ -1,23 +1,21 @@
 """From references of pelvis and feet to joint angles and feed-forward."""
 
-from dataclasses import dataclass
-from math import cos, sin
-
 import numpy as np
 from numpy.typing import NDArray
 
 from walking import leg_kernel
-from walking.arms import arm_swing
 from walking.gait import Gait
 from walking.leg_kinematics import foot_pose
 from walking.parameters import WalkingParameters
 from walking.robot_model import RobotModel
 from walking.state import Footstep
+from walking.value import value
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
 
-@dataclass(slots=True)
+@value
 class Pelvis:
     """Where the body is meant to be in the plan frame.
 
@@ -40,55 +38,44 @@ class Posture:
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
-        self._com_ahead = float(robot.com(robot.ready)[0])
+        arms, ahead = parameters.arms, float(robot.com(robot.ready)[0])
+        self._build = (ahead, arms.swing, arms.limit)
         self._ready = robot.ready
         self._legs = robot.leg_rows
-        self._arms = parameters.arms
         p = parameters.stabilizer
         height = parameters.pattern.pelvis_height - robot.legs[0].hip_z
         self._law = (p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, height)
         self._tilt = np.zeros((2, 2))
 
-    def pelvis(self, gait: Gait, com: tuple[float, float]) -> Pelvis:
+    def pelvis(self, gait: Gait, com: Point) -> Pelvis:
         """Pelvis that puts its constant offset point onto the pendulum."""
         left, right = gait.feet
-        yaw = 0.5 * (left.yaw.position + right.yaw.position)
-        return Pelvis(
-            x=com[0] - self._com_ahead * cos(yaw), y=com[1] - self._com_ahead * sin(yaw), yaw=yaw
-        )
+        return Pelvis(*leg_kernel.pelvis_of((left.row, right.row), com, self._build[0]))
 
-    def joints(
-        self,
-        gait: Gait,
-        pelvis: Pelvis,
-        tilt: tuple[float, float],
-        head: tuple[float, float],
-    ) -> Array:
-        """Joint angles (26,) [rad].
+    def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Pelvis]:
+        """Joint angles (26,) [rad], and the pelvis that goes with them.
 
         Args:
             gait: feet.
-            pelvis: of this tick.
+            com: where the pelvis's constant offset point is meant to be, in the plan frame [m].
             tilt: measured roll and pitch of the trunk [rad].
             head: pan and tilt [rad].
         """
         left, right = gait.feet
         position = self._ready.copy()
-        apart = leg_kernel.pose_legs(
+        x, y, yaw = leg_kernel.pose(
             position,
             self._tilt,
             (left.row, right.row),
             (gait.support, gait.swing if gait.flying else -1),
-            (pelvis.x, pelvis.y, pelvis.yaw),
+            com,
+            head,
             tilt,
             self._law,
+            self._build,
             self._legs,
         )
-        swing = arm_swing(apart, self._arms)
-        position[12], position[13] = head
-        position[14] += swing
-        position[20] -= swing
-        return position
+        return position, Pelvis(x, y, yaw)
 
 
 def ready_stance(robot: RobotModel) -> tuple[Footstep, Footstep]:

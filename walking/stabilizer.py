@@ -3,7 +3,7 @@
 from math import cos, exp, sin
 
 from walking.footsteps import FootstepPlanner
-from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
+from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.pole_placement import dcm_gain
 from walking.robot_model import RobotModel
 from walking.saturation import beyond
@@ -13,18 +13,6 @@ from walking.support import SupportRegion
 from walking.value import value
 
 ROUNDING = 1e-6  # ticks that a time divided into them may lack
-
-
-@value
-class AnkleOffsets:
-    """Change of the set-points of one ankle.
-
-    Attributes:
-        pitch, roll: [rad].
-    """
-
-    pitch: float
-    roll: float
 
 
 @value
@@ -52,11 +40,8 @@ class Stabilizer:
     def __init__(self, robot: RobotModel, parameters: StabilizerParameters, omega: float) -> None:
         self._parameters = parameters
         self._omega = omega
-        self._weight = robot.mass * GRAVITY
         lag = float((robot.damping[4:6] / robot.stiffness[4:6]).max())
         self._gain = dcm_gain(omega, lag, parameters.dcm_rate)
-        pitch, roll = robot.stiffness[4:6].tolist()
-        self._stiffness: tuple[float, float] = pitch, roll
         sole = robot.sole
         self._room = (
             sole.half_length - parameters.sole_margin,
@@ -70,26 +55,6 @@ class Stabilizer:
         gain = self._gain
         x, y = region.clip(zmp[0] + gain * error[0], zmp[1] + gain * error[1])
         return x - zmp[0], y - zmp[1]
-
-    def ankles(
-        self,
-        foot: Footstep,
-        load: float,
-        shift: tuple[float, float],
-        gyro: tuple[float, float, float],
-    ) -> AnkleOffsets:
-        """Set-points that move the ZMP of a foot carrying a share `load` of the weight."""
-        if load <= 0.0:
-            return AnkleOffsets(0.0, 0.0)
-        c, s = cos(foot.yaw), sin(foot.yaw)
-        x = c * shift[0] + s * shift[1]
-        y = c * shift[1] - s * shift[0]
-        weight, (pitch, roll) = self._weight * load, self._stiffness
-        damping = self._parameters.gyro_gain * load
-        return AnkleOffsets(
-            pitch=weight / pitch * x + damping * gyro[1],
-            roll=-weight / roll * y + damping * gyro[0],
-        )
 
     def exceeds(self, foot: Footstep, error: tuple[float, float], share: float) -> bool:
         """Whether a DCM error is more than a share of the room that the ZMP has [m]."""

@@ -10,7 +10,6 @@ from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import PendulumState
 from walking.posture import Posture
 from walking.robot_model import RobotModel
-from walking.stabilizer import Stabilizer
 from walking.swing_reaction import SwingCompensation, leg_reaction
 from walking.targets import JointTargets
 
@@ -24,7 +23,6 @@ class WholeBody:
         robot: the robot's numbers.
         parameters: of the engine.
         lipm: pendulum.
-        stabilizer: moves the ankles.
         gait: where the feet are meant to be.
         pendulum: where the mass centre is meant to be.
 
@@ -41,13 +39,11 @@ class WholeBody:
         parameters: WalkingParameters,
         *,
         lipm: Lipm,
-        stabilizer: Stabilizer,
         gait: Gait,
         pendulum: PendulumState,
     ) -> None:
         self._robot = robot
-        self._lipm = lipm
-        self._stabilizer = stabilizer
+        self._w2 = lipm.omega**2
         self._gait = gait
         self._pendulum = pendulum
         self._posture = Posture(robot, parameters)
@@ -87,25 +83,20 @@ class WholeBody:
         c, s = cos(before), sin(before)
         ox += c * offset[0] - s * offset[1]
         oy += s * offset[0] + c * offset[1]
-        self.pelvis = pelvis = self._posture.pelvis(gait, (pendulum.x + ox, pendulum.y + oy))
+        position, pelvis = self._posture.joints(
+            gait, (pendulum.x + ox, pendulum.y + oy), (body.roll, body.pitch), head
+        )
+        self.pelvis = pelvis
         self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
-        position = self._posture.joints(gait, pelvis, (body.roll, body.pitch), head)
-        c, s = cos(pelvis.yaw), sin(pelvis.yaw)
-        w2 = self._lipm.omega**2
-        ax, ay = w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey
+        w2, (left, right) = self._w2, gait.footholds
         set_points = self._feedforward.offsets(
             position,
             (pelvis.x, pelvis.y, pelvis.yaw),
             gait.spots,
             right_load,
-            (c * ax + s * ay, c * ay - s * ax),
+            (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),
+            balance=((left.yaw, right.yaw), zmp_shift, body.gyro),
         )
         x, y, _ = self._robot.moved_com()
         self.com = x, y
-        for index, load in ((0, 1.0 - right_load), (1, right_load)):
-            if load <= 0.0:
-                continue
-            ankle = self._stabilizer.ankles(gait.footholds[index], load, zmp_shift, body.gyro)
-            set_points[6 * index + 4] += ankle.pitch
-            set_points[6 * index + 5] += ankle.roll
         return JointTargets(position=position, offset=set_points)

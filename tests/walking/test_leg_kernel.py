@@ -1,6 +1,7 @@
 """The compiled kinematics of a tick against the same in plain Python and in numpy."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,13 +27,14 @@ def draw(seed):
 def test_compiled_the_posture_is_what_it_says(plainly, seed):
     rng, feet = draw(seed)
     which = (seed % 2, int(rng.integers(-1, 2)))
-    pelvis = (*rng.uniform(-0.02, 0.02, 2).tolist(), 0.1)
+    com, head = (tuple(rng.uniform(-0.02, 0.02, 2).tolist()) for _ in range(2))
     tilts, tilt = rng.normal(0.0, 0.01, (2, 2)), tuple(rng.normal(0.0, 0.05, 2).tolist())
     outcomes = []
-    for call in (leg_kernel.pose_legs, lambda *a: plainly(leg_kernel, "pose_legs", *a)):
+    for call in (leg_kernel.pose, lambda *a: plainly(leg_kernel, "pose", *a)):
         position, own = np.zeros(26), tilts.copy()
-        apart = call(position, own, feet, which, pelvis, tilt, LAW, LEGS)
-        outcomes.append([*position, *own.ravel(), apart])
+        build = (0.004, 2.0, 0.35)
+        pelvis = call(position, own, feet, which, com, head, tilt, LAW, build, LEGS)
+        outcomes.append([*position, *own.ravel(), *pelvis])
     np.testing.assert_allclose(*outcomes, rtol=0.0, atol=1e-12)
 
 
@@ -44,7 +46,7 @@ def test_rates_are_quotients_of_differences():
     where = rng.permutation(26) + 7, rng.permutation(26) + 6
     for now in angles[1:]:
         law = (0.5, 1000.0, CONTROL_PERIOD)
-        leg_kernel.rates(now, before, velocity, motion, where, (0.3, -0.2), law)
+        leg_kernel.rates(now, before, velocity, motion, where, (1.0, 2.0, 0.0), (0.3, -0.2), law)
     np.testing.assert_allclose(velocity, (angles[2] - angles[1]) / CONTROL_PERIOD)
     np.testing.assert_array_equal(before, angles[2])
     q, v, a = motion
@@ -67,7 +69,9 @@ def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
     servos = (rng.uniform(0.01, 0.1, 26), rng.uniform(0.0, 0.1, 26))
     soles = ((0.01, 0.04), (0.02, -0.04))
     pelvis = tuple(rng.uniform(-0.1, 0.1, 3).tolist())
-    asked = (forces, where, position, velocity, servos, pelvis, soles, load, 0.22, LEGS)
+    rest = (pelvis, soles, load, 0.22, LEGS)
+    balance, ankles = ((0.1, -0.2), (0.0, 0.0), (0.0, 0.0, 0.0)), (54.0, 20.0, 25.0, 0.1)
+    asked = (forces, where, position, velocity, servos, *rest, balance, ankles)
     found = leg_kernel.offsets(*asked)
     plain = plainly(leg_kernel, "offsets", *asked)
     np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
@@ -76,3 +80,23 @@ def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
     np.testing.assert_allclose(found[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
     shares = [abs(found - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
     assert [share > 1e-6 for share in shares] == [load < 1.0, load > 0.0]
+
+
+@settings(max_examples=20)
+@given(SEEDS)
+def test_compiled_an_ankle_is_what_it_says(plainly, seed):
+    a, b, c, d, *gyro, load = np.random.default_rng(seed).uniform(-0.2, 0.2, 8).tolist()
+    asked = ((a, b), (c, d), tuple(gyro)), seed % 2, abs(load), (54.0, 20.0, 25.0, 0.1)
+    plain = plainly(leg_kernel, "ankle", *asked)
+    assert leg_kernel.ankle(*asked) == pytest.approx(plain, abs=1e-15)
+
+
+@given(st.floats(-1.0, 1.0))
+def test_the_swing_of_the_arms_is_odd_and_limited(apart):
+    swing = leg_kernel.arm_swing(apart, 2.0, 0.35)
+    assert swing == -leg_kernel.arm_swing(-apart, 2.0, 0.35)
+    assert abs(swing) <= 0.35
+
+
+def test_the_left_arm_goes_back_when_the_left_foot_is_ahead():
+    assert leg_kernel.arm_swing(0.05, 2.0, 0.35) > 0.0

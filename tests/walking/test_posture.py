@@ -8,7 +8,7 @@ from walking.gait import Gait
 from walking.joints import HEAD, LEFT_LEG, RIGHT_LEG
 from walking.leg_kinematics import foot_pose
 from walking.parameters import WalkingParameters
-from walking.posture import Pelvis, Posture
+from walking.posture import Posture
 from walking.state import Footstep
 
 PARAMETERS = WalkingParameters()
@@ -17,13 +17,13 @@ PARAMETERS = WalkingParameters()
 @pytest.fixture
 def gait(robot):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
-    stance = (Footstep(True, 0.01, 0.045, 0.1), Footstep(False, -0.01, -0.04, -0.1))
+    stance = (Footstep(True, 0.01, 0.045, 0.15), Footstep(False, -0.01, -0.04, -0.05))
     return Gait(PARAMETERS, planner, stance)
 
 
 def test_feet_are_where_the_plan_has_them(robot, gait):
-    pelvis = Pelvis(0.005, 0.01, 0.05)
-    q = Posture(robot, PARAMETERS).joints(gait, pelvis, (0.0, 0.0), (0.3, -0.2))
+    q, pelvis = Posture(robot, PARAMETERS).joints(gait, (0.005, 0.01), (0.0, 0.0), (0.3, -0.2))
+    assert pelvis.yaw == pytest.approx(0.05)
     c, s = np.cos(pelvis.yaw), np.sin(pelvis.yaw)
     for leg, part, foot in zip(robot.legs, (LEFT_LEG, RIGHT_LEG), gait.footholds, strict=True):
         a, b, k, d, e, f = q[part]
@@ -38,24 +38,27 @@ def test_feet_are_where_the_plan_has_them(robot, gait):
 
 def test_pendulum_stands_over_the_centre_of_mass_of_the_ready_posture(robot, gait):
     com = robot.com(robot.ready)
-    pelvis = Posture(robot, PARAMETERS).pelvis(gait, (com[0], com[1]))
+    posture, (c, s) = Posture(robot, PARAMETERS), (np.cos(0.05), np.sin(0.05))
+    at = (c * com[0] - s * com[1], s * com[0] + c * com[1])
+    pelvis = posture.pelvis(gait, at)
     assert (pelvis.x, pelvis.y) == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert posture.joints(gait, at, (0.0, 0.0), (0.0, 0.0))[1] == pelvis
 
 
 def test_a_foot_on_the_floor_ignores_the_tilt(robot, gait):
-    posture, pelvis = Posture(robot, PARAMETERS), Pelvis(0.0, 0.0, 0.0)
-    level = posture.joints(gait, pelvis, (0.0, 0.0), (0.0, 0.0))
-    tilted = posture.joints(gait, pelvis, (0.2, 0.2), (0.0, 0.0))
+    posture, com = Posture(robot, PARAMETERS), (0.0, 0.0)
+    level = posture.joints(gait, com, (0.0, 0.0), (0.0, 0.0))[0]
+    tilted = posture.joints(gait, com, (0.2, 0.2), (0.0, 0.0))[0]
     np.testing.assert_array_equal(tilted, level)
 
 
 def test_a_foot_in_the_air_stays_level_under_a_tilted_trunk(robot, gait):
-    posture, pelvis = Posture(robot, PARAMETERS), Pelvis(0.0, 0.0, 0.0)
+    posture, com = Posture(robot, PARAMETERS), (0.0, 0.0)
     gait.start(0)
     while gait.swing_phase < 0.5:
         gait.advance(moving=True)
     for _ in range(30):
-        angles = posture.joints(gait, pelvis, (0.0, 0.15), (0.0, 0.0))[RIGHT_LEG]
+        angles = posture.joints(gait, com, (0.0, 0.15), (0.0, 0.0))[0][RIGHT_LEG]
     wanted = PARAMETERS.stabilizer.tilt_gain * (0.15 - PARAMETERS.stabilizer.tilt_dead_zone)
     assert foot_pose(robot.legs[1], tuple(angles.tolist())).pitch == pytest.approx(
         -wanted, abs=5e-3

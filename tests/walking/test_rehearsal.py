@@ -23,7 +23,7 @@ from walking.rehearsal import rehearse
         (foothold_kernel, "swings"),
         (swing_kernel, "react"),
         (estimation_kernel, "estimate"),
-        (leg_kernel, "pose_legs"),
+        (leg_kernel, "pose"),
         (leg_kernel, "offsets"),
         (head_kernel, "advance"),
     ],

@@ -1,10 +1,8 @@
 """Ankles and capture step."""
 
-from copy import copy
 from itertools import pairwise
 from math import exp
 
-import numpy as np
 import pytest
 
 from walking.footsteps import FootstepPlanner
@@ -18,7 +16,6 @@ from walking.support import support_region
 PARAMETERS = StabilizerParameters()
 OMEGA = Lipm(0.19).omega
 LEFT = Footstep(True, 0.0, 0.042, 0.0)
-STILL = [0.0, 0.0, 0.0]
 AHEAD = (0.005, -0.02)  # of the planned DCM from the ZMP [m]
 
 
@@ -40,28 +37,6 @@ def test_the_ankles_push_the_zmp_beyond_the_error_but_not_out_of_the_sole(stabil
     assert (dx, dy) == pytest.approx((gain * 0.01, gain * 0.005))
     dx, _ = stabilizer.zmp_shift((0.01, 0.042), (0.5, 0.0), region)
     assert dx == pytest.approx(robot.sole.half_length - PARAMETERS.sole_margin)
-
-
-def test_ankle_torque_matches_the_shift(stabilizer, robot):
-    ankle = stabilizer.ankles(LEFT, 1.0, (0.02, -0.01), STILL)
-    weight = robot.mass * 9.81
-    assert ankle.pitch * robot.stiffness[4] == pytest.approx(weight * 0.02)
-    assert ankle.roll * robot.stiffness[5] == pytest.approx(weight * 0.01)
-
-
-def test_a_softer_servo_is_asked_for_more(stabilizer, robot):
-    soft = copy(robot)
-    soft.stiffness = robot.stiffness * np.where(np.arange(26) % 6 == 5, 0.5, 1.0)
-    shift = (0.02, -0.01)
-    ankle = stabilizer.ankles(LEFT, 1.0, shift, STILL)
-    softer = Stabilizer(soft, PARAMETERS, OMEGA).ankles(LEFT, 1.0, shift, STILL)
-    assert softer.roll == pytest.approx(2.0 * ankle.roll)
-    assert softer.pitch == ankle.pitch
-
-
-def test_a_foot_in_the_air_is_left_alone(stabilizer):
-    ankle = stabilizer.ankles(LEFT, 0.0, (0.02, 0.01), [1.0, 1.0, 1.0])
-    assert (ankle.pitch, ankle.roll) == (0.0, 0.0)
 
 
 def test_small_errors_move_no_foothold(stabilizer, planner):
