@@ -1,7 +1,6 @@
 """The robot side of the loop: sensors in, joint targets out. It never meets the truth."""
 
 from collections import deque
-from dataclasses import dataclass
 from time import perf_counter
 from typing import Protocol
 
@@ -20,12 +19,13 @@ from walking.odometry import increment
 from walking.sensing import BodySensors
 from walking.state import HeadCameraPose, Odometry, WalkingState
 from walking.targets import JointTargets
+from walking.value import value
 from walking.walker import Walker
 
 UNDER_WAY = 128  # pictures that may be under way at a time
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class SensorFrame:
     """Everything the robot senses at the start of one control tick.
 

@@ -15,6 +15,7 @@ from navigation.observation import Frame
 from vision.detection import Detection
 from walking.command import Command, HeadTarget
 from walking.state import WalkingState
+from walking.value import value
 
 Image = NDArray[np.uint8]
 
@@ -64,7 +65,7 @@ class FrameRecord:
         return self.decided.task
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class TickRecord:
     """Published once per record period (20 ms by default).
 

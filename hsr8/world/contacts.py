@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world.clearance_kernel import nearest
 from hsr8.world.index import ModelIndex
 from hsr8.world.truth import Contact
 
@@ -22,13 +23,17 @@ class ContactWatch:
         self._n_static = n_static
         self._force = np.zeros(6)
         self._fromto = np.zeros(6)
-        self._ground = frozenset((index.floor, *index.bumps))
+        ground = (index.floor, *index.bumps)
+        self._ground = [geom in ground for geom in range(model.ngeom)]
+        soles = index.foot_geoms
+        self._side = [soles.index(geom) if geom in soles else -1 for geom in range(model.ngeom)]
         self._seen: dict[tuple[int, int], Contact] = {}
         self._first_obstacle = int(min(index.obstacle_geoms, default=model.ngeom))
         self._obstacles: list[int] = index.obstacle_geoms.tolist()
         self._robot_geoms: list[int] = index.robot_geoms.tolist()
         self._obstacle_of: list[int] = index.obstacle_of_geom.tolist()
         self._spheres = model.geom_rbound[index.robot_geoms].copy()
+        self._bounds = np.zeros(len(self._spheres))
         self._sizes = model.geom_size[index.obstacle_geoms, 0].copy()
 
     def watch(self, data: mujoco.MjData) -> None:
@@ -67,37 +72,43 @@ class ContactWatch:
 
     def clearance(self, data: mujoco.MjData, robot: Array) -> float:
         """Distance [m] from the body to the nearest obstacle; infinite without obstacles."""
-        geoms = self._index.obstacle_geoms
-        if len(geoms) == 0:
+        index, bounds = self._index, self._bounds
+        if not self._obstacles:
             return float("inf")
-        gaps = np.hypot(*(data.geom_xpos[geoms, :2] - robot[:2]).T) - self._sizes
-        nearest = int(np.argmin(gaps))
-        if gaps[nearest] > NEAR:
-            return float(gaps[nearest])
-        model, obstacle, fromto = self._model, self._obstacles[nearest], self._fromto
-        # By spheres around the geoms no gap is less than this: most need no closer look.
-        away = data.geom_xpos[self._index.robot_geoms, :2] - data.geom_xpos[obstacle, :2]
-        bounds = np.hypot(away[:, 0], away[:, 1]) - self._spheres - self._sizes[nearest]
+        gap, number = nearest(
+            data.geom_xpos,
+            robot,
+            index.obstacle_geoms,
+            self._sizes,
+            index.robot_geoms,
+            self._spheres,
+            bounds,
+        )
+        if gap > NEAR:
+            return gap
+        model, obstacle, fromto = self._model, self._obstacles[number], self._fromto
         least = NEAR
+        # No gap is less than its bound: most geoms need no closer look.
         for bound, geom in sorted(zip(bounds.tolist(), self._robot_geoms, strict=True)):
             if bound >= least:
                 break
             gap = mujoco.mj_geomDistance(model, data, geom, obstacle, NEAR, fromto)
             least = min(least, gap)
-        return float(least)
+        return least
 
     def feet(self, data: mujoco.MjData) -> tuple[Array, Array]:
         """Normal force under each foot (2,) [N] and the centre of pressure (2,) [m]."""
         load = [0.0, 0.0]
         x = y = 0.0
-        contact, feet, ground = data.contact, self._index.foot_geoms, self._ground
+        contact, ground, side = data.contact, self._ground, self._side
         places = contact.pos.tolist()
-        for i, pair in enumerate(contact.geom.tolist()):
-            if ground.isdisjoint(pair) or not (feet[0] in pair or feet[1] in pair):
+        for i, (one, other) in enumerate(contact.geom.tolist()):
+            foot = side[other] if ground[one] else side[one] if ground[other] else -1
+            if foot < 0:
                 continue
             mujoco.mj_contactForce(self._model, data, i, self._force)
             force = float(self._force[0])
-            load[0 if feet[0] in pair else 1] += force
+            load[foot] += force
             x += force * places[i][0]
             y += force * places[i][1]
         total = load[0] + load[1]

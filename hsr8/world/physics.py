@@ -144,23 +144,23 @@ class PhysicsBody:
         """State of the world now."""
         data, index = self.data, self._index
         root = index.root_qpos
-        quaternion = data.qpos[root + 3 : root + 7]
-        robot = np.array([*data.qpos[root : root + 2].tolist(), heading(quaternion)])
+        qpos = data.qpos.copy()
+        quaternion = qpos[root + 3 : root + 7]
+        x, y, z = qpos[root : root + 3].tolist()
+        robot = np.array([x, y, heading(quaternion)])
         load, pressure = self._around.watch.feet(data)
         return Truth(
             time=self.time,
-            qpos=data.qpos.copy(),
+            qpos=qpos,
             robot=robot,
             obstacle_positions=self._around.placed(data),
             obstacle_velocities=self._around.velocities(self.time),
             contacts=self._around.watch.take(),
             clearance=self._around.watch.clearance(data, robot),
-            joint_torque=data.actuator_force[index.actuators].copy(),
+            joint_torque=data.actuator_force[index.actuators],
             foot_force=load,
             zmp=pressure,
-            fallen=bool(
-                data.qpos[root + 2] < self._lying or up_component(quaternion) < FALLEN_TILT
-            ),
+            fallen=z < self._lying or up_component(quaternion) < FALLEN_TILT,
             pushes=self._pusher.take(),
             saturation=self._saturation,
         )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.world.saturation import SaturationWatch
+from walking.value import value
 
 Array = NDArray[np.float64]
 
@@ -65,7 +66,7 @@ class PushActing:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Truth:
     """State of the world at one instant.
 
