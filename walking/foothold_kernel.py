@@ -19,33 +19,45 @@ left foot's."""
 Spot = tuple[float, float]
 """Where the ZMP is meant to be under a foot: forward and inward of its origin [m]."""
 
+Chain = tuple[Placements, Placements, tuple[float, float], int]
+"""Strides; those of stepping in place; distance along x and y [m] and angle [rad] at which a
+foothold is one of standing; most footholds to come."""
+
 RAMP, SWING = 13, 10  # numbers of a ramp, see `Ramps`, and of a swing, see `Swings`
 
 
 @njit(cache=True)
-def sequence(
+def onwards(
+    unloading: Foothold,
     support: Foothold,
     landing: Foothold,
-    wish: Placements,
-    still: Placements,
-    near: tuple[float, float],
-    most: int,
+    chain: Chain,
     moving: bool,
+    zmp: tuple[float, float],
+    ticks: tuple[int, int, int, int, int],
+    spot: Spot,
+) -> tuple[Array, Array]:
+    """Footholds of a walk (n, 4), see `sequence`, and its ZMP (m, 13), see `ramps`."""
+    steps, ends = sequence(support, landing, chain, moving)
+    return steps, ramps(unloading, support, steps, zmp, ticks, spot, ends)
+
+
+@njit(cache=True)
+def sequence(
+    support: Foothold, landing: Foothold, chain: Chain, moving: bool
 ) -> tuple[Array, bool]:
     """Footholds from `landing` on, and whether the walk ends after the last.
 
     Args:
         support: the foot on the floor.
         landing: where the other foot is about to land.
-        wish: strides.
-        still: strides of stepping in place.
-        near: distance along x and y [m] and angle [rad] at which a foothold is one of standing.
-        most: footholds.
+        chain: how they follow each other.
         moving: whether more than closing the stance is wanted.
 
     Returns:
         the footholds (n, 4), and whether the walk ends after the last.
     """
+    wish, still, near, most = chain
     steps = np.empty((most, 4))
     before, last = support, landing
     for k in range(most):

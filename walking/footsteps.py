@@ -2,18 +2,13 @@
 
 from math import cos, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from walking import foothold_kernel
 from walking.admission import Limit
 from walking.command import CommandState
+from walking.foothold_kernel import Chain
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.stride import Placement, Strides, Timing, Velocity
-
-Array = NDArray[np.float64]
 
 STILL: Velocity = (0.0, 0.0, 0.0)
 PLACE_TOLERANCE = 0.024  # between footholds that count as the same, of half the stance [1]
@@ -244,29 +239,14 @@ class FootstepPlanner:
             x, y = x * scale, centre + (y - centre) * scale
         return x, y
 
-    def sequence(
-        self, support: Footstep, landing: Footstep, wish: Strides, *, moving: bool
-    ) -> tuple[Array, bool]:
-        """Footholds from `landing` on, and whether the walk ends after the last.
-
-        Args:
-            support: the foot on the floor.
-            landing: where the other foot is about to land.
-            wish: strides.
-            moving: whether more than closing the stance is wanted.
-
-        Returns:
-            x, y [m], yaw [rad] of each and 1 if it is a left one, 0 if not (n, 4), and whether
-            the walk ends.
-        """
-        return foothold_kernel.sequence(
-            support.row,
-            landing.row,
+    def chain(self, wish: Strides) -> Chain:
+        """How footholds follow each other."""
+        still = self.still
+        return (
             (wish.right, wish.left),
-            (self.still.right, self.still.left),
+            (still.right, still.left),
             self._stance,
             self._gait.preview_steps,
-            moving,
         )
 
     def parallel(self, support: Footstep, other: Footstep) -> bool:

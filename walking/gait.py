@@ -259,16 +259,17 @@ class Gait:
             centre = self._reference.between(*self.footholds)
             ramp = ZmpRamp(max(1, -self._elapsed), *self.zmp, *centre, (support, swing))
             return Ramps(table_of([ramp]))
-        self._future, ends = self._planner.sequence(support, landing, wish, moving=moving)
         double = self.double
-        return self._reference.onwards(
+        self._future, ramps = self._reference.onwards(
             (swing, support),
-            self._future,
+            landing,
+            self._planner.chain(wish),
             self.timing,
             zmp=self.zmp if double else (0.0, 0.0),
             left=(-self._elapsed, self._single.ticks) if double else (0, self.ticks_left),
-            ends=ends,
+            moving=moving,
         )
+        return ramps
 
     def swings(self) -> Swings | None:
         """Swings under way and to come, none while the robot stands."""

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from walking import foothold_kernel
+from walking.foothold_kernel import Chain
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.ramps import Ramps
 from walking.robot_model import Sole
@@ -51,32 +52,38 @@ class ZmpReference:
     def onwards(
         self,
         feet: tuple[Footstep, Footstep],
-        steps: Array,
+        landing: Footstep,
+        chain: Chain,
         timing: Timing,
         *,
         zmp: Point,
         left: tuple[int, int],
-        ends: bool,
-    ) -> Ramps:
-        """Reference of a walk from now on.
+        moving: bool,
+    ) -> tuple[Array, Ramps]:
+        """Footholds of a walk from now on, and its reference.
 
         Args:
             feet: the foot that is about to swing and the one that carries in this footstep.
-            steps: footholds to come, see `FootstepPlanner.sequence` (n, 4).
+            landing: where the first is about to land.
+            chain: how the footholds follow each other.
             timing: of every footstep to come.
             zmp: of now, while the weight goes over to the foot that carries [m].
             left: control ticks of that double support, none in single support, and of the
                 single support after it [1].
-            ends: whether the walk ends with both feet carrying alike after the last foothold.
+            moving: whether more than closing the stance is wanted.
+
+        Returns:
+            x, y [m], yaw [rad] of each foothold from `landing` on, and 1 if it is a left one, 0 if
+            not (n, 4); the reference.
         """
-        return Ramps(
-            foothold_kernel.ramps(
-                feet[0].row,
-                feet[1].row,
-                steps,
-                zmp,
-                (*left, timing.double, timing.single, self.stop),
-                self.spot,
-                ends,
-            )
+        steps, table = foothold_kernel.onwards(
+            feet[0].row,
+            feet[1].row,
+            landing.row,
+            chain,
+            moving,
+            zmp,
+            (*left, timing.double, timing.single, self.stop),
+            self.spot,
         )
+        return steps, Ramps(table)

@@ -31,10 +31,9 @@ def draw(seed):
 
 
 def arguments(support, landing, strides, moving):
-    still = PLANNER.still
-    near = (0.001, TURN_TOLERANCE)
-    pair = (strides.right, strides.left), (still.right, still.left)
-    return support.row, landing.row, *pair, near, 4, moving
+    wish, still, _, most = PLANNER.chain(strides)
+    assert (wish, most) == ((strides.right, strides.left), 4)
+    return support.row, landing.row, (wish, still, (0.001, TURN_TOLERANCE), 4), moving
 
 
 @given(st.integers(0, 10**6), st.booleans())
@@ -65,6 +64,10 @@ def test_compiled_they_are_what_they_say(plainly, seed, ends):
     asked = (swing.row, support.row, steps, (0.1, 0.2), (int(seed % 2), 30, 10, 58, 60), SPOT, over)
     found = foothold_kernel.ramps(*asked)
     np.testing.assert_array_equal(found, plainly(foothold_kernel, "ramps", *asked))
+    chain = arguments(support, landing, strides, not ends)[1:]
+    both = foothold_kernel.onwards(swing.row, support.row, *chain, (0.1, 0.2), *asked[4:6])
+    np.testing.assert_array_equal(both[0], steps)
+    np.testing.assert_array_equal(both[1], found)
     feet = support.row, swing.row, landing.row
     asked = (*feet, steps, (-3.0, 0.02, seed % 2 == 0), (40.0, 68.0, 0.025), SPOT)
     found = foothold_kernel.swings(*asked)

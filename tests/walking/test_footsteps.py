@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.admission import Limit
+from walking.foothold_kernel import sequence
 from walking.footsteps import FootstepPlanner
 from walking.parameters import GaitParameters, LimitParameters
 from walking.robot_model import Sole
@@ -103,7 +104,7 @@ def test_turning_on_the_spot_turns_as_commanded_and_stays(turn):
 
 def test_stopping_closes_the_stance():
     landing = landed(LEFT, (0.2, -0.05, -0.3))
-    steps, ends = PLANNER.sequence(LEFT, landing, PLANNER.still, moving=False)
+    steps, ends = sequence(LEFT.row, landing.row, PLANNER.chain(PLANNER.still), False)
     assert ends
     assert len(steps) == 2
     assert PLANNER.parallel(*map(foothold, steps.tolist()))
@@ -112,7 +113,7 @@ def test_stopping_closes_the_stance():
 def test_walking_on_plans_all_steps_with_alternating_feet():
     velocity = (0.2, 0.0, 0.1)
     strides = PLANNER.strides(velocity, GAIT.footstep_time)
-    steps, ends = PLANNER.sequence(LEFT, landed(LEFT, velocity), strides, moving=True)
+    steps, ends = sequence(LEFT.row, landed(LEFT, velocity).row, PLANNER.chain(strides), True)
     assert not ends
     assert steps[:, 3].tolist() == [0.0, 1.0, 0.0, 1.0]
 

@@ -18,8 +18,7 @@ from walking.rehearsal import rehearse
     ("module", "name"),
     [
         (zmp_kernel, "plan"),
-        (foothold_kernel, "sequence"),
-        (foothold_kernel, "ramps"),
+        (foothold_kernel, "onwards"),
         (foothold_kernel, "swings"),
         (swing_kernel, "react"),
         (estimation_kernel, "estimate"),

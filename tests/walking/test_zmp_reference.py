@@ -5,7 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from walking import foothold_kernel
 from walking.parameters import WalkingParameters
+from walking.ramps import Ramps
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.stride import Timing
@@ -30,7 +32,9 @@ def test_it_turns_with_the_foot():
 
 def onwards(steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
     table = np.array([step.row for step in steps])
-    return REFERENCE.onwards((RIGHT, LEFT), table, TIMING, zmp=zmp, left=left, ends=ends)
+    ticks = (*left, TIMING.double, TIMING.single, REFERENCE.stop)
+    spot = REFERENCE.spot
+    return Ramps(foothold_kernel.ramps(RIGHT.row, LEFT.row, table, zmp, ticks, spot, ends))
 
 
 @pytest.mark.parametrize("ends", [False, True])
