@@ -48,6 +48,6 @@ def overlapping(centres: Array, radii: Array) -> Indices:
         for j in range(i + 1, n):
             dx, dy = centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1]
             if dx * dx + dy * dy < (radii[i] + radii[j]) ** 2:
-                pairs[count] = i, j
+                pairs[count, 0], pairs[count, 1] = i, j
                 count += 1
     return pairs[:count]

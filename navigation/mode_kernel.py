@@ -3,7 +3,7 @@
 Modes are STILL, ON, BACK, see `motion_modes`; states are (x, y, vx, vy).
 """
 
-from math import exp, log
+from math import exp, inf, log
 
 import numpy as np
 from numba import njit
@@ -144,8 +144,9 @@ def surprise(states: Array, covariances: Array, z: Array, R: Array) -> Array:
         z: position of each (n, 2) [m].
         R: its covariance (n, 2, 2) [m²].
     """
-    least = np.full(len(z), np.inf)
+    surprises = np.empty(len(z))
     for k in range(len(z)):
+        least = inf
         for mode in range(3):
             distance, _ = fit(
                 z[k, 0] - states[k, mode, 0],
@@ -154,8 +155,9 @@ def surprise(states: Array, covariances: Array, z: Array, R: Array) -> Array:
                 covariances[k, mode, 0, 1] + R[k, 0, 1],
                 covariances[k, mode, 1, 1] + R[k, 1, 1],
             )
-            least[k] = min(least[k], distance)
-    return least
+            least = min(least, distance)
+        surprises[k] = least
+    return surprises
 
 
 @njit(cache=True)
@@ -172,10 +174,10 @@ def costs(
         R: their covariances (m, 2, 2) [m²].
         gate: squared Mahalanobis distance to the nearest mode from which the cost is infinite.
     """
-    cost = np.full((len(weights), len(z)), np.inf)
+    cost = np.empty((len(weights), len(z)))
     for k in range(len(weights)):
         for m in range(len(z)):
-            least, likelihood = np.inf, 1e-30
+            least, likelihood = inf, 1e-30
             for mode in range(3):
                 distance, logarithm = fit(
                     z[m, 0] - states[k, mode, 0],
@@ -186,8 +188,7 @@ def costs(
                 )
                 least = min(least, distance)
                 likelihood += weights[k, mode] * exp(logarithm)
-            if least < gate:
-                cost[k, m] = -2.0 * log(likelihood)
+            cost[k, m] = -2.0 * log(likelihood) if least < gate else inf
     return cost
 
 

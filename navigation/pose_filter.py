@@ -15,9 +15,9 @@ from navigation.angles import wrap
 
 Array = NDArray[np.float64]
 
-# The state ends with an angle; of a measurement every second entry is one.
-STATE = (2, 3)
-MEASUREMENT = (1, 2)
+# Every so many entries an angle.
+STATE = 3
+MEASUREMENT = 2
 
 
 def _root(covariance: Array) -> Array:
@@ -32,7 +32,7 @@ def _seen(pose: Array, landmarks: Array) -> Array:
 
 
 def _difference(a: Array, b: Array) -> Array:
-    return pose_kernel.difference(a, b, *MEASUREMENT)
+    return pose_kernel.difference(a, b, MEASUREMENT)
 
 
 def _moved_on(state: Array, step: Array) -> Array:
@@ -42,11 +42,11 @@ def _moved_on(state: Array, step: Array) -> Array:
 
 
 def _state(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
-    return pose_kernel.transform(points, mean, weights, noise, *STATE)
+    return pose_kernel.transform(points, mean, weights, noise, STATE)
 
 
 def _measurement(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
-    return pose_kernel.transform(points, mean, weights, noise, *MEASUREMENT)
+    return pose_kernel.transform(points, mean, weights, noise, MEASUREMENT)
 
 
 class PosePoints(JulierSigmaPoints):  # type: ignore[misc]  # filterpy has no types
@@ -148,4 +148,4 @@ class PoseFilter(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has n
 
     def cross_variance(self, x: Array, z: Array, sigmas_f: Array, sigmas_h: Array) -> Array:
         """Filterpy's hook: covariance of state and measurement (3, 2 k)."""
-        return pose_kernel.cross_covariance(sigmas_f, x, sigmas_h, z, self.Wc)
+        return pose_kernel.cross_covariance(sigmas_f, x, sigmas_h, z, self.Wc, MEASUREMENT)

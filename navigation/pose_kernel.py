@@ -1,7 +1,7 @@
 """Compiled part of localization: what an unscented filter does to all its sigma points.
 
-A vector's angles are its entries `first`, `first` + `step`, ...: the third of a pose (2, 3),
-every second one of a measurement (distance, bearing, distance, bearing, ...) (1, 2).
+Of a vector every `period`-th entry is an angle: the third of a pose (3), every second one of a
+measurement (distance, bearing, distance, bearing, ...) (2).
 """
 
 from math import atan2, ceil, cos, hypot, pi, sin, sqrt
@@ -77,25 +77,25 @@ def sighted(pose: Array, landmarks: Array) -> Array:
 
 
 @njit(cache=True)
-def difference(a: Array, b: Array, first: int, step: int) -> Array:
+def difference(a: Array, b: Array, period: int) -> Array:
     """A - b (n,), angles wrapped."""
     rest = np.empty(len(a))
     for i in range(len(a)):
         rest[i] = a[i] - b[i]
-    for i in range(first, len(a), step):
+    for i in range(period - 1, len(a), period):
         rest[i] = wrapped(rest[i])
     return rest
 
 
 @njit(cache=True)
-def mean(points: Array, weights: Array, first: int, step: int) -> Array:
+def mean(points: Array, weights: Array, period: int) -> Array:
     """Weighted mean (n,) of points (m, n); of angles that of their directions."""
     m, n = points.shape
     total = np.zeros(n)
     for k in range(m):
         for i in range(n):
             total[i] += weights[k] * points[k, i]
-    for i in range(first, n, step):
+    for i in range(period - 1, n, period):
         c = s = 0.0
         for k in range(m):
             c += weights[k] * cos(points[k, i])
@@ -116,21 +116,21 @@ def covariance_of(a: Array, b: Array, weights: Array) -> Array:
 
 
 @njit(cache=True)
-def differences(points: Array, centre: Array, first: int, step: int) -> Array:
+def differences(points: Array, centre: Array, period: int) -> Array:
     """Points (m, n) less a centre (n,), angles wrapped (m, n)."""
     m, n = points.shape
     rest = np.empty((m, n))
     for k in range(m):
         for i in range(n):
             rest[k, i] = points[k, i] - centre[i]
-        for i in range(first, n, step):
+        for i in range(period - 1, n, period):
             rest[k, i] = wrapped(rest[k, i])
     return rest
 
 
 @njit(cache=True)
 def transform(
-    points: Array, mean_weights: Array, weights: Array, noise: Array, first: int, step: int
+    points: Array, mean_weights: Array, weights: Array, noise: Array, period: int
 ) -> tuple[Array, Array]:
     """Unscented transform: mean (n,) and covariance (n, n) of points (m, n) (Julier & Uhlmann).
 
@@ -139,11 +139,10 @@ def transform(
         mean_weights: of the mean (m,).
         weights: of the covariance (m,).
         noise: added to the covariance (n, n).
-        first: which entry is the first angle.
-        step: from one angle to the next.
+        period: from one angle to the next.
     """
-    centre = mean(points, mean_weights, first, step)
-    spread = differences(points, centre, first, step)
+    centre = mean(points, mean_weights, period)
+    spread = differences(points, centre, period)
     covariance = covariance_of(spread, spread, weights)
     for i in range(len(centre)):
         for j in range(len(centre)):
@@ -153,7 +152,7 @@ def transform(
 
 @njit(cache=True)
 def cross_covariance(
-    poses: Array, pose: Array, seen: Array, mean_seen: Array, weights: Array
+    poses: Array, pose: Array, seen: Array, mean_seen: Array, weights: Array, period: int
 ) -> Array:
     """Covariance (3, 2 k) of poses (m, 3) about `pose` with measurements about `mean_seen`.
 
@@ -163,9 +162,10 @@ def cross_covariance(
         seen: what is measured from each (m, 2 k).
         mean_seen: its mean (2 k,).
         weights: of the covariance (m,).
+        period: of a measurement.
     """
     return covariance_of(
-        differences(poses, pose, 2, 3), differences(seen, mean_seen, 1, 2), weights
+        differences(poses, pose, len(pose)), differences(seen, mean_seen, period), weights
     )
 
 
@@ -188,7 +188,7 @@ def distances(
     for i in range(len(landmarks)):
         for k in range(len(poses)):
             seen[k, 0], seen[k, 1] = sighted(poses[k], landmarks[i : i + 1])
-        centre, S = transform(seen, mean_weights, weights, noise[i], 1, 2)
+        centre, S = transform(seen, mean_weights, weights, noise[i], z.shape[1])
         u, w = z[i, 0] - centre[0], wrapped(z[i, 1] - centre[1])
         a, b, d = S[0, 0], S[0, 1], S[1, 1]
         nis[i] = (d * u * u - 2.0 * b * u * w + a * w * w) / (a * d - b * b)

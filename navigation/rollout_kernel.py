@@ -48,7 +48,9 @@ def body_velocities(asked: Array, envelope: Envelope) -> Array:
     velocities = np.empty((asked.shape[1], 3))
     for i in range(asked.shape[1]):
         error, turn = asked[0, i] - asked[2, i], asked[3, i] - asked[2, i]
-        velocities[i] = body_velocity(error, asked[1, i], turn, envelope)
+        velocities[i, 0], velocities[i, 1], velocities[i, 2] = body_velocity(
+            error, asked[1, i], turn, envelope
+        )
     return velocities
 
 
@@ -83,7 +85,7 @@ def roll_out(
     """
     footstep, change, turn_change, turn_wait, side_step = gait
     velocity = np.zeros((steps + 2, len(candidates), 2))
-    duration = np.full((steps + 2, len(candidates)), footstep)
+    duration = np.empty((steps + 2, len(candidates)))
     for i in range(len(candidates)):
         speed = hypot(candidates[i, 0], candidates[i, 1])
         direction = course if speed < 1e-9 else atan2(candidates[i, 1], candidates[i, 0])
@@ -100,10 +102,11 @@ def roll_out(
             c, s = cos(middle), sin(middle)
             velocity[step, i, 0] = c * forward - s * left
             velocity[step, i, 1] = s * forward + c * left
+            duration[step, i] = footstep
             now += turn * footstep
         wait = max(0.0, abs(wrapped(direction - now)) - turn_wait) / envelope[3]
         duration[steps, i] = wait if speed > side_step else 0.0
-        velocity[steps + 1, i] = candidates[i]
+        velocity[steps + 1, i, 0], velocity[steps + 1, i, 1] = candidates[i, 0], candidates[i, 1]
         duration[steps + 1, i] = inf
     return velocity, duration
 
@@ -150,7 +153,8 @@ def contact_times(
     """
     k, n = duration.shape
     m = len(radii)
-    first, closing = np.full((n, m), np.inf), np.zeros((n, m))
+    first, closing = np.empty((n, m)), np.zeros((n, m))
+    first[:] = inf
     # The latest end of a piece, and the fastest that any path is until then.
     latest, fastest = np.zeros(k), np.zeros(k)
     start, moved = np.zeros((k + 1, n)), np.zeros((k, n, 2))

@@ -43,12 +43,14 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
             # What ends before this run starts touches none that comes after it either.
             while above < begin and runs[above, STOP] < start:
                 above += 1
-            other = above
-            while other < begin and runs[other, START] <= end:
+            root = n
+            for other in range(above, begin):
+                if runs[other, START] > end:
+                    break
                 if runs[other, COLOUR] == label:
-                    a, b = _root(parent, other), _root(parent, n)
-                    parent[max(a, b)] = min(a, b)
-                other += 1
+                    a, b = _root(parent, other), root
+                    root = min(a, b)
+                    parent[max(a, b)] = root
             n += 1
         above = begin
     return runs[:n], parent[:n]
@@ -59,7 +61,7 @@ def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]
     """Regions that are large enough (n, 7), and which of them each run is in, or -1 (m,)."""
     n = len(runs)
     found = np.empty((n, 7), np.int32)
-    region = np.empty(n, np.int32)
+    region, place = np.empty(n, np.int32), np.empty(n, np.int32)
     count = 0
     for i in range(n):
         root = _root(parent, i)
@@ -68,6 +70,7 @@ def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]
             count += 1
             found[k, LEFT], found[k, TOP], found[k, RIGHT] = runs[i, START], runs[i, ROW], 0
             found[k, AREA], found[k, LABEL], found[k, RUNS] = 0, runs[i, COLOUR], 0
+            place[k] = -1
         else:
             k = region[root]
         region[i] = k
@@ -76,13 +79,13 @@ def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]
         found[k, BOTTOM] = runs[i, ROW] + 1
         found[k, AREA] += runs[i, STOP] - runs[i, START]
         found[k, RUNS] += 1
-    place = np.full(count, -1, np.int32)
     regions = np.empty((count, 7), np.int32)
     m = 0
     for label in range(1, len(min_area) + 1):
         for k in range(count):
             if found[k, LABEL] == label and found[k, AREA] >= min_area[label - 1]:
-                regions[m] = found[k]
+                for column in range(7):
+                    regions[m, column] = found[k, column]
                 place[k] = m
                 m += 1
     for i in range(n):
@@ -116,12 +119,14 @@ def regions_of(labels: Labels, min_area: Table) -> tuple[Table, Table, Table]:
         m += regions[k, RUNS]
         size += 2 * (regions[k, RIGHT] - regions[k, LEFT] + regions[k, BOTTOM] - regions[k, TOP])
     runs = np.empty((m, 4), np.int32)
-    extents = np.full(size, -1, np.int32)
+    extents = np.empty(size, np.int32)
+    extents[:] = -1
     for i in range(len(all_runs)):
         k = region[i]
         if k < 0:
             continue
-        runs[free[k]] = all_runs[i]
+        for column in range(4):
+            runs[free[k], column] = all_runs[i, column]
         free[k] += 1
         row, first, last = all_runs[i, ROW], all_runs[i, START], all_runs[i, STOP]
         height = regions[k, BOTTOM] - regions[k, TOP]

@@ -19,6 +19,8 @@ def classify(image: Labels, table: Labels) -> Labels:
     labels = np.empty((height, width), np.uint8)
     for row in range(height):
         for column in range(width):
-            red, green, blue = image[row, column, 0], image[row, column, 1], image[row, column, 2]
+            # As wide integers: a code has 15 bits, a channel 8.
+            red, green = int(image[row, column, 0]), int(image[row, column, 1])
+            blue = int(image[row, column, 2])
             labels[row, column] = table[(red >> 3) << 10 | (green >> 3) << 5 | blue >> 3]
     return labels

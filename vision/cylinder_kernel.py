@@ -354,7 +354,8 @@ def locate(
                 slope,
                 h,
             )
-            means[:] = residual[SIDES:PRIOR]
+            for j in range(MAX_RIMS):
+                means[j] = residual[SIDES + j]
             # A side not seen between foot and head is not to be trusted.
             reach = sqrt(x[1] * x[1] - x[2] * x[2])
             for j in range(SIDES):

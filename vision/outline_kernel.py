@@ -231,7 +231,9 @@ def trace(
             a = starts[e]
             b = starts[e + 1] = a + (bottom - top if e < 2 else right - left)
             middle[e] = (a + b) // 2
-            size[e] = _edge(points[a:b], outer[a:b], boxes[k], extents[a:b], padded, view, e)
+            size[e, 0], size[e, 1] = _edge(
+                points[a:b], outer[a:b], boxes[k], extents[a:b], padded, view, e
+            )
         side, rim = (0, 2) if upright(view, 0.5 * (left + right), 0.5 * (top + bottom)) else (2, 0)
         swapped = 0 if points[middle[side], 0] >= points[middle[side + 1], 0] else 1
         for j in range(2):

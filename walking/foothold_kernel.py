@@ -104,9 +104,9 @@ def ramps(
     px, py = _under(support, spot)
     row = 0
     if shift > 0:
-        _ramp(table, row, shift, zmp[0], zmp[1], px, py, unloading, support)
+        _ramp(table[row], shift, zmp[0], zmp[1], px, py, unloading, support)
         row += 1
-    _ramp(table, row, carry, px, py, px, py, support, support)
+    _ramp(table[row], carry, px, py, px, py, support, support)
     row += 1
     before = support
     for k in range(steps.shape[0]):
@@ -114,11 +114,11 @@ def ramps(
         x, y = _under(step, spot)
         if ends and k == steps.shape[0] - 1:
             bx, by = _under(before, spot)
-            _ramp(table, row, stop, px, py, 0.5 * (bx + x), 0.5 * (by + y), before, step)
+            _ramp(table[row], stop, px, py, 0.5 * (bx + x), 0.5 * (by + y), before, step)
             row += 1
         else:
-            _ramp(table, row, double, px, py, x, y, before, step)
-            _ramp(table, row + 1, single, x, y, x, y, step, step)
+            _ramp(table[row], double, px, py, x, y, before, step)
+            _ramp(table[row + 1], single, x, y, x, y, step, step)
             row += 2
         before, px, py = step, x, y
     return table[:row]
@@ -153,12 +153,12 @@ def swings(
     table = np.empty((steps.shape[0], SWING))
     row = 0
     if now[2]:
-        _swing(table, row, now[0], now[1], origin, landing, _under(support, spot))
+        _swing(table[row], now[0], now[1], origin, landing, _under(support, spot))
         row += 1
     begin = later[0]
     for k in range(1, steps.shape[0]):
         step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
-        _swing(table, row, begin, later[2], support, step, _under(landing, spot))
+        _swing(table[row], begin, later[2], support, step, _under(landing, spot))
         support, landing = landing, step
         begin += later[1]
         row += 1
@@ -189,8 +189,7 @@ def _under(foot: Foothold, spot: Spot) -> tuple[float, float]:
 
 @njit(cache=True)
 def _ramp(
-    table: Array,
-    row: int,
+    row: Array,
     ticks: int,
     ax: float,
     ay: float,
@@ -199,28 +198,21 @@ def _ramp(
     one: Foothold,
     two: Foothold,
 ) -> None:
-    table[row, 0], table[row, 1], table[row, 2], table[row, 3], table[row, 4] = (
-        ticks,
-        ax,
-        ay,
-        bx,
-        by,
-    )
-    table[row, 5], table[row, 6], table[row, 7], table[row, 8] = one
-    table[row, 9], table[row, 10], table[row, 11], table[row, 12] = two
+    row[0], row[1], row[2], row[3], row[4] = ticks, ax, ay, bx, by
+    row[5], row[6], row[7], row[8] = one
+    row[9], row[10], row[11], row[12] = two
 
 
 @njit(cache=True)
 def _swing(
-    table: Array,
-    row: int,
+    row: Array,
     begin: float,
     lift: float,
     origin: Foothold,
     landing: Foothold,
     zmp: tuple[float, float],
 ) -> None:
-    table[row, 0], table[row, 1] = begin, lift
+    row[0], row[1] = begin, lift
     for k in range(3):
-        table[row, 2 + k], table[row, 5 + k] = origin[k], landing[k]
-    table[row, 8], table[row, 9] = zmp
+        row[2 + k], row[5 + k] = origin[k], landing[k]
+    row[8], row[9] = zmp

@@ -36,9 +36,9 @@ def test_compiled_and_plain_agree(drawn):
         (kernel.sigma_points, (pose, P)),
         (kernel.moved, (points, step)),
         (kernel.sighted, (pose, landmarks)),
-        (kernel.difference, (seen[1], seen[2], 1, 2)),
-        (kernel.transform, (points, mean_weights, weights, P, 2, 3)),
-        (kernel.cross_covariance, (points, pose, seen, seen[0], weights)),
+        (kernel.difference, (seen[1], seen[2], 2)),
+        (kernel.transform, (points, mean_weights, weights, P, 3)),
+        (kernel.cross_covariance, (points, pose, seen, seen[0], weights, 2)),
         (kernel.distances, (points, mean_weights, weights, landmarks, z, noise)),
     ):
         assert same(function(*arguments), function.py_func(*arguments))
@@ -60,7 +60,7 @@ def test_points_and_root_are_those_of_filterpy(drawn):
 
 def test_the_transform_is_filterpys_with_angles(drawn):
     _, P, points, mean_weights, weights, *_ = drawn
-    centre, covariance = kernel.transform(points, mean_weights, weights, P, 2, 3)
+    centre, covariance = kernel.transform(points, mean_weights, weights, P, 3)
     turn = np.arctan2(mean_weights @ np.sin(points[:, 2]), mean_weights @ np.cos(points[:, 2]))
 
     def mean(p, w):
@@ -85,7 +85,7 @@ def test_the_distance_is_that_of_the_innovation(drawn):
     found = kernel.distances(points, mean_weights, weights, landmarks, z, noise)
     for i in range(3):
         seen = np.array([kernel.sighted(p, landmarks[i : i + 1]) for p in points])
-        centre, S = kernel.transform(seen, mean_weights, weights, noise[i], 1, 2)
+        centre, S = kernel.transform(seen, mean_weights, weights, noise[i], 2)
         y = z[i] - centre
         y[1] = wrap(y[1])
         assert found[i] == pytest.approx(y @ np.linalg.solve(S, y))
@@ -98,4 +98,4 @@ def test_the_cross_covariance_is_the_weighted_sum_of_outer_products(drawn):
     dx[:, 2] = wrap_array(dx[:, 2])
     dz[:, 1::2] = wrap_array(dz[:, 1::2])
     wanted = np.einsum("k,ki,kj->ij", weights, dx, dz)
-    assert kernel.cross_covariance(points, pose, seen, seen[0], weights) == pytest.approx(wanted)
+    assert kernel.cross_covariance(points, pose, seen, seen[0], weights, 2) == pytest.approx(wanted)
