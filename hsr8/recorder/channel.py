@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -90,8 +91,7 @@ class Channel:
     def _packed(self) -> list[Any]:
         """The rows as Rerun wants them."""
         joined = {name: _joined(values) for name, values in self._components.items()}
-        offsets = np.zeros(len(self._lengths) + 1, np.int32)
-        np.cumsum(self._lengths, out=offsets[1:])
+        offsets = pa.array(list(accumulate(self._lengths, initial=0)), pa.int32())
         columns: list[Any] = []
         for name in joined.keys() & self._types.keys():
             descriptor, kind = self._types[name]
@@ -133,8 +133,8 @@ def _array(values: Any, kind: pa.DataType) -> pa.Array:
         inner = np.concatenate(values) if len(values) else np.zeros(0)
         return pa.ListArray.from_arrays(offsets, _array(inner, kind.value_type), type=kind)
     if pa.types.is_fixed_size_list(kind):
-        flat = np.asarray(values).astype(kind.value_type.to_pandas_dtype()).ravel()
+        flat = np.asarray(values, kind.value_type.to_pandas_dtype()).ravel()
         return pa.FixedSizeListArray.from_arrays(pa.array(flat), type=kind)
     if pa.types.is_string(kind):
         return pa.array(values, kind)
-    return pa.array(np.asarray(values).astype(kind.to_pandas_dtype()))
+    return pa.array(np.asarray(values, kind.to_pandas_dtype()))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.belief_layer import BeliefLayer
 from hsr8.recorder.block import PERIOD, Block
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.blueprint import blueprint
 from hsr8.recorder.camera_layer import CameraLayer
 from hsr8.recorder.channel import TIMELINE, Channel
@@ -70,7 +71,7 @@ class RerunLog:
         self._rates = rates = RATES[level]
         # Rerun keeps the threads of a stream that nobody holds any more until it is asked.
         rerun_bindings.flush_and_cleanup_orphaned_recordings()
-        self._stream = rr.RecordingStream("hsr8", recording_id=path.parent.name)
+        self._stream = BlockStream(path.parent.name)
         self._stream.set_log_time_enabled(False)
         sinks = [rr.FileSink(str(path), write_footer=index), *([rr.GrpcSink(live)] if live else [])]
         self._folder = path.parent
@@ -185,7 +186,8 @@ class RerunLog:
         self._hand_over()
 
     def _hand_over(self) -> None:
-        """Wait until everything is with the operating system."""
+        """Send everything, and wait until it is with the operating system."""
+        self._stream.send()
         if not self._waits:
             return
         try:
