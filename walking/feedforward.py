@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from walking import leg_kernel
+from walking import dynamics_kernel
+from walking.dynamics_kernel import Balance, Point, Vector
 from walking.joints import LEFT_LEG, RIGHT_LEG
-from walking.leg_kernel import Balance, Point, Vector
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
 from walking.robot_model import RobotModel
 
@@ -46,8 +46,8 @@ class FeedForward:
         acceleration: Point,
         *,
         balance: Balance,
-    ) -> Array:
-        """Offsets of all set-points (26,) [rad].
+    ) -> tuple[Array, Vector]:
+        """Offsets of all set-points (26,) [rad], and the mass centre in the base frame [m].
 
         The floor gives all that the motion of the whole body takes, by inverse dynamics; the
         legs share it, and each foot has it under its own sole as far as the ZMP allows.
@@ -64,27 +64,19 @@ class FeedForward:
             self._started = True
             self._position[:] = position
         robot = self._robot
-        leg_kernel.rates(
+        return dynamics_kernel.offsets(
+            robot.bodies,
             position,
             self._position,
             self._velocity,
-            robot.motion,
-            robot.indices,
             pelvis,
-            acceleration,
+            (*acceleration, robot.gravity),
             self._law,
-        )
-        return leg_kernel.offsets(
-            robot.forces(),
-            robot.indices[1],
-            position,
-            self._velocity,
             self._servos,
-            pelvis,
             spots,
             right_load,
-            self._height,
             robot.leg_rows,
+            self._height,
             balance,
             self._ankles,
         )

@@ -3,6 +3,7 @@
 import pytest
 
 from walking import (
+    dynamics_kernel,
     estimation_kernel,
     foothold_kernel,
     head_kernel,
@@ -23,7 +24,7 @@ from walking.rehearsal import rehearse
         (swing_kernel, "react"),
         (estimation_kernel, "estimate"),
         (leg_kernel, "pose"),
-        (leg_kernel, "offsets"),
+        (dynamics_kernel, "offsets"),
         (head_kernel, "advance"),
     ],
 )
