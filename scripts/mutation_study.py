@@ -31,6 +31,7 @@ from study_page import command_line, environment
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "results" / "mutation.md"
 TESTS = {  # where they are not those of the same name
+    "walking/zmp_layout_kernel": ("walking/test_zmp_kernel",),
     "walking/foot_placement": ("walking/test_transition", "walking/test_admission"),
 }
 MODULES = (
@@ -50,8 +51,11 @@ MODULES = (
     "walking/lipm",
     "walking/zmp_reference",
     "walking/zmp_kernel",
+    "walking/zmp_layout_kernel",
     "walking/foot_placement",
     "walking/estimator",
+    "walking/estimation_kernel",
+    "walking/dynamics_kernel",
 )
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,

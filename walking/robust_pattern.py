@@ -23,7 +23,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from walking import zmp_kernel
+from walking import zmp_kernel, zmp_layout_kernel
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern import DcmTracker, PendulumState, dcm_reference
@@ -162,14 +162,15 @@ class RobustGenerator:
         w, sole, table = self._lipm.omega, self._sole, table_of(ramps)
         growth = self._lipm.ramp(self._age).growth
         lx, ly = self._plan.dual if self._plan is not None else (0.0, 0.0)
-        feasible, lx, ly, evaluations, knots = zmp_kernel.plan(
+        cells, starts, weights, dcm, knots = zmp_layout_kernel.lay_out(
             table,
             (state.x, state.y, state.vx / w, state.vy / w, state.zmp_x, state.zmp_y),
             (sole.centre, sole.half_length - margin, sole.half_width - margin),
             self._wh,
             self._rate,
-            (lx / growth, ly / growth),
         )
+        dual = (lx / growth, ly / growth)
+        feasible, lx, ly, evaluations = zmp_kernel.fit(cells, starts, weights, dcm, dual, knots)
         self.evaluations += evaluations
         return ZmpPlan(knots, table, (lx, ly)) if feasible else None
 

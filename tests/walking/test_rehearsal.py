@@ -10,6 +10,7 @@ from walking import (
     leg_kernel,
     swing_kernel,
     zmp_kernel,
+    zmp_layout_kernel,
 )
 from walking.parameters import WalkingParameters
 from walking.rehearsal import rehearse
@@ -18,7 +19,8 @@ from walking.rehearsal import rehearse
 @pytest.mark.parametrize(
     ("module", "name"),
     [
-        (zmp_kernel, "plan"),
+        (zmp_layout_kernel, "lay_out"),
+        (zmp_kernel, "fit"),
         (foothold_kernel, "onwards"),
         (foothold_kernel, "swings"),
         (swing_kernel, "react"),

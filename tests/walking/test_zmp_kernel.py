@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from walking import zmp_kernel
+from walking import zmp_kernel, zmp_layout_kernel
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD
 from walking.ramps import ZmpRamp, table_of
 from walking.state import Footstep
-from walking.zmp_kernel import CELL, limit, place, sides, solve
+from walking.zmp_kernel import place, solve
+from walking.zmp_layout_kernel import CELL, limit, sides
 
 NOMINAL = (0.005, -0.003)
 BOUNDS = (-0.04, 0.04, -0.02, 0.02)
@@ -204,11 +205,17 @@ def problem(seed):
     ramps = reference(rng, double=double, steps=steps)
     table = table_of(ramps)
     wh = LIPM.omega * CONTROL_PERIOD
-    x, y = zmp_kernel.dcm(table, wh)
+    x, y = zmp_layout_kernel.dcm(table, wh)
     off = rng.uniform(-0.006, 0.006, 4)
     zmp = (ramps[0].ax + 0.1 * off[0], ramps[0].ay + 0.1 * off[1])
     pendulum = (x - 0.02 + off[0], y + 0.01 + off[1], 0.02 + off[2], -0.01 + off[3], *zmp)
     return ramps, (table, pendulum, SOLE, wh, RATE, START)
+
+
+def plan(*arguments, lay_out=zmp_layout_kernel.lay_out, fit=zmp_kernel.fit):
+    """Whether the program has a solution, λ, evaluations, and the knots."""
+    *program, knots = lay_out(*arguments[:-1])
+    return (*fit(*program, arguments[-1], knots), knots)
 
 
 def moved(dcm, before, after, ticks):
@@ -221,7 +228,7 @@ def moved(dcm, before, after, ticks):
 @given(st.integers(0, 10**6))
 def test_along_the_knots_the_pendulum_comes_to_the_reference(seed):
     ramps, arguments = problem(seed)
-    solved, _, _, _, knots = zmp_kernel.plan(*arguments)
+    solved, _, _, _, knots = plan(*arguments)
     if not solved:
         return
     x, y, vx, vy, *zmp = arguments[1]
@@ -231,18 +238,18 @@ def test_along_the_knots_the_pendulum_comes_to_the_reference(seed):
         ticks += knot[0]
     while ramps and ticks > 0:
         ticks -= ramps.pop(0).ticks
-    goal = zmp_kernel.dcm(table_of(ramps), LIPM.omega * CONTROL_PERIOD) if ramps else now
+    goal = zmp_layout_kernel.dcm(table_of(ramps), LIPM.omega * CONTROL_PERIOD) if ramps else now
     np.testing.assert_allclose(dcm, goal, atol=1e-6)  # a walk of a second multiplies by 1000
 
 
 def test_most_of_those_programs_have_a_solution():
-    assert sum(zmp_kernel.plan(*problem(seed)[1])[0] for seed in range(100)) > 50
+    assert sum(plan(*problem(seed)[1])[0] for seed in range(100)) > 50
 
 
 @given(st.integers(0, 10**6))
 def test_knots_of_single_support_lie_in_their_sole(seed):
     ramps, arguments = problem(seed)
-    solved, _, _, _, knots = zmp_kernel.plan(*arguments)
+    solved, _, _, _, knots = plan(*arguments)
     ends = np.cumsum([ramp.ticks for ramp in ramps])
     for time, (x, y) in zip(np.cumsum(knots[:, 0]), knots[:, 1:], strict=True):
         index = int(np.searchsorted(ends, time))
@@ -259,7 +266,11 @@ def test_knots_of_single_support_lie_in_their_sole(seed):
 @given(st.integers(0, 10**6))
 def test_compiled_it_is_what_it_says(plainly, seed):
     arguments = problem(seed)[1]
-    *numbers, knots = zmp_kernel.plan(*arguments)
-    *plain, points = plainly(zmp_kernel, "plan", *arguments)
+    *numbers, knots = plan(*arguments)
+    *plain, points = plan(
+        *arguments,
+        lay_out=lambda *a: plainly(zmp_layout_kernel, "lay_out", *a),
+        fit=lambda *a: plainly(zmp_kernel, "fit", *a),
+    )
     assert numbers == pytest.approx(plain, rel=1e-9, abs=1e-9)
     np.testing.assert_allclose(knots, points, atol=1e-12)
