@@ -1,6 +1,5 @@
 """What walking knows of itself after a tick: odometry, camera pose, gait."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -55,7 +54,7 @@ def foothold(row: list[float]) -> Footstep:
     return Footstep(left > 0.0, x, y, yaw)
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Odometry:
     """Pose of the robot frame R in the odometry frame, which drifts.
 
@@ -73,7 +72,7 @@ class Odometry:
     covariance: Array
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class HeadCameraPose:
     """Pose of the head camera in the robot frame R, from encoders and IMU.
 
@@ -90,7 +89,7 @@ class HeadCameraPose:
     tilt: float
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Balance:
     """What balance is about, all of it in the odometry frame.
 
@@ -112,7 +111,7 @@ class Balance:
     capture: Array
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class WalkingState:
     """Snapshot of the walking engine after a tick.
 

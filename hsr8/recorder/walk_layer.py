@@ -1,7 +1,8 @@
 """Walking in the log: ZMP, CoM, DCM and soles on the floor and over time, torques, pushes."""
 
 from collections import deque
-from math import cos, degrees, sin
+from collections.abc import Sequence
+from math import cos, degrees, isnan, nan, sin
 
 import numpy as np
 import rerun as rr
@@ -17,6 +18,7 @@ from navigation.angles import wrap
 from walking.admission import Limit
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
 GAIT = {
     "standing": GREY,
@@ -108,19 +110,17 @@ class WalkLayer:
         time, truth, walking = record.time, record.truth, record.walking
         there = OdometryToWorld(record)
         pressed = float(truth.foot_force.sum()) > LIGHT
-        known = (walking.zmp, None, walking.balance.com, walking.balance.dcm)
-        points = np.array([truth.zmp if p is None else there.point(p) for p in known])
-        if not pressed:
-            points[1] = np.nan
-        support = np.array([there.point(corner) for corner in walking.balance.support])
-        self._add_curves(time, truth.robot, points, support)
-        shown = np.where(np.isnan(points), points[0], points)
-        self._points.add(time, origins=np.column_stack([shown, np.full(len(shown), PIN)]))
+        planned = there.point(walking.zmp)
+        com, dcm = there.point(walking.balance.com), there.point(walking.balance.dcm)
+        measured = tuple(truth.zmp.tolist()) if pressed else (nan, nan)
+        support = [there.point(corner) for corner in walking.balance.support.tolist()]
+        self._add_curves(time, truth.robot, [planned, measured, com, dcm], support)
+        shown = (planned, planned if isnan(measured[0]) else measured, com, dcm)
+        self._points.add(time, origins=np.array([(x, y, PIN) for x, y in shown]))
         standing = (str(walking.phase), walking.step_count)
         if standing != self._stood:
             self._stood = standing
-            corners = np.vstack([support, support[:1]])
-            strip = np.column_stack([corners, np.full(len(corners), FLOOR)])
+            strip = np.array([(x, y, FLOOR) for x, y in (*support, support[0])])
             self._support.add(time, strips=[strip])
         asked, given = record.command.velocity, walking.given.tolist()
         for curves, a, g in zip(self._commanded, asked, given, strict=True):
@@ -162,14 +162,16 @@ class WalkLayer:
             named.append((f"{side} {joint.replace('_', ' ')} [N m]", next(shades[side])))
         return Curves(stream, f"/plots/torque_{group}", named), columns
 
-    def _add_curves(self, time: float, robot: Array, points: Array, support: Array) -> None:
+    def _add_curves(
+        self, time: float, robot: Array, points: Sequence[Point], support: Sequence[Point]
+    ) -> None:
         x, y, yaw = robot.tolist()
         c, s = cos(yaw), sin(yaw)
-        turn = np.array([[c, -s], [s, c]])
-        seen, edges = (points - (x, y)) @ turn, (support - (x, y)) @ turn
-        low, high = edges.min(axis=0).tolist(), edges.max(axis=0).tolist()
-        for axis, curves in enumerate(self._zmp):
-            curves.add(time, *seen[:, axis].tolist(), low[axis], high[axis])
+        # Forward and left of the robot.
+        for curves, (along, across) in zip(self._zmp, ((c, s), (-s, c)), strict=True):
+            seen = [along * (px - x) + across * (py - y) for px, py in points]
+            edges = [along * (px - x) + across * (py - y) for px, py in support]
+            curves.add(time, *seen, min(edges), max(edges))
 
     def _tell_admission(self, record: TickRecord) -> None:
         admission = record.walking.admission
