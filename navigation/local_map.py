@@ -8,12 +8,11 @@ that time: no frame rate enters.
 from math import floor
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from navigation.belief_parameters import LocalMapParameters
 from navigation.visibility import Mask, Viewpoint
-from navigation.visibility_kernel import COVERED, UNSEEN, Marks
+from navigation.visibility_kernel import take_in
 
 Array = NDArray[np.float64]
 
@@ -127,7 +126,7 @@ class LocalMap:
         self._roll(centre)
         marks = viewpoint.searched(self._corner, p.cell, self._count, obstacles, radii)
         evidence = (dt * p.free_rate, dt * p.occupied_rate, p.evidence_limit)
-        _take_in(marks, self._seen_at, self._log_odds, time, evidence)
+        take_in(marks, self._seen_at, self._log_odds, time, evidence)
 
     def contents(self) -> tuple[Array, Array, Array]:
         """All that the map holds, to compare it bit by bit; do not write into it."""
@@ -171,30 +170,6 @@ class LocalMap:
         self._corner = corner
         self._seen_at = _shifted(self._seen_at, shift_y, shift_x, -np.inf)
         self._log_odds = _shifted(self._log_odds, shift_y, shift_x, 0.0)
-
-
-@njit(cache=True)
-def _take_in(
-    marks: Marks, seen_at: Array, log_odds: Array, time: float, evidence: tuple[float, float, float]
-) -> None:
-    """Write one look into the map.
-
-    Args:
-        marks: what it showed (n, n), see `Viewpoint.searched`.
-        seen_at: when each cell was seen last (n, n) [s], changed.
-        log_odds: of occupancy (n, n), changed.
-        time: of the look [s].
-        evidence: change of the log odds of a cell seen free and of one covered, and their
-            largest absolute value [1].
-    """
-    free, occupied, limit = evidence
-    for row in range(len(marks)):
-        for column in range(len(marks)):
-            mark = marks[row, column]
-            if mark != UNSEEN:
-                seen_at[row, column] = time
-                odds = log_odds[row, column] + (occupied if mark == COVERED else free)
-                log_odds[row, column] = min(max(odds, -limit), limit)
 
 
 def _shifted(cells: Array, rows: int, columns: int, empty: float) -> Array:

@@ -143,3 +143,27 @@ def searched(
             if marks[row, column] == UNSEEN and not covered(dx, dy, discs):
                 marks[row, column] = FREE
     return marks
+
+
+@njit(cache=True)
+def take_in(
+    marks: Marks, seen_at: Array, log_odds: Array, time: float, evidence: tuple[float, float, float]
+) -> None:
+    """Write one look into a map.
+
+    Args:
+        marks: what it showed (n, n), see `searched`.
+        seen_at: when each cell was seen last (n, n) [s], changed.
+        log_odds: of occupancy (n, n), changed.
+        time: of the look [s].
+        evidence: change of the log odds of a cell seen free and of one covered, and their
+            largest absolute value [1].
+    """
+    free, occupied, limit = evidence
+    for row in range(len(marks)):
+        for column in range(len(marks)):
+            mark = marks[row, column]
+            if mark != UNSEEN:
+                seen_at[row, column] = time
+                odds = log_odds[row, column] + (occupied if mark == COVERED else free)
+                log_odds[row, column] = min(max(odds, -limit), limit)

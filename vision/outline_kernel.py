@@ -26,6 +26,7 @@ ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [p
 MAX_OVERHANG = 2.5  # a side does not lie farther inside what is seen than this [pixel]
 MAX_CELLS = 128  # of the grid of an envelope in each direction
 CUT = 4  # an edge has at least one point for so many at the border; fewer are noise there
+FINEST = 1e-4  # slope of a pixel at least, where a row of them looks level [1]
 OUTLIERS = 8  # one pixel in so many may stick out of a side
 
 
@@ -255,7 +256,7 @@ def trace(
                 leftmost - margin,
             )
             m += counts[k, j]
-            sizes[k, j] = size[e, 1]
+            sizes[k, j] = max(size[e, 1], FINEST)
     return sides, counts, sizes, rims[:, :m], rim_outer[:m]
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from navigation.belief_parameters import LocalMapParameters
-from navigation.local_map import LocalMap, _take_in
+from navigation.local_map import LocalMap
 from navigation.visibility import Viewpoint
 
 NONE = (np.empty((0, 2)), np.empty(0))
@@ -167,18 +167,3 @@ def test_evidence_of_one_look_and_of_all_is_bounded(view):
         grid.update(101.0 + k, viewpoint, (0.0, 0.0), place, np.array([0.08]))
     assert grid.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-P.evidence_limit)))
     assert grid.occupancy_at([[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(P.evidence_limit)))
-
-
-def test_a_look_is_written_alike_by_compiled_and_plain_code():
-    rng = np.random.default_rng(6)
-    marks = rng.integers(0, 3, (20, 20)).astype(np.uint8)
-    maps = []
-    for write in (_take_in, _take_in.py_func):
-        seen_at, log_odds = np.zeros((20, 20)), np.linspace(-4, 4, 400).reshape(20, 20)
-        write(marks, seen_at, log_odds, 3.0, (-0.4, 1.0, 4.0))
-        maps.append((seen_at, log_odds))
-    assert np.array_equal(maps[0], maps[1])
-    change = np.array([0.0, -0.4, 1.0])[marks]
-    before = np.linspace(-4, 4, 400).reshape(20, 20)
-    assert np.array_equal(maps[0][1], np.clip(before + change, -4.0, 4.0))
-    assert np.array_equal(maps[0][0], 3.0 * (marks > 0))

@@ -77,3 +77,18 @@ def test_cells_agree_with_the_formulas_over_arrays(scene, seed):
     wanted = contained(points, v, 0.0, 0.0) * np.where(on, kernel.COVERED, seen)
     assert np.array_equal(marks.ravel(), wanted)
     assert set(wanted.tolist()) == {kernel.UNSEEN, kernel.FREE, kernel.COVERED}
+
+
+def test_a_look_is_written_alike_by_compiled_and_plain_code():
+    rng = np.random.default_rng(6)
+    marks = rng.integers(0, 3, (20, 20)).astype(np.uint8)
+    maps = []
+    for write in (kernel.take_in, kernel.take_in.py_func):
+        seen_at, log_odds = np.zeros((20, 20)), np.linspace(-4, 4, 400).reshape(20, 20)
+        write(marks, seen_at, log_odds, 3.0, (-0.4, 1.0, 4.0))
+        maps.append((seen_at, log_odds))
+    assert np.array_equal(maps[0], maps[1])
+    change = np.array([0.0, -0.4, 1.0])[marks]
+    before = np.linspace(-4, 4, 400).reshape(20, 20)
+    assert np.array_equal(maps[0][1], np.clip(before + change, -4.0, 4.0))
+    assert np.array_equal(maps[0][0], 3.0 * (marks > 0))

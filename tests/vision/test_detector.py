@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, Cylinder, at, beacon, paint, pose, true_polar
+from vision.camera import PinholeCamera
 from vision.colour import COLOUR_CLASSES
 from vision.detection import Detection
 from vision.detector import Detector
@@ -243,3 +244,40 @@ def test_other_images_are_refused(image: np.ndarray) -> None:
 def test_radii_must_span_an_interval() -> None:
     with pytest.raises(VisionError, match="min_radius"):
         Detector(CAMERA, VisionParameters(min_radius=0.1, max_radius=0.1))
+
+
+PAINTS = np.array([(0.0, 0.0, 0.0), *(c.rgb for c in COLOUR_CLASSES.values())])
+LEVEL_OR_NOT = [pose(), pose(0.5, -0.6), pose(0.0, -np.pi / 2), pose(0.1, -0.3, 1.5), pose(0, 1.2)]
+
+
+@settings(max_examples=80)
+@given(
+    size=st.sampled_from([(1, 1), (1, 7), (5, 3), (32, 24), (64, 48)]),
+    view=st.sampled_from(LEVEL_OR_NOT),
+    boxes=st.lists(st.tuples(*[st.integers(-4, 68)] * 4, st.integers(0, 7)), max_size=30),
+    smallest=st.sampled_from([1, 20]),
+)
+def test_whatever_an_image_shows_every_detection_is_one(size, view, boxes, smallest) -> None:
+    """Blobs at every border, many of them, of one pixel; a rim that looks level."""
+    width, height = size
+    labels = np.zeros((height, width), int)
+    for left, top, right, bottom, label in boxes:
+        labels[max(top, 0) : max(bottom, 0), max(left, 0) : max(right, 0)] = label
+    camera = PinholeCamera.from_vertical_fov(width, height, 1.2)
+    parameters = VisionParameters(min_area=smallest, min_beacon_area=smallest)
+    image = np.round(255 * PAINTS[labels]).astype(np.uint8)
+    for found in Detector(camera, parameters).detect(image, view):
+        assert np.isfinite([found.distance, found.bearing, found.radius]).all()
+        assert np.linalg.eigvalsh(found.covariance)[0] > 0.0
+        assert 0 <= found.box[0] < found.box[2] <= width
+        assert 0 <= found.box[1] < found.box[3] <= height
+
+
+def test_a_rim_that_looks_level_is_seen():
+    """In the middle of the image of a level camera a row of pixels has one slope."""
+    camera = PinholeCamera.from_vertical_fov(32, 24, 1.2)
+    image = np.zeros((24, 32, 3), np.uint8)
+    image[4:20, 10:22] = np.round(255 * np.array(COLOUR_CLASSES["red"].rgb))
+    for view in (pose(), pose(roll=np.pi / 2), pose(tilt=-np.pi / 2)):
+        for found in Detector(camera, VisionParameters(min_area=20)).detect(image, view):
+            assert np.isfinite(found.covariance).all()
