@@ -271,13 +271,3 @@ def test_whatever_an_image_shows_every_detection_is_one(size, view, boxes, small
         assert np.linalg.eigvalsh(found.covariance)[0] > 0.0
         assert 0 <= found.box[0] < found.box[2] <= width
         assert 0 <= found.box[1] < found.box[3] <= height
-
-
-def test_a_rim_that_looks_level_is_seen():
-    """In the middle of the image of a level camera a row of pixels has one slope."""
-    camera = PinholeCamera.from_vertical_fov(32, 24, 1.2)
-    image = np.zeros((24, 32, 3), np.uint8)
-    image[4:20, 10:22] = np.round(255 * np.array(COLOUR_CLASSES["red"].rgb))
-    for view in (pose(), pose(roll=np.pi / 2), pose(tilt=-np.pi / 2)):
-        for found in Detector(camera, VisionParameters(min_area=20)).detect(image, view):
-            assert np.isfinite(found.covariance).all()

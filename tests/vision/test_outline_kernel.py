@@ -58,3 +58,13 @@ def test_envelopes_bound_the_directions_of_all_pixels():
             column = int((azimuth - start) / width)
             near = slice(max(column - 1, 0), column + 2)
             assert low[near].min() - size < slope < high[near].max() + size
+
+
+def test_no_pixel_of_a_rim_is_without_size():
+    """Seen steeply, the ends of rows in the middle column run along one slope."""
+    labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
+    labels[20:100, 40 : CAMERA.width // 2] = 1
+    (blob,) = find_blobs(labels, (20,))
+    box, padded = np.array([blob.box], np.int32), np.pad(labels, 1, constant_values=OUTSIDE)
+    _, _, sizes, *_ = trace(box, blob.extents, padded, View(CAMERA, pose(tilt=1.2)).packed)
+    assert 0.0 < sizes.min() < 1e-3
