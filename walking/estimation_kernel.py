@@ -55,7 +55,7 @@ FOUND = 24  # numbers found in a tick
 @njit(cache=True)
 def estimate(
     reading: Reading,
-    com: Vector,
+    com: Array,
     states: tuple[Array, Array, Array],
     legs: tuple[Leg, Leg],
     body: Body,
@@ -71,7 +71,7 @@ def estimate(
 
     Args:
         reading: of the sensors.
-        com: mass centre for the measured joints in the base frame [m].
+        com: mass centre for the measured joints in the base frame (3,) [m].
         states: tilt, odometry and error, brought up to date.
         legs: left and right.
         body: see `observe`.
@@ -119,7 +119,7 @@ def estimate(
 @njit(cache=True)
 def observe(
     reading: Reading,
-    com: Vector,
+    com: Array,
     tilt: Array,
     legs: tuple[Leg, Leg],
     body: Body,
@@ -130,7 +130,7 @@ def observe(
 
     Args:
         reading: of the sensors.
-        com: mass centre for the measured joints in the base frame [m].
+        com: mass centre for the measured joints in the base frame (3,) [m].
         tilt: brought up to date.
         legs: left and right.
         body: numbers of the body.
@@ -156,7 +156,7 @@ def observe(
         found[row], found[row + 1], found[row + 2] = level((x, y, z), inclined)
         found[row + 3], found[row + 4] = yaw, force
         found[20 + 2 * side], found[21 + 2 * side] = ahead, aside
-    found[16], found[17], found[18] = level(com, inclined)
+    found[16], found[17], found[18] = level((com[0], com[1], com[2]), inclined)
     on_left, on_right = max(0.0, found[10] - body[1]), max(0.0, found[15] - body[1])
     both = on_left + on_right
     found[19] = on_right / both if both > 0.0 else 0.5

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from walking import dynamics_kernel
-from walking.dynamics_kernel import Balance, Point, Vector
+from walking import leg_kernel
 from walking.joints import LEFT_LEG, RIGHT_LEG
+from walking.leg_kernel import Balance, Point, Vector
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
 from walking.robot_model import RobotModel
 
@@ -46,8 +46,8 @@ class FeedForward:
         acceleration: Point,
         *,
         balance: Balance,
-    ) -> tuple[Array, Vector]:
-        """Offsets of all set-points (26,) [rad], and the mass centre in the base frame [m].
+    ) -> Array:
+        """Offsets of all set-points (26,) [rad].
 
         The floor gives all that the motion of the whole body takes, by inverse dynamics; the
         legs share it, and each foot has it under its own sole as far as the ZMP allows.
@@ -64,19 +64,27 @@ class FeedForward:
             self._started = True
             self._position[:] = position
         robot = self._robot
-        return dynamics_kernel.offsets(
-            robot.bodies,
+        leg_kernel.rates(
             position,
             self._position,
             self._velocity,
+            robot.motion,
+            robot.indices,
             pelvis,
-            (*acceleration, robot.gravity),
+            acceleration,
             self._law,
+        )
+        return leg_kernel.offsets(
+            robot.forces(),
+            robot.indices[1],
+            position,
+            self._velocity,
             self._servos,
+            pelvis,
             spots,
             right_load,
-            robot.leg_rows,
             self._height,
+            robot.leg_rows,
             balance,
             self._ankles,
         )

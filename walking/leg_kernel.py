@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
 Leg = tuple[float, float, float, float, float, float]
@@ -21,6 +22,13 @@ Angles = tuple[float, float, float, float, float, float]
 
 Foot = tuple[float, float, float, float]
 """Reference of a foot in the plan frame: x, y [m], yaw [rad], height [m]."""
+
+Balance = tuple[Point, Point, Vector]
+"""Directions of the left and of the right foot [rad]; by how much the ankles are to move the ZMP,
+in the plan frame [m]; angular velocity of the trunk [rad/s]."""
+
+Ankles = tuple[float, float, float, float]
+"""Weight of the robot [N]; stiffness of pitch and of roll [N m/rad]; damping by the gyro [s]."""
 
 STILL_TILT = 1e-6  # tilt of a foot that counts as none [rad]
 
@@ -63,6 +71,42 @@ def leg_angles(leg: Leg, foot: Pose) -> tuple[Angles, bool]:
     hip_yaw = atan2(-mx, my)
     hip_pitch = atan2(-(cg * xz + sg * nz), cg * nz - sg * xz)
     return (hip_yaw, hip_roll, hip_pitch, knee, ankle_pitch, ankle_roll), reachable
+
+
+@njit(cache=True)
+def support_torques(leg: Leg, angles: Angles, point: Vector, force: Vector) -> Angles:
+    """Torques [N m] by which a massless leg hands a force of the floor on to the base.
+
+    Args:
+        leg: dimensions.
+        angles: of its joints.
+        point: where the floor pushes, in the base frame [m].
+        force: of the floor on the foot, in the base frame [N].
+    """
+    hip_x, hip_y, hip_z, l1, l2, _ = leg
+    a, b, c, d, e, _ = angles
+    ca, sa, cb, sb = cos(a), sin(a), cos(b), sin(b)
+    sg, cg = sin(c + d + e), cos(c + d + e)
+    fx, fy, fz = force
+    # Arms of the force about hip, knee and ankle.
+    hx, hy, hz = point[0] - hip_x, point[1] - hip_y, point[2] - hip_z
+    along, down = -l1 * sin(c), -l1 * cos(c)
+    kx, ky, kz = hx - ca * along - sa * sb * down, hy - sa * along + ca * sb * down, hz - cb * down
+    along, down = along - l2 * sin(c + d), down - l2 * cos(c + d)
+    ax, ay, az = hx - ca * along - sa * sb * down, hy - sa * along + ca * sb * down, hz - cb * down
+    # Common pitch axis, and the axis of the ankle roll.
+    px, py, pz = -sa * cb, ca * cb, sb
+    rx, ry, rz = ca * cg - sa * sg * sb, sa * cg + ca * sg * sb, -sg * cb
+    mx, my, mz = hy * fz - hz * fy, hz * fx - hx * fz, hx * fy - hy * fx
+    nx, ny, nz = ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx
+    return (
+        -mz,
+        -ca * mx - sa * my,
+        -px * mx - py * my - pz * mz,
+        -px * (ky * fz - kz * fy) - py * (kz * fx - kx * fz) - pz * (kx * fy - ky * fx),
+        -px * nx - py * ny - pz * nz,
+        -rx * nx - ry * ny - rz * nz,
+    )
 
 
 @njit(cache=True)
@@ -177,3 +221,127 @@ def _pose_legs(
         for joint in range(6):
             position[6 * index + joint] = angles[joint]
     return c * (feet[0][0] - feet[1][0]) + s * (feet[0][1] - feet[1][1])
+
+
+@njit(cache=True)
+def rates(
+    position: Array,
+    before: Array,
+    velocity: Array,
+    motion: tuple[Array, Array, Array],
+    where: tuple[Indices, Indices],
+    pelvis: Vector,
+    base: Point,
+    law: Vector,
+) -> None:
+    """Bring rates of the joints up to date and tell the robot's model of the motion.
+
+    Args:
+        position: joint angles (26,) [rad].
+        before: those of the last tick, to be those of this one (26,) [rad].
+        velocity: their rates, of the last tick, then of this one (26,) [rad/s].
+        motion: position, velocity and acceleration of the model, set.
+        where: of the joints, in its position and in its velocity (26,).
+        pelvis: x, y [m], heading [rad] in the plan frame.
+        base: acceleration of the base in the plan frame [m/s²].
+        law: share of the joints' acceleration that is told [1], its limit [rad/s²], period of
+            control [s].
+    """
+    gain, limit, period = law
+    q, v, a = motion
+    c, s = cos(pelvis[2]), sin(pelvis[2])
+    a[0], a[1] = c * base[0] + s * base[1], c * base[1] - s * base[0]
+    for joint in range(position.size):
+        now = (position[joint] - before[joint]) / period
+        change = gain * (now - velocity[joint]) / period
+        velocity[joint] = now
+        before[joint] = position[joint]
+        q[where[0][joint]] = position[joint]
+        v[where[1][joint]] = now
+        a[where[1][joint]] = min(limit, max(-limit, change))
+
+
+@njit(cache=True)
+def offsets(
+    forces: Array,
+    where: Indices,
+    position: Array,
+    velocity: Array,
+    servos: tuple[Array, Array],
+    pelvis: Vector,
+    spots: tuple[Point, Point],
+    right_load: float,
+    base: float,
+    legs: tuple[Leg, Leg],
+    balance: Balance,
+    ankles: Ankles,
+) -> Array:
+    """Set-point offsets that make up for load and lag of the servos.
+
+    Args:
+        forces: generalised, that the motion takes with nothing touching the feet: force [N] and
+            moment [N m] at the base first.
+        where: of the joints in these (26,).
+        position: joint angles (26,) [rad].
+        velocity: their rates (26,) [rad/s].
+        servos: compliance [rad/(N m)] and velocity lag [s] (26,).
+        pelvis: x, y [m], heading [rad] in the plan frame.
+        spots: where the ZMP is meant to be under either foot, in the plan frame [m].
+        right_load: share of the weight on the right foot [1].
+        base: its height above the floor [m].
+        legs: left and right.
+        balance: what the ankles are to do besides.
+        ankles: their numbers.
+
+    Returns:
+        the offsets (26,) [rad].
+    """
+    found = np.empty(position.size)
+    for joint in range(position.size):
+        found[joint] = forces[where[joint]]
+    fx, fy, fz, nx, ny = forces[0], forces[1], forces[2], forces[3], forces[4]
+    lx, ly = _in_base(pelvis, spots[0])
+    rx, ry = _in_base(pelvis, spots[1])
+    left_load = 1.0 - right_load
+    # The ZMP of the whole body, from where the feet alone would have it.
+    dx = -(ny + base * fx) / fz - left_load * lx - right_load * rx
+    dy = (nx - base * fy) / fz - left_load * ly - right_load * ry
+    for index in range(2):
+        load = right_load if index else left_load
+        if load > 0.0:
+            own = position[6 * index : 6 * index + 6]
+            angles = (own[0], own[1], own[2], own[3], own[4], own[5])
+            x, y = (rx, ry) if index else (lx, ly)
+            point = (x + dx, y + dy, -base)
+            force = (load * fx, load * fy, load * fz)
+            added = support_torques(legs[index], angles, point, force)
+            for joint in range(6):
+                found[6 * index + joint] += added[joint]
+    compliance, lag = servos
+    for joint in range(position.size):
+        found[joint] = found[joint] * compliance[joint] + velocity[joint] * lag[joint]
+    for index in range(2):
+        load = right_load if index else left_load
+        if load > 0.0:
+            pitch, roll = ankle(balance, index, load, ankles)
+            found[6 * index + 4] += pitch
+            found[6 * index + 5] += roll
+    return found
+
+
+@njit(cache=True)
+def ankle(balance: Balance, index: int, load: float, ankles: Ankles) -> Point:
+    """Set-points of pitch and roll that move the ZMP of a foot carrying a share `load` [rad]."""
+    yaw, (dx, dy), gyro = balance[0][index], balance[1], balance[2]
+    c, s = cos(yaw), sin(yaw)
+    x, y = c * dx + s * dy, c * dy - s * dx
+    weight, damping = ankles[0] * load, ankles[3] * load
+    return weight / ankles[1] * x + damping * gyro[1], -weight / ankles[2] * y + damping * gyro[0]
+
+
+@njit(cache=True)
+def _in_base(pelvis: Vector, point: Point) -> Point:
+    """A point of the plan frame in the frame of the base [m]."""
+    c, s = cos(pelvis[2]), sin(pelvis[2])
+    x, y = point[0] - pelvis[0], point[1] - pelvis[1]
+    return c * x + s * y, c * y - s * x

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from walking import dynamics_kernel, estimation_kernel, leg_kernel
+from walking import estimation_kernel, leg_kernel
 from walking.leg_kernel import Angles as LegAngles
 from walking.leg_kernel import Leg, Vector
 from walking.value import value
@@ -88,4 +88,4 @@ def support_torques(
     Returns:
         torque of each joint [N m].
     """
-    return dynamics_kernel.support_torques(leg.row, angles, point, force)
+    return leg_kernel.support_torques(leg.row, angles, point, force)

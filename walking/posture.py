@@ -38,7 +38,7 @@ class Posture:
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
-        arms, ahead = parameters.arms, robot.com(robot.ready)[0]
+        arms, ahead = parameters.arms, float(robot.com(robot.ready)[0])
         self._build = (ahead, arms.swing, arms.limit)
         self._ready = robot.ready
         self._legs = robot.leg_rows

@@ -12,8 +12,6 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from walking import dynamics_kernel
-from walking.bodies import bodies_of
 from walking.joints import HEAD, JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 from walking.leg_kinematics import FootPose, LegDimensions, foot_pose, leg_angles
 from walking.parameters import GRAVITY
@@ -59,8 +57,9 @@ class RobotModel:
         leg_rows: the same as compiled code has it.
         sole: rectangle of either sole.
         ready: joint angles of the ready posture (26,) [rad].
-        bodies: masses and joints, see `walking.dynamics_kernel` (27, 18).
-        gravity: of its file [m/s²].
+        motion: position, velocity and acceleration of the level base and the joints as Pinocchio
+            orders them, to be set for `forces`.
+        indices: of the joints in its position and in its velocity (26,).
         lower, upper: joint limits (26,) [rad].
         stiffness: of each servo (26,) [N m/rad].
         damping: of each servo with its joint (26,) [N m s/rad].
@@ -78,10 +77,10 @@ class RobotModel:
         self._data = model.createData()
         ids = [model.getJointId(name) for name in JOINT_NAMES]
         self._q_index = np.array([model.joints[i].idx_q for i in ids])
-        v_index = np.array([model.joints[i].idx_v for i in ids])
+        self._v_index = np.array([model.joints[i].idx_v for i in ids])
         self._q = pin.neutral(model)
-        self.bodies = bodies_of(model, JOINT_NAMES)
-        self.gravity = -float(model.gravity.linear[2])
+        self.motion = self._q, np.zeros(model.nv), np.zeros(model.nv)
+        self.indices = self._q_index, self._v_index
         self._camera = self._frame("camera")
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
@@ -96,7 +95,7 @@ class RobotModel:
         self.lower: Array = np.array(model.lowerPositionLimit)[self._q_index]
         self.upper: Array = np.array(model.upperPositionLimit)[self._q_index]
         self.stiffness = stiffness
-        self.damping: Array = servo_damping + np.array(model.damping)[v_index]
+        self.damping: Array = servo_damping + np.array(model.damping)[self._v_index]
         self._check_legs()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -129,9 +128,12 @@ class RobotModel:
         ordered = np.array([gains[name] for name in JOINT_NAMES])
         return cls(model, ordered[:, 0], ordered[:, 1])
 
-    def com(self, joint_position: Array) -> tuple[float, float, float]:
-        """Centre of mass in the base frame [m] for joint angles (26,) [rad]."""
-        return dynamics_kernel.com(self.bodies, joint_position)
+    def com(self, joint_position: Array) -> Array:
+        """Centre of mass in the base frame (3,) [m] for joint angles (26,) [rad]."""
+        q = self._q
+        q[self._q_index] = joint_position
+        com: Array = pin.centerOfMass(self._model, self._data, q, False)
+        return com
 
     def inverse_dynamics(
         self,
@@ -152,11 +154,25 @@ class RobotModel:
             torque of each joint, gravity included (26,) [N m]; force [N] and moment [N m] at the
             base, in its frame and about its origin (6,).
         """
-        torques, base = np.empty(position.size), (*base_acceleration, self.gravity)
-        force, moment, _ = dynamics_kernel.forces(
-            self.bodies, position, velocity, acceleration, base, torques
-        )
-        return torques, np.array([*force, *moment])
+        q, v, a = self.motion
+        q[self._q_index] = position
+        v[self._v_index] = velocity
+        a[self._v_index] = acceleration
+        a[0], a[1] = base_acceleration
+        forces = self.forces()
+        joints: Array = forces[self._v_index]
+        base: Array = forces[:6].copy()
+        return joints, base
+
+    def forces(self) -> Array:
+        """Generalised forces that `motion` takes, nothing touching the feet; the base's first."""
+        forces: Array = pin.rnea(self._model, self._data, *self.motion)
+        return forces
+
+    def moved_com(self) -> tuple[float, float, float]:
+        """Centre of mass in the base frame [m] for the joint angles of the last `forces`."""
+        x, y, z = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
+        return x, y, z
 
     def pendulum_height(self) -> float:
         """Height of the pendulum that the robot is for its base [m].

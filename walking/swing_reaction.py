@@ -60,7 +60,7 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
         height: of the base above the floor [m].
         lift: of the foot [m]; half of it counts.
     """
-    ahead = robot.com(robot.ready)[0]
+    ahead = float(robot.com(robot.ready)[0])
     leg = robot.legs[0]
 
     def posture(forward: float, up: float) -> np.ndarray:

@@ -42,6 +42,7 @@ class WholeBody:
         gait: Gait,
         pendulum: PendulumState,
     ) -> None:
+        self._robot = robot
         self._w2 = lipm.omega**2
         self._gait = gait
         self._pendulum = pendulum
@@ -51,7 +52,7 @@ class WholeBody:
         self.compensation = SwingCompensation(lipm, leg_reaction(robot, base, parameters.gait.lift))
         self.pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
         self.turn_rate = 0.0
-        x, y, _ = robot.com(robot.ready)
+        x, y, _ = robot.com(robot.ready).tolist()
         self.com: Point = x, y
 
     def follow(
@@ -88,7 +89,7 @@ class WholeBody:
         self.pelvis = pelvis
         self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
         w2, (left, right) = self._w2, gait.footholds
-        set_points, (x, y, _) = self._feedforward.offsets(
+        set_points = self._feedforward.offsets(
             position,
             (pelvis.x, pelvis.y, pelvis.yaw),
             gait.spots,
@@ -96,5 +97,6 @@ class WholeBody:
             (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),
             balance=((left.yaw, right.yaw), zmp_shift, body.gyro),
         )
+        x, y, _ = self._robot.moved_com()
         self.com = x, y
         return JointTargets(position=position, offset=set_points)

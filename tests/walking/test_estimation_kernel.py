@@ -62,7 +62,7 @@ def test_compiled_it_is_what_it_says(plainly, seed):
             )
             feet = tuple(tuple(rng.uniform(-0.1, 0.1, 4).tolist()) for _ in LEGS)
             plan = (*rng.uniform(-0.05, 0.05, 10).tolist(), rng.uniform())
-            com, states = tuple(rng.normal(0.0, 0.05, 3).tolist()), (tilt, odometry, error)
+            com, states = rng.normal(0.0, 0.05, 3), (tilt, odometry, error)
             stepping = bool(rng.integers(2))
             rest = (states, LEGS, BODY, GROWTH, FILTER, feet, plan, stepping, CONTROL_PERIOD)
             told = call(reading, com, *rest, found)

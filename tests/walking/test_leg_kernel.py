@@ -1,10 +1,12 @@
 """The compiled kinematics of a tick against the same in plain Python and in numpy."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from walking import leg_kernel
+from walking.parameters import CONTROL_PERIOD
 
 LEGS = ((0.0, 0.037, -0.02, 0.1, 0.1, 0.03), (0.0, -0.037, -0.02, 0.1, 0.1, 0.03))
 LAW = (0.7, 0.019, 0.3, 0.85, 0.22)
@@ -34,6 +36,59 @@ def test_compiled_the_posture_is_what_it_says(plainly, seed):
         pelvis = call(position, own, feet, which, com, head, tilt, LAW, build, LEGS)
         outcomes.append([*position, *own.ravel(), *pelvis])
     np.testing.assert_allclose(*outcomes, rtol=0.0, atol=1e-12)
+
+
+def test_rates_are_quotients_of_differences():
+    rng = np.random.default_rng(1)
+    angles = rng.uniform(-0.1, 0.1, (3, 26))
+    before, velocity = angles[0].copy(), np.zeros(26)
+    motion = np.zeros(33), np.zeros(32), np.zeros(32)
+    where = rng.permutation(26) + 7, rng.permutation(26) + 6
+    for now in angles[1:]:
+        law = (0.5, 1000.0, CONTROL_PERIOD)
+        leg_kernel.rates(now, before, velocity, motion, where, (1.0, 2.0, 0.0), (0.3, -0.2), law)
+    np.testing.assert_allclose(velocity, (angles[2] - angles[1]) / CONTROL_PERIOD)
+    np.testing.assert_array_equal(before, angles[2])
+    q, v, a = motion
+    np.testing.assert_array_equal(q[where[0]], angles[2])
+    np.testing.assert_array_equal(v[where[1]], velocity)
+    second = 0.5 * np.diff(angles, n=2, axis=0)[0] / CONTROL_PERIOD**2
+    np.testing.assert_allclose(a[where[1]], second.clip(-1000.0, 1000.0))
+    assert a[:6].tolist() == [0.3, -0.2, 0.0, 0.0, 0.0, 0.0]
+    assert not q[:7].any()
+    assert not v[:6].any()
+
+
+@settings(max_examples=30)
+@given(SEEDS, st.sampled_from([0.0, 0.3, 1.0]))
+def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
+    rng, _ = draw(seed)
+    where = rng.permutation(26) + 6
+    forces = np.array([1.0, 2.0, 54.0, 0.3, -0.2, 0.1, *rng.normal(0.0, 1.0, 26)])
+    position, velocity = rng.uniform(-0.5, 0.5, 26), rng.normal(0.0, 1.0, 26)
+    servos = (rng.uniform(0.01, 0.1, 26), rng.uniform(0.0, 0.1, 26))
+    soles = ((0.01, 0.04), (0.02, -0.04))
+    pelvis = tuple(rng.uniform(-0.1, 0.1, 3).tolist())
+    rest = (pelvis, soles, load, 0.22, LEGS)
+    balance, ankles = ((0.1, -0.2), (0.0, 0.0), (0.0, 0.0, 0.0)), (54.0, 20.0, 25.0, 0.1)
+    asked = (forces, where, position, velocity, servos, *rest, balance, ankles)
+    found = leg_kernel.offsets(*asked)
+    plain = plainly(leg_kernel, "offsets", *asked)
+    np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
+    unloaded = slice(0, 6) if load == 1.0 else slice(12, 26)
+    expected = forces[where] * servos[0] + velocity * servos[1]
+    np.testing.assert_allclose(found[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
+    shares = [abs(found - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
+    assert [share > 1e-6 for share in shares] == [load < 1.0, load > 0.0]
+
+
+@settings(max_examples=20)
+@given(SEEDS)
+def test_compiled_an_ankle_is_what_it_says(plainly, seed):
+    a, b, c, d, *gyro, load = np.random.default_rng(seed).uniform(-0.2, 0.2, 8).tolist()
+    asked = ((a, b), (c, d), tuple(gyro)), seed % 2, abs(load), (54.0, 20.0, 25.0, 0.1)
+    plain = plainly(leg_kernel, "ankle", *asked)
+    assert leg_kernel.ankle(*asked) == pytest.approx(plain, abs=1e-15)
 
 
 @given(st.floats(-1.0, 1.0))

@@ -3,7 +3,6 @@
 import pytest
 
 from walking import (
-    dynamics_kernel,
     estimation_kernel,
     foothold_kernel,
     head_kernel,
@@ -26,7 +25,7 @@ from walking.rehearsal import rehearse
         (swing_kernel, "react"),
         (estimation_kernel, "estimate"),
         (leg_kernel, "pose"),
-        (dynamics_kernel, "offsets"),
+        (leg_kernel, "offsets"),
         (head_kernel, "advance"),
     ],
 )

@@ -130,3 +130,10 @@ def test_servos_saved_by_mujoco_are_understood(tmp_path, robot):
 def test_the_pendulum_is_lower_than_the_mass_centre_because_the_feet_stay(robot):
     trunk = robot.com(robot.ready)[2] + 5.0 / 6.0 * robot.legs[0].length
     assert 0.8 * trunk < robot.pendulum_height() < trunk
+
+
+def test_the_centre_of_mass_is_that_of_the_motion(robot):
+    q = robot.ready + 0.1 * np.sin(np.arange(26.0))
+    robot.inverse_dynamics(q, 0.5 * q, q, (0.3, 0.1))
+    moved = robot.moved_com()
+    assert moved == pytest.approx(robot.com(q), abs=1e-12)
