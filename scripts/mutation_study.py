@@ -55,7 +55,6 @@ MODULES = (
     "walking/foot_placement",
     "walking/estimator",
     "walking/estimation_kernel",
-    "walking/dynamics_kernel",
 )
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,
