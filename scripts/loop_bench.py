@@ -6,6 +6,9 @@ on any machine and while other work comes and goes. All times are processor time
 threads; the time on the clock is no longer unless other work wants the same cores.
 """
 
+import hsr8  # noqa: F401  before MuJoCo: it chooses the OpenGL to draw with
+
+# isort: split
 import tempfile
 from pathlib import Path
 
