@@ -3,8 +3,9 @@
 import numpy as np
 
 from walking import estimation_kernel
-from walking.estimation_kernel import FOUND, Foot, Plan
+from walking.estimation_kernel import FOUND, Plan
 from walking.estimator import steady_gains
+from walking.leg_kernel import Foot
 from walking.measurement import BodyMeasurement, body_of
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, EstimatorParameters

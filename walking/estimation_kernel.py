@@ -17,20 +17,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from walking.leg_kernel import Angles, Foot, Leg, Point, Pose, Vector
+
 Array = NDArray[np.float64]
-Point = tuple[float, float]
-Vector = tuple[float, float, float]
-Leg = tuple[float, float, float, float, float, float]
-"""Numbers of `LegDimensions` in their order [m]."""
-
-Pose = tuple[float, float, float, float, float, float]
-"""Of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
-
-Angles = tuple[float, float, float, float, float, float]
-"""Hip yaw, roll, pitch, knee, ankle pitch, roll [rad]."""
-
-Foot = tuple[float, float, float, float]
-"""Reference of a foot in the plan frame: x, y [m], yaw [rad], height [m]."""
 
 Reading = tuple[Array, Array, Array, Array]
 """Joint angles (26,) [rad]; load on front left, front right, back left and back right of either

@@ -14,6 +14,8 @@ Indices = NDArray[np.int64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
 Leg = tuple[float, float, float, float, float, float]
+"""Numbers of `LegDimensions` in their order [m]."""
+
 Pose = tuple[float, float, float, float, float, float]
 """Of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
 
