@@ -80,7 +80,7 @@ class RerunLog:
             max(layout.field_size), walking=len(layout.waypoints) == 0, pictures=rates.pictures
         )
         try:
-            self._stream.set_sinks(*sinks, default_blueprint=shown)
+            self._stream.begin(sinks, shown)
         except RuntimeError as error:
             raise failure(self._folder, f"the log: {error}") from error
         self._stream.send_recording_name(name)

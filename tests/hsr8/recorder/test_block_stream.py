@@ -1,7 +1,9 @@
+import pytest
 import rerun as rr
 import rerun_bindings
 
 from hsr8.recorder.block_stream import BlockStream
+from hsr8.recorder.blueprint import blueprint
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.log_reader import Log
 
@@ -29,3 +31,14 @@ def test_columns_are_sent_when_asked_for_and_once(tmp_path, monkeypatch):
     stream.disconnect()
     table = Log([tmp_path / "log.rrd"]).table("/plots/x")
     assert table.array()[:, 0].tolist() == [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]
+
+
+def test_the_arrangement_is_in_the_file_as_if_rerun_had_set_the_sinks(tmp_path):
+    ours, theirs = BlockStream("test"), BlockStream("test")
+    ours.begin([rr.FileSink(str(tmp_path / "ours.rrd"))], blueprint(5.0))
+    theirs.set_sinks(rr.FileSink(str(tmp_path / "theirs.rrd")), default_blueprint=blueprint(5.0))
+    for stream in (ours, theirs):
+        stream.disconnect()
+    sizes = [(tmp_path / f"{name}.rrd").stat().st_size for name in ("ours", "theirs")]
+    assert sizes[0] == pytest.approx(sizes[1], rel=0.01)
+    assert sizes[0] > 100_000

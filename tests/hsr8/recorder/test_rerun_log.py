@@ -174,15 +174,13 @@ def test_without_an_index_the_log_holds_the_same(tmp_path, model, layout, walk):
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted on Linux")
-def test_logs_one_after_the_other_leave_no_threads_but_those_of_their_blueprints(
-    folder, model, layout, walk
-):
+def test_logs_one_after_the_other_leave_no_threads(folder, model, layout, walk):
     counts = []
     for _ in range(4):
         _logged(folder, model, layout, walk(0.1))
         gc.collect()
         counts.append(len(list(Path("/proc/self/task").iterdir())))
-    assert counts[-1] - counts[1] <= 2 * 2  # Rerun 0.41 never ends the two of a blueprint
+    assert counts[-1] == counts[1]
 
 
 def test_nothing_believed_nothing_seen_is_logged_too(log, fake):
