@@ -1,6 +1,8 @@
 """Give the program bad input, many times: every answer is a good one or an error that says where.
 
-python scripts/fuzz.py --cases 50000 --run runs/quick
+    python scripts/fuzz.py --cases 50000
+
+A run and a sweep to damage are made first, short ones with a log and a checkpoint.
 """
 
 import argparse
@@ -16,12 +18,16 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.cli.main import entry
-from hsr8.errors import ScenarioError, SimulationDiverged
+from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
+from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.log_reader import Log
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load, loads
 from hsr8.scenario.reference import json_schema, json_schema_definition
+from vision.colour import COLOUR_CLASSES, ColourTable
+from vision.colour_file import load_table, save_table
+from vision.errors import VisionError
 
 TICKS = 30  # of a run that is begun
 SLOW = 10.0  # a case that takes longer hangs [s]
@@ -35,8 +41,20 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("check replay", "RUN"),
     ("run", "RUN", "--resume", "--quiet", "--no-log"),
     ("plot", "RUN", "--out", "PNG"),
+    ("render", "RUN", "--out", "PNG", "--size", "64x48", "--camera", "head", "--quiet"),
+    ("replay", "RUN"),
+    ("bug-report", "RUN", "--out", "ZIP"),
+    ("check", "SCENARIO"),
 )
-RARE = {"check replay": 0.15, "run": 0.15, "plot": 0.1}  # these take their time
+ON_SWEEPS: tuple[tuple[str, ...], ...] = (
+    ("compare", "SWEEP", "OTHER"),
+    ("compare", "OTHER", "SWEEP", "--json"),
+    ("sweep", "quick", "--seeds", "0:2", "--duration", "0.1", "--quiet", "--out", "SWEEP"),
+)
+RARE = {"check replay": 0.15, "run": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
+RARE |= {"bug-report": 0.3, "check": 0.3, "sweep": 0.02}
+LIGHT = ("--body", "kinematic", "--camera", "analytic")
+KINDS = ("text", "table", "setting", "start", "folder", "log", "sweep", "colours")
 FILES = (
     run_folder.SCENARIO,
     run_folder.MANIFEST,
@@ -195,31 +213,37 @@ def written(given: Any) -> str:
 
 
 class Folders:
-    """Damages copies of a run folder and asks the program about them.
+    """Damages copies of a run, a sweep and a colour table, and asks the program about them.
 
     Args:
         run: a whole run folder with a checkpoint, made for the purpose.
         scratch: where the copies go.
+        sweep: folder of a sweep, for the cases that need one.
     """
 
-    def __init__(self, run: Path, scratch: Path) -> None:
-        self._run = run
+    def __init__(self, run: Path, scratch: Path, sweep: Path | None = None) -> None:
         self._scratch = scratch
-        there = [name for name in FILES if (run / name).exists()]
-        self._contents = {name: (run / name).read_bytes() for name in there}
+        self._run, self._contents = run, contents_of(run, FILES)
+        self._log = contents_of(run, (run_folder.LOG,))
+        self._sweep = sweep
+        if sweep is not None:
+            names = (sweep_folder.DEFINITION, sweep_folder.LEDGER, run_folder.SCENARIO)
+            self._of_sweep = contents_of(sweep, names)
+        save_table(ColourTable(COLOUR_CLASSES), scratch / "colours.npz")
+        self._colours = contents_of(scratch, ("colours.npz",))
 
-    def damaged(self, rng: random.Random) -> Path:
+    def damaged(self, rng: random.Random, whole: dict[str, bytes]) -> Path:
         """A new copy in which one or two files are not what they were."""
-        path = self._scratch / "run"
+        path = self._scratch / "copy"
         shutil.rmtree(path, ignore_errors=True)
         path.mkdir()
-        contents = dict(self._contents)
-        for name in rng.sample(sorted(contents), rng.choice((1, 1, 2))):
+        contents = dict(whole)
+        for name in rng.sample(sorted(contents), min(len(contents), rng.choice((1, 1, 2)))):
             kind = rng.randrange(5)
-            if kind == 0:
+            if kind == 0 and len(whole) > 1:
                 del contents[name]
-            elif kind == 1:
-                contents[name] = self._contents[rng.choice(sorted(self._contents))]
+            elif kind == 1 and len(whole) > 1:
+                contents[name] = whole[rng.choice(sorted(whole))]
             elif kind == 2 and name.endswith((".json", ".jsonl")):
                 contents[name] = values_changed(rng, contents[name])
             else:
@@ -228,19 +252,41 @@ class Folders:
             (path / name).write_bytes(content)
         return path
 
-    def case(self, rng: random.Random) -> None:
-        """One command on a damaged folder.
+    def case(self, rng: random.Random, commands: tuple[tuple[str, ...], ...] = ()) -> None:
+        """One command on a damaged run or sweep.
 
         Raises:
             AssertionError: it answered as it must not.
         """
-        path = self.damaged(rng)
-        command = rng.choice(COMMANDS)
+        commands = commands or COMMANDS
+        of_run = commands is not ON_SWEEPS
+        path = self.damaged(rng, self._contents if of_run else self._of_sweep)
+        command = rng.choice(commands)
         while rng.random() > RARE.get(command[0], 1.0):
-            command = rng.choice(COMMANDS)
-        places = {"RUN": str(path), "OTHER": str(self._run), "PNG": str(self._scratch / "p.png")}
-        words = [places.get(word, word) for word in command]
+            command = rng.choice(commands)
+        out = self._scratch / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        out.mkdir()
+        places = {"RUN": path, "SWEEP": path, "OTHER": self._run if of_run else self._sweep}
+        places |= {"PNG": out / "p.png", "ZIP": out / "p.zip", "SCENARIO": path / "scenario.toml"}
+        words = [str(places.get(word, word)) for word in command]
         ask([*words[0].split(), *words[1:]])
+
+    def log_case(self, rng: random.Random) -> None:
+        """A damaged log, read."""
+        log = Log([self.damaged(rng, self._log) / run_folder.LOG])
+        for entity, components in log.entities().items():
+            if rng.random() < 0.1:
+                log.table(entity, rng.choice(components))
+
+    def colours_case(self, rng: random.Random) -> None:
+        """A damaged colour table, read."""
+        load_table(self.damaged(rng, self._colours) / "colours.npz")
+
+
+def contents_of(folder: Path, names: tuple[str, ...]) -> dict[str, bytes]:
+    """Bytes of the files that there are."""
+    return {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
 
 
 def values_changed(rng: random.Random, raw: bytes) -> bytes:
@@ -283,42 +329,57 @@ def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any
             setting_case(rng, schema)
         else:
             assert folders is not None
-            folders.case(rng)
-    except (ScenarioError, SimulationDiverged) as error:
+            if kind == "log":
+                folders.log_case(rng)
+            elif kind == "colours":
+                folders.colours_case(rng)
+            else:
+                folders.case(rng, ON_SWEEPS if kind == "sweep" else COMMANDS)
+    except (ScenarioError, SimulationDiverged, UsageError, VisionError) as error:
         return "refused" if str(error).strip() else "BUG: an error without a word"
     return "valid"
+
+
+def made(scratch: Path) -> tuple[Path, Path]:
+    """A run as a kill leaves it, with log and checkpoint, and a sweep of two runs."""
+    short = ("quick", *LIGHT, "--quiet", "--duration")
+    ask(["run", *short, "1.2", "--checkpoint", "1", "--out", str(scratch)])
+    (run,) = (scratch / "quick").iterdir()
+    manifest = run / run_folder.MANIFEST
+    manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))
+    sweep = scratch / "sweep"
+    ask(["sweep", *short, "0.1", "--seeds", "0:2", "--out", str(sweep)])
+    return run, sweep
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cases", type=int, default=2000)
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
-    parser.add_argument(
-        "--kinds", nargs="+", default=["text", "table", "setting", "start", "folder"]
-    )
-    parser.add_argument("--run", type=Path, help="a run folder with a checkpoint")
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
     arguments = parser.parse_args()
-    schema, counts = keys(), Counter[str]()
-    kinds = [kind for kind in arguments.kinds if kind != "folder" or arguments.run]
+    schema, counts, slowest = keys(), Counter[str](), (0.0, "")
     with tempfile.TemporaryDirectory() as scratch:
-        run = open_run(arguments.run).path if arguments.run else None
-        folders = None if run is None else Folders(run, Path(scratch))
-        slowest = 0.0
+        run, sweep = made(Path(scratch))
+        folders = Folders(run, Path(scratch), sweep)
         for number in range(arguments.first, arguments.first + arguments.cases):
-            kind = kinds[number % len(kinds)]
+            kind = arguments.kinds[number % len(arguments.kinds)]
             began = clock.perf_counter()
             try:
                 found = one(random.Random(number), kind, folders, schema)
-            except Exception as error:  # a bug found
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # a bug found; Rust's panics are no exceptions
                 found = "BUG"
                 text = f"{type(error).__name__}: {error}".replace("\n", " | ")
                 print(f"case {number} ({kind}): {text[:700]}", flush=True)
             took = clock.perf_counter() - began
-            slowest = max(slowest, took)
+            slowest = max(slowest, (took, kind))
             if took > SLOW:
                 print(f"case {number} ({kind}): took {took:.1f} s", flush=True)
             counts[f"{kind}, {found}"] += 1
-    print(f"{arguments.cases} cases, slowest {slowest:.1f} s: {dict(sorted(counts.items()))}")
+    took, kind = slowest
+    print(f"{arguments.cases} cases, slowest {took:.1f} s ({kind}): {dict(sorted(counts.items()))}")
 
 
 if __name__ == "__main__":

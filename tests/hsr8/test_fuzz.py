@@ -1,6 +1,7 @@
 """Bad input of every kind: a good answer, or an error that says where; never anything else."""
 
 import importlib.util
+import json
 import os
 import random
 import shutil
@@ -10,14 +11,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rerun as rr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, UsageError
+from hsr8.evaluation.sweep.definition import Definition
+from hsr8.evaluation.sweep.folder import LEDGER, SweepFolder
 from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.recorder.channel import TIMELINE
 from hsr8.render import viewer
-from hsr8.scenario.loader import load, loads
+from hsr8.scenario.loader import dump, load, loads
 from vision.colour_file import LARGEST, load_table
 from vision.errors import VisionError
 
@@ -61,6 +66,31 @@ def test_any_run_folder_is_read_or_refused(run, tmp_path, monkeypatch):
     monkeypatch.setattr(fuzz, "COMMANDS", tuple(commands))
     folders = fuzz.Folders(run, tmp_path)
     assert {fuzz.one(random.Random(k), "folder", folders, SCHEMA) for k in range(50)} == {"valid"}
+
+
+@pytest.mark.parametrize("kind", ["colours", "log"])
+def test_any_colour_table_or_log_is_read_or_refused(run, tmp_path, kind):
+    stream = rr.RecordingStream("hsr8", recording_id="fuzz")
+    stream.save(tmp_path / "log.rrd")
+    for k in range(20):
+        stream.set_time(TIMELINE, duration=0.1 * k)
+        stream.log("/plots/x", rr.Scalars([float(k)]))
+    stream.disconnect()
+    folders = fuzz.Folders(tmp_path, tmp_path)
+    found = {fuzz.one(random.Random(k), kind, folders, SCHEMA) for k in range(100)}
+    assert found <= {"valid", "refused"}
+    assert "refused" in found
+
+
+def test_any_sweep_is_read_or_refused(run, tmp_path, monkeypatch):
+    sweep = tmp_path / "sweep"
+    row = {"seed": 0, "outcome": "passed", "time_to_goal_s": 3.5}
+    folder = SweepFolder.open(sweep, Definition.now("quick", (), dump(load("quick"))))
+    (sweep / LEDGER).write_text(f"{json.dumps(row)}\n{json.dumps(row | {'seed': 1})}\n")
+    assert len(folder.rows()) == 2
+    monkeypatch.setattr(fuzz, "ON_SWEEPS", fuzz.ON_SWEEPS[:2])
+    folders = fuzz.Folders(run, tmp_path, sweep)
+    assert {fuzz.one(random.Random(k), "sweep", folders, SCHEMA) for k in range(60)} == {"valid"}
 
 
 @pytest.mark.parametrize("name", fuzz.FILES)
