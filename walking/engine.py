@@ -225,7 +225,7 @@ class WalkingEngine:
 
     def _sense(self, sensors: BodySensors) -> BodyMeasurement:
         gait, whole_body, pendulum = self._gait, self._whole_body, self._pendulum
-        (left, right), pelvis = gait.feet, whole_body.pelvis
+        pelvis = whole_body.pelvis
         plan = (
             pelvis.x,
             pelvis.y,
@@ -237,7 +237,7 @@ class WalkingEngine:
             whole_body.turn_rate,
             gait.right_weight,
         )
-        body = self._estimation.update(sensors, (left.row, right.row), plan, stepping=gait.stepping)
+        body = self._estimation.update(sensors, gait.feet, plan, stepping=gait.stepping)
         self._sensors = sensors
         self._ticks += 1
         return body

@@ -1,17 +1,18 @@
 """What the body really does: attitude, feet, odometry, and the error against the plan."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from walking import estimation_kernel
 from walking.estimation_kernel import FOUND, Plan
 from walking.estimator import steady_gains
-from walking.leg_kernel import Foot
 from walking.measurement import BodyMeasurement, body_of
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, EstimatorParameters
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 
+Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 LIGHT_LOAD = 0.074  # noise of a foot's pads stays below this share of the weight [1]
@@ -87,13 +88,13 @@ class Estimation:
         return body
 
     def update(
-        self, sensors: BodySensors, feet: tuple[Foot, Foot], plan: Plan, *, stepping: bool
+        self, sensors: BodySensors, feet: Array, plan: Plan, *, stepping: bool
     ) -> BodyMeasurement:
         """One tick of a walk.
 
         Args:
             sensors: read at its start.
-            feet: references of the left and of the right foot.
+            feet: their references, see `walking.swing_foot_kernel` (2, 10).
             plan: of the tick before, see `estimation_kernel.Plan`.
             stepping: whether the feet leave the floor.
         """

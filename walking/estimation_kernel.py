@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from walking.leg_kernel import Angles, Foot, Leg, Point, Pose, Vector
+from walking.leg_kernel import Angles, Leg, Point, Pose, Vector
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ def estimate(
     body: Body,
     growth: Growth,
     gains: Vector,
-    feet: tuple[Foot, Foot],
+    feet: Array,
     plan: Plan,
     stepping: bool,
     period: float,
@@ -66,7 +66,7 @@ def estimate(
         body: see `observe`.
         growth: of the odometry's error.
         gains: of the error's position [1] and velocity [1/s]; ω [1/s].
-        feet: references of the left and of the right foot.
+        feet: their references, see `walking.swing_foot_kernel` (2, 10).
         plan: of the tick before.
         stepping: whether the feet leave the floor.
         period: of control [s].
@@ -206,7 +206,7 @@ def load_of(pads: Array, sole: Vector) -> Vector:
 
 
 @njit(cache=True)
-def pressure(found: Array, feet: tuple[Foot, Foot]) -> Vector:
+def pressure(found: Array, feet: Array) -> Vector:
     """Centre of pressure under feet that stand where `feet` are, x, y [m], and the load [N].
 
     In the air it is nowhere: at 0, 0.
@@ -332,14 +332,14 @@ def filter_error(
 
 @njit(cache=True)
 def com_error(
-    com: Point, foot: Vector, reference: Foot, planned: Point
+    com: Point, foot: Vector, reference: Array, planned: Point
 ) -> tuple[float, float, float, float]:
     """Where the mass centre is by a foot that is taken to stand where it is planned.
 
     Args:
         com: measured mass centre in the level frame [m].
         foot: measured x, y [m] and yaw [rad] of the foot in the same frame.
-        reference: of the foot.
+        reference: of the foot (10,).
         planned: mass centre [m].
 
     Returns:

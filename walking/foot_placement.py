@@ -119,13 +119,13 @@ class FootPlacement:
             transition.skip(wish, moving=self.moving)
             landing = gait.nominal(wish) if gait.adjustable else gait.landing
             return gait.plan(landing, wish, moving=self.moving), landing
-        catching, clock = self._catching, gait.clock()
+        catching, clock = self._catching, gait.clock
         ramps = transition.admit(
             catching.planned, region, wish, moving=self.moving, caught=catching.caught
         )
         share = transition.share
         if share < 1.0:
-            if gait.clock() != clock or self._differs(wish):
+            if gait.clock != clock or self._differs(wish):
                 self.bound.append(Limit.ZMP_REGION)
             a, b, c = (g + share * (v - g) for g, v in zip(self.given, velocity, strict=True))
             self.given = (a, b, c)

@@ -2,14 +2,15 @@
 
 import numpy as np
 
-from walking import foothold_kernel
+from walking import foothold_kernel, swing_foot_kernel
 from walking.footstep_clock import Clock, SwingWindow, WeightShift
 from walking.footsteps import STILL, FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.ramps import Ramps, ZmpRamp, table_of
 from walking.state import Footstep, Phase, foothold
 from walking.stride import Strides, Timing
-from walking.swing import FootReference, least_ticks, lift_profile, moved
+from walking.swing import least_ticks, moved, resting, stand
+from walking.swing_foot_kernel import HEIGHT
 from walking.swing_reaction import Swings
 from walking.zmp_reference import ZmpReference
 
@@ -34,12 +35,17 @@ class Gait:
         support: index of the support foot of this footstep.
         footholds: where the feet stand, or last stood.
         spots: where the ZMP is meant to be under either of these if it carries alone [m].
-        feet: reference of both feet.
+        feet: reference of both feet, see `walking.swing_foot_kernel` (2, 10).
         landing: where the swing foot is about to land.
         completed: number of completed footsteps.
         held: whether the swing foot has met the floor before its time.
         hurried: whether this footstep is shorter than its timing to catch a fall.
+        clock: all times; see `set_clock`.
         timing: of the footsteps to come.
+        double: whether both feet are meant to carry.
+        swing_phase: progress of the swing, 0 before and 1 after it [1].
+        ticks_left: control ticks until the end of single support [1].
+        adjustable: whether the landing may still move.
     """
 
     def __init__(
@@ -67,16 +73,17 @@ class Gait:
         self.footholds = list(stance)
         under = self._reference.under
         self.spots = (under(stance[0]), under(stance[1]))
-        self.feet = (FootReference(stance[0]), FootReference(stance[1]))
+        self.feet = resting(stance)
         self.landing = stance[1]
         self.completed = 0
         self.held = self.hurried = False
-        self.timing = planner.cadence(STILL)
+        timing = planner.cadence(STILL)
+        self._usual = self._window.single_support(timing.single)
         self._tick = self._reference.stop
-        self._shift = WeightShift(0, self._tick, self._reference.between(*stance), 0.5)
+        shift = WeightShift(0, self._tick, self._reference.between(*stance), 0.5)
+        self.set_clock(Clock(timing, shift, self._usual))
         self._shift_fixed = True
-        self._single = self._window.single_support(self.timing.single)
-        self._lift = self.timing.lift
+        self._lift = timing.lift
         self._future = NO_STEPS
         still = planner.still
         self._nominal = still, stance[0], planner.landing(stance[0], still)
@@ -85,11 +92,6 @@ class Gait:
     def swing(self) -> int:
         """Index of the foot that swings in this footstep."""
         return 1 - self.support
-
-    @property
-    def double(self) -> bool:
-        """Whether both feet are meant to carry."""
-        return not self.stepping or self._tick < self._shift.end
 
     @property
     def flying(self) -> bool:
@@ -120,24 +122,9 @@ class Gait:
         return self._shift.zmp_at(self._tick, goal)
 
     @property
-    def swing_phase(self) -> float:
-        """Progress of the swing, 0 before and 1 after it [1]."""
-        return self._single.phase(self._tick - self._shift.end) if self.stepping else 1.0
-
-    @property
-    def ticks_left(self) -> int:
-        """Control ticks until the end of single support."""
-        return self._shift.end + self._single.ticks - self._tick
-
-    @property
     def lift(self) -> float:
         """Height at mid-swing of the swing under way [m]; it follows `timing` in the air."""
         return self._lift
-
-    @property
-    def adjustable(self) -> bool:
-        """Whether the landing may still move."""
-        return self.stepping and not self.held and self.swing_phase < self._freeze
 
     @property
     def support_feet(self) -> tuple[Footstep, Footstep]:
@@ -175,19 +162,20 @@ class Gait:
         Returns:
             whether this footstep has the timing, too.
         """
-        self.timing = timing
-        if not self.stepping:
-            return True
-        if self.hurried:
-            return False
-        if self.double:
-            if not self._shift_fixed and timing.double != self._shift.end:
-                self._retime_shift(max(timing.double, self._tick + 1))
-            self._single = self._window.single_support(timing.single)
-            return self._shift.end == timing.double
-        if timing.single != self._single.ticks and self.adjustable:
-            self._single = self._window.retimed(self._single, self._elapsed, timing.single)
-        return self._single.ticks == timing.single
+        _, shift, single = self.clock
+        free = self.stepping and not self.hurried
+        if free and self.double:
+            if not self._shift_fixed and timing.double != shift.end:
+                shift = self._shift_until(max(timing.double, self._tick + 1))
+            if timing.single != single.ticks:
+                single = self._window.single_support(timing.single)
+        elif free and timing.single != single.ticks and self.adjustable:
+            single = self._window.retimed(single, self._elapsed, timing.single)
+        if (timing, shift, single) != self.clock:
+            self.set_clock(Clock(timing, shift, single))
+        if not free:
+            return not self.stepping
+        return shift.end == timing.double if self.double else single.ticks == timing.single
 
     def hasten(self, ticks: int, landing: Footstep) -> bool:
         """End single support `ticks` from now, or as soon after as the foot can be down.
@@ -210,8 +198,8 @@ class Gait:
             single = max(least, ticks - double)
             if double + single >= before:
                 return False
-            self._retime_shift(self._tick + double)
-            self._single = self._window.single_support(single)
+            shift = self._shift_until(self._tick + double)
+            self.set_clock(Clock(self.timing, shift, self._window.single_support(single)))
         else:
             least = max(
                 least,
@@ -221,25 +209,30 @@ class Gait:
             single = elapsed + max(least, ticks)
             if single >= self._single.ticks:
                 return False
-            self._single = self._window.retimed(self._single, elapsed, single)
+            retimed = self._window.retimed(self._single, elapsed, single)
+            self.set_clock(Clock(self.timing, self._shift, retimed))
         self.hurried = True
         return self.ticks_left < before
 
-    def clock(self) -> Clock:
-        """The times of now, for `set_clock`."""
-        return Clock(self.timing, self._shift, self._single)
-
     def set_clock(self, clock: Clock) -> None:
-        """Take back a change of timing made in this tick."""
+        """Have these times from now on, whatever there were."""
+        if clock.timing.single != self._usual.ticks:
+            self._usual = self._window.single_support(clock.timing.single)
+        self.clock = clock
         self.timing, self._shift, self._single = clock
+        self._look_at_clock()
 
-    @property
-    def _elapsed(self) -> int:
-        """Control ticks since the begin of single support, negative before it."""
-        return self._tick - self._shift.end
+    def _look_at_clock(self) -> None:
+        """What the times say of now: after every change of them, of the tick, of `held`."""
+        self._elapsed = elapsed = self._tick - self._shift.end
+        self.double = not self.stepping or elapsed < 0
+        self.ticks_left = self._single.ticks - elapsed
+        self.swing_phase = phase = self._single.phase(elapsed) if self.stepping else 1.0
+        self.adjustable = self.stepping and not self.held and phase < self._freeze
 
-    def _retime_shift(self, end: int) -> None:
-        self._shift = WeightShift(self._tick, end, self.zmp, self.right_weight)
+    def _shift_until(self, end: int) -> WeightShift:
+        """The weight shift under way made to end in another tick."""
+        return WeightShift(self._tick, end, self.zmp, self.right_weight)
 
     def aim(self, wanted: Footstep) -> None:
         """Move the landing towards `wanted`, in the air no faster than allowed."""
@@ -282,7 +275,7 @@ class Gait:
             # Retimed in the air: as if it had been so quick from the start.
             ticks = round(ticks / (1.0 - single.origin))
             begin = -round(self.swing_phase * ticks)
-        usual = self._window.single_support(timing.single)
+        usual = self._usual
         later = self.ticks_left + timing.double + usual.first
         table = foothold_kernel.swings(
             self.footholds[self.support].row,
@@ -305,48 +298,48 @@ class Gait:
 
     def touch_down(self) -> None:
         """The swing foot has met the floor early: leave it where it is."""
-        foot = self.feet[self.swing]
         self.held = True
-        self.landing = Footstep(
-            self.swing == 0, foot.x.position, foot.y.position, foot.yaw.position
-        )
+        self.landing = Footstep(self.swing == 0, *self.feet[self.swing, :HEIGHT].tolist())
+        self._look_at_clock()
 
     def advance(self, *, moving: bool) -> None:
         """Move the feet one tick, and go over to the next footstep when this one is done."""
-        for foot in self.feet:
-            foot.height *= self._contact_decay
         self._tick += 1
-        if not self.stepping:
-            return
-        self._move_swing()
-        if self.ticks_left == 0:
+        self._look_at_clock()
+        self._move_feet()
+        if self.stepping and self.ticks_left == 0:
             self._land(moving=moving)
 
-    def _move_swing(self) -> None:
-        elapsed = self._elapsed
-        if self.held or elapsed <= self._single.first:
-            return
-        foot = self.feet[self.swing]
-        left = self._single.last - elapsed
-        if left >= 0:
-            foot.advance(self.landing, left + 1)
+    def _move_feet(self) -> None:
+        swing, single, landing = -1, self._single, self.landing
+        if self.stepping and not self.held and single.first < self._elapsed <= single.last:
+            swing = self.swing
             change = self.timing.lift - self._lift
             self._lift += min(self._lift_change, max(-self._lift_change, change))
-            foot.height = self._lift * lift_profile(self.swing_phase)
+        swing_foot_kernel.advance(
+            self.feet,
+            self._contact_decay,
+            swing,
+            (landing.x, landing.y, landing.yaw),
+            single.last - self._elapsed + 1,
+            (self._lift, self.swing_phase),
+            CONTROL_PERIOD,
+        )
 
     def _land(self, *, moving: bool) -> None:
         support, swing = self.support, self.swing
         self.footholds[swing] = self.landing
         under = self._reference.under(self.landing)
         self.spots = (self.spots[0], under) if swing else (under, self.spots[1])
-        self.feet[swing].stand(self.landing)
+        stand(self.feet[swing], self.landing)
         self.completed += 1
         here = self.spots[support]
         following = foothold(self._future[1].tolist()) if len(self._future) > 1 else None
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
             self._tick = 0
-            self._shift = WeightShift(0, self._reference.stop, here, float(support))
+            shift = WeightShift(0, self._reference.stop, here, float(support))
+            self.set_clock(Clock(self.timing, shift, self._single))
             return
         self._begin(swing, self.timing.double, here, float(support))
         if following is not None:
@@ -357,8 +350,8 @@ class Gait:
         self.support = support
         self.held = self.hurried = False
         self._tick = 0
-        self._shift = WeightShift(0, double, zmp, right_weight)
         self._shift_fixed = False
-        self._single = self._window.single_support(self.timing.single)
+        shift = WeightShift(0, double, zmp, right_weight)
+        self.set_clock(Clock(self.timing, shift, self._usual))
         self._lift = self.timing.lift
         self.landing = self.nominal(self._planner.still)

@@ -22,9 +22,6 @@ Pose = tuple[float, float, float, float, float, float]
 Angles = tuple[float, float, float, float, float, float]
 """Hip yaw, roll, pitch, knee, ankle pitch, roll [rad]."""
 
-Foot = tuple[float, float, float, float]
-"""Reference of a foot in the plan frame: x, y [m], yaw [rad], height [m]."""
-
 Balance = tuple[Point, Point, Vector]
 """Directions of the left and of the right foot [rad]; by how much the ankles are to move the ZMP,
 in the plan frame [m]; angular velocity of the trunk [rad/s]."""
@@ -115,7 +112,7 @@ def support_torques(leg: Leg, angles: Angles, point: Vector, force: Vector) -> A
 def pose(
     position: Array,
     tilts: Array,
-    feet: tuple[Foot, Foot],
+    feet: Array,
     which: tuple[int, int],
     com: Point,
     head: Point,
@@ -132,7 +129,7 @@ def pose(
         position: joint angles of the ready posture, to be those of this tick (26,) [rad].
         tilts: roll and pitch by which either foot makes up for the trunk's, brought up to date
             (2, 2) [rad].
-        feet: references of the left and of the right foot.
+        feet: their references, see `walking.swing_foot_kernel` (2, 10).
         which: index of the support foot, and of the foot in the air, -1 for none.
         com: where the body's mass centre is meant to be, x, y in the plan frame [m].
         head: pan and tilt [rad].
@@ -156,7 +153,7 @@ def pose(
 
 
 @njit(cache=True)
-def pelvis_of(feet: tuple[Foot, Foot], com: Point, ahead: float) -> Vector:
+def pelvis_of(feet: Array, com: Point, ahead: float) -> Vector:
     """Pelvis that has the mass centre `ahead` of it at `com`, between the feet's directions."""
     yaw = 0.5 * (feet[0][2] + feet[1][2])
     return com[0] - ahead * cos(yaw), com[1] - ahead * sin(yaw), yaw
@@ -183,7 +180,7 @@ def arm_swing(apart: float, gain: float, limit: float) -> float:
 def _pose_legs(
     position: Array,
     tilts: Array,
-    feet: tuple[Foot, Foot],
+    feet: Array,
     which: tuple[int, int],
     pelvis: Vector,
     tilt: Point,
@@ -204,14 +201,15 @@ def _pose_legs(
                 own[axis] *= decay
                 if abs(own[axis]) < STILL_TILT:
                     own[axis] = 0.0
-        x, y, yaw, height = feet[index]
+        foot = feet[index]
+        x, y, yaw, height = foot[0], foot[1], foot[2], foot[3]
         roll, pitch = own[0], own[1]
         if roll != 0.0 or pitch != 0.0:
             ax, ay = x - support[0], y - support[1]
             height += pitch * (c * ax + s * ay) - roll * (c * ay - s * ax)
         dx, dy, turned = x - pelvis[0], y - pelvis[1], yaw - pelvis[2]
         cf, sf = cos(turned), sin(turned)
-        foot = (
+        target = (
             c * dx + s * dy,
             c * dy - s * dx,
             height - base,
@@ -219,7 +217,7 @@ def _pose_legs(
             -(cf * pitch - sf * roll),
             turned,
         )
-        angles, _ = leg_angles(legs[index], foot)
+        angles, _ = leg_angles(legs[index], target)
         for joint in range(6):
             position[6 * index + joint] = angles[joint]
     return c * (feet[0][0] - feet[1][0]) + s * (feet[0][1] - feet[1][1])

@@ -49,8 +49,7 @@ class Posture:
 
     def pelvis(self, gait: Gait, com: Point) -> Pelvis:
         """Pelvis that puts its constant offset point onto the pendulum."""
-        left, right = gait.feet
-        return Pelvis(*leg_kernel.pelvis_of((left.row, right.row), com, self._build[0]))
+        return Pelvis(*leg_kernel.pelvis_of(gait.feet, com, self._build[0]))
 
     def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Pelvis]:
         """Joint angles (26,) [rad], and the pelvis that goes with them.
@@ -61,12 +60,11 @@ class Posture:
             tilt: measured roll and pitch of the trunk [rad].
             head: pan and tilt [rad].
         """
-        left, right = gait.feet
         position = self._ready.copy()
         x, y, yaw = leg_kernel.pose(
             position,
             self._tilt,
-            (left.row, right.row),
+            gait.feet,
             (gait.support, gait.swing if gait.flying else -1),
             com,
             head,

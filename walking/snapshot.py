@@ -12,6 +12,7 @@ from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 from walking.state import Balance, Footstep, HeadCameraPose, Odometry
 from walking.support import Footing, depth
+from walking.swing_foot_kernel import RATE
 
 
 class PlanToOdometry:
@@ -94,8 +95,8 @@ def balance(
     dcm_x = pendulum.x + ex + (pendulum.vx + evx) / omega
     dcm_y = pendulum.y + ey + (pendulum.vy + evy) / omega
     feet = [
-        (*plan.place(f.x.position, f.y.position), f.height, plan.yaw + f.yaw.position)
-        for f in gait.feet
+        (*plan.place(x, y), height, plan.yaw + yaw)
+        for x, y, yaw, height in gait.feet[:, :RATE].tolist()
     ]
     return Balance(
         com=plan.point(pendulum.x, pendulum.y),

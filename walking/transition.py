@@ -60,7 +60,7 @@ class Transition:
         self._generator = generator
         self._stepping = gait.stepping
         self._footstep = gait.completed
-        self._clock = gait.clock()
+        self._clock = gait.clock
         self.share = 1.0
         self.landing = gait.landing
         self.moving = False
@@ -68,7 +68,7 @@ class Transition:
 
     def remember(self) -> None:
         """Keep the times of the last tick, before anything about them changes."""
-        self._stepping, self._clock = self._gait.stepping, self._gait.clock()
+        self._stepping, self._clock = self._gait.stepping, self._gait.clock
 
     def skip(self, strides: Strides, *, moving: bool) -> None:
         """Strides of a plan that nobody has to admit."""
@@ -98,7 +98,7 @@ class Transition:
         if not continues or (gait.held and not caught):
             self.landing = gait.landing
         aimed = gait.aimed(self.landing, gait.nominal(wish)) if gait.adjustable else self.landing
-        wanted = Course(aimed, wish, gait.clock(), moving)
+        wanted = Course(aimed, wish, gait.clock, moving)
         ramps = gait.plan(aimed, wish, moving=moving)
         before = self.strides
         if before is None or not (self._stepping and gait.stepping):
@@ -143,7 +143,7 @@ class Transition:
             return Course(
                 _landing(old.landing, wanted.landing, share),
                 old.strides.towards(wanted.strides, share),
-                gait.clock(),
+                gait.clock,
                 old.moving,
             )
 

@@ -12,6 +12,7 @@ from walking.gait import Gait
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Footstep, Phase
 from walking.stride import Strides, Timing
+from walking.swing_foot_kernel import HEIGHT
 
 AHEAD = HeadTarget()
 PARAMETERS = WalkingParameters()
@@ -117,12 +118,12 @@ def tick(gait):
 def test_single_support_stretched_or_cut_in_mid_swing_keeps_the_foot_smooth(gait, single, phase):
     while gait.swing_phase < phase:
         tick(gait)
-    heights, held = [gait.feet[1].height], gait.swing_phase
+    heights, held = [float(gait.feet[1, HEIGHT])], gait.swing_phase
     gait.retime(Timing(14, single, 0.025))
     assert gait.swing_phase == held
     while gait.completed == 0:
         tick(gait)
-        heights.append(gait.feet[1].height)
+        heights.append(float(gait.feet[1, HEIGHT]))
     assert np.abs(np.diff(heights)).max() < 0.008
     assert heights[-1] == 0.0
 

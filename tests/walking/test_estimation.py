@@ -56,7 +56,7 @@ def test_the_centre_of_pressure_is_under_the_loaded_corner_and_between_loaded_fe
     robot, ideal_body
 ):
     sensors, sole = ideal_body.sense(), robot.sole
-    feet = ((0.0, 0.0, 0.3, 0.0), (0.1, 0.0, 0.3, 0.0))
+    feet = np.array([[0.0, 0.0, 0.3, 0.0], [0.1, 0.0, 0.3, 0.0]])
     force = np.zeros((2, 4))
     force[0, 1] = 10.0
     corner = np.array([sole.centre + sole.half_length, -sole.half_width])
@@ -70,7 +70,7 @@ def test_the_centre_of_pressure_is_under_the_loaded_corner_and_between_loaded_fe
 
 def test_observing_leaves_odometry_and_error_alone(robot, ideal_body):
     estimate, sensors = estimation(robot), ideal_body.sense()
-    feet = ((0.0, 0.042, 0.0, 0.0), (0.0, -0.042, 0.0, 0.0))
+    feet = np.array([[0.0, 0.042, 0.0, 0.0], [0.0, -0.042, 0.0, 0.0]])
     estimate.update(sensors, feet, STILL, stepping=False)
     pose, error = estimate.pose, estimate.com_error
     moved = replace(sensors, joint_position=sensors.joint_position + 0.1)
@@ -83,8 +83,8 @@ def test_weight_going_over_to_a_foot_is_no_motion_of_the_body(robot, ideal_body)
     """Seen from a foot half a centimetre off its place, the body is off by as much, at once."""
     estimate, sensors = estimation(robot), ideal_body.sense()
     body = estimate.observe(sensors)
-    places = [(foot.x, foot.y, foot.yaw, 0.0) for foot in body.feet]
-    feet = (places[0], (places[1][0] + 0.005, *places[1][1:]))
+    feet = np.array([(foot.x, foot.y, foot.yaw, 0.0) for foot in body.feet])
+    feet[1, 0] += 0.005
     planned = (0.0, 0.0, 0.0, *body.com[:2], *(0.0,) * 5)
     estimate.update(sensors, feet, (*planned, 0.0), stepping=True)
     assert estimate.com_error == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-12)

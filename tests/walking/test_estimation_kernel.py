@@ -60,7 +60,7 @@ def test_compiled_it_is_what_it_says(plainly, seed):
                 orientation / np.linalg.norm(orientation),
                 rng.normal(0.0, 0.3, 3),
             )
-            feet = tuple(tuple(rng.uniform(-0.1, 0.1, 4).tolist()) for _ in LEGS)
+            feet = rng.uniform(-0.1, 0.1, (2, 4))
             plan = (*rng.uniform(-0.05, 0.05, 10).tolist(), rng.uniform())
             com, states = rng.normal(0.0, 0.05, 3), (tilt, odometry, error)
             stepping = bool(rng.integers(2))

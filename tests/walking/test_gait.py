@@ -10,6 +10,7 @@ from walking.gait import Gait
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.robot_model import Sole
 from walking.state import Footstep, Phase
+from walking.swing_foot_kernel import HEIGHT
 
 PARAMETERS = WalkingParameters()
 GAIT = PARAMETERS.gait
@@ -79,7 +80,7 @@ def test_feet_move_without_jumps_and_only_in_the_air(gait):
     rows = []
     for _ in range(START + 4 * STEP):
         tick(gait, FORWARD)
-        rows.append([v for f in gait.feet for v in (f.x.position, f.height)])
+        rows.append(gait.feet[:, [0, HEIGHT]].ravel())
     path = np.array(rows)
     assert np.abs(np.diff(path[:, [0, 2]], axis=0)).max() < 0.02
     for x, height in ((0, 1), (2, 3)):
@@ -120,12 +121,12 @@ def test_early_contact_leaves_the_foot_where_it_is(gait):
     gait.start(0)
     while gait.swing_phase < 0.7:
         tick(gait, FORWARD)
-    x, height = gait.feet[1].x.position, gait.feet[1].height
+    x, height = gait.feet[1, [0, HEIGHT]].tolist()
     gait.touch_down()
     while gait.completed == 0:
         tick(gait, FORWARD)
     assert gait.footholds[1].x == pytest.approx(x)
-    assert 0.0 < gait.feet[1].height < height
+    assert 0.0 < gait.feet[1, HEIGHT] < height
 
 
 @pytest.mark.parametrize("lead", [2, 20, 40])
@@ -141,7 +142,7 @@ def test_a_hurried_footstep_is_down_in_time_and_the_next_takes_its_own(gait, lea
     while gait.completed == completed:
         swing, landing = gait.swing, gait.landing
         tick(gait, FORWARD)
-        lift.append(foot.height)
+        lift.append(float(foot[HEIGHT]))
         gait.retime(gait.timing)
     assert len(lift) == left
     assert lift[-1] == pytest.approx(0.0, abs=1e-9)
@@ -167,5 +168,5 @@ def test_a_hurried_footstep_leaves_the_foot_time_for_its_way(gait):
     landing = gait.landing
     far = Footstep(landing.left, landing.x + 0.2, landing.y, landing.yaw)
     assert gait.hasten(0, far)
-    way = far.x - gait.feet[gait.swing].x.position
+    way = far.x - gait.feet[gait.swing, 0]
     assert gait.ticks_left * CONTROL_PERIOD >= 1.875 * way / GAIT.swing_speed

@@ -15,10 +15,10 @@ SEEDS = st.integers(0, 10**6)
 
 def draw(seed):
     rng = np.random.default_rng(seed)
-    feet = tuple(
-        (*rng.uniform(-0.05, 0.05, 2).tolist(), rng.uniform(-0.3, 0.3), abs(rng.normal(0.0, 0.01)))
-        for _ in LEGS
+    feet = np.array(
+        [(*rng.uniform(-0.05, 0.05, 2), rng.uniform(-0.3, 0.3), abs(rng.normal())) for _ in LEGS]
     )
+    feet[:, 3] *= 0.01
     return rng, feet
 
 

@@ -2,54 +2,29 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from walking.parameters import CONTROL_PERIOD
 from walking.state import Footstep
-from walking.swing import MinimumJerk, lift_profile, moved
+from walking.swing import PEAK, least_ticks, moved, resting, stand
+from walking.swing_foot_kernel import HEIGHT
+
+STANCE = Footstep(True, 0.1, 0.04, 0.2), Footstep(False, 0.1, -0.04, -0.2)
 
 
-def run(start, targets):
-    axis = MinimumJerk(start)
-    rows = []
-    for k, target in enumerate(targets):
-        axis.advance(target, len(targets) - k)
-        rows.append((axis.position, axis.velocity, axis.acceleration))
-    return np.array(rows)
+def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
+    feet = resting(STANCE)
+    np.testing.assert_array_equal(feet[:, :3], [[0.1, 0.04, 0.2], [0.1, -0.04, -0.2]])
+    assert not feet[:, 3:].any()
+    feet[1] = 1.0
+    stand(feet[1], STANCE[1])
+    assert feet[1].tolist() == [0.1, -0.04, -0.2, 1.0, *6 * [0.0]]
+    assert feet[1, HEIGHT] == 1.0
 
 
-def test_replanning_a_fixed_target_is_the_minimum_jerk_quintic():
-    n = 40
-    rows = run(0.1, [0.3] * n)
-    s = np.arange(1, n + 1) / n
-    np.testing.assert_allclose(
-        rows[:, 0], 0.1 + 0.2 * (10 * s**3 - 15 * s**4 + 6 * s**5), atol=1e-12
-    )
-
-
-@given(st.lists(st.floats(-0.2, 0.2), min_size=30, max_size=60))
-def test_any_landing_is_reached_at_rest(targets):
-    rows = run(0.0, targets)
-    assert rows[-1] == pytest.approx((targets[-1], 0.0, 0.0))
-
-
-def test_position_velocity_and_acceleration_belong_together():
-    rows = run(0.0, [0.1] * 20 + [0.15] * 30)
-    np.testing.assert_allclose(
-        np.diff(rows[:-1, 0]) / CONTROL_PERIOD,
-        0.5 * (rows[1:-1, 1] + rows[:-2, 1]),
-        atol=2e-3,
-    )
-
-
-def test_the_lift_starts_and_ends_at_rest_and_peaks_in_the_middle():
-    phases = np.linspace(0.0, 1.0, 201)
-    heights = np.array([lift_profile(p) for p in phases.tolist()])
-    assert heights[0] == heights[-1] == 0.0
-    assert heights.max() == heights[100] == 1.0
-    assert abs(heights[1] / 0.005) < 0.01
-    assert abs(heights[-2] / 0.005) < 0.01
+def test_a_way_takes_its_time():
+    foot = resting(STANCE)[0]
+    ticks = least_ticks(foot, Footstep(True, 0.13, 0.08, 0.0), 0.5)
+    assert (ticks - 1) * CONTROL_PERIOD < PEAK * 0.05 / 0.5 <= ticks * CONTROL_PERIOD
 
 
 def test_a_landing_moves_and_turns_together_and_no_faster_than_allowed():
