@@ -220,7 +220,8 @@ def _pose_legs(
         angles, _ = leg_angles(legs[index], target)
         for joint in range(6):
             position[6 * index + joint] = angles[joint]
-    return c * (feet[0][0] - feet[1][0]) + s * (feet[0][1] - feet[1][1])
+    apart: float = c * (feet[0][0] - feet[1][0]) + s * (feet[0][1] - feet[1][1])
+    return apart
 
 
 @njit(cache=True)
