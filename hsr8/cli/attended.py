@@ -11,15 +11,27 @@ import sys
 from hsr8.cli.main import entry
 
 PR_SET_PDEATHSIG = 1
+ORPHAN = 130  # exit code of a run whose parent is gone before it begins
 
 
 def main(arguments: list[str]) -> int:
     """Run the command of `arguments`, which begin with the process id of the parent."""
-    if sys.platform.startswith("linux"):
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-        if os.getppid() != int(arguments[0]):
-            return 130
-    return entry(arguments[1:])
+    return entry(arguments[1:]) if ends_with(int(arguments[0])) else ORPHAN
+
+
+def ends_with(parent: int) -> bool:
+    """Let the system terminate this process when its parent ends.
+
+    Args:
+        parent: process id.
+
+    Returns:
+        Whether the parent is still there; elsewhere than on Linux nobody asks.
+    """
+    if not sys.platform.startswith("linux"):
+        return True
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    return os.getppid() == parent
 
 
 if __name__ == "__main__":

@@ -1,14 +1,18 @@
 """Who runs the jobs of a sweep: processes of this machine, or a cluster's workers."""
 
 import re
+import sys
 import time as clock
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import Protocol
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.job import Job, Process, Row, lost, run_job
+from hsr8.evaluation.sweep.fork_server import ForkServer
+from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
+from hsr8.evaluation.sweep.process import Process, start
 
 GRACE = 5.0  # an interrupted run has so long to close its files [s]
 NAMES = "local, dask, dask://HOST:PORT, ray or ray://HOST:PORT"
@@ -66,7 +70,7 @@ def parse_executor(name: str) -> tuple[str, str]:
 
 
 class LocalExecutor:
-    """A process per run on this machine.
+    """A process per run on this machine; on Linux forked from one that has loaded everything.
 
     Args:
         workers: runs at a time.
@@ -77,6 +81,7 @@ class LocalExecutor:
         self._pool = ThreadPoolExecutor(workers)
         self._ended: SimpleQueue[tuple[Job, Row]] = SimpleQueue()
         self._running: set[Process] = set()
+        self._server: ForkServer | None = None
         self._lock = Lock()
         self._closed = False
 
@@ -109,22 +114,36 @@ class LocalExecutor:
             if process.returncode is None:
                 process.kill()
         self._pool.shutdown()
+        if self._server is not None:
+            self._server.close()
 
     def _run(self, job: Job) -> None:
         mine: list[Process] = []
 
-        def started(process: Process) -> None:
+        def begin(words: Sequence[str]) -> Process:
             with self._lock:
+                process = self._start(words)
                 mine.append(process)
                 self._running.add(process)
                 if self._closed:
                     process.terminate()
+            return process
 
         try:
-            row = run_job(job, started)
+            row = run_job(job, begin)
         except OSError as error:  # no process, no disk
             row = lost(job, str(error))
         finally:
             with self._lock:
                 self._running.difference_update(mine)
         self._ended.put((job, row))
+
+    def _start(self, words: Sequence[str]) -> Process:
+        if not sys.platform.startswith("linux"):
+            return start(words)
+        if self._server is not None and self._server.gone:
+            self._server.close()
+            self._server = None
+        if self._server is None:
+            self._server = ForkServer()
+        return self._server.start(words)

@@ -6,25 +6,23 @@ import shutil
 import signal
 import socket
 import subprocess
-import sys
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from hsr8.evaluation.sweep.process import Process, start
 from hsr8.recorder import atomic, run_folder
 
 Row = dict[str, Any]
 Keep = Literal["all", "failed", "none"]
-Process = subprocess.Popen[str]
+Start = Callable[[Sequence[str]], Process]
 
 CRASHED = "crashed"
 REFUSED = "refused"
 OUTCOMES = {0: "passed", 1: "failed", 3: "diverged"}
 RUNS = "runs"  # run folders within a sweep's folder
-ATTENDED = "hsr8.cli.attended"  # runs a command that ends with its parent
-ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 SAID = 2000  # characters kept of what a crashed run said
 
 
@@ -53,12 +51,12 @@ class Job:
     avoid: str = ""
 
 
-def run_job(job: Job, started: Callable[[Process], None] = lambda _: None, worker: str = "") -> Row:
+def run_job(job: Job, start: Start = start, worker: str = "") -> Row:
     """Run `job` in a process of its own and wait for it.
 
     Args:
         job: what to run.
-        started: told of the process.
+        start: makes the process of a command line.
         worker: name that a retry avoids; host and process by default.
 
     Returns:
@@ -73,17 +71,7 @@ def run_job(job: Job, started: Callable[[Process], None] = lambda _: None, worke
         atomic.write_text(file, job.scenario)
     before = set(_folders(job))
     began = clock.perf_counter()
-    process = subprocess.Popen(
-        _command(job, file),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        errors="replace",
-        env={name: "1" for name in ONE_THREAD} | dict(os.environ),
-        start_new_session=True,  # Ctrl-C is the sweep's to answer
-    )
-    started(process)
+    process = start(_words(job, file))
     hung = False
     try:
         printed, said = process.communicate(timeout=job.timeout)
@@ -100,6 +88,7 @@ def run_job(job: Job, started: Callable[[Process], None] = lambda _: None, worke
         "run": None if made is None else str(made.relative_to(folder)),
         "process_s": clock.perf_counter() - began,
     }
+    assert process.returncode is not None, "it has ended"
     row |= _result(process.returncode, printed, said, job.timeout if hung else None)
     if made is not None and not _kept(job.keep, row["outcome"]):
         shutil.rmtree(made, ignore_errors=True)
@@ -119,9 +108,9 @@ def lost(job: Job, reason: str) -> Row:
     }
 
 
-def _command(job: Job, file: Path) -> list[str]:
-    words = [sys.executable, "-m", ATTENDED, str(os.getpid()), "run", str(file)]
-    words += ["--seed", str(job.seed), "--out", str(Path(job.folder) / RUNS), "--json", "--quiet"]
+def _words(job: Job, file: Path) -> list[str]:
+    words = ["run", str(file), "--seed", str(job.seed), "--out", str(Path(job.folder) / RUNS)]
+    words += ["--json", "--quiet"]
     return words if job.log else [*words, "--no-log"]
 
 

@@ -27,7 +27,7 @@ def _all(executor, n):
 
 
 def test_every_job_ends_once(local, monkeypatch):
-    monkeypatch.setattr(module, "run_job", lambda job, started: {"seed": job.seed})
+    monkeypatch.setattr(module, "run_job", lambda job, start: {"seed": job.seed})
     for seed in range(20):
         local.submit(replace(JOB, seed=seed))
     ended = _all(local, 20)
@@ -37,7 +37,7 @@ def test_every_job_ends_once(local, monkeypatch):
 
 
 def test_a_job_that_cannot_begin_is_a_crash(local, monkeypatch):
-    def fail(job, started):
+    def fail(job, start):
         raise OSError("No space left on device")
 
     monkeypatch.setattr(module, "run_job", fail)
@@ -54,22 +54,51 @@ def test_closing_ends_what_runs(monkeypatch, stubborn):
     code = f"import signal, time; {deaf} print(flush=True); time.sleep(60)"
     processes = []
 
-    def run(job, started):
+    def run(job, start):
+        start([]).communicate()
+        return {"seed": job.seed}
+
+    def begin(words):
         process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
         process.stdout.readline()
         processes.append(process)
-        started(process)
-        process.communicate()
-        return {"seed": job.seed}
+        return process
 
     monkeypatch.setattr(module, "run_job", run)
     executor = LocalExecutor(1)
+    monkeypatch.setattr(executor, "_start", begin)
     executor.submit(JOB)
     executor.submit(JOB)  # waits, and never begins
     while not processes:
         executor.wait(0.01)
     executor.close()
     assert [p.returncode for p in processes] == [-9 if stubborn else -15]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="forks on Linux only")
+def test_when_the_server_is_killed_its_run_is_a_crash_and_the_next_has_a_new_one(monkeypatch):
+    program = "import sys, hsr8.cli.fork_server as p; p.load_everything = lambda: None;"
+    program += "p.entry = lambda words: exec(words[0]) or 0; p.main(sys.argv[1:])"
+    monkeypatch.setattr(
+        "hsr8.evaluation.sweep.fork_server.COMMAND", [sys.executable, "-c", program]
+    )
+
+    def run(job, start):
+        process = start(
+            ["import os, signal; os.kill(os.getppid(), 9); signal.pause()", "pass"][job.seed :]
+        )
+        process.communicate()
+        return {"seed": job.seed, "outcome": "passed"}
+
+    monkeypatch.setattr(module, "run_job", run)
+    executor = LocalExecutor(1)
+    executor.submit(JOB)
+    executor.submit(replace(JOB, seed=1))
+    first, second = (row for _, row in _all(executor, 2))
+    executor.close()
+    assert first["outcome"] == "crashed"
+    assert "the process that forks" in first["error"]
+    assert second["outcome"] == "passed"
 
 
 def test_other_names_are_refused():
