@@ -70,6 +70,13 @@ def require_gl() -> str:
     return str(name.decode())
 
 
+def flush() -> None:
+    """Have OpenGL draw what it was told to in the current context, and do not wait for it."""
+    from OpenGL import GL  # noqa: PLC0415  binds to the platform of the context
+
+    GL.glFlush()
+
+
 def is_software(renderer: str) -> bool:
     """Whether this renderer draws on the processor."""
     return any(word in renderer.lower() for word in SOFTWARE_RENDERERS)

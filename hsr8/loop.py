@@ -240,6 +240,8 @@ class Simulation:
 
     def snapshot(self) -> dict[str, Any]:
         """Everything that changes in a run, between two control ticks; see `hsr8.snapshot`."""
+        if self._rendered is not None:
+            self._rendered.settle()
         return {name: getattr(self, name) for name in CHANGING} | {
             "noise": None if self._rendered is None else self._rendered.noise
         }
@@ -301,11 +303,12 @@ class Simulation:
         shutter, picture = self._feed.shutter(tick), self._feed.arrived(tick, self._body)
         if picture is None:
             return SensorFrame(time, body, shutter)
-        return SensorFrame(time, body, shutter, picture.captured, picture.image, picture.detections)
+        image = None if picture.exposure is None else picture.exposure.image
+        return SensorFrame(time, body, shutter, picture.captured, image, picture.detections)
 
     def _take(self, body: Body) -> Picture:
         if self._rendered is not None:
-            return Picture(body.time, image=self._rendered.capture(body))
+            return Picture(body.time, self._rendered.capture(body))
         assert self._analytic is not None
         return Picture(body.time, detections=self._analytic.capture(body))
 

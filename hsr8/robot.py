@@ -1,6 +1,7 @@
 """The robot side of the loop: sensors in, joint targets out. It never meets the truth."""
 
 from collections import deque
+from collections.abc import Callable
 from time import perf_counter
 from typing import Protocol
 
@@ -34,7 +35,8 @@ class SensorFrame:
         body: encoders, IMU, foot pads.
         shutter: the camera takes a picture now, which may arrive later or never.
         captured: when the picture that arrives now was taken [s].
-        image: (height, width, 3) picture that arrives now, if any.
+        image: reads the picture (height, width, 3) that arrives now, if any; it may still be
+            drawn, so read it late.
         detections: what a camera without pixels reports instead.
     """
 
@@ -42,7 +44,7 @@ class SensorFrame:
     body: BodySensors
     shutter: bool = False
     captured: float = 0.0
-    image: Image | None = None
+    image: Callable[[], Image] | None = None
     detections: tuple[Detection, ...] | None = None
 
 
@@ -133,11 +135,12 @@ class Robot:
         if then.phase.down or self._walking.down:
             self._wait()
             return
+        image = None if sensed.image is None else sensed.image()
         if sensed.detections is not None:
             detections = sensed.detections
         else:
-            assert sensed.image is not None
-            detections = self._vision.detect(sensed.image, camera_pose(then.camera, self._pose))
+            assert image is not None
+            detections = self._vision.detect(image, camera_pose(then.camera, self._pose))
         measured = self._frame(sensed.captured, then, detections)
         estimate = self._belief.update(measured)
         state = self.walking_state() if sensed.time > sensed.captured else then
@@ -150,7 +153,7 @@ class Robot:
         self.frame = FrameRecord(
             index=self._frames,
             time=sensed.time,
-            image=sensed.image,
+            image=image,
             detections=detections,
             measured=measured,
             estimate=estimate,

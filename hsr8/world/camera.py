@@ -4,19 +4,17 @@ from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
-from hsr8.gl import require_gl
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
 from hsr8.world.camera_faults import CameraFaults
+from hsr8.world.exposure import Exposure
 from hsr8.world.frustum import Frustum
 from hsr8.world.image_noise import ImageNoise
+from hsr8.world.offscreen import Offscreen
 
 if TYPE_CHECKING:
     from hsr8.world.body import Body
-
-Image = NDArray[np.uint8]
 
 HEAD_CAMERA = "egocentric"
 THINGS = ("obstacle_", "mover_", "beacon_")  # names of what the robot looks for begin so
@@ -43,11 +41,11 @@ class RenderedCamera:
         rng: np.random.Generator,
         faults: CameraFaults | None = None,
     ) -> None:
-        require_gl()
         self._faults = faults or CameraFaults()
         self._settings = settings
         self.noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
-        self._renderer = mujoco.Renderer(model, height=settings.height, width=settings.width)
+        self._offscreen = Offscreen(model, HEAD_CAMERA, settings.width, settings.height)
+        self._latest: Exposure | None = None
         self._lights = _Lights(model)
         self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)
         self._group, self._usual_group = model.geom_group, model.geom_group.copy()
@@ -57,27 +55,36 @@ class RenderedCamera:
             for i in bodies
         ]
 
-    def capture(self, body: "Body") -> Image:
-        """Image (height, width, 3) of the world as it is now."""
+    def capture(self, body: "Body") -> Exposure:
+        """Image (height, width, 3) of the world as it is now; it need not be drawn yet."""
+        self.settle()
         body.update_kinematics()
         settings, noise, faults, tick = self._settings, self.noise, self._faults, ticks(body.time)
         light, missed = noise.light(), noise.missed(len(self._things), faults.missed(tick))
         ghosts = faults.ghosts(tick)
         if faults.black(tick):
-            return noise.spoil(np.zeros((settings.height, settings.width, 3), np.uint8), ghosts)
+            black = np.zeros((settings.height, settings.width, 3), np.uint8)
+            self._latest = Exposure(lambda: noise.spoil(black, ghosts))
+            return self._latest
         self._lights.set(light * faults.light(tick))
         away = self._frustum.misses(body.data)
         for i in missed:
             away[self._things[i]] = True
         self._group[away] = NOT_DRAWN
-        self._renderer.update_scene(body.data, camera=HEAD_CAMERA)
+        self._offscreen.begin(body.data)
         self._group[:] = self._usual_group
-        image: Image = self._renderer.render()
-        return noise.spoil(image, ghosts)
+        self._latest = Exposure(lambda: noise.spoil(self._offscreen.read(), ghosts))
+        return self._latest
+
+    def settle(self) -> None:
+        """Wait for the latest image, also when nobody asks for it: its noise is drawn in turn."""
+        if self._latest is not None:
+            self._latest.image()
+            self._latest = None
 
     def close(self) -> None:
         """Free the OpenGL context."""
-        self._renderer.close()
+        self._offscreen.close()
 
 
 class _Lights:

@@ -7,17 +7,15 @@ from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.section import CONTROL_PERIOD_MS
 from hsr8.world.camera_faults import CameraFaults
+from hsr8.world.exposure import Exposure
 from vision.detection import Detection
 
 if TYPE_CHECKING:
     from hsr8.world.body import Body
-
-Image = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +24,12 @@ class Picture:
 
     Attributes:
         captured: when it was taken [s].
-        image: (height, width, 3), or None of a camera without pixels.
+        exposure: its image, or None of a camera without pixels.
         detections: what a camera without pixels reports instead.
     """
 
     captured: float
-    image: Image | None = None
+    exposure: Exposure | None = None
     detections: tuple[Detection, ...] | None = None
 
 

@@ -1,4 +1,5 @@
 from contextlib import closing
+from copy import copy
 
 import numpy as np
 import pytest
@@ -25,10 +26,10 @@ def body(world, silent):
 
 def test_an_image_shows_the_world_as_it_is_now(body):
     with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
-        before = camera.capture(body)
-        again = camera.capture(body)
+        before = camera.capture(body).image()
+        again = camera.capture(body).image()
         body.data.joint("head_pan").qpos[0] = 0.5
-        turned = camera.capture(body)
+        turned = camera.capture(body).image()
     assert before.shape == (240, 320, 3)
     assert before.dtype == np.uint8
     assert np.array_equal(before, again)
@@ -37,7 +38,7 @@ def test_an_image_shows_the_world_as_it_is_now(body):
 
 def test_vision_finds_the_obstacle_where_it_stands(body):
     with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
-        image = camera.capture(body)
+        image = camera.capture(body).image()
     fixed = body.data.camera("egocentric")
     rotation = fixed.xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
     pinhole = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
@@ -49,3 +50,19 @@ def test_vision_finds_the_obstacle_where_it_stands(body):
     assert np.isclose(red[0].distance, np.hypot(1.0, 0.2), atol=0.02)
     assert np.isclose(red[0].bearing, np.arctan2(0.2, 1.0), atol=0.01)
     assert np.isclose(red[0].radius, 0.08, atol=0.005)
+
+
+@pytest.mark.parametrize("read_at_once", [True, False])
+def test_images_are_spoilt_in_turn_whether_or_not_somebody_reads_them(body, read_at_once):
+    settings = Camera(noise=CameraNoise(pixel=3.0, exposure=0.1))
+
+    def third(*read):
+        model = copy(body.model)  # whose lights a camera dims
+        with closing(RenderedCamera(model, settings, np.random.default_rng(1))) as camera:
+            for at_once in read:
+                exposure = camera.capture(body)
+                if at_once:
+                    exposure.image()
+            return exposure.image()
+
+    assert np.array_equal(third(read_at_once, False, True), third(True, True, True))
