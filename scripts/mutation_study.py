@@ -45,6 +45,9 @@ MODULES = (
     "navigation/virtual_obstacle",
     "navigation/velocity_modification",
     "navigation/localization",
+    "navigation/pose_kernel",
+    "navigation/association",
+    "navigation/particle_kernel",
     "navigation/mode_kernel",
     "navigation/motion_modes",
     "navigation/local_map",
@@ -53,6 +56,8 @@ MODULES = (
     "walking/zmp_kernel",
     "walking/zmp_layout_kernel",
     "walking/foot_placement",
+    "walking/foothold_kernel",
+    "walking/swing_kernel",
     "walking/estimator",
     "walking/estimation_kernel",
 )
@@ -136,7 +141,7 @@ def replacements(node: ast.AST) -> Iterator[ast.AST]:
 
 def mutants(source: str) -> list[Mutant]:
     """All mutants of a module."""
-    tree = ast.parse(source)
+    tree = _Uncached().visit(ast.parse(source))
     found = []
     for k, node in enumerate(candidates(tree)):
         for other in replacements(node):
@@ -158,6 +163,14 @@ class _Replace(ast.NodeTransformer):
     def visit(self, node: ast.AST) -> ast.AST:
         """Replace the one node."""
         return self._new if node is self._old else self.generic_visit(node)
+
+
+class _Uncached(ast.NodeTransformer):
+    """Numba refuses to keep compiled kernels of a module that is in no file."""
+
+    def visit_keyword(self, node: ast.keyword) -> ast.keyword | None:
+        """Leave ``cache=True`` away."""
+        return None if node.arg == "cache" else node
 
 
 class Planted(importlib.abc.MetaPathFinder, importlib.abc.Loader):
@@ -227,9 +240,13 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help="write mutation.md")
     options = parser.parse_args()
     settings.register_profile(
-        "no shrinking", phases=[Phase.explicit, Phase.generate], database=None
+        PROFILE,
+        phases=[Phase.explicit, Phase.generate],
+        derandomize=True,
+        database=None,
+        deadline=None,
     )
-    settings.load_profile("no shrinking")
+    settings.load_profile(PROFILE)
     for heavy in ("scipy.linalg", "scipy.optimize", "filterpy.kalman", "pinocchio"):
         importlib.import_module(heavy)  # once, not in every child
     table = ["| module | mutants | tried | killed | share |", "|---|---|---|---|---|"]

@@ -114,7 +114,7 @@ def many_runs(seeds: Iterator[int], count: int) -> list[Sample]:
     samples = []
     for k in range(count):
         full = k % 10 == 0
-        duration = 2.0 if full else 3.0
+        duration = 1.0
         simulation = simulation_of("course", next(seeds), duration, () if full else STAND_INS)
         began = thread_time()
         with tempfile.TemporaryDirectory() as folder:
