@@ -136,6 +136,20 @@ def test_the_solution_is_found_at_once_from_its_own_dual():
     assert again.evaluations == 1
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_the_slopes_of_the_gradient_are_its_differences(seed):
+    fit, rng = Fit(draw(seed, 0.0)[0], 0.0, 0.0), np.random.default_rng(seed)
+    at, h = rng.uniform(-0.3, 0.3, 2), 1e-6
+
+    def gradient(*at):
+        return np.array(zmp_kernel._gradient(fit.table, fit.starts, fit.weights, *at))
+
+    xx, xy, yy = gradient(*at)[2:]
+    by_x = (gradient(at[0] + h, at[1]) - gradient(at[0] - h, at[1]))[:2] / (2 * h)
+    by_y = (gradient(at[0], at[1] + h) - gradient(at[0], at[1] - h))[:2] / (2 * h)
+    np.testing.assert_allclose([*by_x, *by_y], [xx, xy, xy, yy], atol=1e-8)
+
+
 @given(st.integers(0, 10**6), st.floats(-3.1, 3.1), st.floats(1.001, 5.0))
 def test_what_is_out_of_reach_is_turned_down(seed, direction, beyond):
     cells, _ = draw(seed, 0.0)
