@@ -64,7 +64,7 @@ class CatchingPendulum:
         if gait.hurried:
             self._tracker.follow(state, ramps, region)
             return
-        if gait.landing != landing and not gait.double and not self.caught:
+        if not (gait.landing is landing or gait.double or self.caught) and gait.landing != landing:
             self.planned = replace(state)
         planned = self.planned
         if planned is state:

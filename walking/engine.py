@@ -33,7 +33,7 @@ from walking.stabilizer import Stabilizer
 from walking.state import WalkingState
 from walking.steering import Steering
 from walking.stride import Strides
-from walking.support import Footing, SupportRegion, depth
+from walking.support import Footing, SupportRegion
 from walking.targets import JointTargets
 from walking.whole_body import WholeBody
 
@@ -125,7 +125,7 @@ class WalkingEngine:
     @property
     def zmp_depth(self) -> float:
         """How far the last tick's planned ZMP lay inside the soles that carry it [m]."""
-        return depth(self._footing.polygon(), self._pendulum.zmp_x, self._pendulum.zmp_y)
+        return self._footing.depth(self._pendulum.zmp_x, self._pendulum.zmp_y)
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """One control tick.

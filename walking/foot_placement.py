@@ -14,6 +14,7 @@ from walking.support import SupportRegion
 from walking.transition import Transition
 
 Point = tuple[float, float]
+NOT_MOVED: Point = (0.0, 0.0)
 
 
 class FootPlacement:
@@ -54,7 +55,7 @@ class FootPlacement:
         self._transition = Transition(gait, generator)
         self.given: Velocity = STILL
         self.bound: list[Limit] = []
-        self.moved: Point = (0.0, 0.0)
+        self.moved = NOT_MOVED
         self.moving = False
 
     @property
@@ -93,7 +94,7 @@ class FootPlacement:
             ZMP reference from now on.
         """
         gait, adjustable = self._gait, self._gait.adjustable
-        self.bound, self.moved, self.moving = [], (0.0, 0.0), moving
+        self.bound, self.moved, self.moving = [], NOT_MOVED, moving
         ramps, landing = self._reference(wish, velocity, region)
         if not adjustable:
             if gait.stepping and not self._planner.same(gait.nominal(wish), gait.landing):
@@ -144,26 +145,26 @@ class FootPlacement:
         """Aim at the landing that catches the body; the reference that goes with it."""
         gait, caught = self._gait, landing
         capture = self._capture(landing, ramps, error)
-        if capture.ticks < gait.ticks_left and gait.hasten(capture.ticks, capture.landing):
+        if capture and gait.hasten(capture.ticks, capture.landing):
             # The plan was made for other times.
             self._catching.give_up()
             ramps = gait.plan(landing, wish, moving=self.moving)
             capture = self._capture(landing, ramps, error)
-        if not gait.double:
+        if capture and not gait.double:
             caught = capture.landing
-        self.moved = (caught.x - landing.x, caught.y - landing.y)
+            self.moved = (caught.x - landing.x, caught.y - landing.y)
         gait.aim(caught)
         same = self._planner.same
         if gait.hurried or not same(caught, landing):
             self.bound.append(Limit.BALANCE)
         elif Limit.ZMP_REGION not in self.bound and not same(gait.nominal(wish), gait.landing):
             self.bound.append(Limit.LANDING_SPEED)
-        if gait.landing != landing and not self._selects:
+        if not self._selects and gait.landing != landing:
             ramps = gait.plan(gait.landing, wish, moving=self.moving)
         return ramps
 
-    def _capture(self, landing: Footstep, ramps: Ramps, error: Point) -> Capture:
-        """What the footholds of the plan do not catch of the measured DCM."""
+    def _capture(self, landing: Footstep, ramps: Ramps, error: Point) -> Capture | None:
+        """What the footholds of the plan do not catch of the measured DCM, if anything."""
         gait, w = self._gait, self._lipm.omega
         pendulum = self._catching.state
         support = gait.footholds[gait.support]
@@ -175,6 +176,8 @@ class FootPlacement:
             pendulum.x + pendulum.vx / w + error[0] - x,
             pendulum.y + pendulum.vy / w + error[1] - y,
         )
+        if self._stabilizer.holds(support, off):
+            return None
         goal_x, goal_y = ramps.goal
         ahead = (x - goal_x, y - goal_y)
         return self._stabilizer.capture(

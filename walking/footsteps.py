@@ -265,7 +265,7 @@ class FootstepPlanner:
 
     def same(self, one: Footstep, other: Footstep) -> bool:
         """Whether two footholds of a foot differ by no more than counts."""
-        return (
+        return one is other or (
             abs(one.x - other.x) < self._near
             and abs(one.y - other.y) < self._near
             and abs(one.yaw - other.yaw) < TURN_TOLERANCE

@@ -187,9 +187,9 @@ class Gait:
         Returns:
             whether that is any sooner.
         """
-        if self._shift_fixed or not self.adjustable:
-            return False
         before, foot = self.ticks_left, self.feet[self.swing]
+        if ticks >= before or self._shift_fixed or not self.adjustable:
+            return False
         least = least_ticks(foot, landing, self._speed)
         elapsed = self._elapsed
         if self.double:
@@ -240,7 +240,7 @@ class Gait:
 
     def aimed(self, landing: Footstep, wanted: Footstep) -> Footstep:
         """A landing moved towards `wanted` by as much as one tick allows."""
-        if self.swing_phase == 0.0:
+        if wanted is landing or self.swing_phase == 0.0:
             return wanted
         return moved(landing, wanted, self._move, self._turn)
 

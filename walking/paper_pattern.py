@@ -237,8 +237,9 @@ class PaperGenerator:
 def _room(ramp: ZmpRamp, region: SupportRegion) -> tuple[float, float]:
     """How far the ZMP may go from its nominal point along and across the sole [m]."""
     foot = ramp.feet[0]
-    u, v = _turned(-foot.yaw, ramp.ax - region.bx, ramp.ay - region.by)
-    return max(0.0, region.half_length - abs(u)), max(0.0, region.half_width - abs(v))
+    x, y, _, _, length, width = region.row[4:].tolist()
+    u, v = _turned(-foot.yaw, ramp.ax - x, ramp.ay - y)
+    return max(0.0, length - abs(u)), max(0.0, width - abs(v))
 
 
 def _turned(angle: float, x: float, y: float) -> tuple[float, float]:

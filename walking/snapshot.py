@@ -11,7 +11,7 @@ from walking.pattern import PendulumState
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 from walking.state import Balance, Footstep, HeadCameraPose, Odometry
-from walking.support import Footing, depth
+from walking.support import Footing
 from walking.swing_foot_kernel import RATE
 
 
@@ -102,7 +102,7 @@ def balance(
         com=plan.point(pendulum.x, pendulum.y),
         dcm=plan.point(dcm_x, dcm_y),
         support=np.array([plan.place(x, y) for x, y in polygon]),
-        zmp_depth=depth(polygon, pendulum.zmp_x, pendulum.zmp_y),
+        zmp_depth=footing.depth(pendulum.zmp_x, pendulum.zmp_y),
         feet=np.array(feet),
         capture=plan.vector(*capture),
     )

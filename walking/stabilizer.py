@@ -61,6 +61,10 @@ class Stabilizer:
         x, y = self._in_foot(foot, error)
         return abs(x) > share * self._room[0] or abs(y) > share * self._room[1]
 
+    def holds(self, foot: Footstep, error: tuple[float, float]) -> bool:
+        """Whether the ankles hold a DCM error, so that no landing is moved [m]."""
+        return not self.exceeds(foot, error, self._parameters.capture_dead_zone)
+
     def capture(
         self,
         planner: FootstepPlanner,
@@ -71,7 +75,7 @@ class Stabilizer:
         *,
         ticks_left: int,
     ) -> Capture:
-        """Landing and its time that catch what the ankles cannot hold of a DCM error.
+        """Landing and its time that catch what the ankles do not hold of a DCM error.
 
         Left alone, the error grows by e^{ωt} until touch-down; moving the foothold by that
         much puts the foot under it (Pratt et al., Humanoids 2006). Where that is out of reach
@@ -89,8 +93,6 @@ class Stabilizer:
         x, y = self._in_foot(support, error)
         x = beyond(x, p.capture_dead_zone * self._room[0])
         y = beyond(y, p.capture_dead_zone * self._room[1])
-        if x == 0.0 and y == 0.0:
-            return Capture(landing, ticks_left)
         growth = exp(self._omega * ticks_left * CONTROL_PERIOD)
         dx = min(p.capture_forward, max(-p.capture_forward, growth * x))
         dy = min(p.capture_side, max(-p.capture_side, growth * y))

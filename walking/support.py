@@ -1,82 +1,58 @@
 """The region where the floor can push: the convex hull of one or two soles."""
 
-from math import cos, hypot, inf, sin
+from math import cos, hypot, sin
 
+import numpy as np
+from numpy.typing import NDArray
+
+from walking import support_kernel
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.value import value
 
+Array = NDArray[np.float64]
 Polygon = tuple[tuple[float, float], ...]
 """Corners of a convex polygon, counter-clockwise [m]."""
 
 COLLINEAR = 1e-12  # twice the area under which three corners are taken for a line [m²]
 
 
-@value
 class SupportRegion:
     """Convex family of rectangles between two soles; with equal ends, one sole.
 
     The rectangle at share s has the corners (1 - s) A + s B of the two soles, so it lies in
     their hull whatever their directions.
 
-    Attributes:
-        ax, ay, ac, as_: centre [m] and direction (cosine, sine) of the first sole.
-        bx, by, bc, bs: the same of the second sole.
-        half_length, half_width: of either sole, margin taken off [m].
+    Args:
+        row: centres, directions and half sides, see `walking.support_kernel` (10,).
     """
 
-    ax: float
-    ay: float
-    ac: float
-    as_: float
-    bx: float
-    by: float
-    bc: float
-    bs: float
-    half_length: float
-    half_width: float
+    __slots__ = ("row",)
+
+    def __init__(self, row: Array) -> None:
+        self.row = row
 
     def share(self, x: float, y: float) -> float:
         """Load share of the second sole under a ZMP at x, y [m], in [0, 1]."""
-        dx, dy = self.bx - self.ax, self.by - self.ay
-        square = dx * dx + dy * dy
-        if square == 0.0:
-            return 0.0
-        return min(1.0, max(0.0, ((x - self.ax) * dx + (y - self.ay) * dy) / square))
+        return support_kernel.share(self.row, x, y)
 
     def clip(self, x: float, y: float) -> tuple[float, float]:
         """A point of the region near x, y: in the rectangle at its load share [m]."""
-        s = self.share(x, y)
-        r = 1.0 - s
-        cx, cy = r * self.ax + s * self.bx, r * self.ay + s * self.by
-        c, n = r * self.ac + s * self.bc, r * self.as_ + s * self.bs
-        scale = c * c + n * n
-        dx, dy = x - cx, y - cy
-        u = (c * dx + n * dy) / scale
-        v = (c * dy - n * dx) / scale
-        length, width = self.half_length, self.half_width
-        if -length <= u <= length and -width <= v <= width:
-            return x, y
-        u = min(length, max(-length, u))
-        v = min(width, max(-width, v))
-        return cx + c * u - n * v, cy + n * u + c * v
+        return support_kernel.clip(self.row, x, y)
 
 
 def support_region(sole: Sole, first: Footstep, second: Footstep, margin: float) -> SupportRegion:
     """Region of two feet on the floor, or of one when both arguments are the same foot."""
     ac, as_ = cos(first.yaw), sin(first.yaw)
     bc, bs = (ac, as_) if second is first else (cos(second.yaw), sin(second.yaw))
+    centre = sole.centre
     return SupportRegion(
-        ax=first.x + sole.centre * ac,
-        ay=first.y + sole.centre * as_,
-        ac=ac,
-        as_=as_,
-        bx=second.x + sole.centre * bc,
-        by=second.y + sole.centre * bs,
-        bc=bc,
-        bs=bs,
-        half_length=sole.half_length - margin,
-        half_width=sole.half_width - margin,
+        np.array(
+            [
+                *(first.x + centre * ac, first.y + centre * as_, ac, as_),
+                *(second.x + centre * bc, second.y + centre * bs, bc, bs),
+                *(sole.half_length - margin, sole.half_width - margin),
+            ]
+        )
     )
 
 
@@ -95,12 +71,13 @@ class Footing:
         self._sole = sole
         self.feet = feet
         self._polygon: Polygon | None = None
+        self._edges: Array | None = None
         self._regions: dict[float, SupportRegion] = {}
 
     def stand(self, feet: tuple[Footstep, Footstep]) -> None:
         """Have the feet there."""
         if feet[0] is not self.feet[0] or feet[1] is not self.feet[1]:
-            self.feet, self._polygon = feet, None
+            self.feet, self._polygon, self._edges = feet, None, None
             self._regions.clear()
 
     def polygon(self) -> Polygon:
@@ -108,6 +85,12 @@ class Footing:
         if self._polygon is None:
             self._polygon = support_polygon(self._sole, *self.feet)
         return self._polygon
+
+    def depth(self, x: float, y: float) -> float:
+        """How far inside that hull a point lies; negative outside [m]."""
+        if self._edges is None:
+            self._edges = edges(self.polygon())
+        return support_kernel.depth(self._edges, x, y)
 
     def region(self, margin: float) -> SupportRegion:
         """Region that keeps a margin from the edges of the soles [m]."""
@@ -123,15 +106,15 @@ def support_polygon(sole: Sole, first: Footstep, second: Footstep) -> Polygon:
     return corners if second is first else _hull([*_corners(sole, first), *corners])
 
 
-def depth(polygon: Polygon, x: float, y: float) -> float:
-    """How far inside a convex polygon a point lies; negative outside [m]."""
-    least = inf
+def edges(polygon: Polygon) -> Array:
+    """Edges of a polygon, see `walking.support_kernel` (n, 5) [m]."""
+    rows = []
     ax, ay = polygon[-1]
     for bx, by in polygon:
         dx, dy = bx - ax, by - ay
-        least = min(least, (dx * (y - ay) - dy * (x - ax)) / hypot(dx, dy))
+        rows.append((ax, ay, dx, dy, hypot(dx, dy)))
         ax, ay = bx, by
-    return least
+    return np.array(rows)
 
 
 def _corners(sole: Sole, foot: Footstep) -> Polygon:

@@ -98,13 +98,13 @@ class Transition:
         if not continues or (gait.held and not caught):
             self.landing = gait.landing
         aimed = gait.aimed(self.landing, gait.nominal(wish)) if gait.adjustable else self.landing
-        wanted = Course(aimed, wish, gait.clock, moving)
         ramps = gait.plan(aimed, wish, moving=moving)
         before = self.strides
-        if before is None or not (self._stepping and gait.stepping):
-            return self._take(wanted, ramps, 1.0)
-        if self._generator.admits(state, ramps, region):
-            return self._take(wanted, ramps, 1.0)
+        changes = self._stepping and gait.stepping
+        if before is None or not changes or self._generator.admits(state, ramps, region):
+            self.share, self.landing, self.moving, self.strides = 1.0, aimed, moving, wish
+            return ramps
+        wanted = Course(aimed, wish, gait.clock, moving)
         old = Course(self.landing, before, self._clock, self.moving)
         ending = None if moving else self._end(state, region, old, wanted)
         if ending is not None:

@@ -39,10 +39,13 @@ def test_the_ankles_push_the_zmp_beyond_the_error_but_not_out_of_the_sole(stabil
     assert dx == pytest.approx(robot.sole.half_length - PARAMETERS.sole_margin)
 
 
-def test_small_errors_move_no_foothold(stabilizer, planner):
+def test_small_errors_are_held_and_those_that_are_not_grow_from_nothing(stabilizer, planner):
     landing = planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34))
+    assert stabilizer.holds(LEFT, (0.005, 0.002))
+    assert not stabilizer.holds(LEFT, (0.05, 0.0))
+    assert not stabilizer.holds(LEFT, (0.0, -0.05))
     capture = stabilizer.capture(planner, LEFT, landing, (0.005, 0.002), AHEAD, ticks_left=40)
-    assert capture.landing is landing
+    assert (capture.landing.x, capture.landing.y) == pytest.approx((landing.x, landing.y))
     assert capture.ticks == 40
 
 

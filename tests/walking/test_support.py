@@ -8,7 +8,8 @@ from scipy.spatial import ConvexHull
 
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.support import Footing, depth, support_polygon, support_region
+from walking.support import Footing, edges, support_polygon, support_region
+from walking.support_kernel import depth
 
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
 MARGIN = 0.005
@@ -60,8 +61,8 @@ def test_load_share_runs_from_one_foot_to_the_other():
 @given(coordinates, coordinates, st.floats(-0.1, 0.1), st.floats(-0.7, 0.7))
 def test_depth_in_the_polygon_agrees_with_the_hull(x, y, ahead, yaw):
     left = Footstep(True, ahead, 0.08, yaw)
-    polygon = support_polygon(SOLE, RIGHT, left)
-    assert depth(polygon, x, y) == pytest.approx(-outside((x, y), (RIGHT, left), 0.0), abs=1e-9)
+    sides = edges(support_polygon(SOLE, RIGHT, left))
+    assert depth(sides, x, y) == pytest.approx(-outside((x, y), (RIGHT, left), 0.0), abs=1e-9)
 
 
 def test_the_polygon_of_one_foot_is_its_sole():
@@ -69,7 +70,7 @@ def test_the_polygon_of_one_foot_is_its_sole():
     polygon = support_polygon(SOLE, foot, foot)
     assert len(polygon) == 4
     centre = np.mean(polygon, axis=0)
-    assert depth(polygon, *centre) == pytest.approx(SOLE.half_width)
+    assert depth(edges(polygon), *centre.tolist()) == pytest.approx(SOLE.half_width)
     assert centre == pytest.approx([0.2 + 0.01 * np.cos(0.4), -0.1 + 0.01 * np.sin(0.4)])
 
 
@@ -79,5 +80,8 @@ def test_a_footing_follows_its_feet():
     for feet in ((RIGHT, left), (left, left), (RIGHT, RIGHT)):
         footing.stand(feet)
         assert footing.polygon() == support_polygon(SOLE, *feet)
-        assert footing.region(0.004) == support_region(SOLE, *feet, 0.004)
-        assert footing.region(0.01) == support_region(SOLE, *feet, 0.01)
+        assert footing.depth(0.02, 0.01) == depth(edges(footing.polygon()), 0.02, 0.01)
+        for margin in (0.004, 0.01):
+            np.testing.assert_array_equal(
+                footing.region(margin).row, support_region(SOLE, *feet, margin).row
+            )

@@ -85,12 +85,12 @@ def test_the_largest_admitted_share_is_found(setting):
 def test_if_nothing_is_admitted_the_old_plan_goes_on(setting):
     gait, generator, transition, _ = setting
     tick(setting, SLOW)
-    before, clock = tick(setting, SLOW), gait.clock()
+    before, clock = tick(setting, SLOW), gait.clock
     generator.reach = -1.0
     after = tick(setting, FAST, timing=Timing(20, 80, 0.03))
     assert transition.share == 0.0
     assert list(after) == list(before)
-    assert gait.clock() == clock
+    assert gait.clock == clock
 
 
 def test_times_change_by_the_same_share(setting):
