@@ -1,4 +1,4 @@
-"""What was probably meant by a command line that is wrong."""
+"""What was probably meant by a command line that is wrong, from the words other programs have."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -13,6 +13,7 @@ import tyro
 from hsr8.cli import options
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.guidance import hints, no_command
+from hsr8.cli.wrong_line import mistakes
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.version import VERSION
 
@@ -41,6 +42,7 @@ COMMANDS: dict[str, tuple[type, str]] = {
     "doctor": (options.Doctor, "hsr8.cli.doctor"),
     "bug-report": (options.BugReport, "hsr8.cli.bug_report"),
 }
+HELP = {"-h", "--help"}
 VIEWS = ("native", "web")
 MODULES = dict(COMMANDS.values())
 INTERRUPTED = 130
@@ -105,15 +107,30 @@ def _parsed(given: list[str]) -> options.Command | int:
         given = [*given[1:2], "--help"]
     if given and not given[0].startswith("-") and given[0] not in COMMANDS:
         raise UsageError(no_command(given[0], given[1:], list(COMMANDS)))
-    given = _with_kind_of_view(given or ["--help"])
+    words = given
+    if not words or not HELP.isdisjoint(words):
+        words = [*(word for word in words[:1] if word in COMMANDS), "--help"]
+    else:
+        _judge(words)
     try:
-        command: options.Command = parse(given)
+        return parse(_with_kind_of_view(words))
     except SystemExit as stop:
-        code = stop.code if isinstance(stop.code, int) else 2
-        for hint in hints(given) if code else ():
-            print(f"hsr8: {hint}", file=sys.stderr)
-        return code
-    return command
+        return stop.code if isinstance(stop.code, int) else 2
+
+
+def _judge(words: list[str]) -> None:
+    """Say what is wrong in a sentence, before the parser has to.
+
+    Raises:
+        UsageError: something is.
+    """
+    name = words[0]
+    if name not in COMMANDS:
+        raise UsageError(f"{name}: a command comes first (commands: {', '.join(COMMANDS)})")
+    said = mistakes(words, {word: kind for word, (kind, _) in COMMANDS.items()})
+    if said:
+        more = [*hints(words), f"all that it takes: hsr8 {name} --help"]
+        raise UsageError("\n  ".join([*said, *more]))
 
 
 def _with_kind_of_view(given: list[str]) -> list[str]:
