@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.kinematic_kernel import rates, stand
 from hsr8.world.layout import Layout
 from hsr8.world.physics import CONTROL_PERIOD, place_robot
 from hsr8.world.rotation import heading
@@ -25,6 +26,7 @@ YAW_SLIP = 0.008  # and about the vertical [rad]
 LANDED = 0.0005  # the swing foot takes over when it is lower than the stance foot by this [m]
 LIFTED = 0.001  # a foot higher than the other by this carries nothing [m]
 GRAVITY = 9.81
+ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 WATCH_TICKS = 4  # contacts with obstacles are looked for every 20 ms
 
 
@@ -49,6 +51,9 @@ class KinematicBody:
         self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD)
         self._weight = float(model.body_subtreemass[self._index.base_body]) * GRAVITY
         self._tick = 0
+        sites = list(self._index.foot_sites)
+        self._feet = model.site_bodyid[sites].astype(np.intp)
+        self._soles = np.hstack([model.site_pos[sites], model.site_quat[sites]])
         place_robot(model, self.data, np.array(layout.start))
         mujoco.mj_kinematics(model, self.data)
         self._joints = self.data.qpos[self._index.joint_qpos].copy()
@@ -57,6 +62,7 @@ class KinematicBody:
         self._load = np.array([0.5, 0.5])
         self._stance = 0
         self._anchor = self._foot_on_floor(0)
+        self._other = np.zeros(4)
         self._plant()
 
     @property
@@ -68,14 +74,16 @@ class KinematicBody:
         """Read encoders, IMU and foot pads, computed from the planned motion."""
         root = self._index.root_qpos
         quaternion = self.data.qpos[root + 3 : root + 7]
-        rotation = self.data.xmat[self._index.base_body].reshape(3, 3)
+        w, x, y, z = quaternion.tolist()
+        up = (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+        left, right = (self._load * (self._weight / 4.0)).tolist()
         return self._suite.read(
             joint_position=self._joints,
             joint_velocity=self._rates,
             gyro=self._gyro,
-            accelerometer=rotation[2] * GRAVITY,
+            accelerometer=np.array(up) * GRAVITY,
             orientation=quaternion,
-            foot_force=np.repeat(self._load[:, None] * self._weight / 4.0, 4, axis=1),
+            foot_force=np.array([[left] * 4, [right] * 4]),
         )
 
     def set_points(self, targets: JointTargets) -> Array:
@@ -83,23 +91,25 @@ class KinematicBody:
         return targets.position
 
     def apply(self, targets: JointTargets) -> None:
-        """Put the joints at their targets and the body where the planted foot says."""
+        """Put the joints at their targets and the body where the planted foot says.
+
+        The poses in ``data`` are those of the world in the ticks that look for contacts, and
+        after `update_kinematics`.
+        """
         self._tick += 1
         self._rates = (targets.position - self._joints) / CONTROL_PERIOD
         self._joints = targets.position.copy()
         root, dof = self._index.root_qpos, self._index.root_dof
-        before = self.data.qpos[root : root + 7].copy()
-        self.data.qpos[self._index.joint_qpos] = self._joints
+        qpos = self.data.qpos
+        before = qpos[root : root + 7].copy()
+        qpos[self._index.joint_qpos] = self._joints
         self._plant()
-        self.data.qvel[dof : dof + 3] = (
-            self.data.qpos[root : root + 3] - before[:3]
-        ) / CONTROL_PERIOD
-        difference = np.empty(3)
-        mujoco.mju_subQuat(difference, self.data.qpos[root + 3 : root + 7], before[3:])
-        self._gyro = difference / CONTROL_PERIOD
+        after, velocity = qpos[root : root + 7], self.data.qvel[dof : dof + 3]
+        self._gyro = np.empty(3)
+        rates(before, after, CONTROL_PERIOD, velocity, self._gyro)
         if self._tick % WATCH_TICKS == 0:
             self._around.move(self.data, self.time)
-            self.update_kinematics()
+            mujoco.mj_kinematics(self.model, self.data)
             mujoco.mj_collision(self.model, self.data)
             self._around.watch.watch(self.data)
 
@@ -112,6 +122,8 @@ class KinematicBody:
     def truth(self) -> Truth:
         """State of the world now; a kinematic robot never falls."""
         data, root = self.data, self._index.root_qpos
+        if self._tick % WATCH_TICKS:
+            mujoco.mj_kinematics(self.model, data)
         robot = np.array(
             [*data.qpos[root : root + 2].tolist(), heading(data.qpos[root + 3 : root + 7])]
         )
@@ -142,32 +154,29 @@ class KinematicBody:
 
     def _plant(self) -> None:
         """Move the base so that the stance foot lies flat where it is anchored."""
-        self._anchor_base()
-        heights = self.data.site_xpos[list(self._index.foot_sites), 2]
-        other = 1 - self._stance
-        if heights[other] < heights[self._stance] - LANDED:
-            self._stance = other
+        data, root = self.data, self._index.root_qpos
+        pose = data.qpos[root : root + 7]
+        pose[:] = ORIGIN
+        mujoco.mj_kinematics(self.model, data)
+        self._stand(pose)
+        if self._other[3] < -LANDED:
+            self._stance = 1 - self._stance
             slip = self._slip_rng.standard_normal(3) * (SLIP, SLIP, YAW_SLIP)
-            self._anchor = self._foot_on_floor(other) + slip
-            self._anchor_base()
-            heights = self.data.site_xpos[list(self._index.foot_sites), 2]
-        gap = float(heights[1 - self._stance] - heights[self._stance])
-        share = 0.5 if gap < LIFTED else 0.0
+            self._anchor = self._other[:3] + slip
+            self._stand(pose)
+        share = 0.5 if self._other[3] < LIFTED else 0.0
         self._load = np.full(2, share)
         self._load[self._stance] = 1.0 - share
 
-    def _anchor_base(self) -> None:
-        root, site = self._index.root_qpos, self._index.foot_sites[self._stance]
-        self.data.qpos[root : root + 3] = 0.0
-        self.data.qpos[root + 3 : root + 7] = (1.0, 0.0, 0.0, 0.0)
-        mujoco.mj_kinematics(self.model, self.data)
-        r_foot = self.data.site_xmat[site].reshape(3, 3)
-        p_foot = self.data.site_xpos[site].copy()
-        x, y, yaw = self._anchor.tolist()
-        c, s = np.cos(yaw), np.sin(yaw)
-        rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ r_foot.T
-        quaternion = np.empty(4)
-        mujoco.mju_mat2Quat(quaternion, rotation.ravel())
-        self.data.qpos[root : root + 3] = np.array([x, y, 0.0]) - rotation @ p_foot
-        self.data.qpos[root + 3 : root + 7] = quaternion
-        mujoco.mj_kinematics(self.model, self.data)
+    def _stand(self, pose: Array) -> None:
+        data = self.data
+        stand(
+            data.xpos,
+            data.xquat,
+            self._feet,
+            self._soles,
+            self._stance,
+            self._anchor,
+            pose,
+            self._other,
+        )

@@ -43,6 +43,7 @@ def test_joints_follow_their_targets_and_the_stance_foot_stays(world, silent):
         position[8] -= 0.001
         body.apply(JointTargets(position=position.copy(), offset=np.full(26, 0.3)))
         assert np.allclose(body.sense().joint_position, position)
+        body.update_kinematics()
         assert np.allclose(body.data.site("l_foot").xpos[:2], foot[:2], atol=1e-9), k
         assert abs(body.data.site("l_foot").xpos[2]) < 1e-9
 
