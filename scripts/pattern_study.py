@@ -64,11 +64,6 @@ class TracedLipm(Lipm):
         self.calls.append((zmp, zmp))
         return super().hold(position, velocity, zmp, time)
 
-    def slide(self, position: float, velocity: float, before: float, after: float) -> Point:
-        """As the pendulum."""
-        self.calls.append((before, after))
-        return super().slide(position, velocity, before, after)
-
     def walked(self) -> list[Point]:
         """Ends of all stretches of the ZMP since the last call."""
         calls, self.calls = self.calls, []
@@ -147,12 +142,14 @@ class Walker:
         self.late = hypot(own[0] - x, own[1] - y)
         planned = self.generator.planned_dcm(p, ramps)
         self.missed = hypot(own[0] - planned[0], own[1] - planned[1])
+        before = (p.zmp_x, p.zmp_y)
         self.generator.advance(p, ramps, region)
         self.cost = time.process_time() - begin
         self.clipped = region.clipped
         self.feet = gait.support_feet if gait.double else (gait.support_feet[1],)
         gait.advance(moving=moving)
-        return self.lipm.walked()
+        # Along a plan the ZMP is linear.
+        return self.lipm.walked() or [before, (p.zmp_x, p.zmp_y)]
 
     def landed(self, axis: str) -> float:
         """Forward or side length of the last footstep [m]."""

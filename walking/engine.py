@@ -19,7 +19,6 @@ from walking.head import Head
 from walking.heading_hold import HeadingHold
 from walking.joints import HEAD
 from walking.lipm import Lipm
-from walking.measurement import BodyMeasurement
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import PendulumState
@@ -139,7 +138,7 @@ class WalkingEngine:
         Returns:
             set-points of all joints.
         """
-        body = self._sense(sensors)
+        tilt = self._sense(sensors)
         error = self._estimation.dcm_error
         gait, steering, placement = self._gait, self._steering, self._placement
         pendulum, whole_body, footing = self._pendulum, self._whole_body, self._footing
@@ -148,7 +147,7 @@ class WalkingEngine:
         wish = self._wish()
         if not gait.stepping:
             self._maybe_start(error)
-        self._feel_floor(body)
+        self._feel_floor()
         footing.stand(gait.support_feet)
         region = footing.region(self._parameters.pattern.sole_margin)
         ramps = placement.decide(wish, steering.velocity, error, region, moving=steering.moving)
@@ -163,11 +162,12 @@ class WalkingEngine:
             self._bound.append(Limit.SWING_HEIGHT)
         self._catching.touch_down()
         return whole_body.follow(
-            body,
+            tilt,
+            sensors.gyro,
             zmp,
             self._zmp_shift,
             load,
-            self._head.advance(head),
+            head=self._head.advance(head),
             offset=self._pressure.offset,
         )
 
@@ -220,10 +220,11 @@ class WalkingEngine:
     @property
     def fallen(self) -> bool:
         """Whether the trunk is tilted so far that the robot must have fallen."""
-        body = self._estimation.body
-        return body is not None and hypot(body.roll, body.pitch) > self._fall_tilt
+        tilt = self._estimation.tilt
+        return tilt is not None and hypot(*tilt) > self._fall_tilt
 
-    def _sense(self, sensors: BodySensors) -> BodyMeasurement:
+    def _sense(self, sensors: BodySensors) -> tuple[float, float]:
+        """Follow the body; roll and pitch of its trunk [rad]."""
         gait, whole_body, pendulum = self._gait, self._whole_body, self._pendulum
         pelvis = whole_body.pelvis
         plan = (
@@ -237,10 +238,9 @@ class WalkingEngine:
             whole_body.turn_rate,
             gait.right_weight,
         )
-        body = self._estimation.update(sensors, gait.feet, plan, stepping=gait.stepping)
         self._sensors = sensors
         self._ticks += 1
-        return body
+        return self._estimation.update(sensors, gait.feet, plan, stepping=gait.stepping)
 
     def _command(self, command: Command, error: tuple[float, float]) -> None:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
@@ -300,11 +300,11 @@ class WalkingEngine:
         if not gait.retime(self._steering.timing):
             self._bound.append(Limit.TIMING)
 
-    def _feel_floor(self, body: BodyMeasurement) -> None:
+    def _feel_floor(self) -> None:
         """Leave the swing foot where it has met the floor before its time."""
         gait = self._gait
         if gait.stepping and not gait.double and not gait.held:
-            force = body.feet[gait.swing].force
+            force = self._estimation.load(gait.swing)
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touch_down()
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from walking import estimation_kernel
-from walking.estimation_kernel import FOUND, Plan
+from walking.estimation_kernel import FOUND, LOAD, Plan
 from walking.estimator import steady_gains
 from walking.measurement import BodyMeasurement, body_of
 from walking.odometry import LegOdometry
@@ -28,7 +28,8 @@ class Estimation:
         odometry: dead reckoning, brought up to date.
 
     Attributes:
-        body: of the last tick, None before the first.
+        seen: what the last tick has seen, see `estimation_kernel.observe` (24,).
+        tilt: roll and pitch of the trunk, filtered; None before the first tick [rad].
         dcm_error: of the body against the plan [m].
         pressure_error: centre of pressure less planned ZMP, forward and left; none in the air [m].
         pose: by odometry (x, y, heading) [m, m, rad].
@@ -43,7 +44,7 @@ class Estimation:
     ) -> None:
         self._robot = robot
         self._odometry = odometry
-        self._tilt, self._error = np.zeros(3), np.zeros(5)
+        self._filter, self._error = np.zeros(3), np.zeros(5)
         self._error[4] = -1.0
         sole, gains = robot.sole, steady_gains(omega, parameters)
         light = LIGHT_LOAD * robot.mass * GRAVITY
@@ -55,11 +56,16 @@ class Estimation:
             sole.half_width,
         )
         self._gains = (gains.position, gains.velocity, omega)
-        self._found = np.zeros(FOUND)
-        self.body: BodyMeasurement | None = None
+        self.seen = np.zeros(FOUND)
+        self.tilt: Point | None = None
         self.dcm_error: Point = (0.0, 0.0)
         self.pressure_error: Point = (0.0, 0.0)
         self.pose = (0.0, 0.0, 0.0)
+
+    @property
+    def body(self) -> BodyMeasurement | None:
+        """Of the last tick, None before the first."""
+        return None if self.tilt is None else body_of(self.seen.tolist())
 
     @property
     def com_error(self) -> tuple[float, float, float, float]:
@@ -67,10 +73,14 @@ class Estimation:
         x, y, vx, vy, _ = self._error.tolist()
         return x, y, vx, vy
 
-    def observe(self, sensors: BodySensors) -> BodyMeasurement:
+    def load(self, foot: int) -> float:
+        """Load under the left (0) or the right foot (1) [N]."""
+        return float(self.seen[LOAD + 5 * foot])
+
+    def observe(self, sensors: BodySensors) -> None:
         """A tick in which there is no plan: only the body is seen, and its tilt filtered."""
-        robot, found = self._robot, self._found
-        estimation_kernel.observe(
+        robot = self._robot
+        self.tilt = estimation_kernel.observe(
             (
                 sensors.joint_position,
                 sensors.foot_force,
@@ -78,18 +88,14 @@ class Estimation:
                 sensors.gyro,
             ),
             robot.com(sensors.joint_position),
-            self._tilt,
+            self._filter,
             robot.leg_rows,
             self._body,
             CONTROL_PERIOD,
-            found,
+            self.seen,
         )
-        self.body = body = body_of(found.tolist())
-        return body
 
-    def update(
-        self, sensors: BodySensors, feet: Array, plan: Plan, *, stepping: bool
-    ) -> BodyMeasurement:
+    def update(self, sensors: BodySensors, feet: Array, plan: Plan, *, stepping: bool) -> Point:
         """One tick of a walk.
 
         Args:
@@ -97,9 +103,12 @@ class Estimation:
             feet: their references, see `walking.swing_foot_kernel` (2, 10).
             plan: of the tick before, see `estimation_kernel.Plan`.
             stepping: whether the feet leave the floor.
+
+        Returns:
+            roll and pitch of the trunk [rad].
         """
-        robot, odometry, found = self._robot, self._odometry, self._found
-        self.dcm_error, self.pressure_error, self.pose = estimation_kernel.estimate(
+        robot, odometry = self._robot, self._odometry
+        tilt, self.dcm_error, self.pressure_error, self.pose = estimation_kernel.estimate(
             (
                 sensors.joint_position,
                 sensors.foot_force,
@@ -107,7 +116,7 @@ class Estimation:
                 sensors.gyro,
             ),
             robot.com(sensors.joint_position),
-            (self._tilt, odometry.state, self._error),
+            (self._filter, odometry.state, self._error),
             robot.leg_rows,
             self._body,
             odometry.growth,
@@ -116,7 +125,7 @@ class Estimation:
             plan,
             stepping,
             CONTROL_PERIOD,
-            found,
+            self.seen,
         )
-        self.body = body = body_of(found.tolist())
-        return body
+        self.tilt = tilt
+        return tilt

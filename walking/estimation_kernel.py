@@ -38,7 +38,7 @@ Plan = tuple[float, float, float, float, float, float, float, float, float, floa
 ankles moved it x, y [m]; turn rate [rad/s]; weight on the right foot [1]."""
 
 RELEASED = 0.2  # share of the weight under which a foot no longer counts
-FOUND = 24  # numbers found in a tick
+FOUND, LOAD = 24, 10  # numbers found in a tick; the first foot's load among them
 
 
 @njit(cache=True)
@@ -55,7 +55,7 @@ def estimate(
     stepping: bool,
     period: float,
     found: Array,
-) -> tuple[Point, Point, Vector]:
+) -> tuple[Point, Point, Point, Vector]:
     """One tick: `observe`, odometry, and what the body does against the plan.
 
     Args:
@@ -73,11 +73,11 @@ def estimate(
         found: see `observe`.
 
     Returns:
-        error of the DCM in the plan frame [m]; of the centre of pressure, forward and left, none in
-        the air [m]; pose by odometry [m, m, rad].
+        roll and pitch [rad]; error of the DCM in the plan frame [m]; of the centre of pressure,
+        forward and left, none in the air [m]; pose by odometry [m, m, rad].
     """
     tilt, odometry, error = states
-    observe(reading, com, tilt, legs, body, period, found)
+    inclined = observe(reading, com, tilt, legs, body, period, found)
     left, right = (found[6], found[7]), (found[11], found[12])
     reckon(odometry, found[2], (left, right), found[19], stepping, growth)
     yaw, weight = plan[2], plan[10]
@@ -102,7 +102,7 @@ def estimate(
         x, y = c * x + s * y, c * y - s * x
     w = gains[2]
     dcm = (error[0] + error[2] / w, error[1] + error[3] / w)
-    return dcm, (x, y), (odometry[0], odometry[1], odometry[2])
+    return inclined, dcm, (x, y), (odometry[0], odometry[1], odometry[2])
 
 
 @njit(cache=True)
@@ -114,7 +114,7 @@ def observe(
     body: Body,
     period: float,
     found: Array,
-) -> None:
+) -> Point:
     """The body as the sensors have it, in the level frame of the trunk's heading.
 
     Args:
@@ -128,6 +128,9 @@ def observe(
             x, y, z [m], yaw [rad], load [N] | mass centre (3,) [m] | share of the load on the right
             foot, half in the air [1] | where in the foot frame either foot's load is, x, y [m]
             (24,).
+
+    Returns:
+        roll and pitch [rad].
     """
     joints, pads, orientation, gyro = reading
     quaternion = (orientation[0], orientation[1], orientation[2], orientation[3])
@@ -149,6 +152,7 @@ def observe(
     on_left, on_right = max(0.0, found[10] - body[1]), max(0.0, found[15] - body[1])
     both = on_left + on_right
     found[19] = on_right / both if both > 0.0 else 0.5
+    return inclined
 
 
 @njit(cache=True)

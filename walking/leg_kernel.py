@@ -22,9 +22,9 @@ Pose = tuple[float, float, float, float, float, float]
 Angles = tuple[float, float, float, float, float, float]
 """Hip yaw, roll, pitch, knee, ankle pitch, roll [rad]."""
 
-Balance = tuple[Point, Point, Vector]
+Balance = tuple[Point, Point, Array]
 """Directions of the left and of the right foot [rad]; by how much the ankles are to move the ZMP,
-in the plan frame [m]; angular velocity of the trunk [rad/s]."""
+in the plan frame [m]; angular velocity of the trunk (3,) [rad/s]."""
 
 Ankles = tuple[float, float, float, float]
 """Weight of the robot [N]; stiffness of pitch and of roll [N m/rad]; damping by the gyro [s]."""

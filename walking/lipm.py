@@ -32,12 +32,14 @@ class Lipm:
 
     Attributes:
         omega: ω = √(g / height) [1/s].
+        tick: ω [1/s], cosh ωT and sinh ωT [1], T [s] of a control tick T, as compiled code has it.
     """
 
     def __init__(self, height: float) -> None:
         self.omega = sqrt(GRAVITY / height)
         wh = self.omega * CONTROL_PERIOD
         self._cosh, self._sinh = cosh(wh), sinh(wh)
+        self.tick = (self.omega, self._cosh, self._sinh, CONTROL_PERIOD)
         self._ramps: dict[int, RampCoefficients] = {}
 
     def step(self, position: float, velocity: float, zmp: float) -> tuple[float, float]:
@@ -55,18 +57,6 @@ class Lipm:
         w = self.omega
         c, s, d = cosh(w * time), sinh(w * time), position - zmp
         return zmp + d * c + velocity / w * s, d * w * s + velocity * c
-
-    def slide(
-        self, position: float, velocity: float, before: float, after: float
-    ) -> tuple[float, float]:
-        """Position [m] and velocity [m/s] one tick later under a ZMP moving linearly."""
-        w, rate = self.omega, (after - before) / CONTROL_PERIOD
-        # The ZMP itself solves the equation of motion; what is left is free.
-        d, v = position - before, velocity - rate
-        return (
-            after + d * self._cosh + v / w * self._sinh,
-            rate + d * w * self._sinh + v * self._cosh,
-        )
 
     def ramp(self, ticks: int) -> RampCoefficients:
         """How the DCM moves over `ticks` of a ZMP that moves linearly."""

@@ -169,10 +169,10 @@ class RobotModel:
         forces: Array = pin.rnea(self._model, self._data, *self.motion)
         return forces
 
-    def moved_com(self) -> tuple[float, float, float]:
-        """Centre of mass in the base frame [m] for the joint angles of the last `forces`."""
-        x, y, z = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
-        return x, y, z
+    def moved_com(self) -> tuple[float, float]:
+        """Centre of mass in the base frame, x, y [m], for the joint angles of the last `forces`."""
+        x, y, _ = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
+        return x, y
 
     def pendulum_height(self) -> float:
         """Height of the pendulum that the robot is for its base [m].

@@ -32,7 +32,9 @@ from walking.robot_model import Sole
 from walking.support import SupportRegion
 
 Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
 
+NO_DUAL = (0.0, 0.0)  # to begin with where nothing is known [1/m]
 AHEAD = 5  # ramps of a plan that are looked at to tell whether it can be carried on
 
 
@@ -69,8 +71,10 @@ class RobustGenerator:
 
     def __init__(self, lipm: Lipm, parameters: PatternParameters, sole: Sole) -> None:
         self._lipm = lipm
-        self._sole = sole
-        self._sole_margin, self._plan_margin = parameters.sole_margin, parameters.plan_margin
+        self._sole, self._planned_sole = (
+            (sole.centre, sole.half_length - margin, sole.half_width - margin)
+            for margin in (parameters.sole_margin, parameters.plan_margin)
+        )
         self._wh = lipm.omega * CONTROL_PERIOD
         self._rate = parameters.zmp_rate * CONTROL_PERIOD
         self._tracker = DcmTracker(lipm, parameters.dcm_gain)
@@ -81,7 +85,7 @@ class RobustGenerator:
 
     def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
         """Whether a plan with all knots in place leads into a reference."""
-        plan = self._solve(state, ramps, self._plan_margin)
+        plan = self._solve(state, ramps, self._planned_sole)
         if plan is not None:
             self._candidate = (ramps, plan)
         return plan is not None
@@ -130,46 +134,35 @@ class RobustGenerator:
         return all((end + age, feet) in planned for end, feet in _supports(table_of(ramps)[:2]))
 
     def _follow(self, state: PendulumState, plan: ZmpPlan) -> None:
-        """One tick along a plan, which loses its first segment when that is over."""
-        lipm = self._lipm
-        px, py = state.zmp_x, state.zmp_y
-        if plan.next < len(plan.knots):
-            knot = plan.knots[plan.next]
-            ticks, x, y = knot.tolist()
-            if ticks == 1.0:
-                px, py = x, y
-                plan.next += 1
-            else:
-                px, py = px + (x - px) / ticks, py + (y - py) / ticks
-                knot[0] = ticks - 1.0
-        state.x, state.vx = lipm.slide(state.x, state.vx, state.zmp_x, px)
-        state.y, state.vy = lipm.slide(state.y, state.vy, state.zmp_y, py)
-        state.zmp_x, state.zmp_y = px, py
+        """One tick along a plan."""
+        now = (state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y)
+        then, plan.next = zmp_kernel.follow(plan.knots, plan.next, now, self._lipm.tick)
+        state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y = then
 
     def _replan(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> None:
         """A plan for what nobody has asked about, or the one under way, or none."""
-        plan = self._solve(state, ramps, self._plan_margin)
+        plan = self._solve(state, ramps, self._planned_sole)
         if plan is None and not self.holds(ramps):
-            plan = self._solve(state, ramps, self._sole_margin)
+            plan = self._solve(state, ramps, self._sole)
             self._plan = None
         if plan is not None or self._plan is None:
             self._plan, self._age = plan, 0
 
     def _solve(
-        self, state: PendulumState, ramps: Sequence[ZmpRamp], margin: float
+        self, state: PendulumState, ramps: Sequence[ZmpRamp], sole: Vector
     ) -> ZmpPlan | None:
         """The plan nearest to a reference, or None if none leads into it."""
-        w, sole, table = self._lipm.omega, self._sole, table_of(ramps)
-        growth = self._lipm.ramp(self._age).growth
-        lx, ly = self._plan.dual if self._plan is not None else (0.0, 0.0)
+        w, table, plan, dual = self._lipm.omega, table_of(ramps), self._plan, NO_DUAL
+        if plan is not None:
+            growth = self._lipm.ramp(self._age).growth
+            dual = plan.dual[0] / growth, plan.dual[1] / growth
         cells, starts, weights, dcm, knots = zmp_layout_kernel.lay_out(
             table,
             (state.x, state.y, state.vx / w, state.vy / w, state.zmp_x, state.zmp_y),
-            (sole.centre, sole.half_length - margin, sole.half_width - margin),
+            sole,
             self._wh,
             self._rate,
         )
-        dual = (lx / growth, ly / growth)
         feasible, lx, ly, evaluations = zmp_kernel.fit(cells, starts, weights, dcm, dual, knots)
         self.evaluations += evaluations
         return ZmpPlan(knots, table, (lx, ly)) if feasible else None

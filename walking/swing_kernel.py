@@ -7,6 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
 
 @njit(cache=True)
@@ -49,9 +50,9 @@ def react(
     now: Array,
     later: Array,
     reaction: tuple[float, float, float],
-    state: tuple[float, float, float, float],
-    clock: tuple[float, float],
-) -> tuple[float, float, float, float, float, float]:
+    state: Array,
+    clock: Point,
+) -> tuple[Point, Point]:
     """One tick of the pelvis.
 
     Args:
@@ -59,13 +60,12 @@ def react(
         now: profile of the first (ticks + 1, 6).
         later: profile of the others (ticks + 1, 6).
         reaction: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg.
-        state: offset of the pelvis x, y, and the ξ of the tick before, x, y [m].
+        state: offset of the pelvis x, y, and ξ x, y, brought up to date (4,) [m].
         clock: ω [1/s], control period [s].
 
     Returns:
-        offset x, y [m], its acceleration x, y [m/s²], ξ x, y [m].
+        offset x, y [m], and its acceleration x, y [m/s²].
     """
-    cx, cy, before_x, before_y = state
     w, period = clock
     x = y = now_x = now_y = 0.0
     for k in range(swings.shape[0]):
@@ -80,9 +80,10 @@ def react(
         if k == 0 and swing[0] <= 0.0:
             now_x, now_y = _moved(swing, reaction, moment[3], moment[4], moment[5])
     share = 1.0 - exp(-w * period)
-    cx += share * (0.5 * (before_x + x) - cx)
-    cy += share * (0.5 * (before_y + y) - cy)
-    return cx, cy, w * w * (cx + now_x), w * w * (cy + now_y), x, y
+    cx = state[0] + share * (0.5 * (state[2] + x) - state[0])
+    cy = state[1] + share * (0.5 * (state[3] + y) - state[1])
+    state[0], state[1], state[2], state[3] = cx, cy, x, y
+    return (cx, cy), (w * w * (cx + now_x), w * w * (cy + now_y))
 
 
 @njit(cache=True)

@@ -126,7 +126,7 @@ class SwingCompensation:
         self._w = (lipm.omega, CONTROL_PERIOD)
         self._reaction = (reaction.thrust, reaction.weight, reaction.knee)
         self._profiles: dict[int, Array] = {}
-        self._ahead_before: Point = (0.0, 0.0)
+        self._state = np.zeros(4)
         self.offset: Point = (0.0, 0.0)
         self.acceleration: Point = (0.0, 0.0)
 
@@ -136,9 +136,9 @@ class SwingCompensation:
         if swings is not None:
             table = swings.table
             now, later = self._profile(swings.first), self._profile(swings.later)
-        state = (*self.offset, *self._ahead_before)
-        found = swing_kernel.react(table, now, later, self._reaction, state, self._w)
-        self.offset, self.acceleration, self._ahead_before = found[:2], found[2:4], found[4:]
+        self.offset, self.acceleration = swing_kernel.react(
+            table, now, later, self._reaction, self._state, self._w
+        )
 
     def _profile(self, ticks: int) -> Array:
         found = self._profiles.get(ticks)

@@ -2,10 +2,12 @@
 
 from math import cos, sin
 
+import numpy as np
+from numpy.typing import NDArray
+
 from walking.feedforward import FeedForward
 from walking.gait import Gait
 from walking.lipm import Lipm
-from walking.measurement import BodyMeasurement
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern import PendulumState
 from walking.posture import Posture
@@ -13,6 +15,7 @@ from walking.robot_model import RobotModel
 from walking.swing_reaction import SwingCompensation, leg_reaction
 from walking.targets import JointTargets
 
+Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 
@@ -57,18 +60,20 @@ class WholeBody:
 
     def follow(
         self,
-        body: BodyMeasurement,
+        tilt: Point,
+        gyro: Array,
         zmp: Point,
         zmp_shift: Point,
         right_load: float,
-        head: Point,
         *,
+        head: Point,
         offset: Point,
     ) -> JointTargets:
         """One tick.
 
         Args:
-            body: measured.
+            tilt: measured roll and pitch of the trunk [rad].
+            gyro: its angular velocity (3,) [rad/s].
             zmp: planned [m].
             zmp_shift: by how much the ankles move the ZMP [m].
             right_load: planned share of the weight on the right foot [1].
@@ -84,7 +89,7 @@ class WholeBody:
         ox += c * offset[0] - s * offset[1]
         oy += s * offset[0] + c * offset[1]
         position, pelvis = self._posture.joints(
-            gait, (pendulum.x + ox, pendulum.y + oy), (body.roll, body.pitch), head
+            gait, (pendulum.x + ox, pendulum.y + oy), tilt, head
         )
         self.pelvis = pelvis
         self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
@@ -95,8 +100,7 @@ class WholeBody:
             gait.spots,
             right_load,
             (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),
-            balance=((left.yaw, right.yaw), zmp_shift, body.gyro),
+            balance=((left.yaw, right.yaw), zmp_shift, gyro),
         )
-        x, y, _ = self._robot.moved_com()
-        self.com = x, y
+        self.com = self._robot.moved_com()
         return JointTargets(position=position, offset=set_points)

@@ -23,6 +23,9 @@ Indices = NDArray[np.int64]
 Point = tuple[float, float]
 
 SOLVED = 1e-10  # DCM not accounted for that is rounding [m]
+Pendulum = tuple[float, float, float, float, float, float]
+"""Position x, y [m], velocity x, y [m/s], ZMP of the last tick x, y [m]."""
+
 ITERATIONS = 20
 HALVINGS = 6
 
@@ -96,6 +99,52 @@ def place(
             v = min(cell[11], max(cell[10], cell[7] + weights[knot] * q))
             knots[knot, 1] = cell[0] + cell[2] * u + cell[4] * v
             knots[knot, 2] = cell[1] + cell[3] * u + cell[5] * v
+
+
+@njit(cache=True)
+def follow(
+    knots: Array, begin: int, pendulum: Pendulum, tick: tuple[float, float, float, float]
+) -> tuple[Pendulum, int]:
+    """One tick along a plan.
+
+    Args:
+        knots: ticks since the one before, of that at `begin` those still to go; x, y [m] (n, 3).
+        begin: index of the first knot to come; beyond the last the ZMP stays.
+        pendulum: of now.
+        tick: of the pendulum, see `Lipm`.
+
+    Returns:
+        the pendulum, and the first knot to come, a tick later.
+    """
+    x, y, vx, vy, zmp_x, zmp_y = pendulum
+    px, py = zmp_x, zmp_y
+    if begin < knots.shape[0]:
+        knot = knots[begin]
+        if knot[0] == 1.0:
+            px, py = knot[1], knot[2]
+            begin += 1
+        else:
+            px, py = px + (knot[1] - px) / knot[0], py + (knot[2] - py) / knot[0]
+            knot[0] -= 1.0
+    x, vx = _slide(x, vx, zmp_x, px, tick)
+    y, vy = _slide(y, vy, zmp_y, py, tick)
+    return (x, y, vx, vy, px, py), begin
+
+
+@njit(cache=True)
+def _slide(
+    position: float,
+    velocity: float,
+    before: float,
+    after: float,
+    tick: tuple[float, float, float, float],
+) -> Point:
+    """Position [m] and velocity [m/s] one tick later under a ZMP moving linearly."""
+    w, c, s, period = tick
+    rate = (after - before) / period
+    # The ZMP itself solves the equation of motion; what is left is free.
+    d, v = position - before, velocity - rate
+    return after + d * c + v / w * s, rate + d * w * s + v * c
 
 
 @njit(cache=True)

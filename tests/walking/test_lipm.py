@@ -46,11 +46,3 @@ def test_any_time_under_a_constant_zmp():
         integrate(0.03, -0.2, lambda _t: 0.01, 0.0123),
         atol=1e-11,
     )
-
-
-def test_one_tick_under_a_sliding_zmp():
-    np.testing.assert_allclose(
-        LIPM.slide(0.03, -0.2, 0.01, -0.02),
-        integrate(0.03, -0.2, lambda t: 0.01 - 0.03 * t / CONTROL_PERIOD, CONTROL_PERIOD),
-        atol=1e-11,
-    )

@@ -22,6 +22,7 @@ from walking.rehearsal import rehearse
     [
         (zmp_layout_kernel, "lay_out"),
         (zmp_kernel, "fit"),
+        (zmp_kernel, "follow"),
         (foothold_kernel, "onwards"),
         (foothold_kernel, "swings"),
         (swing_kernel, "react"),

@@ -136,4 +136,4 @@ def test_the_centre_of_mass_is_that_of_the_motion(robot):
     q = robot.ready + 0.1 * np.sin(np.arange(26.0))
     robot.inverse_dynamics(q, 0.5 * q, q, (0.3, 0.1))
     moved = robot.moved_com()
-    assert moved == pytest.approx(robot.com(q), abs=1e-12)
+    assert moved == pytest.approx(robot.com(q)[:2], abs=1e-12)

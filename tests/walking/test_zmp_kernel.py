@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from walking import zmp_kernel, zmp_layout_kernel
 from walking.lipm import Lipm
@@ -288,3 +289,35 @@ def test_compiled_it_is_what_it_says(plainly, seed):
     )
     assert numbers == pytest.approx(plain, rel=1e-9, abs=1e-9)
     np.testing.assert_allclose(knots, points, atol=1e-12)
+
+
+def test_a_plan_is_followed_knot_by_knot_and_the_pendulum_obeys():
+    knots = np.array([[2.0, 0.03, -0.01], [1.0, 0.01, 0.02]])
+    zmps = [(0.02, -0.005), (0.03, -0.01), (0.01, 0.02), (0.01, 0.02)]
+    begin, now = 0, (0.02, 0.01, -0.2, 0.1, 0.01, 0.0)
+    for zmp in zmps:
+        before = now
+        now, begin = zmp_kernel.follow(knots, begin, before, LIPM.tick)
+        assert now[4:] == pytest.approx(zmp)
+        for axis in range(2):
+            p, rate = before[4 + axis], (zmp[axis] - before[4 + axis]) / CONTROL_PERIOD
+            solution = solve_ivp(
+                lambda t, s, p=p, rate=rate: [s[1], LIPM.omega**2 * (s[0] - p - rate * t)],
+                (0.0, CONTROL_PERIOD),
+                before[axis:4:2],
+                rtol=1e-11,
+                atol=1e-13,
+            )
+            assert solution.y[:, -1] == pytest.approx(now[axis:4:2], abs=1e-11)
+    assert begin == len(knots)
+
+
+@given(st.integers(0, 10**6), st.integers(0, 2))
+def test_compiled_a_plan_is_followed_as_it_says(plainly, seed, begin):
+    outcomes = []
+    for call in (zmp_kernel.follow, lambda *a: plainly(zmp_kernel, "follow", *a)):
+        rng = np.random.default_rng(seed)
+        knots, now = rng.uniform(-0.1, 0.1, (2, 3)), tuple(rng.uniform(-0.1, 0.1, 6).tolist())
+        knots[:, 0] = rng.integers(1, 3, 2)
+        outcomes.append((call(knots, begin, now, LIPM.tick), knots.tolist()))
+    assert outcomes[0] == outcomes[1]
