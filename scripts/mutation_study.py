@@ -32,7 +32,10 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "results" / "mutation.md"
 TESTS = {  # where they are not those of the same name
     "walking/zmp_layout_kernel": ("walking/test_zmp_kernel",),
-    "walking/foot_placement": ("walking/test_transition", "walking/test_admission"),
+    "walking/estimation_kernel": tuple(
+        f"walking/test_{name}"
+        for name in ("estimation_kernel", "estimation", "odometry", "leg_kinematics")
+    ),
 }
 MODULES = (
     "navigation/partial_evaluation",

@@ -249,6 +249,34 @@ def test_the_shared_error_of_a_frame_is_counted_once():
     assert sigmas[0.0198] > 0.9 * (prior**-2 + 0.02**-2) ** -0.5
 
 
+def test_what_a_frame_tells_is_added_with_all_correlations():
+    """Against the linear filter in its information form, the shared error between all bearings."""
+    names, shared = ("b0", "b3", "b5"), 0.015
+    H, R = [], np.zeros((6, 6))
+    R[1::2, 1::2] = shared**2
+    for k, name in enumerate(names):
+        x, y = BEACONS[name]
+        H += [[-x / 3.0, -y / 3.0, 0.0], [y / 9.0, -x / 9.0, -1.0]]
+        R[2 * k, 2 * k], R[2 * k + 1, 2 * k + 1] = 0.05**2, 0.02**2
+    H = np.array(H)
+    expected = np.linalg.inv(np.linalg.inv(P0) + H.T @ np.linalg.solve(R, H))
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    seen = [beacon((0, 0, 0), name) for name in names]
+    localizer.update(frame(0.1, (0, 0, 0), seen, yaw_sigma=shared))
+    np.testing.assert_allclose(localizer.covariance, expected, atol=0.01 * expected.max())
+
+
+@pytest.mark.parametrize("part", ["x", "P"])
+def test_a_filter_with_a_number_that_is_none_is_started_again(part):
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    localizer.update(frame(0.1, (0, 0, 0), []))
+    getattr(localizer._filter, part)[...] = np.nan
+    localizer.update(frame(0.2, (0, 0, 0), []))
+    assert localizer.faults == 1
+    assert np.isfinite(localizer.pose).all()
+    assert np.isfinite(localizer.covariance).all()
+
+
 def test_a_moved_beacon_is_found_out_and_no_longer_misleads():
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
     moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
