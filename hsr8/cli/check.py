@@ -4,11 +4,13 @@ import json
 from math import degrees, hypot
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.cost import estimate
 from hsr8.cli.options import Check
+from hsr8.cli.picture import require_png
 from hsr8.errors import UsageError
 from hsr8.render.png import write_png
 from hsr8.scenario.command import Command
@@ -32,6 +34,8 @@ def main(options: Check) -> int:
         UsageError: the picture cannot be written.
     """
     scenario = load(options.scenario, settings(options), options.seed)
+    if options.picture is not None:
+        require_png("--picture", options.picture)
     world = draw_world(scenario, scenario.seed)
     layout = world.layout
     if options.picture is not None:
@@ -194,7 +198,7 @@ def _least_clearance(layout: Layout, certificate: Certificate) -> float | None:
 def _obstacles(layout: Layout) -> Table:
     table = Table(title="obstacles", title_justify="left")
     for name in ("", "x [m]", "y [m]", "radius [m]", "speed [m/s]"):
-        table.add_column(name, justify="right")
+        table.add_column(escape(name), justify="right")
     table.add_column("colour")
     table.add_column("motion")
     for i, o in enumerate(layout.obstacles):

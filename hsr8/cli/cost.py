@@ -5,8 +5,11 @@ from dataclasses import dataclass
 from hsr8.recorder.log_level import LogLevel
 from hsr8.scenario.schema import Scenario
 
-# Measured on two cores without a graphics card, `course` at its defaults.
-REAL_TIME_FACTOR = 3.3
+# Measured with `course` on two cores without a graphics card [s], [s per simulated second].
+START = 3.0  # before the first tick
+LOOP = 0.055  # belief, decisions, walking, records
+PHYSICS = 0.075  # in addition, of a body with dynamics
+PICTURES = 0.025  # in addition, of a camera that is rendered
 RECORD_RATE = 0.1  # megabytes of records per simulated second
 LOG_RATES = {  # and of the log beside them
     LogLevel.MINIMAL: 0.1,
@@ -34,4 +37,14 @@ def estimate(scenario: Scenario, *, log: LogLevel | None = LogLevel.STANDARD) ->
     """Cost of one run of `scenario`, with a Rerun log of a level or without."""
     seconds = scenario.duration
     rate = RECORD_RATE + (0.0 if log is None else LOG_RATES[log])
-    return Cost(seconds, seconds / REAL_TIME_FACTOR, seconds * rate)
+    return Cost(seconds, START + seconds * _slowness(scenario), seconds * rate)
+
+
+def _slowness(scenario: Scenario) -> float:
+    """Wall time of a simulated second [s]."""
+    slowness = LOOP
+    if scenario.robot.body == "full":
+        slowness += PHYSICS
+    if scenario.camera.source == "egl":
+        slowness += PICTURES
+    return slowness

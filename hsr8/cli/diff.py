@@ -62,7 +62,7 @@ def _show(a: Run, b: Run, parts: list[Difference], about: list[Difference]) -> N
         console.print("they part   nowhere: equal, bit for bit, in every record")
     if not (parts or about):
         return
-    table = Table("record", "first at [s]")
+    table = Table("record", escape("first at [s]"))
     table.add_column("what", overflow="fold")
     table.add_column("A")
     table.add_column("B")

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.options import Doctor
@@ -159,5 +160,5 @@ def _show(findings: list[Finding]) -> None:
     marks = {"ok": "[green]ok[/]", "note": "[yellow]note[/]", "missing": "[red]missing[/]"}
     table = Table("", "", "", show_header=False, box=None, padding=(0, 2, 0, 0))
     for finding in findings:
-        table.add_row(marks[finding.state], finding.name, finding.text)
+        table.add_row(marks[finding.state], finding.name, escape(finding.text))
     Console(highlight=False).print(table)

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli import report
@@ -94,11 +95,11 @@ def _checks(run: Run) -> tuple[Check, ...]:
 def _table(events: tuple[dict[str, Any], ...]) -> Table:
     title = "events" if len(events) <= SHOWN else f"the last {SHOWN} of {len(events)} events"
     table = Table(title=title, title_justify="left")
-    table.add_column("time [s]", justify="right")
+    table.add_column(escape("time [s]"), justify="right")
     table.add_column("kind")
     table.add_column("what happened")
     for event in events[-SHOWN:]:
-        table.add_row(f"{event['time']:.2f}", event["kind"], event["text"])
+        table.add_row(f"{event['time']:.2f}", event["kind"], escape(event["text"]))
     return table
 
 

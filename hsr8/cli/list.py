@@ -3,6 +3,7 @@
 import json
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.options import List
@@ -17,8 +18,10 @@ def main(options: List) -> int:
         print(json.dumps({"scenarios": [_entry(s) for s in scenarios]}))
         return 0
     table = Table(title="Scenarios", title_justify="left")
-    for heading in ("name", "obstacles", "mission", "time [s]", "what it is"):
-        table.add_column(heading, justify="right" if heading == "time [s]" else "left")
+    for heading in ("name", "obstacles", "mission"):
+        table.add_column(heading)
+    table.add_column(escape("time [s]"), justify="right")
+    table.add_column("what it is")
     for scenario in scenarios:
         entry = _entry(scenario)
         table.add_row(
@@ -36,11 +39,12 @@ def main(options: List) -> int:
 
 def _entry(scenario: Scenario) -> dict[str, object]:
     world = scenario.world
+    walls = sum(len(row.positions()) for row in world.row)
     return {
         "name": scenario.name,
         "description": scenario.description,
         "mission": scenario.mission.kind,
-        "static": world.n_static + len(world.obstacle),
-        "moving": world.n_moving + len(world.mover),
+        "static": world.n_static + len(world.obstacle) + walls,
+        "moving": world.n_moving + world.encounters.n + len(world.mover),
         "duration": scenario.duration,
     }

@@ -135,6 +135,8 @@ class Sweep:
     """Run folders that stay; one takes about 100 kB per simulated second."""
     log: bool = False
     """Write the Rerun log of every run."""
+    dry_run: bool = False
+    """Check everything, say what it would take, and run nothing."""
     json: bool = False
     """Print the results as one JSON object on standard output."""
     quiet: bool = False

@@ -1,8 +1,10 @@
 """``hsr8 replay``: the log of a run in the Rerun viewer."""
 
 import shlex
+import sys
 
 from hsr8.cli.options import Replay
+from hsr8.cli.picture import require_png
 from hsr8.cli.size import parse_size
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic
@@ -21,8 +23,11 @@ def main(options: Replay) -> int:
     if not run.log_files:
         raise UsageError(f"{run.path} has no log: it was run with --no-log")
     if options.screenshot is not None:
+        require_png("--screenshot", options.screenshot)
+        size = parse_size(options.size)
+        print("drawing in the viewer, which takes some ten seconds", file=sys.stderr, flush=True)
         time = options.time if options.time is not None else _middle(run)
-        picture = viewer.screenshot(run.log_files, time, parse_size(options.size))
+        picture = viewer.screenshot(run.log_files, time, size)
         try:
             options.screenshot.write_bytes(picture)
         except OSError as error:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from hsr8.evaluation.verdict import Check
@@ -113,7 +114,7 @@ def _criteria(checks: Sequence[Check]) -> Table:
     table = Table("criterion", "wanted", "found", "")
     for check in checks:
         verdict = "[green]passed[/]" if check.passed else "[red]failed[/]"
-        table.add_row(check.name, check.wanted, check.found, verdict)
+        table.add_row(check.name, check.wanted, escape(check.found), verdict)
     return table
 
 

@@ -17,6 +17,7 @@ from rich.table import Table
 
 from hsr8.cli.command_line import flat, option_tables, run_words, settings
 from hsr8.cli.options import Sweep
+from hsr8.cli.sweep_cost import tell_cost
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, code_digest
 from hsr8.evaluation.sweep.driver import drive, pending
@@ -58,6 +59,17 @@ def main(options: Sweep) -> int:
     if kind == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
         require_gl()
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
+    if options.dry_run:
+        runs = len(pending(seeds, (), shard))
+        tell_cost(
+            options,
+            list(scenarios.values()),
+            seeds=runs,
+            workers=workers,
+            out=out,
+            command=_command(options),
+        )
+        return 0
     common = Definition.now("", (), "")
     sweeps: dict[str, SweepFolder] = {}
     jobs: list[Job] = []

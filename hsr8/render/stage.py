@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.gl import require_gl
 from hsr8.render.push_arrows import Arrow
+from hsr8.suggestion import suggestion
 from hsr8.world.assembly import Optics, Quality, assemble
 from hsr8.world.layout import Layout
 
@@ -114,8 +115,11 @@ class Stage:
         """
         names = [self.model.camera(i).name for i in range(self.model.ncam)]
         if name not in names:
-            choices = ", ".join(dict.fromkeys(("dashboard", "follow", "head", *names)))
-            raise UsageError(f"there is no camera {name!r}; choose {choices}")
+            choices = list(dict.fromkeys(("dashboard", "follow", "head", *names)))
+            raise UsageError(
+                f"there is no camera {name!r}{suggestion(name, choices)} "
+                f"(cameras: {', '.join(choices)})"
+            )
 
     def close(self) -> None:
         """Free the OpenGL context."""

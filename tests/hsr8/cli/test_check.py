@@ -44,6 +44,18 @@ def test_a_picture_that_cannot_be_written_is_one_clear_error(tmp_path):
         main(Check("quick", picture=tmp_path / "no" / "world.png"))
 
 
+def test_a_picture_is_a_png(tmp_path):
+    with pytest.raises(UsageError, match=r"ends in \.png"):
+        main(Check("quick", picture=tmp_path / "world.jpg"))
+
+
+def test_columns_have_their_units(capsys):
+    main(Check("quick"))
+    said = capsys.readouterr().out
+    for unit in ("x [m]", "radius [m]", "speed [m/s]"):
+        assert unit in said
+
+
 def test_a_wrong_scenario_is_one_clear_error():
     with pytest.raises(ScenarioError, match="did you mean 'quick'"):
         main(Check("quik"))

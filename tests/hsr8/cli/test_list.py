@@ -17,3 +17,11 @@ def test_people_get_a_table(capsys):
     assert main(List()) == 0
     out = capsys.readouterr().out
     assert all(name in out for name in built_in_names())
+    assert "time [s]" in out
+
+
+def test_walls_and_encounters_are_counted(capsys):
+    main(List(json=True))
+    entries = {e["name"]: e for e in json.loads(capsys.readouterr().out)["scenarios"]}
+    assert entries["conflict"]["moving"] == 6
+    assert entries["corridor"]["static"] > 10

@@ -55,5 +55,11 @@ def test_no_such_run(tmp_path, capsys):
 def test_a_picture_that_cannot_be_written_is_one_clear_error(run, monkeypatch, capsys, tmp_path):
     (run / run_folder.LOG).touch()
     monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: b"PNG")
-    assert entry(["replay", str(run), "--screenshot", str(tmp_path)]) == 2
+    assert entry(["replay", str(run), "--screenshot", str(tmp_path / "a/b.png")]) == 2
     assert "cannot be written" in capsys.readouterr().err
+
+
+def test_a_picture_is_a_png(run, capsys):
+    (run / run_folder.LOG).touch()
+    assert entry(["replay", str(run), "--screenshot", "log.jpg"]) == 2
+    assert "ends in .png" in capsys.readouterr().err

@@ -240,3 +240,23 @@ def test_the_page_about_sweeps_is_right(instant, monkeypatch, capsys):
     for example in re.findall(r"^```python\n(.*?)^```", page, re.M | re.S):
         exec(example, {})
     assert "Share(count=200" in capsys.readouterr().out
+
+
+def test_a_dry_run_tells_the_cost_and_leaves_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    words = ["sweep", "quick", *TINY, "--seeds", "0:10", "--vary", "world.n_moving=0,2"]
+    assert entry([*words, "--workers", "4", "--dry-run", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["runs"] == 20
+    assert told["simulated_time_s"] == 20 * 30.0
+    assert entry([*words, "--workers", "2", "--keep", "none", "--dry-run", "--json"]) == 0
+    fewer = json.loads(capsys.readouterr().out)
+    assert fewer["estimated_wall_time_s"] == pytest.approx(
+        2 * told["estimated_wall_time_s"], abs=0.3
+    )
+    assert fewer["estimated_disk_mb"] == 0.0
+    assert entry([*words, "--dry-run"]) == 0
+    said = capsys.readouterr().out
+    assert "2 x 10 seeds" in said
+    assert said.splitlines()[-1].endswith("--vary world.n_moving=0,2")
+    assert not list(tmp_path.iterdir())
