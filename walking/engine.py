@@ -192,14 +192,20 @@ class WalkingEngine:
         w = self._lipm.omega
         c, s = cos(odometry.yaw), sin(odometry.yaw)
         x, y, _ = body.com
+        zmp, dcm = plan.points(
+            [
+                (pendulum.zmp_x, pendulum.zmp_y),
+                (pendulum.x + pendulum.vx / w, pendulum.y + pendulum.vy / w),
+            ]
+        )
         return WalkingState(
             phase=gait.phase,
             odometry=odometry,
             camera=camera_pose(self._robot, self._sensors, body),
             given=np.array(self._placement.given),
-            footsteps=tuple(plan.footstep(step) for step in gait.footsteps()),
-            zmp=plan.point(pendulum.zmp_x, pendulum.zmp_y),
-            dcm=plan.point(pendulum.x + pendulum.vx / w, pendulum.y + pendulum.vy / w),
+            footsteps=plan.footsteps(gait.footsteps()),
+            zmp=zmp,
+            dcm=dcm,
             com=np.array([odometry.x + c * x - s * y, odometry.y + s * x + c * y]),
             roll=body.roll,
             pitch=body.pitch,

@@ -1,6 +1,7 @@
 """The gait: which foot carries, where the other lands, and what that asks of the ZMP."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from walking import foothold_kernel, swing_foot_kernel
 from walking.footstep_clock import Clock, SwingWindow, WeightShift
@@ -14,6 +15,7 @@ from walking.swing_foot_kernel import HEIGHT
 from walking.swing_reaction import Swings
 from walking.zmp_reference import ZmpReference
 
+Array = NDArray[np.float64]
 Point = tuple[float, float]
 NO_STEPS = np.empty((0, 4))
 
@@ -289,12 +291,12 @@ class Gait:
         each = usual.last - usual.first
         return Swings(table, each if self.held else ticks, each)
 
-    def footsteps(self) -> tuple[Footstep, ...]:
-        """Planned footholds in the plan frame, the support foot first."""
+    def footsteps(self) -> Array:
+        """Planned footholds in the plan frame, support foot first (n, 4); see `Footstep.row`."""
         support = self.footholds[self.support]
         if not self.stepping:
-            return support, self.footholds[self.swing]
-        return support, *(foothold(row) for row in self._future.tolist())
+            return np.array([support.row, self.footholds[self.swing].row])
+        return np.array([support.row, *self._future.tolist()])
 
     def touch_down(self) -> None:
         """The swing foot has met the floor early: leave it where it is."""

@@ -12,6 +12,9 @@ from walking.state import Odometry
 
 Array = NDArray[np.float64]
 
+# Where xx, xy … of the covariance are in the state, see `walking.estimation_kernel`.
+COVARIANCE = np.array([[14, 15, 16], [15, 17, 18], [16, 18, 19]])
+
 
 @dataclass(frozen=True, slots=True)
 class Increment:
@@ -88,7 +91,5 @@ class LegOdometry:
 
     def pose(self) -> Odometry:
         """Pose of the robot frame in the odometry frame."""
-        row = self.state.tolist()
-        xx, xy, xw, yy, yw, ww = row[14:]
-        covariance = np.array([[xx, xy, xw], [xy, yy, yw], [xw, yw, ww]])
-        return Odometry(x=row[0], y=row[1], yaw=row[2], covariance=covariance)
+        x, y, yaw = self.state[:3].tolist()
+        return Odometry(x=x, y=y, yaw=yaw, covariance=self.state.take(COVARIANCE))

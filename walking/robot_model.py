@@ -12,7 +12,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from walking.joints import HEAD, JOINT_NAMES, LEFT_LEG, RIGHT_LEG
+from walking import head_kernel
+from walking.joints import HEAD, HEAD_JOINTS, JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 from walking.leg_kinematics import FootPose, LegDimensions, foot_pose, leg_angles
 from walking.parameters import GRAVITY
 from walking.yardsticks import Yardsticks
@@ -66,7 +67,7 @@ class RobotModel:
 
     Raises:
         ValueError: a joint, frame or the ready posture is missing, the soles differ, or a leg
-            has other axes than `walking.leg_kinematics`.
+            has other axes than `walking.leg_kinematics`, or the head than `walking.head_kernel`.
     """
 
     def __init__(self, model: Any, stiffness: Array, servo_damping: Array) -> None:
@@ -81,7 +82,9 @@ class RobotModel:
         self._q = pin.neutral(model)
         self.motion = self._q, np.zeros(model.nv), np.zeros(model.nv)
         self.indices = self._q_index, self._v_index
-        self._camera = self._frame("camera")
+        camera = model.frames[self._frame("camera")].placement
+        places = [*map(self._placement, HEAD_JOINTS), camera.translation.tolist()]
+        self._head = np.array(places), camera.rotation @ R_HC
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
         self.leg_rows = (self.legs[0].row, self.legs[1].row)
@@ -97,6 +100,7 @@ class RobotModel:
         self.stiffness = stiffness
         self.damping: Array = servo_damping + np.array(model.damping)[self._v_index]
         self._check_legs()
+        self._check_head()
 
     def __getstate__(self) -> dict[str, Any]:
         """All but Pinocchio's work space, which holds nothing from one call to the next."""
@@ -218,11 +222,10 @@ class RobotModel:
 
     def camera_pose(self, joint_position: Array) -> tuple[Array, Array]:
         """Rotation R_BC (3, 3) and position p_BC (3,) [m] of the head camera."""
-        q = self._q
-        q[self._q_index] = joint_position
-        pin.forwardKinematics(self._model, self._data, q)
-        placement = pin.updateFramePlacement(self._model, self._data, self._camera)
-        return placement.rotation @ R_HC, placement.translation.copy()
+        pan, tilt = joint_position[HEAD].tolist()
+        rotation, position = np.empty((3, 3)), np.empty(3)
+        head_kernel.camera_pose(pan, tilt, *self._head, rotation, position)
+        return rotation, position
 
     def frame_pose(self, name: str, joint_position: Array) -> tuple[Array, Array]:
         """Rotation (3, 3) and position (3,) [m] of a named frame in the base frame.
@@ -272,6 +275,18 @@ class RobotModel:
                     "through one point, a knee and ankle pitch and roll through another one "
                     "straight below"
                 )
+
+    def _check_head(self) -> None:
+        """So must be that of the head."""
+        q = np.zeros_like(self.ready)
+        q[HEAD] = 0.4, 0.3
+        R, p = self.frame_pose("camera", q)
+        R_BC, p_BC = self.camera_pose(q)
+        if max(abs(R @ R_HC - R_BC).max(), abs(p - p_BC).max()) > FITS:
+            raise ValueError(
+                "the head of the robot model is none that pans to the left on the base and then "
+                "tilts upwards"
+            )
 
     def _leg(self, side: str) -> LegDimensions:
         hip = self._placement(f"{side}_hip_yaw")

@@ -1,18 +1,26 @@
 """The engine's state as others see it, in the odometry frame."""
 
+from collections.abc import Sequence
 from math import cos, sin
 
 import numpy as np
+from numpy.typing import NDArray
 
+from walking import snapshot_kernel
 from walking.gait import Gait
 from walking.joints import HEAD
 from walking.measurement import BodyMeasurement
 from walking.pattern import PendulumState
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
-from walking.state import Balance, Footstep, HeadCameraPose, Odometry
+from walking.state import Balance, Footstep, HeadCameraPose, Odometry, foothold
 from walking.support import Footing
-from walking.swing_foot_kernel import RATE
+from walking.swing_foot_kernel import HEIGHT
+
+Array = NDArray[np.float64]
+Point = tuple[float, float]
+
+YAW = 2  # column of a foot's direction
 
 
 class PlanToOdometry:
@@ -29,28 +37,33 @@ class PlanToOdometry:
         self, planned: Footstep, body: BodyMeasurement, support: int, odometry: Odometry
     ) -> None:
         foot = body.feet[support]
-        c, s = cos(odometry.yaw), sin(odometry.yaw)
-        self.yaw = odometry.yaw + foot.yaw - planned.yaw
-        self._c, self._s = cos(self.yaw), sin(self.yaw)
-        self._x = odometry.x + c * foot.x - s * foot.y - self._c * planned.x + self._s * planned.y
-        self._y = odometry.y + s * foot.x + c * foot.y - self._s * planned.x - self._c * planned.y
+        self._frame = snapshot_kernel.frame_of(
+            (planned.x, planned.y, planned.yaw),
+            (foot.x, foot.y, foot.yaw),
+            (odometry.x, odometry.y, odometry.yaw),
+        )
 
-    def place(self, x: float, y: float) -> tuple[float, float]:
-        """A point of the plan frame in the odometry frame [m]."""
-        return self._x + self._c * x - self._s * y, self._y + self._s * x + self._c * y
+    def points(self, points: Sequence[Point]) -> Array:
+        """Points of the plan frame in the odometry frame (n, 2) [m]."""
+        table = np.array(points)
+        snapshot_kernel.place(self._frame, table, -1)
+        return table
 
-    def point(self, x: float, y: float) -> np.ndarray:
-        """The same as an array (2,) [m]."""
-        return np.array(self.place(x, y))
-
-    def vector(self, x: float, y: float) -> np.ndarray:
+    def vector(self, x: float, y: float) -> Array:
         """A direction of the plan frame in the odometry frame (2,)."""
-        return np.array([self._c * x - self._s * y, self._s * x + self._c * y])
+        return np.array(snapshot_kernel.turn(self._frame, (x, y)))
 
-    def footstep(self, step: Footstep) -> Footstep:
-        """A foothold of the plan frame in the odometry frame."""
-        x, y = self.place(step.x, step.y)
-        return Footstep(left=step.left, x=x, y=y, yaw=step.yaw + self.yaw)
+    def footsteps(self, rows: Array) -> tuple[Footstep, ...]:
+        """Footholds of the plan frame, see `Footstep.row`, in the odometry frame."""
+        table = rows.copy()
+        snapshot_kernel.place(self._frame, table, YAW)
+        return tuple(foothold(row) for row in table.tolist())
+
+    def feet(self, feet: Array) -> Array:
+        """References of the feet as `Balance` has them (2, 4)."""
+        table = feet.take((0, 1, HEIGHT, YAW), axis=1)
+        snapshot_kernel.place(self._frame, table, 3)
+        return table
 
 
 def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
@@ -59,14 +72,10 @@ def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) 
     cr, sr, cp, sp = cos(body.roll), sin(body.roll), cos(body.pitch), sin(body.pitch)
     R_RB = np.array([[cp, sp * sr, sp * cr], [0.0, cr, -sr], [-sp, cp * sr, cp * cr]])
     load = body.right_load
-    height = -(1.0 - load) * body.feet[0].z - load * body.feet[1].z
+    position = R_RB @ p_BC
+    position[2] += -(1.0 - load) * body.feet[0].z - load * body.feet[1].z
     pan, tilt = sensors.joint_position[HEAD].tolist()
-    return HeadCameraPose(
-        rotation=R_RB @ R_BC,
-        position=R_RB @ p_BC + np.array([0.0, 0.0, height]),
-        pan=pan,
-        tilt=tilt,
-    )
+    return HeadCameraPose(rotation=R_RB @ R_BC, position=position, pan=pan, tilt=tilt)
 
 
 def balance(
@@ -90,19 +99,15 @@ def balance(
         footing: soles that carry.
         capture: what balance adds to the landing, plan frame [m].
     """
-    polygon = footing.polygon()
     ex, ey, evx, evy = error
-    dcm_x = pendulum.x + ex + (pendulum.vx + evx) / omega
-    dcm_y = pendulum.y + ey + (pendulum.vy + evy) / omega
-    feet = [
-        (*plan.place(x, y), height, plan.yaw + yaw)
-        for x, y, yaw, height in gait.feet[:, :RATE].tolist()
-    ]
+    x, y = pendulum.x, pendulum.y
+    dcm = x + ex + (pendulum.vx + evx) / omega, y + ey + (pendulum.vy + evy) / omega
+    placed = plan.points([(x, y), dcm, *footing.polygon()])
     return Balance(
-        com=plan.point(pendulum.x, pendulum.y),
-        dcm=plan.point(dcm_x, dcm_y),
-        support=np.array([plan.place(x, y) for x, y in polygon]),
+        com=placed[0],
+        dcm=placed[1],
+        support=placed[2:],
         zmp_depth=footing.depth(pendulum.zmp_x, pendulum.zmp_y),
-        feet=np.array(feet),
+        feet=plan.feet(gait.feet),
         capture=plan.vector(*capture),
     )

@@ -7,6 +7,7 @@ from walking import (
     foothold_kernel,
     head_kernel,
     leg_kernel,
+    snapshot_kernel,
     support_kernel,
     swing_foot_kernel,
     swing_kernel,
@@ -34,6 +35,8 @@ from walking.rehearsal import rehearse
         (leg_kernel, "pose"),
         (leg_kernel, "offsets"),
         (head_kernel, "advance"),
+        (head_kernel, "camera_pose"),
+        (snapshot_kernel, "place"),
     ],
 )
 def test_it_calls_what_a_tick_calls(robot, monkeypatch, module, name):

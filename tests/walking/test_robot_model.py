@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from walking import head_kernel
 from walking.joints import HEAD, JOINT_NAMES
-from walking.robot_model import RobotModel
+from walking.robot_model import R_HC, RobotModel
 
 MODEL = Path(__file__).resolve().parents[2] / "models" / "hsr8" / "hsr8.xml"
 BROKEN = """<mujoco><worldbody><body name="base_link"><freejoint name="root"/>
@@ -83,6 +84,29 @@ def test_camera_looks_where_the_head_points(robot):
     np.testing.assert_allclose(R[:, 2], [np.cos(0.3), 0.0, np.sin(0.3)], atol=1e-9)
     assert R[2, 1] < 0.0
     assert np.linalg.det(R) == pytest.approx(1.0)
+
+
+def test_the_camera_is_where_pinocchio_has_it(robot, plainly):
+    for q in np.random.default_rng(1).uniform(-1.2, 1.2, (20, 26)):
+        R, p = robot.frame_pose("camera", q)
+        R_BC, p_BC = robot.camera_pose(q)
+        np.testing.assert_allclose(R_BC, R @ R_HC, atol=1e-15)
+        np.testing.assert_allclose(p_BC, p, atol=1e-15)
+        told = q[HEAD].tolist(), np.zeros((3, 3)), np.zeros(3)
+        plainly(head_kernel, "camera_pose", *told[0], *robot._head, *told[1:])
+        np.testing.assert_array_equal(told[1], R_BC)
+        np.testing.assert_array_equal(told[2], p_BC)
+
+
+def test_a_head_that_looks_elsewhere_is_refused(tmp_path):
+    text = MODEL.read_text(encoding="utf-8")
+    tilt = re.search(r'<joint name="head_tilt"[^>]*>', text).group()
+    turned = tilt.replace('axis="0 -1 0"', 'axis="0 1 0"')
+    assert turned != tilt
+    path = tmp_path / "down.xml"
+    path.write_text(text.replace(tilt, turned), encoding="utf-8")
+    with pytest.raises(ValueError, match="the head of the robot model"):
+        RobotModel.from_mjcf(path)
 
 
 def test_a_file_without_the_joints_is_refused(tmp_path):
