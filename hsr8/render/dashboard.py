@@ -120,6 +120,8 @@ class Dashboard:
         letters, pad = size_of(TITLE * self._unit), round(8 * self._unit)
         column = self._left + pad
         row = self.eye_size[1] - pad
+        right = column + width_of("head camera", letters, strong=True) + pad
+        picture[row - letters - pad // 2 : row + pad, self._left : right] = BAND
         write(picture, (column, row), "head camera", INK, letters, strong=True)
         row = self._below + pad + letters
         write(picture, (column, row), "belief", BAND, letters, strong=True)

@@ -1,5 +1,6 @@
 """What vision recognised and where the robot wants to look, drawn over its camera image."""
 
+from collections.abc import Sequence
 from math import cos, sin
 
 import cv2
@@ -12,6 +13,7 @@ from hsr8.render.lettering import size_of, width_of, write
 from hsr8.world.canvas import Colour, Image
 
 Array = NDArray[np.float64]
+Rectangle = tuple[float, float, float, float]  # left, top, right, bottom [pixel]
 
 SUBPIXEL = 3  # bits of a pixel that OpenCV draws with
 WINDOW = (
@@ -42,26 +44,44 @@ class EyeOverlay:
 
     def draw(self, picture: Image, frame: FrameSummary) -> None:
         """Draw over `picture` (height, width, 3) what holds at a camera frame."""
-        for blob in sorted(frame.blobs, key=lambda b: -b.distance):
-            self._draw_blob(picture, blob)
+        near_first = sorted(frame.blobs, key=lambda blob: blob.distance)
+        for blob in reversed(near_first):
+            self._draw_box(picture, blob)
+        tags: list[Rectangle] = []
+        for number, blob in enumerate(near_first):
+            self._draw_tag(picture, blob, tags, near_first[:number])
         if frame.look is not None:
             self._draw_window(picture, frame.gaze, frame.look)
 
-    def _draw_blob(self, picture: Image, blob: Blob) -> None:
-        width, _ = self._camera
-        u = np.array(blob.box[::2], float) - 0.5 * width
-        left, right = (0.5 * self._size[0] + self._scale * u).tolist()
-        top, bottom = (self._scale * np.array(blob.box[1::2], float)).tolist()
-        colour = _light(palette.of_label(blob.label))
+    def _box(self, blob: Blob) -> Rectangle:
+        """Left, top, right, bottom of a blob in the picture [pixel]."""
+        left, top, right, bottom = blob.box
+        edge = 0.5 * (self._size[0] - self._scale * self._camera[0])
+        u, v = self._scale * left + edge, self._scale * right + edge
+        return u, self._scale * top, v, self._scale * bottom
+
+    def _draw_box(self, picture: Image, blob: Blob) -> None:
+        left, top, right, bottom = self._box(blob)
         corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
-        _strokes(picture, corners, colour, closed=True)
-        text = f"{blob.distance:.2f} m"
-        length = width_of(text, self._letters)
-        row = round(top) - 4 if top > 2 * self._letters else round(bottom) + self._letters + 3
-        column = min(max(round(left), 2), max(2, self._size[0] - length - 4))
-        edge = max(0, row - self._letters), max(0, column - 2)
-        picture[edge[0] : row + 3, edge[1] : column + length + 2] = TAG
-        write(picture, (column, row), text, colour, self._letters)
+        _strokes(picture, corners, _light(palette.of_label(blob.label)), closed=True)
+
+    def _draw_tag(
+        self, picture: Image, blob: Blob, tags: list[Rectangle], nearer: Sequence[Blob]
+    ) -> None:
+        """Its distance, where no nearer one has its own: above it, or below it on free ground."""
+        left, top, _, bottom = map(round, self._box(blob))
+        boxes = [self._box(other) for other in nearer]
+        text, letters = f"{blob.distance:.2f} m", self._letters
+        length = width_of(text, letters)
+        column = min(max(left, 2), max(2, self._size[0] - length - 4))
+        for row, taken in ((top - 4, tags), (bottom + letters + 3, [*tags, *boxes])):
+            tag = column - 2, row - letters, column + length + 2, row + 3
+            inside = tag[1] >= 0 and tag[3] <= self._size[1]
+            if inside and not any(_overlap(tag, other) for other in taken):
+                tags.append(tag)
+                picture[tag[1] : tag[3], max(0, tag[0]) : tag[2]] = TAG
+                write(picture, (column, row), text, _light(palette.of_label(blob.label)), letters)
+                return
 
     def _draw_window(
         self, picture: Image, gaze: tuple[float, float], look: tuple[float, float]
@@ -105,6 +125,11 @@ def _strokes(
     width = max(1, round(picture.shape[0] / 240))
     for shade, thickness in ((TAG, width + 2), (colour, width)):
         cv2.polylines(picture, [pixels], closed, shade, thickness, cv2.LINE_AA, SUBPIXEL)
+
+
+def _overlap(a: Rectangle, b: Rectangle) -> bool:
+    """Whether two rectangles have a pixel in common."""
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
 def _light(colour: Colour) -> Colour:

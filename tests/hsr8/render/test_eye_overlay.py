@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import palette
-from hsr8.recorder.frame_summary import from_line, to_line
+from hsr8.recorder.frame_summary import Blob, from_line, to_line
+from hsr8.render import eye_overlay
 from hsr8.render.eye_overlay import EyeOverlay
 
 FOV = np.radians(60.0)
@@ -75,3 +76,43 @@ def test_a_wider_picture_shows_more_at_both_sides(summary):
     """What vision saw fills the height and lies in the middle."""
     wide = _drawn(summary(look=None), (480, 240))
     assert np.array_equal(wide[100:, 80:400], _drawn(summary(look=None))[100:])
+
+
+def _tags(frame, size=(640, 480)):
+    """Rectangles of the dark plates of the tags, whatever is written on them."""
+    plates = []
+
+    def noted(picture, place, text, colour, letters):
+        plates.append((text, place[0], place[1] - letters, place[0] + 60, place[1]))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(eye_overlay, "write", noted)
+        _drawn(frame, size)
+    return plates
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_distance_is_written_over_another(summary, seed):
+    rng = np.random.default_rng(seed)
+    blobs = []
+    for number in range(14):
+        left, top = rng.integers(0, (280, 200))
+        width, height = rng.integers(6, (40, 60))
+        box = (int(left), int(top), int(left + width), int(top + height))
+        blobs.append(Blob("red", box, 0.5 + 0.25 * number))
+    tags = _tags(summary(blobs=tuple(blobs), look=None))
+    assert 1 <= len(tags) <= len(blobs)
+    for k, (_, left, top, right, bottom) in enumerate(tags):
+        assert 0 <= top < bottom <= 480
+        for _, *other in tags[:k]:
+            assert not (
+                left < other[2] and other[0] < right and top < other[3] and other[1] < bottom
+            )
+
+
+def test_the_nearest_keeps_its_distance(summary):
+    same = [Blob("red", (100, 80, 140, 160), distance) for distance in (3.0, 0.7, 2.0, 1.5)]
+    assert [text for text, *_ in _tags(summary(blobs=tuple(same), look=None))] == [
+        "0.70 m",
+        "1.50 m",
+    ]
