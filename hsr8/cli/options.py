@@ -213,9 +213,11 @@ class Completion:
     bash: hsr8 completion bash > ~/.local/share/bash-completion/completions/hsr8
 
     zsh: hsr8 completion zsh > ~/.zfunc/_hsr8, in a folder of $fpath
+
+    fish: hsr8 completion fish > ~/.config/fish/completions/hsr8.fish
     """
 
-    shell: Positional[Literal["bash", "zsh"]] = "bash"
+    shell: Positional[Literal["bash", "zsh", "fish"]] = "bash"
     """Shell to complete in."""
 
 
