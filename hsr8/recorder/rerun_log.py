@@ -123,6 +123,7 @@ class RerunLog:
         """Write what is left and finish the file."""
         try:
             self._flush()
+            self._wait()
             self.on_event(self._time, "end", exit_reason)
         finally:
             self._stream.disconnect()
@@ -186,8 +187,14 @@ class RerunLog:
         self._hand_over()
 
     def _hand_over(self) -> None:
-        """Send everything, and wait until it is with the operating system."""
+        """Send everything; Rerun's own threads write it while the run goes on."""
+        self._wait()
         self._stream.send()
+        if self._waits:
+            self._stream.flush(timeout_sec=0.0)
+
+    def _wait(self) -> None:
+        """Wait until what was sent is with the operating system."""
         if not self._waits:
             return
         try:
