@@ -16,11 +16,15 @@ def classify(image: Labels, table: Labels) -> Labels:
         table: label of every RGB555 colour (32768,).
     """
     height, width, _ = image.shape
-    labels = np.empty((height, width), np.uint8)
+    labels, codes = np.empty((height, width), np.uint8), np.empty(width, np.uint16)
     for row in range(height):
-        for column in range(width):
+        channels, of_row = image[row].reshape(-1), labels[row]
+        # Codes first: in a loop of their own many are made at once.
+        for k in range(width):
             # As wide integers: a code has 15 bits, a channel 8.
-            red, green = int(image[row, column, 0]), int(image[row, column, 1])
-            blue = int(image[row, column, 2])
-            labels[row, column] = table[(red >> 3) << 10 | (green >> 3) << 5 | blue >> 3]
+            red, green = int(channels[3 * k]), int(channels[3 * k + 1])
+            blue = int(channels[3 * k + 2])
+            codes[k] = (red >> 3) << 10 | (green >> 3) << 5 | blue >> 3
+        for k in range(width):
+            of_row[k] = table[codes[k]]
     return labels
