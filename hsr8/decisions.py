@@ -1,6 +1,5 @@
 """The robot's decisions at a camera frame: where to go, how to move, where to look."""
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -10,11 +9,12 @@ from navigation.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import CameraView, Frame
 from navigation.prediction import predict
+from walking.value import value
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Now:
     """The moment a decision is made for, as the body knows it.
 
@@ -31,7 +31,7 @@ class Now:
     step_count: int
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Decided:
     """What was decided.
 

@@ -1,11 +1,12 @@
 """What the robot believes: its pose, the obstacles, and how fresh its map is."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from navigation.value import value
 
 if TYPE_CHECKING:
     from navigation.local_map import LocalMap
@@ -22,7 +23,7 @@ class Motion(StrEnum):
     UNKNOWN = "unknown"
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Particles:
     """Hypotheses where an unseen mover may be.
 
@@ -37,7 +38,7 @@ class Particles:
     weights: Array
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Track:
     """One obstacle as the robot believes it to be, in the field frame W.
 
@@ -76,7 +77,7 @@ class Track:
     reach: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Belief:
     """Everything the robot believes after a camera frame.
 

@@ -1,9 +1,10 @@
 """Collision band of a mover and the situations of Yoo & Kim, Fig. 4."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
 from math import hypot, inf, isfinite, sqrt
+
+from navigation.value import value
 
 
 class Situation(StrEnum):
@@ -21,7 +22,7 @@ class Situation(StrEnum):
     RECEDING = "d"
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Encounter:
     """One mover as seen from a robot that walks along a line.
 

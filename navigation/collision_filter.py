@@ -5,7 +5,6 @@ line alone: each candidate is first walked for some footsteps with the body's ow
 then turns as long as it must, then goes straight.
 """
 
-from dataclasses import dataclass
 from math import atan2, hypot, nan, pi
 
 import numpy as np
@@ -16,6 +15,7 @@ from navigation.body_command import envelope
 from navigation.decision import SpeedLimits
 from navigation.decision_parameters import BodyParameters, FilterParameters
 from navigation.hypotheses import Hypotheses
+from navigation.value import value
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ _SIDE_STEP = 1.2
 """Speeds below this multiple of the lateral limit need no turn first."""
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Paths:
     """n piecewise straight paths of k pieces from one point.
 

@@ -7,6 +7,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.value import value
+
 Array = NDArray[np.float64]
 
 
@@ -29,7 +31,7 @@ class SpeedLimits:
     footstep: float
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Task:
     """Where to go next.
 
@@ -50,7 +52,7 @@ class Task:
     done: bool
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class GazeDecision:
     """Where to look, and why.
 
@@ -70,7 +72,7 @@ class GazeDecision:
     gaze_map: Array = dataclasses.field(default_factory=lambda: np.zeros((1, 1)))
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class VirtualObstacle:
     """Dynamic virtual obstacle (Yoo & Kim, eq. (11)).
 
@@ -92,7 +94,7 @@ class DirectionField(Protocol):
         """Directions at `points` (..., 2) in W [m]: (..., 2), of any length, zero for none."""
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class MotionDecision:
     """How to move during the next footstep.
 

@@ -1,10 +1,10 @@
 """The gaze map GM over pan and tilt, Yoo & Kim, eqs. (5) and (6)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
+
+from navigation.value import value
 
 Array = NDArray[np.float64]
 
@@ -12,7 +12,7 @@ _FLAT = 1e-9
 """Cells this close to the maximum belong to the top plateau."""
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Votes:
     """Weighted directions that ask for a look.
 

@@ -1,7 +1,7 @@
 """The ways to choose a gaze, one name each, behind one protocol."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from math import atan2, hypot, pi, sin
 from typing import Protocol
@@ -20,13 +20,14 @@ from navigation.gaze_scene import GazeScene
 from navigation.information_gaze import information_votes
 from navigation.integrated_gaze import integrated_votes
 from navigation.urgency_gaze import urgency_votes
+from navigation.value import value
 
 Array = NDArray[np.float64]
 Gaze = tuple[float, float]
 """Pan and tilt [rad]."""
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Moment:
     """Everything a gaze may depend on.
 

@@ -1,7 +1,5 @@
 """Everything the gaze weighs in one moment: obstacles, beacons, partial evaluations."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,12 +19,13 @@ from navigation.partial_evaluation import (
     psi_self,
     psi_way,
 )
+from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class GazeScene:
     """One moment as the gaze sees it.
 

@@ -1,6 +1,5 @@
 """Modified univector field: where to go at a point among obstacles and virtual obstacles."""
 
-from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
@@ -13,6 +12,7 @@ from navigation.extended_radius import physical_radius
 from navigation.move_to_goal import move_to_goal, muf
 from navigation.obstacle_set import ObstacleSet
 from navigation.univector import blended_sum, nearness, shrunk_for_goal, weighted_sum
+from navigation.value import value
 from navigation.virtual_obstacle import (
     PathPoint,
     VirtualSides,
@@ -25,7 +25,7 @@ from navigation.virtual_obstacle import (
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class FieldScene:
     """What the field is made of.
 
@@ -48,7 +48,7 @@ class FieldScene:
     signs: Array | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class VirtualForce:
     """Dynamic virtual obstacle in force and the way out of it.
 
@@ -282,7 +282,7 @@ class MotionField:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class PlannedField:
     """The field that a decision was made in; looking at it changes nothing.
 

@@ -1,15 +1,16 @@
 """What reaches navigation: odometry and what one camera frame showed."""
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.value import value
+
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Observation:
     """One cylinder located in the robot frame R at the capture of a frame.
 
@@ -36,7 +37,7 @@ class Observation:
     occluded: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class CameraView:
     """Where the camera looked in the robot frame R when the frame was taken.
 
@@ -58,7 +59,7 @@ class CameraView:
     yaw_sigma: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Frame:
     """One camera frame as navigation sees it.
 

@@ -1,7 +1,6 @@
 """The tracks as arrays, the form in which all decisions are computed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import hypot, sqrt
 
 import numpy as np
@@ -9,12 +8,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from navigation.belief import Motion, Track
+from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class ObstacleSet:
     """n obstacles in the field frame W.
 

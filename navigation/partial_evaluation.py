@@ -3,20 +3,19 @@
 Each is a number in [0, 1] that says how much something deserves a look.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
 from navigation.gaze_parameters import EvaluationParameters
 from navigation.obstacle_set import ObstacleSet, largest_deviation
+from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class SamplePoints:
     """The sampling region R_s of eq. (1): polar points fixed in R.
 
@@ -42,7 +41,7 @@ class SamplePoints:
         return cls(distance, bearing, points)
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class MapEvaluation:
     """Result of eq. (1).
 

@@ -6,7 +6,6 @@ outlier; one beacon that does not fit while the others do stands in the wrong pl
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from math import cos, hypot, sin
 
 import numpy as np
@@ -15,11 +14,12 @@ from numpy.typing import NDArray
 from navigation.belief_parameters import LocalizationParameters
 from navigation.landmark import pose_from_points
 from navigation.observation import Frame, Observation
+from navigation.value import value
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class _Sighting:
     """A beacon as the odometry frame remembers it."""
 

@@ -1,18 +1,18 @@
 """Detections of obstacles, converted from the robot frame to W with their covariance."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.observation import Observation
+from navigation.value import value
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Sightings:
     """The obstacles of one frame in W.
 

@@ -1,14 +1,14 @@
 """Velocity modification: another speed on the same line, Yoo & Kim, section III-2."""
 
-from dataclasses import dataclass
 from math import inf
 
 from navigation.collision_band import Encounter, free_intervals
+from navigation.value import value
 
 _TOUCH = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class ModifiedSpeed:
     """Result of velocity modification.
 

@@ -1,12 +1,12 @@
 """Dynamic virtual obstacle: an oval on the path of a mover, Yoo & Kim, eq. (11)."""
 
-from dataclasses import dataclass
 from math import expm1, hypot, log
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.decision_parameters import MoverParameters
+from navigation.value import value
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ def oval(h: float, xi: float) -> float:
     return expm1((1.0 - h) * log(rho)) / (rho - 1.0)
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class PathPoint:
     """Foot of the robot on the path of a mover.
 

@@ -1,6 +1,5 @@
 """What the camera could see: the pinhole view, its range, and what hides what."""
 
-from dataclasses import dataclass
 from math import cos, pi, sin, tan
 
 import numpy as np
@@ -8,12 +7,13 @@ from numpy.typing import NDArray
 
 from navigation import visibility_kernel
 from navigation.observation import CameraView
+from navigation.value import value
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Viewpoint:
     """The camera of one frame, placed in the field frame W.
 

@@ -1,19 +1,20 @@
 """Beacons: posts with one reserved colour above another."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from vision.blob import Blob
 from vision.cylinder import Candidate, RimCue
 from vision.outline import Outline, Rim, Side
 from vision.parameters import VisionParameters
+from vision.value import value
 
 SEAM_SHARE = 0.6  # share of the upper colour's width that must rest on the lower colour
 SIDE_TOLERANCE = 4.0  # how far the sides of the two colours may differ [standard deviations]
 RADIUS_SIGMA = 0.0005  # a beacon's radius is known this well [m]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Post:
     """Two blobs that may be one beacon.
 

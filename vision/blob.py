@@ -1,17 +1,16 @@
 """Blobs: connected regions of one colour."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from vision.blob_kernel import regions_of
 from vision.colour import Labels
+from vision.value import value
 
 Table = NDArray[np.int32]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Blob:
     """One connected region of one colour.
 

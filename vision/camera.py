@@ -6,10 +6,12 @@ from math import tan
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.value import value
+
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class CameraPose:
     """Pose of the camera in the robot frame R at the time an image was taken.
 

@@ -10,7 +10,6 @@ shifts all edges together.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
 
 import numpy as np
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 
 from vision import cylinder_kernel
 from vision.outline import Rim, Side
+from vision.value import value
 from vision.view import View
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 SHARED = 0.85  # axes nearer than this share of the radii's sum: the same place
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class RimCue:
     """A rim taken for an edge of the cylinder.
 
@@ -40,7 +40,7 @@ class RimCue:
     near: bool
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Candidate:
     """Edges that belong to one cylinder.
 
@@ -60,7 +60,7 @@ class Candidate:
     radius_sigma: float
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Cylinder:
     """A located cylinder, seen from the camera.
 

@@ -1,15 +1,16 @@
 """What the camera recognised in one image."""
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vision.value import value
+
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Detection:
     """One cylinder seen in one image, located in the robot frame R at capture.
 

@@ -1,7 +1,7 @@
 """The detector: one image and the pose of its camera become detections."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import sqrt
 from pathlib import Path
 from typing import Literal
@@ -28,6 +28,7 @@ from vision.outline import Outline, trace
 from vision.own_body import BodyPart, hide
 from vision.parameters import VisionParameters
 from vision.split import split
+from vision.value import value
 from vision.view import View
 
 COVERED = 0.1  # share of a rim next to another colour that makes a blob occluded
@@ -36,7 +37,7 @@ DOUBT = 4.0  # the covariance of what fits badly grows at least so many times
 BEACON_MISFIT = 5.0  # beacons may misfit so many times more than obstacles
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class _Sighting:
     """Something that may be one cylinder.
 

@@ -8,7 +8,6 @@ because the camera stands higher than the obstacles.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +15,13 @@ from numpy.typing import NDArray
 from vision import outline_kernel
 from vision.blob import Blob
 from vision.cylinder_kernel import independent
+from vision.value import value
 from vision.view import View
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Side:
     """One side edge of a blob.
 
@@ -43,7 +43,7 @@ class Side:
     hidden: bool
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Rim:
     """Lower or upper edge of a blob, without its ends and what the border cuts.
 
@@ -76,7 +76,7 @@ class Rim:
         return Rim(self.azimuth[chosen], self.slope[chosen], self.outer[chosen], self.sigma)
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Outline:
     """Edges of one blob.
 

@@ -6,7 +6,7 @@ each direction and the upper outline to the farthest. Where one ends, the outlin
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +18,7 @@ from vision.cylinder_kernel import MIN_CLEARANCE
 from vision.outline import Outline, Rim, Side
 from vision.outline_kernel import envelopes
 from vision.parameters import VisionParameters
+from vision.value import value
 from vision.view import View
 
 Array = NDArray[np.float64]
@@ -30,7 +31,7 @@ SIDE_SIGMA = 1.0  # standard deviation of an end of a piece [column]
 SIDE_MATCH = 2.5  # columns by which the sides of matching pieces may differ
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class _Piece:
     """Part of the lower or upper outline that shows one cylinder.
 
@@ -50,7 +51,7 @@ class _Piece:
     slope: Array
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Part:
     """One cylinder of a split blob.
 

@@ -1,6 +1,5 @@
 """What the loop publishes and who may listen."""
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -20,7 +19,7 @@ from walking.value import value
 Image = NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class FrameRecord:
     """What one camera frame led to.
 

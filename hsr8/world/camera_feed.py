@@ -2,7 +2,6 @@
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -13,12 +12,13 @@ from hsr8.scenario.section import CONTROL_PERIOD_MS
 from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.exposure import Exposure
 from vision.detection import Detection
+from walking.value import value
 
 if TYPE_CHECKING:
     from hsr8.world.body import Body
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Picture:
     """What the camera delivers.
 
