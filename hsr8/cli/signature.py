@@ -1,14 +1,13 @@
 """What each command takes, read from its options, to judge and to complete command lines."""
 
-import ast
-import inspect
 from dataclasses import MISSING, Field, dataclass, fields
 from functools import cache
-from itertools import pairwise
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import tyro
+
+from hsr8.docstrings import docstrings
 
 Kind = Literal["switch", "whole number", "number", "choice", "path", "text"]
 
@@ -45,22 +44,10 @@ class Argument:
 def signature(command: type) -> tuple[Argument, ...]:
     """Options and operands of a command, in the order of its help."""
     hints = get_type_hints(command, include_extras=True)
-    told = _docstrings(command)
+    told = {name: text.splitlines()[0] for name, text in docstrings(command).items()}
     return tuple(
         _argument(field, hints[field.name], told.get(field.name, "")) for field in fields(command)
     )
-
-
-def _docstrings(command: type) -> dict[str, str]:
-    """What stands below each field in the source, its first line."""
-    (body,) = (c.body for c in ast.parse(inspect.getsource(command)).body if hasattr(c, "body"))
-    told = {}
-    for line, below in pairwise(body):
-        if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):
-            match below:
-                case ast.Expr(value=ast.Constant(value=str(text))):
-                    told[line.target.id] = text.splitlines()[0]
-    return told
 
 
 def _argument(field: Field[Any], hint: Any, docstring: str) -> Argument:

@@ -1,13 +1,14 @@
 """What may stand where in a scenario file, read off the schema itself."""
 
 from collections.abc import Iterator
+from dataclasses import is_dataclass
 from functools import cache
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
+from hsr8.docstrings import docstrings
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
 from hsr8.scenario.toml_lines import Path, holds
-from navigation.decision_parameters import NavigationParameters
 
 Node = dict[str, Any]
 
@@ -17,23 +18,33 @@ _BOUNDS = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "
 @cache
 def json_schema() -> Node:
     """JSON Schema of a scenario file, for editors and for this module."""
-
-    class Plain(Section):
-        """The decisions' parameters without the profile."""
-
-        navigation: NavigationParameters
-
     schema = Scenario.model_json_schema()
     schema["required"].remove("name")
-    # Pydantic reads the docstrings of a dataclass, not those of the one it extends.
-    plain = Plain.model_json_schema()["$defs"]["NavigationParameters"]["properties"]
-    for key, node in plain.items():
-        schema["$defs"]["Navigation"]["properties"][key]["description"] = node["description"]
+    nodes = {"Scenario": schema, **schema["$defs"]}
+    for section in set(_sections_in(Scenario)):
+        properties = nodes[section.__name__]["properties"]
+        for key, text in docstrings(section).items():
+            properties[key]["description"] = text
     schema["properties"]["extends"] = {
         "type": "string",
         "description": "Scenario to start from: a built-in name or a file beside this one.",
     }
     return schema
+
+
+def _sections_in(annotation: Any) -> Iterator[type]:
+    """Sections that `annotation` names, and those within these."""
+    for part in get_args(annotation):
+        yield from _sections_in(part)
+    hints: list[Any] = []
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        hints = [field.annotation for field in annotation.model_fields.values()]
+    elif isinstance(annotation, type) and is_dataclass(annotation):
+        hints = list(get_type_hints(annotation).values())
+    if hints:
+        yield annotation
+    for hint in hints:
+        yield from _sections_in(hint)
 
 
 def node_at(path: Path, data: Any) -> Node | None:

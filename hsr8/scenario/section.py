@@ -12,7 +12,8 @@ class Section(BaseModel):
     """A table of a scenario file: no unknown keys, no guessed types, no changes afterwards.
 
     The parameter dataclasses of the libraries are sections too: pydantic reads their
-    constraints and attribute docstrings, and these settings hold for them as well.
+    constraints, `hsr8.docstrings` the docstrings of attributes, and these settings hold for
+    them as well.
     """
 
     model_config = ConfigDict(
@@ -20,7 +21,6 @@ class Section(BaseModel):
         frozen=True,
         strict=True,
         allow_inf_nan=False,
-        use_attribute_docstrings=True,
     )
 
 
