@@ -20,7 +20,7 @@ from scipy.spatial import ConvexHull
 from study_page import add_seeds, command_line, environment
 
 from walking.command import Command, CommandState, VelocityCommand
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.lipm import Lipm
@@ -29,6 +29,7 @@ from walking.pattern import PendulumState, dcm_reference
 from walking.robot_model import RobotModel, Sole
 from walking.state import Footstep
 from walking.steering import Steering
+from walking.stride import STILL
 from walking.support import SupportRegion, support_region
 from walking.transition import Transition
 

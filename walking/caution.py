@@ -22,5 +22,7 @@ class Caution:
     def update(self, error: float) -> float:
         """Share of the commanded velocity to walk at, given this tick's DCM error [m]."""
         self._error = max(error, self._decay * self._error)
+        if self._error <= self._calm:
+            return 1.0
         excess = (self._error - self._calm) / self._range
         return 1.0 - (1.0 - self._least) * min(1.0, max(0.0, excess))

@@ -12,7 +12,7 @@ from walking.cycle import Cycle
 from walking.estimation import Estimation
 from walking.estimator import TouchDown
 from walking.foot_placement import FootPlacement
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.head import Head
@@ -31,7 +31,7 @@ from walking.speed_hold import SpeedHold
 from walking.stabilizer import Stabilizer
 from walking.state import WalkingState
 from walking.steering import Steering
-from walking.stride import Strides
+from walking.stride import STILL, Strides
 from walking.support import Footing, SupportRegion
 from walking.targets import JointTargets
 from walking.whole_body import WholeBody
@@ -232,11 +232,8 @@ class WalkingEngine:
     def _sense(self, sensors: BodySensors) -> tuple[float, float]:
         """Follow the body; roll and pitch of its trunk [rad]."""
         gait, whole_body, pendulum = self._gait, self._whole_body, self._pendulum
-        pelvis = whole_body.pelvis
         plan = (
-            pelvis.x,
-            pelvis.y,
-            pelvis.yaw,
+            *whole_body.pelvis,
             *whole_body.com,
             pendulum.zmp_x,
             pendulum.zmp_y,
@@ -261,7 +258,7 @@ class WalkingEngine:
     def _wish(self) -> Strides:
         """What the footsteps obey, making up for what the feet slip."""
         estimation, gait, steering = self._estimation, self._gait, self._steering
-        ahead = self._whole_body.pelvis.yaw - estimation.pose[2]
+        ahead = self._whole_body.pelvis[2] - estimation.pose[2]
         if not gait.stepping:
             # Standing, the plan takes the heading as it is.
             self._heading.rest(ahead)

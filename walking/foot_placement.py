@@ -2,14 +2,14 @@
 
 from walking.admission import Limit
 from walking.catching import CatchingPendulum
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.lipm import Lipm
 from walking.pattern import PatternGenerator, dcm_reference
 from walking.ramps import Ramps
 from walking.stabilizer import Capture, Stabilizer
 from walking.state import Footstep
-from walking.stride import Strides, Velocity
+from walking.stride import STILL, Strides, Velocity
 from walking.support import SupportRegion
 from walking.transition import Transition
 

@@ -130,8 +130,8 @@ def swings(
     origin: Foothold,
     landing: Foothold,
     steps: Array,
-    now: tuple[float, float, bool],
-    later: tuple[float, float, float],
+    now: tuple[int, float, bool],
+    later: tuple[int, int, float],
     spot: Spot,
 ) -> Array:
     """Swings under way and to come.
@@ -206,7 +206,7 @@ def _ramp(
 @njit(cache=True)
 def _swing(
     row: Array,
-    begin: float,
+    begin: int,
     lift: float,
     origin: Foothold,
     landing: Foothold,

@@ -8,9 +8,8 @@ from walking.foothold_kernel import Chain
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.stride import Placement, Strides, Timing, Velocity
+from walking.stride import STILL, Placement, Strides, Timing, Velocity
 
-STILL: Velocity = (0.0, 0.0, 0.0)
 PLACE_TOLERANCE = 0.024  # between footholds that count as the same, of half the stance [1]
 TURN_TOLERANCE = 1e-3  # between their directions [rad]
 STANCE_TOLERANCE = 0.6  # between footholds and those of standing, of half the stance [1]

@@ -5,11 +5,11 @@ from numpy.typing import NDArray
 
 from walking import foothold_kernel, swing_foot_kernel
 from walking.footstep_clock import Clock, SwingWindow, WeightShift
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.ramps import Ramps, ZmpRamp, table_of
 from walking.state import Footstep, Phase, foothold
-from walking.stride import Strides, Timing
+from walking.stride import STILL, Strides, Timing
 from walking.swing import least_ticks, moved, resting, stand
 from walking.swing_foot_kernel import HEIGHT
 from walking.swing_reaction import Swings
@@ -284,8 +284,8 @@ class Gait:
             self.footholds[self.swing].row,
             self.landing.row,
             self._future,
-            (float(begin), self._lift, not self.held),
-            (float(later), float(timing.double + timing.single), timing.lift),
+            (begin, self._lift, not self.held),
+            (later, timing.double + timing.single, timing.lift),
             self._reference.spot,
         )
         each = usual.last - usual.first

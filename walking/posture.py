@@ -5,28 +5,14 @@ from numpy.typing import NDArray
 
 from walking import leg_kernel
 from walking.gait import Gait
+from walking.leg_kernel import Vector
 from walking.leg_kinematics import foot_pose
 from walking.parameters import WalkingParameters
 from walking.robot_model import RobotModel
 from walking.state import Footstep
-from walking.value import value
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
-
-
-@value
-class Pelvis:
-    """Where the body is meant to be in the plan frame.
-
-    Attributes:
-        x, y: pelvis above the floor [m].
-        yaw: heading of the trunk [rad].
-    """
-
-    x: float
-    y: float
-    yaw: float
 
 
 class Posture:
@@ -47,12 +33,12 @@ class Posture:
         self._law = (p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, height)
         self._tilt = np.zeros((2, 2))
 
-    def pelvis(self, gait: Gait, com: Point) -> Pelvis:
-        """Pelvis that puts its constant offset point onto the pendulum."""
-        return Pelvis(*leg_kernel.pelvis_of(gait.feet, com, self._build[0]))
+    def pelvis(self, gait: Gait, com: Point) -> Vector:
+        """Pelvis x, y [m] and heading [rad] that put its constant offset point on the pendulum."""
+        return leg_kernel.pelvis_of(gait.feet, com, self._build[0])
 
-    def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Pelvis]:
-        """Joint angles (26,) [rad], and the pelvis that goes with them.
+    def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Vector]:
+        """Joint angles (26,) [rad], and the pelvis that goes with them, x, y [m], heading [rad].
 
         Args:
             gait: feet.
@@ -61,7 +47,7 @@ class Posture:
             head: pan and tilt [rad].
         """
         position = self._ready.copy()
-        x, y, yaw = leg_kernel.pose(
+        pelvis = leg_kernel.pose(
             position,
             self._tilt,
             gait.feet,
@@ -73,7 +59,7 @@ class Posture:
             self._build,
             self._legs,
         )
-        return position, Pelvis(x, y, yaw)
+        return position, pelvis
 
 
 def ready_stance(robot: RobotModel) -> tuple[Footstep, Footstep]:

@@ -62,10 +62,12 @@ class SpeedHold:
 
     def _go(self, start: Pose, end: Pose) -> None:
         """One tick of the way, seen from the robot."""
-        dx, dy = end[0] - start[0], end[1] - start[1]
-        middle = 0.5 * (start[2] + end[2])
+        (x, y, yaw), (then_x, then_y, then_yaw) = end, start
+        dx, dy = x - then_x, y - then_y
+        middle = 0.5 * (then_yaw + yaw)
         c, s = cos(middle), sin(middle)
-        self._way = self._way[0] + c * dx + s * dy, self._way[1] + c * dy - s * dx
+        forward, left = self._way
+        self._way = forward + c * dx + s * dy, left + c * dy - s * dx
         self._ticks += 1
 
     def _learn(self, velocity: Velocity) -> None:

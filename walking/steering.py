@@ -2,9 +2,9 @@
 
 from walking.admission import AdmissionReport, Limit
 from walking.command import Command, CommandState, VelocityCommand
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.parameters import LimitParameters
-from walking.stride import Strides, Timing, Velocity
+from walking.stride import STILL, Strides, Timing, Velocity
 from walking.value import value
 from walking.velocity import VelocitySlew, limited, speed_limits
 
@@ -25,6 +25,10 @@ class Steady:
     command: VelocityCommand
     share: float
     bound: list[Limit]
+
+    def holds(self, command: VelocityCommand, share: float) -> bool:
+        """Whether this is what is asked."""
+        return share == self.share and (command is self.command or command == self.command)
 
 
 class Steering:
@@ -66,8 +70,7 @@ class Steering:
     @property
     def velocity(self) -> Velocity:
         """Velocity that the robot is meant to have."""
-        slew = self._slew
-        return slew.forward, slew.left, slew.turn
+        return self._slew.velocity
 
     def follow(self, command: Command, share: float, *, settled: bool, balanced: bool) -> None:
         """Take in a command.
@@ -88,7 +91,7 @@ class Steering:
             self._slew.follow(VelocityCommand())
         elif isinstance(command, CommandState):
             self._follow_state(command)
-        elif steady is not None and steady.command == command and steady.share == share:
+        elif steady is not None and steady.holds(command, share):
             self._steady, self._bound = steady, steady.bound
         else:
             self._follow_velocity(command, share)
@@ -116,8 +119,8 @@ class Steering:
         """
         time = self.timing.duration
         if self._state is None:
-            slew, (forward, left, turn) = self._slew, correction
-            wanted = (slew.forward + forward, slew.left + left, slew.turn + turn)
+            (forward, left, turn), velocity = correction, self._slew.velocity
+            wanted = (velocity[0] + forward, velocity[1] + left, velocity[2] + turn)
             return self._planner.strides(wanted, time)
         return self._planner.explicit(self._state, correction[2] * time)[0]
 
@@ -174,7 +177,7 @@ class Steering:
             dared = VelocityCommand(share * forward, share * left, share * turn)
             bound.append(Limit.BALANCE)
         if self._selective and command.velocity == STILL:
-            self._slew.start(*STILL)
+            self._slew.start(STILL)
         wanted = self._slew.follow(dared)
         bound.extend(speed_limits(command, self._limits))
         given = self.velocity
@@ -194,4 +197,4 @@ class Steering:
         time = self.timing.duration
         # A velocity command that comes next sets out from here.
         given = self._planner.command_state(strides, self.timing)
-        self._slew.start(given.forward / time, 0.0, given.direction / time)
+        self._slew.start((given.forward / time, 0.0, given.direction / time))

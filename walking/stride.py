@@ -7,6 +7,8 @@ from walking.parameters import CONTROL_PERIOD
 Velocity = tuple[float, float, float]
 """Forward [m/s], left [m/s], turn [rad/s]."""
 
+STILL: Velocity = (0.0, 0.0, 0.0)
+
 Placement = tuple[float, float, float]
 """Landing in the frame of the support foot: x [m], y [m], direction [rad]."""
 

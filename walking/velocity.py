@@ -5,9 +5,10 @@ from math import sqrt
 from walking.admission import Limit
 from walking.command import VelocityCommand
 from walking.parameters import CONTROL_PERIOD, LimitParameters
+from walking.stride import STILL, Velocity
 
 
-def limited(command: VelocityCommand, limits: LimitParameters) -> tuple[float, float, float]:
+def limited(command: VelocityCommand, limits: LimitParameters) -> Velocity:
     """The command with every component within its limit and all together in an ellipsoid.
 
     Returns:
@@ -72,7 +73,8 @@ class VelocitySlew:
         limits: speed and acceleration limits.
 
     Attributes:
-        forward, left, turn: velocity given to the footsteps [m/s, m/s, rad/s].
+        velocity: given to the footsteps (forward, left, turn) [m/s, m/s, rad/s].
+        moving: whether any component differs from zero.
     """
 
     def __init__(self, limits: LimitParameters) -> None:
@@ -81,25 +83,28 @@ class VelocitySlew:
         self._forward = _Axis(limits.forward_acceleration * tick, braking)
         self._left = _Axis(limits.lateral_acceleration * tick, braking)
         self._turn = _Axis(limits.turn_acceleration * tick, braking)
-        self.forward = self.left = self.turn = 0.0
+        self._command: VelocityCommand | None = None
+        self._wanted: Velocity = STILL
+        self.start(STILL)
 
-    @property
-    def moving(self) -> bool:
-        """Whether any component differs from zero."""
-        return self.forward != 0.0 or self.left != 0.0 or self.turn != 0.0
+    def start(self, velocity: Velocity) -> None:
+        """Have a velocity at once (forward, left, turn) [m/s, m/s, rad/s]."""
+        self.velocity, self.moving = velocity, velocity != STILL
 
-    def start(self, forward: float, left: float, turn: float) -> None:
-        """Have a velocity at once [m/s, m/s, rad/s]."""
-        self.forward, self.left, self.turn = forward, left, turn
-
-    def follow(self, command: VelocityCommand) -> tuple[float, float, float]:
+    def follow(self, command: VelocityCommand) -> Velocity:
         """Approach the limited command by one tick's acceleration.
 
         Returns:
             the limited command [m/s, m/s, rad/s].
         """
-        forward, left, turn = limited(command, self._limits)
-        self.forward = self._forward.towards(self.forward, forward)
-        self.left = self._left.towards(self.left, left)
-        self.turn = self._turn.towards(self.turn, turn)
-        return forward, left, turn
+        if command is not self._command:
+            self._command, self._wanted = command, limited(command, self._limits)
+        (forward, left, turn), wanted = self.velocity, self._wanted
+        self.start(
+            (
+                self._forward.towards(forward, wanted[0]),
+                self._left.towards(left, wanted[1]),
+                self._turn.towards(turn, wanted[2]),
+            )
+        )
+        return wanted

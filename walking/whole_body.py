@@ -30,7 +30,7 @@ class WholeBody:
         pendulum: where the mass centre is meant to be.
 
     Attributes:
-        pelvis: of the last tick.
+        pelvis: of the last tick, x, y [m], heading [rad] in the plan frame.
         turn_rate: planned, of the trunk [rad/s].
         com: mass centre of the last tick's posture in the base frame, x, y [m].
         compensation: motion of the pelvis against the swinging legs.
@@ -81,7 +81,7 @@ class WholeBody:
             offset: of the body from the pendulum, forward and left [m].
         """
         gait, pendulum = self._gait, self._pendulum
-        before = self.pelvis.yaw
+        before = self.pelvis[2]
         compensation = self.compensation
         compensation.advance(gait.swings())
         (ox, oy), (ex, ey) = compensation.offset, compensation.acceleration
@@ -91,12 +91,11 @@ class WholeBody:
         position, pelvis = self._posture.joints(
             gait, (pendulum.x + ox, pendulum.y + oy), tilt, head
         )
-        self.pelvis = pelvis
-        self.turn_rate = (pelvis.yaw - before) / CONTROL_PERIOD
+        self.pelvis, self.turn_rate = pelvis, (pelvis[2] - before) / CONTROL_PERIOD
         w2, (left, right) = self._w2, gait.footholds
         set_points = self._feedforward.offsets(
             position,
-            (pelvis.x, pelvis.y, pelvis.yaw),
+            pelvis,
             gait.spots,
             right_load,
             (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),

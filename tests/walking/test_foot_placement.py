@@ -6,7 +6,7 @@ from walking.admission import Limit
 from walking.catching import CatchingPendulum
 from walking.command import VelocityCommand
 from walking.foot_placement import FootPlacement
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.lipm import Lipm
@@ -15,6 +15,7 @@ from walking.pattern import PendulumState
 from walking.stabilizer import Stabilizer
 from walking.state import Footstep
 from walking.steering import Steering
+from walking.stride import STILL
 from walking.support import support_region
 
 GENERATORS = ["dcm", "robust"]

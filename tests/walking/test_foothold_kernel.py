@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from walking import foothold_kernel
-from walking.footsteps import STILL, TURN_TOLERANCE, FootstepPlanner
+from walking.footsteps import TURN_TOLERANCE, FootstepPlanner
 from walking.parameters import WalkingParameters
 from walking.robot_model import Sole
 from walking.state import Footstep, foothold
+from walking.stride import STILL
 
 PARAMETERS = WalkingParameters()
 SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
@@ -69,7 +70,7 @@ def test_compiled_they_are_what_they_say(plainly, seed, ends):
     np.testing.assert_array_equal(both[0], steps)
     np.testing.assert_array_equal(both[1], found)
     feet = support.row, swing.row, landing.row
-    asked = (*feet, steps, (-3.0, 0.02, seed % 2 == 0), (40.0, 68.0, 0.025), SPOT)
+    asked = (*feet, steps, (-3, 0.02, seed % 2 == 0), (40, 68, 0.025), SPOT)
     found = foothold_kernel.swings(*asked)
     np.testing.assert_array_equal(found, plainly(foothold_kernel, "swings", *asked))
 
@@ -83,8 +84,8 @@ def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
         origin.row,
         landing.row,
         steps,
-        (-3.0, 0.02, True),
-        (40.0, 68.0, 0.025),
+        (-3, 0.02, True),
+        (40, 68, 0.025),
         SPOT,
     )
     assert table[:, 0].tolist() == [-3.0, 40.0, 108.0, 176.0]
@@ -97,8 +98,8 @@ def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
         origin.row,
         landing.row,
         steps,
-        (-3.0, 0.02, False),
-        (40.0, 68.0, 0.025),
+        (-3, 0.02, False),
+        (40, 68, 0.025),
         SPOT,
     )
     np.testing.assert_array_equal(held, table[1:])

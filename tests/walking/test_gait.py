@@ -5,11 +5,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.robot_model import Sole
 from walking.state import Footstep, Phase
+from walking.stride import STILL
 from walking.swing_foot_kernel import HEIGHT
 
 PARAMETERS = WalkingParameters()

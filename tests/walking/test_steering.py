@@ -6,10 +6,11 @@ from hypothesis import strategies as st
 
 from walking.admission import Limit
 from walking.command import VelocityCommand
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.robot_model import Sole
 from walking.steering import STRIDE_LIMITS, Steering
+from walking.stride import STILL
 from walking.velocity import limited
 
 PARAMETERS = WalkingParameters()

@@ -3,12 +3,13 @@
 import pytest
 
 from walking.command import VelocityCommand
-from walking.footsteps import STILL, FootstepPlanner
+from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.parameters import WalkingParameters
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.steering import Steering
+from walking.stride import STILL
 
 PARAMETERS = WalkingParameters()
 LIMITS = PARAMETERS.limits

@@ -119,7 +119,7 @@ def zmp_errors(robot, body, reaction):
         targets = engine.step(body.sense(), VelocityCommand(0.2), HeadTarget())
         body.apply(targets)
         pelvis, pendulum = engine._whole_body.pelvis, engine._pendulum
-        rows.append([*targets.position, pelvis.x, pelvis.y, pendulum.zmp_x, pendulum.zmp_y])
+        rows.append([*targets.position, *pelvis[:2], pendulum.zmp_x, pendulum.zmp_y])
     table = np.array(rows)
     rate = np.diff(table[:, :28], axis=0) / CONTROL_PERIOD
     change = np.diff(rate, axis=0) / CONTROL_PERIOD

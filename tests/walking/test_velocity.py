@@ -35,10 +35,10 @@ def test_limits_are_idempotent_and_mirror(forward, left, turn):
 
 def test_slew_reaches_the_command_with_bounded_acceleration():
     slew = VelocitySlew(LIMITS)
-    speeds = [slew.forward]
+    speeds = [slew.velocity[0]]
     for _ in range(200):
         slew.follow(VelocityCommand(0.2, 0.0, 0.0))
-        speeds.append(slew.forward)
+        speeds.append(slew.velocity[0])
     assert speeds[-1] == pytest.approx(0.2)
     largest = LIMITS.forward_acceleration * CONTROL_PERIOD
     assert all(b - a <= largest + 1e-12 for a, b in pairwise(speeds))
@@ -56,12 +56,14 @@ def test_slew_comes_to_an_exact_stop():
 @pytest.mark.parametrize("wanted", [0.0, 0.1, -0.3])
 def test_a_walk_is_braked_in_the_braking_time_and_reverses_through_rest(wanted):
     slew = VelocitySlew(LIMITS)
-    slew.start(LIMITS.forward, 0.0, 0.0)
-    speeds = [slew.forward]
-    while slew.forward > max(wanted, 0.0):
+    slew.start((LIMITS.forward, 0.0, 0.0))
+    speeds = [slew.velocity[0]]
+    while slew.velocity[0] > max(wanted, 0.0):
         slew.follow(VelocityCommand(wanted))
-        speeds.append(slew.forward)
+        speeds.append(slew.velocity[0])
     assert speeds[-1] == max(wanted, 0.0)
     assert len(speeds) * CONTROL_PERIOD <= LIMITS.braking_time + 2.0 * CONTROL_PERIOD
     slew.follow(VelocityCommand(wanted))
-    assert abs(slew.forward - speeds[-1]) <= LIMITS.forward_acceleration * CONTROL_PERIOD + 1e-12
+    assert (
+        abs(slew.velocity[0] - speeds[-1]) <= LIMITS.forward_acceleration * CONTROL_PERIOD + 1e-12
+    )
