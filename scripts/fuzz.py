@@ -8,9 +8,11 @@ A run and a sweep to damage are made first, short ones with a log and a checkpoi
 import argparse
 import contextlib
 import io
+import os
 import random
 import re
 import shutil
+import signal
 import tempfile
 import time as clock
 from collections import Counter
@@ -22,7 +24,7 @@ from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
-from hsr8.recorder.log_reader import Log
+from hsr8.recorder.log_reader import decode
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load, loads
 from hsr8.scenario.reference import json_schema, json_schema_definition
 from vision.colour import COLOUR_CLASSES, ColourTable
@@ -273,11 +275,27 @@ class Folders:
         ask([*words[0].split(), *words[1:]])
 
     def log_case(self, rng: random.Random) -> None:
-        """A damaged log, read."""
-        log = Log([self.damaged(rng, self._log) / run_folder.LOG])
-        for entity, components in log.entities().items():
-            if rng.random() < 0.1:
-                log.table(entity, rng.choice(components))
+        """A damaged log, read by another process: Rerun's decoder aborts at some damages.
+
+        Raises:
+            AssertionError: it ended otherwise than `read_log` tells.
+            UsageError: it was refused.
+        """
+        file = self.damaged(rng, self._log) / run_folder.LOG
+        child = os.fork()
+        if not child:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+            try:
+                decode(str(file))
+            except UsageError:
+                os._exit(2)
+            except BaseException:
+                os._exit(3)
+            os._exit(0)
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        assert code in (0, 2, -signal.SIGABRT), f"the reader of a log ended with {code}"
+        if code:
+            raise UsageError("refused")
 
     def colours_case(self, rng: random.Random) -> None:
         """A damaged colour table, read."""

@@ -1,5 +1,7 @@
 """The Rerun log of a run read back into arrays, also that of a run that was killed."""
 
+import subprocess
+import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -145,13 +147,34 @@ class Log:
 def read_log(run: Run | str | Path) -> Log:
     """The log of a run.
 
+    Rerun's decoder aborts the process at some damages, so another process reads the log first.
+
     Args:
         run: the run, its folder, or a folder whose newest run is meant.
 
     Raises:
-        UsageError: there is no such run, or it has no log.
+        UsageError: there is no such run, it has no log, or the log is damaged.
     """
-    return Log((run if isinstance(run, Run) else open_run(run)).log_files)
+    files = (run if isinstance(run, Run) else open_run(run)).log_files
+    for file in files:
+        script = f"from {__name__} import decode; import sys; decode(sys.argv[1])"
+        words = [sys.executable, "-c", script, str(file)]
+        if subprocess.run(words, capture_output=True, check=False).returncode < 0:
+            raise _damaged(file, "it cannot be decoded")
+    return Log(files)
+
+
+def decode(file: str) -> None:
+    """Read everything in a file.
+
+    Raises:
+        UsageError: it is no log, or damaged.
+    """
+    for chunk in _chunks(Path(file)):
+        batch = chunk.to_record_batch()
+        for name in batch.schema.names:
+            if ":" in name:
+                rows_of(batch.column(name))
 
 
 def rows_of(column: pa.Array) -> list[Any]:
@@ -200,8 +223,12 @@ def _chunks(file: Path, entity: str | None = None) -> Iterator[Any]:
                 wanted = not path.startswith("/__") if entity is None else path == entity
                 if wanted and (chunk.is_static or TIMELINE in chunk.timeline_names):
                     yield chunk
-        except (RuntimeError, OSError) as error:
-            raise UsageError(
-                f"cannot read the log {file}: {error}"
-                f"\n  what is whole:  rerun rrd optimize --continue-on-error {file} -o NEW.rrd"
-            ) from None
+        except (RuntimeError, OSError, ValueError) as error:
+            raise _damaged(file, error) from None
+
+
+def _damaged(file: Path, why: object) -> UsageError:
+    return UsageError(
+        f"cannot read the log {file}: {why}"
+        f"\n  what is whole:  rerun rrd optimize --continue-on-error {file} -o NEW.rrd"
+    )

@@ -1,8 +1,12 @@
+import sys
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import rerun as rr
 
 from hsr8.errors import UsageError
+from hsr8.recorder import log_reader
 from hsr8.recorder.log_reader import Log, read_log
 from hsr8.recorder.rerun_log import RerunLog
 
@@ -126,3 +130,28 @@ def test_rows_without_instances_are_empty(tmp_path):
     stream.disconnect()
     table = Log([tmp_path / "log.rrd"]).table("/points")
     assert [len(row) for row in table.rows] == [0, 2, 0]
+
+
+@pytest.mark.parametrize("length", [0, 12, 20, 40, 100])
+def test_a_log_that_was_killed_as_it_began_is_refused_by_name(tmp_path, length):
+    file = tmp_path / "log.rrd"
+    stream = rr.RecordingStream("hsr8", recording_id="x")
+    stream.save(file)
+    stream.disconnect()
+    file.write_bytes(file.read_bytes()[:length])
+    with pytest.raises(UsageError, match=r"cannot read the log .*log\.rrd"):
+        Log([file]).entities()
+
+
+def test_a_log_at_which_the_decoder_aborts_is_refused(tmp_path, monkeypatch):
+    """Some damages end the process that reads them, so another one goes ahead."""
+    file = tmp_path / "log.rrd"
+    file.write_bytes(b"")
+    run = SimpleNamespace(log_files=(file,))
+    monkeypatch.setattr(log_reader, "open_run", lambda path: run)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "reader"))
+    reader = tmp_path / "reader"
+    reader.write_text('#!/bin/sh\ncase "$*" in *decode*log.rrd) kill -6 $$;; esac\n')
+    reader.chmod(0o755)
+    with pytest.raises(UsageError, match=r"log\.rrd: it cannot be decoded"):
+        read_log(tmp_path)
