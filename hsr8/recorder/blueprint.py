@@ -160,6 +160,6 @@ def _overview(field_size: float, pictures: bool) -> rrb.Container:
         below = rrb.Horizontal(states, curves, column_shares=[1, 1])
         return rrb.Vertical(robot, below, row_shares=[3, 2], name=name)
     above = rrb.Horizontal(robot, belief, column_shares=[1.15, 1])
-    sight = rrb.Vertical(states, curves, row_shares=[1.5, 1])
+    sight = rrb.Vertical(states, curves, row_shares=[1.1, 1])
     below = rrb.Horizontal(camera, gaze, sight, column_shares=[1, 1.1, 2])
-    return rrb.Vertical(above, below, row_shares=[5, 4], name=name)
+    return rrb.Vertical(above, below, row_shares=[1, 1], name=name)

@@ -1,6 +1,7 @@
 """What vision recognised and where the robot wants to look, drawn over its camera image."""
 
 from collections.abc import Sequence
+from itertools import product
 from math import cos, sin
 
 import cv2
@@ -69,12 +70,14 @@ class EyeOverlay:
         self, picture: Image, blob: Blob, tags: list[Rectangle], nearer: Sequence[Blob]
     ) -> None:
         """Its distance, where no nearer one has its own: above it, or below it on free ground."""
-        left, top, _, bottom = map(round, self._box(blob))
+        left, top, right, bottom = map(round, self._box(blob))
         boxes = [self._box(other) for other in nearer]
         text, letters = f"{blob.distance:.2f} m", self._letters
         length = width_of(text, letters)
-        column = min(max(left, 2), max(2, self._size[0] - length - 4))
-        for row, taken in ((top - 4, tags), (bottom + letters + 3, [*tags, *boxes])):
+        last = max(2, self._size[0] - length - 4)
+        rows = ((top - 4, tags), (bottom + letters + 3, [*tags, *boxes]))
+        for (row, taken), start in product(rows, (left, right - length)):
+            column = min(max(start, 2), last)
             tag = column - 2, row - letters, column + length + 2, row + 3
             inside = tag[1] >= 0 and tag[3] <= self._size[1]
             if inside and not any(_overlap(tag, other) for other in taken):
