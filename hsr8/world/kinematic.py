@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.kinematic_kernel import rates, stand
+from hsr8.world.kinematic_kernel import GRAVITY, felt, stand
 from hsr8.world.layout import Layout
 from hsr8.world.physics import CONTROL_PERIOD, place_robot
 from hsr8.world.rotation import heading
@@ -25,7 +25,8 @@ SLIP = 0.002  # standard deviation of a foot's slip at touch-down, per axis [m]
 YAW_SLIP = 0.008  # and about the vertical [rad]
 LANDED = 0.0005  # the swing foot takes over when it is lower than the stance foot by this [m]
 LIFTED = 0.001  # a foot higher than the other by this carries nothing [m]
-GRAVITY = 9.81
+BOTH = 2
+SHARES = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])  # of the weight on the left and right foot
 ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 WATCH_TICKS = 4  # contacts with obstacles are looked for every 20 ms
 
@@ -59,7 +60,10 @@ class KinematicBody:
         self._joints = self.data.qpos[self._index.joint_qpos].copy()
         self._rates = np.zeros_like(self._joints)
         self._gyro = np.zeros(3)
-        self._load = np.array([0.5, 0.5])
+        self._force = np.array([0.0, 0.0, GRAVITY])
+        self._loads = self._weight * SHARES
+        self._pads = np.repeat(self._loads[:, :, None] / 4.0, 4, axis=2)
+        self._carrying = BOTH
         self._stance = 0
         self._anchor = self._foot_on_floor(0)
         self._other = np.zeros(4)
@@ -73,17 +77,13 @@ class KinematicBody:
     def sense(self) -> BodySensors:
         """Read encoders, IMU and foot pads, computed from the planned motion."""
         root = self._index.root_qpos
-        quaternion = self.data.qpos[root + 3 : root + 7]
-        w, x, y, z = quaternion.tolist()
-        up = (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
-        left, right = (self._load * (self._weight / 4.0)).tolist()
         return self._suite.read(
             joint_position=self._joints,
             joint_velocity=self._rates,
             gyro=self._gyro,
-            accelerometer=np.array(up) * GRAVITY,
-            orientation=quaternion,
-            foot_force=np.array([[left] * 4, [right] * 4]),
+            accelerometer=self._force,
+            orientation=self.data.qpos[root + 3 : root + 7],
+            foot_force=self._pads[self._carrying],
         )
 
     def set_points(self, targets: JointTargets) -> Array:
@@ -105,8 +105,7 @@ class KinematicBody:
         qpos[self._index.joint_qpos] = self._joints
         self._plant()
         after, velocity = qpos[root : root + 7], self.data.qvel[dof : dof + 3]
-        self._gyro = np.empty(3)
-        rates(before, after, CONTROL_PERIOD, velocity, self._gyro)
+        felt(before, after, CONTROL_PERIOD, velocity, self._gyro, self._force)
         if self._tick % WATCH_TICKS == 0:
             self._around.move(self.data, self.time)
             mujoco.mj_kinematics(self.model, self.data)
@@ -137,8 +136,8 @@ class KinematicBody:
             contacts=self._around.watch.take(),
             clearance=self._around.watch.clearance(data, robot),
             joint_torque=np.zeros(len(self._joints)),
-            foot_force=self._load * self._weight,
-            zmp=self._load @ feet,
+            foot_force=self._loads[self._carrying],
+            zmp=SHARES[self._carrying] @ feet,
             fallen=False,
         )
 
@@ -164,9 +163,7 @@ class KinematicBody:
             slip = self._slip_rng.standard_normal(3) * (SLIP, SLIP, YAW_SLIP)
             self._anchor = self._other[:3] + slip
             self._stand(pose)
-        share = 0.5 if self._other[3] < LIFTED else 0.0
-        self._load = np.full(2, share)
-        self._load[self._stance] = 1.0 - share
+        self._carrying = BOTH if self._other[3] < LIFTED else self._stance
 
     def _stand(self, pose: Array) -> None:
         data = self.data

@@ -1,4 +1,4 @@
-"""Where a body stands whose one foot is planted, and how fast it got there, compiled.
+"""Where a body stands whose one foot is planted, and what it feels there, compiled.
 
 A pose is x, y, z and the quaternion w-x-y-z of the attitude (7,) [m].
 """
@@ -15,6 +15,7 @@ Quaternion = tuple[float, float, float, float]
 Vector = tuple[float, float, float]
 
 PI = 3.141592653589793
+GRAVITY = 9.81  # [m/s²]
 
 
 @njit(cache=True)
@@ -89,8 +90,10 @@ def stand(
 
 
 @njit(cache=True)
-def rates(before: Array, after: Array, period: float, velocity: Array, turning: Array) -> None:
-    """Mean velocity from one pose to the next.
+def felt(
+    before: Array, after: Array, period: float, velocity: Array, turning: Array, force: Array
+) -> None:
+    """Mean velocity from one pose to the next, and what a resting body feels of gravity.
 
     Args:
         before: pose (7,).
@@ -98,15 +101,16 @@ def rates(before: Array, after: Array, period: float, velocity: Array, turning: 
         period: time between them [s].
         velocity: set to that of the origin in W (3,) [m/s].
         turning: set to the angular velocity in the body's frame (3,) [rad/s].
+        force: set to the specific force in the body's frame (3,) [m/s²].
     """
     for k in range(3):
         velocity[k] = (after[k] - before[k]) / period
-    w, x, y, z = _product(
-        (before[3], -before[4], -before[5], -before[6]), (after[3], after[4], after[5], after[6])
-    )
+    q = (after[3], after[4], after[5], after[6])
+    w, x, y, z = _product((before[3], -before[4], -before[5], -before[6]), q)
     size = sqrt(x * x + y * y + z * z)
     angle = 2.0 * atan2(size, w)
     if angle > PI:  # the shorter way round
         angle -= 2.0 * PI
     share = angle / (size * period) if size > 0.0 else 0.0
     turning[0], turning[1], turning[2] = share * x, share * y, share * z
+    force[0], force[1], force[2] = _turned((q[0], -q[1], -q[2], -q[3]), (0.0, 0.0, GRAVITY))

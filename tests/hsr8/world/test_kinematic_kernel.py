@@ -46,25 +46,28 @@ def test_the_sole_lies_flat_where_it_is_planted(world, stance):
         assert np.allclose(other, wanted, atol=1e-9)
 
 
-def test_rates_are_those_of_mujoco():
+def test_what_is_felt_is_what_mujoco_says():
     rng = np.random.default_rng(0)
     for turn in (0.0, 1e-9, 0.01, 1.0, 3.0):
         step = _rotated(rng, turn)
         before = np.array([*rng.standard_normal(3), *_rotated(rng, 3.0)])
         after = before + 0.01
         mujoco.mju_mulQuat(after[3:], before[3:], step)
-        wanted, found = np.empty(3), (np.empty(3), np.empty(3))
+        wanted, found = np.empty(3), (np.empty(3), np.empty(3), np.empty(3))
         mujoco.mju_subQuat(wanted, after[3:], before[3:])
-        kernel.rates(before, after, 0.005, *found)
-        plain = np.empty(3), np.empty(3)
-        kernel.rates.py_func(before, after, 0.005, *plain)
+        kernel.felt(before, after, 0.005, *found)
+        plain = np.empty(3), np.empty(3), np.empty(3)
+        kernel.felt.py_func(before, after, 0.005, *plain)
         assert np.allclose(found, plain, rtol=1e-12, atol=1e-12)
         assert np.allclose(found[0], 0.01 / 0.005)
         assert np.allclose(found[1], wanted / 0.005, rtol=1e-6, atol=1e-8)
+        rotation = np.empty(9)
+        mujoco.mju_quat2Mat(rotation, after[3:])
+        assert np.allclose(found[2], rotation.reshape(3, 3).T @ (0.0, 0.0, 9.81))
 
 
 def test_the_shorter_way_round_is_taken():
     before, after = np.array([0.0, 0, 0, 1, 0, 0, 0]), np.array([0.0, 0, 0, -1, 0, 0, -1e-6])
-    found = np.empty(3), np.empty(3)
-    kernel.rates(before, after, 1.0, *found)
+    found = np.empty(3), np.empty(3), np.empty(3)
+    kernel.felt(before, after, 1.0, *found)
     assert found[1] == pytest.approx((0.0, 0.0, 2e-6), rel=1e-6)
