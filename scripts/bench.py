@@ -6,8 +6,8 @@
 
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
 images. It runs in turn with the loop, second by second, so that the ratio of the two holds
-on any machine and while other work comes and goes. All times are processor time of all
-threads; the time on the clock is no longer unless other work wants the same cores.
+on any machine and while other work comes and goes. Times are processor time; that of the
+threads which draw and write beside the loop is told by itself, and counts in the whole.
 """
 
 import argparse

@@ -2,8 +2,8 @@
 
     python scripts/log_study.py --scenario course --write
 
-Processor time of all threads, which other work on the machine hardly changes; that of the log
-holds what Rerun's own threads do while the log is written.
+Processor time, which other work on the machine hardly changes; that of the log is without what
+Rerun's own threads do beside it.
 """
 
 import argparse

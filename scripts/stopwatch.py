@@ -1,11 +1,12 @@
 """Time spent in methods of a running program, each without what it calls of the others.
 
-Processor time of all threads: other work on the machine hardly changes it.
+Processor time, which other work on the machine hardly changes: of the thread that calls, and
+beside it of all others, which draw or write for one stage while it is in the next.
 """
 
 from collections import defaultdict
 from functools import wraps
-from time import process_time
+from time import process_time, thread_time
 
 import numpy as np
 
@@ -15,7 +16,8 @@ class Stopwatch:
 
     def __init__(self) -> None:
         self.times: dict[str, list[float]] = defaultdict(list)
-        self._inner = [0.0]
+        self._beside: dict[str, float] = defaultdict(float)
+        self._inner = [[0.0, 0.0]]
         self._replaced: list[tuple[type, str, object]] = []
 
     def watch(self, owner: type, method: str, stage: str) -> None:
@@ -24,14 +26,18 @@ class Stopwatch:
 
         @wraps(original)
         def timed(*args: object, **kwargs: object) -> object:
-            inner.append(0.0)
-            started = process_time()
+            inner.append([0.0, 0.0])
+            own, process = thread_time(), process_time()
             try:
                 return original(*args, **kwargs)
             finally:
-                passed = process_time() - started
-                times.append(passed - inner.pop())
-                inner[-1] += passed
+                own = thread_time() - own
+                others = process_time() - process - own
+                own_inner, others_inner = inner.pop()
+                times.append(own - own_inner)
+                self._beside[stage] += others - others_inner
+                inner[-1][0] += own
+                inner[-1][1] += others
 
         self._replaced.append((owner, method, owner.__dict__.get(method)))
         setattr(owner, method, timed)
@@ -50,6 +56,10 @@ class Stopwatch:
     def total(self, *stages: str) -> float:
         """Time in some stages [s]."""
         return sum(sum(self.times[stage]) for stage in stages)
+
+    def beside(self, *stages: str) -> float:
+        """Time of all other threads during some stages [s]."""
+        return sum(self._beside[stage] for stage in stages)
 
     def row(self, stage: str) -> tuple[int, float, float]:
         """Calls, mean and 99th percentile [ms] of a stage."""

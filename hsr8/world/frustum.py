@@ -10,6 +10,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world import frustum_kernel
+
 Bools = NDArray[np.bool_]
 
 
@@ -36,7 +38,7 @@ class Frustum:
                 (0.0, 1.0, vertical),
             )
         ]
-        self._inward = np.array([*sides, [0.0, 0.0, -1.0]]).T
+        self._normals = np.array([*sides, [0.0, 0.0, -1.0]])
         # A plane has no radius: it is everywhere.
         self._reach = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)
         # A camera looks out of the shapes of its own body, which are seen from outside only.
@@ -48,9 +50,12 @@ class Frustum:
 
     def misses(self, data: mujoco.MjData) -> Bools:
         """Which geoms lie wholly outside, by spheres around them or as boxes (ngeom,)."""
-        inward = data.cam_xmat[self._camera].reshape(3, 3) @ self._inward
-        depth = (data.geom_xpos - data.cam_xpos[self._camera]) @ inward
-        missed: Bools = depth.min(axis=1) < -self._reach
-        reach = self._halves @ np.abs(inward)
-        missed[self._boxes] = (depth[self._boxes] < -reach).any(axis=1)
-        return missed
+        return frustum_kernel.misses(
+            data.geom_xpos,
+            data.cam_xpos[self._camera],
+            data.cam_xmat[self._camera],
+            self._normals,
+            self._reach,
+            self._boxes,
+            self._halves,
+        )
