@@ -7,25 +7,24 @@ each direction and the upper outline to the farthest. Where one ends, the outlin
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vision import split_kernel
 from vision.blob import Blob
 from vision.cylinder import Candidate, RimCue
 from vision.cylinder_kernel import MIN_CLEARANCE
 from vision.outline import Outline, Rim, Side
 from vision.outline_kernel import envelopes
 from vision.parameters import VisionParameters
+from vision.split_kernel import MIN_INNER
 from vision.value import value
 from vision.view import View
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.uint8]
 
-MIN_COLUMNS = 3  # a piece of an outline needs so many columns
-MIN_INNER = 2  # of them must be left when those at its steps are not used
 EXTRA_RADIUS = 0.04  # a cylinder may seem thicker or thinner by so much when matched [m]
 SIDE_SIGMA = 1.0  # standard deviation of an end of a piece [column]
 SIDE_MATCH = 2.5  # columns by which the sides of matching pieces may differ
@@ -86,10 +85,10 @@ def split(
     grid = _Grid(blob, outline, padded, view)
     step = parameters.step
     head = parameters.obstacle_height - view.height
-    lower = grid.pieces(grid.low, grid.low_usable, -view.height, step, nearest=True)
+    lower = grid.pieces(-view.height, step, nearest=True)
     upper = []
     if head < -MIN_CLEARANCE:
-        upper = grid.pieces(grid.high, grid.high_usable, head, step, nearest=False)
+        upper = grid.pieces(head, step, nearest=False)
     if len(lower) < 2 and len(upper) < 2:
         return []
     groups = _match(
@@ -112,99 +111,41 @@ class _Grid:
     """The blob sampled on a grid of azimuth and slope, where cylinders stand upright."""
 
     def __init__(self, blob: Blob, outline: Outline, padded: Labels, view: View) -> None:
-        self.start, self.azimuth_step, self.pixel, ends, usable = envelopes(
+        self.start, self.azimuth_step, self.pixel, self.ends, self.usable = envelopes(
             np.array(blob.box, np.int32), blob.extents, blob.runs, padded, view.packed
         )
-        self.low, self.high = ends.tolist()
-        self.low_usable, self.high_usable = usable.tolist()
         self.outer_right = outline.right.trusted and not outline.right.hidden
         self.outer_left = outline.left.trusted and not outline.left.hidden
 
-    def pieces(
-        self, envelope: list[float], usable: list[bool], drop: float, step: float, nearest: bool
-    ) -> list[_Piece]:
+    def pieces(self, drop: float, step: float, *, nearest: bool) -> list[_Piece]:
         """Pieces of the lower or the upper outline.
 
         Args:
-            envelope: slope of the outline in each column (n,).
-            usable: columns where the outline is the edge of a thing (n,).
             drop: height of the rim minus that of the camera [m].
             step: that parts two pieces [pixel].
-            nearest: the outline shows the nearest thing of each column, not the farthest.
+            nearest: the lower outline, which shows the nearest thing of each column; the upper
+                one shows the farthest.
         """
-        n = len(envelope)
-        jumps = [abs(b - a) for a, b in pairwise(envelope)]
-        steps = [i for i, jump in enumerate(jumps, start=1) if jump > step * self.pixel]
-        starts = _merge_narrow([0, *steps], jumps, n)
+        row = 0 if nearest else 1
+        table, azimuth, slope = split_kernel.pieces(
+            self.ends[row],
+            self.usable[row],
+            self.start,
+            self.azimuth_step,
+            step * self.pixel,
+            drop,
+            nearest,
+            self.outer_right,
+            self.outer_left,
+        )
         pieces = []
-        for a, b in pairwise([*starts, n]):
-            chosen = [i for i in range(a, b) if usable[i]]
-            if len(chosen) < MIN_COLUMNS or 2 * len(chosen) < b - a:
-                continue
-            # The column at a step shows part of what stands beside it.
-            inner = [i for i in chosen if (i > a or a == 0) and (i < b - 1 or b == n)]
-            chosen = inner if len(inner) >= MIN_INNER else chosen
-            slopes = [envelope[i] for i in chosen]
-            if min(slope * drop for slope in slopes) <= 0.0:
-                continue
-            pieces.append(
-                _Piece(
-                    right=self.start + a * self.azimuth_step,
-                    left=self.start + b * self.azimuth_step,
-                    right_true=self._ends(
-                        envelope, usable, a, a - 1, nearest=nearest, outer=self.outer_right
-                    ),
-                    left_true=self._ends(
-                        envelope, usable, b - 1, b, nearest=nearest, outer=self.outer_left
-                    ),
-                    run=_quantile([drop / slope for slope in slopes], 0.1 if nearest else 0.9),
-                    azimuth=self.start + self.azimuth_step * (np.array(chosen) + 0.5),
-                    slope=np.array(slopes),
-                )
-            )
+        first = 0
+        for right, left, right_true, left_true, run, points in table.tolist():
+            own = slice(first, first + int(points))
+            true = right_true != 0.0, left_true != 0.0
+            pieces.append(_Piece(right, left, *true, run, azimuth[own], slope[own]))
+            first = own.stop
         return pieces
-
-    @staticmethod
-    def _ends(
-        envelope: list[float],
-        usable: list[bool],
-        last: int,
-        beyond: int,
-        *,
-        nearest: bool,
-        outer: bool,
-    ) -> bool:
-        """Whether a thing ends between its column `last` and the column `beyond`."""
-        if beyond < 0 or beyond >= len(envelope):
-            return outer
-        if not (usable[last] and usable[beyond]):
-            return False
-        # Slopes are negative: a farther rim has the greater one.
-        return (envelope[beyond] > envelope[last]) == nearest
-
-
-def _quantile(values: list[float], share: float) -> float:
-    """Value below which such a share of `values` lies, between two of them if need be."""
-    ranked = sorted(values)
-    whole, part = divmod(share * (len(ranked) - 1), 1.0)
-    low, high = ranked[int(whole)], ranked[min(int(whole) + 1, len(ranked) - 1)]
-    gap = high - low
-    return low + part * gap if part < 0.5 else high - (1.0 - part) * gap
-
-
-def _merge_narrow(starts: list[int], jumps: list[float], n: int) -> list[int]:
-    """Join pieces of too few columns to the neighbour across the smaller step."""
-    starts = list(starts)
-    while len(starts) > 1:
-        ends = [*starts[1:], n]
-        widths = [b - a for a, b in zip(starts, ends, strict=True)]
-        k = min(range(len(widths)), key=lambda i: (widths[i], i))
-        if widths[k] >= MIN_COLUMNS:
-            break
-        before = jumps[starts[k] - 1] if k > 0 else float("inf")
-        after = jumps[ends[k] - 1] if k + 1 < len(starts) else float("inf")
-        del starts[k if before <= after else k + 1]
-    return starts
 
 
 def _match(
