@@ -42,15 +42,19 @@ NAMES = {
     "array": ("array", "_array_reconstructor"),
     "builtins": ("set", "frozenset", "slice", "complex", "bytearray"),
     "collections": ("deque", "Counter", "OrderedDict", "defaultdict"),
+    "filterpy.kalman.UKF": ("UnscentedKalmanFilter",),
+    "filterpy.kalman.sigma_points": ("JulierSigmaPoints",),
     "functools": ("partial",),
     "mujoco._structs": ("MjData",),
-    "numpy": ("ndarray", "dtype"),
+    "numpy": ("ndarray", "dtype", "subtract", "add"),
     "numpy._core.multiarray": ("_reconstruct", "scalar"),
     "numpy._core.numeric": ("_frombuffer",),
+    "numpy.linalg": ("inv",),
     "numpy.random._pcg64": ("PCG64",),
     "numpy.random._sfc64": ("SFC64",),
     "numpy.random._pickle": ("__generator_ctor", "__bit_generator_ctor"),
     "numpy.random.bit_generator": ("__pyx_unpickle_SeedSequence", "SeedSequence"),
+    "scipy.linalg._decomp_cholesky": ("cholesky",),
 }
 
 

@@ -1,13 +1,13 @@
-"""Unscented Kalman filter of a pose that sees landmarks, with Julier's sigma points.
+"""Unscented Kalman filter of a pose that sees landmarks: filterpy's, with Julier's points.
 
-It is the distribution-approximation filter of Yoo & Kim (S. J. Julier, J. K. Uhlmann, Unscented
-filtering and nonlinear estimation, Proc. IEEE 92(3), 2004, with kappa 0). A test holds it against
-filterpy's.
+It is the distribution-approximation filter of Yoo & Kim. The filter is filterpy's; its loops
+over the sigma points, in Python there, are compiled here.
 """
 
 from math import cos, sin
 
 import numpy as np
+from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter
 from numpy.typing import NDArray
 
 from navigation import pose_kernel
@@ -19,11 +19,52 @@ Array = NDArray[np.float64]
 STATE = 3
 MEASUREMENT = 2
 
-# Of the sigma points: the mean itself, and three to each side of it.
-WEIGHTS = np.array([0.0, *[0.5 / STATE] * (2 * STATE)])
+
+def _root(covariance: Array) -> Array:
+    upper = pose_kernel.root(covariance)
+    if upper[0, 0] == 0.0:
+        raise np.linalg.LinAlgError("the covariance of the pose is not positive definite")
+    return upper
 
 
-class PoseFilter:
+def _seen(pose: Array, landmarks: Array) -> Array:
+    return pose_kernel.sighted(pose, landmarks)
+
+
+def _difference(a: Array, b: Array) -> Array:
+    return pose_kernel.difference(a, b, MEASUREMENT)
+
+
+def _moved_on(state: Array, step: Array) -> Array:
+    total: Array = state + step
+    total[2] = wrap(float(total[2]))
+    return total
+
+
+def _state(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
+    return pose_kernel.transform(points, mean, weights, noise, STATE)
+
+
+def _measurement(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
+    return pose_kernel.transform(points, mean, weights, noise, MEASUREMENT)
+
+
+class PosePoints(JulierSigmaPoints):  # type: ignore[misc]  # filterpy has no types
+    """Julier's sigma points of a pose; weights and form are filterpy's."""
+
+    def __init__(self) -> None:
+        super().__init__(3, kappa=0.0, sqrt_method=_root)
+
+    def sigma_points(self, x: Array, P: Array) -> Array:
+        """Points (7, 3) of mean (3,) and covariance (3, 3).
+
+        Raises:
+            numpy.linalg.LinAlgError: the covariance is not positive definite.
+        """
+        return pose_kernel.sigma_points(x, self.sqrt((self.n + self.kappa) * P))
+
+
+class PoseFilter(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has no types
     """State: x, y, heading of R in W [m, m, rad].
 
     Attributes:
@@ -31,10 +72,20 @@ class PoseFilter:
         P: covariance (3, 3), exactly symmetric.
     """
 
+    x: Array
+    P: Array
+
     def __init__(self) -> None:
-        self.x: Array = np.zeros(STATE)
-        self.P: Array = np.eye(STATE)
-        self._points: Array = np.zeros((len(WEIGHTS), STATE))
+        super().__init__(
+            dim_x=3,
+            dim_z=2,
+            dt=1.0,
+            hx=_seen,
+            fx=None,
+            points=PosePoints(),
+            residual_z=_difference,
+            state_add=_moved_on,
+        )
 
     def move(self, increment: Array, covariance: Array, drift: float) -> None:
         """Predict.
@@ -50,22 +101,17 @@ class PoseFilter:
         heading = float(self.x[2])
         c, s = cos(heading), sin(heading)
         to_world = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        Q = to_world @ covariance @ to_world.T + drift * np.eye(3)
-        self.spread()
-        points = pose_kernel.moved(self._points, increment)
-        self.x, self.P = pose_kernel.transform(points, WEIGHTS, WEIGHTS, Q, STATE)
+        self.Q = to_world @ covariance @ to_world.T + drift * np.eye(3)
+        self.predict(UT=_state, increment=increment)
         self._tidy()
 
     def spread(self) -> None:
-        """Lay the sigma points around the present mean.
+        """Lay the sigma points anew: filterpy keeps those of the prediction.
 
         Raises:
             numpy.linalg.LinAlgError: the covariance is not positive definite.
         """
-        upper = pose_kernel.root(STATE * self.P)
-        if upper[0, 0] == 0.0:
-            raise np.linalg.LinAlgError("the covariance of the pose is not positive definite")
-        self._points = pose_kernel.sigma_points(self.x, upper)
+        self.sigmas_f: Array = self.points_fn.sigma_points(self.x, self.P)
 
     def distances(self, z: Array, noise: Array, landmarks: Array) -> Array:
         """Normalised innovation squared of sightings (k, 2) of landmarks (k, 2), each by itself.
@@ -78,29 +124,28 @@ class PoseFilter:
         Returns:
             (k,), after `spread`.
         """
-        return pose_kernel.distances(self._points, WEIGHTS, WEIGHTS, landmarks, z, noise)
+        return pose_kernel.distances(self.sigmas_f, self.Wm, self.Wc, landmarks, z, noise)
 
     def correct(self, z: Array, noise: Array, landmarks: Array) -> None:
-        """Take in sightings as one measurement, after `spread`.
+        """Take in sightings as one measurement, after `spread`; arguments as `distances`.
 
         Args:
             z: ranges and bearings (k, 2) [m, rad].
             noise: covariance of all of them (2 k, 2 k).
             landmarks: in W (k, 2) [m].
-
-        Raises:
-            numpy.linalg.LinAlgError: the covariance of the measurement is singular.
         """
-        seen = pose_kernel.sighted_from(self._points, landmarks)
-        expected, S = pose_kernel.transform(seen, WEIGHTS, WEIGHTS, noise, MEASUREMENT)
-        shared = pose_kernel.cross_covariance(
-            self._points, self.x, seen, expected, WEIGHTS, MEASUREMENT
-        )
-        K = np.dot(shared, np.linalg.inv(S))
-        self.x = self.x + np.dot(K, pose_kernel.difference(z.ravel(), expected, MEASUREMENT))
-        self.P = self.P - np.dot(K, np.dot(S, K.T))
+        self.update(z.ravel(), R=noise, UT=_measurement, landmarks=landmarks)
         self._tidy()
 
     def _tidy(self) -> None:
         self.x[2] = wrap(float(self.x[2]))
         self.P = 0.5 * (self.P + self.P.T)
+
+    def compute_process_sigmas(self, dt: float, fx: object = None, **fx_args: Array) -> None:
+        """Filterpy's hook: the sigma points, moved by ``increment``."""
+        points = self.points_fn.sigma_points(self.x, self.P)
+        self.sigmas_f = pose_kernel.moved(points, fx_args["increment"])
+
+    def cross_variance(self, x: Array, z: Array, sigmas_f: Array, sigmas_h: Array) -> Array:
+        """Filterpy's hook: covariance of state and measurement (3, 2 k)."""
+        return pose_kernel.cross_covariance(sigmas_f, x, sigmas_h, z, self.Wc, MEASUREMENT)

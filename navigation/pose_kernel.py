@@ -77,15 +77,6 @@ def sighted(pose: Array, landmarks: Array) -> Array:
 
 
 @njit(cache=True)
-def sighted_from(poses: Array, landmarks: Array) -> Array:
-    """Ranges and bearings (m, 2 k) of landmarks (k, 2) from each of the poses (m, 3) [m, rad]."""
-    seen = np.empty((len(poses), 2 * len(landmarks)))
-    for k in range(len(poses)):
-        seen[k] = sighted(poses[k], landmarks)
-    return seen
-
-
-@njit(cache=True)
 def difference(a: Array, b: Array, period: int) -> Array:
     """A - b (n,), angles wrapped."""
     rest = np.empty(len(a))

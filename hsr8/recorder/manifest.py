@@ -19,6 +19,7 @@ LIBRARIES = (
     "scipy",
     "pin",
     "opencv-python-headless",
+    "filterpy",
     "pydantic",
     "av",
 )

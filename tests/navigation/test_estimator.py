@@ -99,9 +99,8 @@ def test_kidnapped_the_robot_finds_itself_and_its_obstacles_again(view, observe,
     assert np.hypot(*(red[0].position - STATIC)) < 0.08
 
 
-def test_it_begins_without_the_statistics_of_scipy():
-    """They take half a second; `filterpy`, against which the filters are tested, loads them."""
-    code = "import sys, navigation.estimator; assert 'scipy.stats' not in sys.modules"
+def test_the_belief_itself_does_not_need_filterpy():
+    code = "import sys, navigation.belief; assert 'filterpy' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
 
 

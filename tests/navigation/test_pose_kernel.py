@@ -36,7 +36,6 @@ def test_compiled_and_plain_agree(drawn):
         (kernel.sigma_points, (pose, P)),
         (kernel.moved, (points, step)),
         (kernel.sighted, (pose, landmarks)),
-        (kernel.sighted_from, (points, landmarks)),
         (kernel.difference, (seen[1], seen[2], 2)),
         (kernel.transform, (points, mean_weights, weights, P, 3)),
         (kernel.cross_covariance, (points, pose, seen, seen[0], weights, 2)),
@@ -79,9 +78,6 @@ def test_a_landmark_is_seen_as_from_everywhere_else(drawn):
     pose, _, _, _, _, landmarks, *_ = drawn
     wanted = [v for p in landmarks.tolist() for v in sighting(pose.tolist(), tuple(p))]
     assert kernel.sighted(pose, landmarks) == pytest.approx(wanted)
-    assert kernel.sighted_from(np.array([pose, pose]), landmarks) == pytest.approx(
-        np.array([wanted, wanted])
-    )
 
 
 def test_the_distance_is_that_of_the_innovation(drawn):
