@@ -37,7 +37,7 @@ class LocalizationParameters:
 class TrackingParameters:
     """Obstacle tracks: filters, association, classification, birth and death."""
 
-    acceleration_noise: Positive = 0.005
+    acceleration_noise: Positive = 0.003
     """White acceleration of a mover [m/s^1.5]."""
     static_diffusion: Positive = 5e-7
     """Random walk of what stands still [m²/s]."""
@@ -53,7 +53,7 @@ class TrackingParameters:
     """Rate at which a mover stops for good [1/s]."""
     correlation_time: NonNegative = 0.03
     """Correlation time of the error of successive detections of one obstacle [s]."""
-    lasting_error: NonNegative = 0.2
+    lasting_error: NonNegative = 0.15
     """Share of the standard deviation of its best detection that all detections of what stands
     still have in common, so that no number of them brings it down [1]."""
     gate: Positive = 13.8
@@ -77,7 +77,7 @@ class TrackingParameters:
     """The same where the floor was seen empty before [1]."""
     evidence: Positive = 6.0
     """Largest logarithm of the ratio of the modes' likelihoods, per detection [1]."""
-    recognised: Annotated[float, Gt(0.5), Lt(1.0)] = 0.98
+    recognised: Annotated[float, Gt(0.5), Lt(1.0)] = 0.9
     """Probability of moving above which an undecided track moves [1]."""
     moving_speed: NonNegative = 0.02
     """Speed above which a track may move [m/s]."""

@@ -5,11 +5,13 @@ the obstacle and map evaluations is the age of the knowledge over the time withi
 must be renewed, and a lost mover votes wherever it may be.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.belief import Belief
+from navigation.belief import Belief, Motion, Track
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
 from navigation.gaze_scene import GazeScene, relative, to_field
@@ -98,8 +100,10 @@ def obstacle_deadlines(
     bearing, distance = relative(np.concatenate(place), belief.pose)
     weight = np.concatenate(share)
     reach = p.pan_limit + p.box_share * belief.view.horizontal_fov - 0.05
-    in_reach = (distance <= parameters.evaluation.attention_range) & (np.abs(bearing) <= reach)
-    index_, weight = index_[in_reach], weight[in_reach]
+    fresh = _fresh(belief.tracks, d.fresh_hits)[index_]
+    near = fresh | (distance <= parameters.evaluation.attention_range)
+    in_reach = near & (np.abs(bearing) <= reach)
+    fresh, index_, weight = fresh[in_reach], index_[in_reach], weight[in_reach]
     bearing, distance = bearing[in_reach], distance[in_reach]
     static, moving = o.static[index_], o.moving[index_]
     unknown = ~static & ~moving
@@ -115,13 +119,18 @@ def obstacle_deadlines(
     approach = feared + speed * np.maximum(0.25, 0.5 + 0.5 * np.cos(bearing - way))
     gap = distance - o.radius[index_] - parameters.univector.s_robot - _CLEARANCE
     contact = np.maximum(_LEAST_TIME, gap / approach)
-    age = o.age[index_] + _FRAME + d.unknown_bonus * unknown
+    age = o.age[index_] + _FRAME + d.unknown_bonus * unknown + d.fresh_bonus * fresh
     urgency = np.minimum(d.urgency_limit, age / (_HALF * contact)) ** d.exponent
     value = weight * urgency * np.where(static, d.static_weight, 1.0)
     tilt = np.arctan2(
         parameters.evaluation.aim_height - scene.camera_height, np.maximum(distance, 0.05)
     )
     return Votes(bearing, tilt, value)
+
+
+def _fresh(tracks: Sequence[Track], hits: int) -> NDArray[np.bool_]:
+    """Undecided tracks of fewer detections than `hits` (n,): one glance more may decide them."""
+    return np.array([t.motion is Motion.UNKNOWN and t.hits < hits for t in tracks], dtype=np.bool_)
 
 
 def map_deadlines(

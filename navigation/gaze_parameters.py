@@ -75,6 +75,10 @@ class DeadlineParameters:
     """Largest urgency of a vote [1]."""
     unknown_bonus: NonNegative = 1.0
     """Age added to undecided obstacles [s]."""
+    fresh_bonus: NonNegative = 3.0
+    """Age added besides to undecided obstacles of few detections, at any distance [s]."""
+    fresh_hits: Annotated[int, Ge(0)] = 8
+    """Detections below which they are few [1]."""
     static_weight: NonNegative = 0.12
     """Weight of votes of static obstacles [1]."""
     map_weight: NonNegative = 0.05

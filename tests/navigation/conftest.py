@@ -100,7 +100,7 @@ def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0
         radius=details.pop("radius", 0.08),
         radius_sigma=0.005,
         motion=motion or moving,
-        hits=20,
+        hits=details.pop("hits", 20),
         age=age,
         last_seen=np.array(place, float),
         visible=age == 0.0,

@@ -50,6 +50,25 @@ def test_undecided_before_mover_before_static(belief, track):
     assert by[Motion.UNKNOWN] > by[Motion.MOVING] > by[Motion.STATIC]
 
 
+def test_what_is_new_and_undecided_is_looked_at_until_it_was_seen_often_enough(belief, track):
+    few, enough = P.gaze.deadline.fresh_hits - 1, P.gaze.deadline.fresh_hits
+
+    def v(motion, hits):
+        return value(belief([track((1.5, 0), (0.0, 0.05), motion, age=0.1, hits=hits)]))
+
+    assert v(Motion.UNKNOWN, few) > v(Motion.UNKNOWN, enough)
+    for known in (Motion.MOVING, Motion.STATIC):
+        assert v(known, few) == v(known, enough)
+
+
+def test_beyond_the_range_of_attention_only_what_is_new_votes(belief, track):
+    far = P.evaluation.attention_range + 0.5
+    hits = (P.gaze.deadline.fresh_hits - 1, P.gaze.deadline.fresh_hits)
+    new, known = (belief([track((far, 0), (0, 0), Motion.UNKNOWN, hits=n)]) for n in hits)
+    assert len(votes(new).value) == 1
+    assert len(votes(known).value) == 0
+
+
 def test_a_lost_mover_votes_where_it_may_be(belief, track):
     cloud = ([[1, 0.5], [1, -0.5], [-3, 0]], np.zeros((3, 2)), [0.5, 0.3, 0.2])
     v = votes(belief([track((1, 0), (0.1, 0), age=3.0, particles=cloud)]))
