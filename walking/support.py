@@ -1,6 +1,6 @@
 """The region where the floor can push: the convex hull of one or two soles."""
 
-from math import cos, hypot, sin
+from math import cos, dist, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 Polygon = tuple[tuple[float, float], ...]
 """Corners of a convex polygon, counter-clockwise [m]."""
 
-COLLINEAR = 1e-12  # twice the area under which three corners are taken for a line [m²]
+SAME = 1e-9  # distance within which two corners are one [m]
 
 
 class SupportRegion:
@@ -128,15 +128,19 @@ def _corners(sole: Sole, foot: Footstep) -> Polygon:
 
 
 def _hull(points: list[tuple[float, float]]) -> Polygon:
-    """Convex hull, counter-clockwise: Andrew's monotone chain."""
-    points = sorted(set(points))
+    """Convex hull, counter-clockwise: Andrew's monotone chain.
+
+    Points that coincide have no direction between them and count once. Beyond that the sign alone
+    decides: on an edge along y, a tolerance could take the corner for a point between others.
+    """
+    points = sorted(p for i, p in enumerate(points) if all(dist(p, q) > SAME for q in points[:i]))
     halves = []
     for ordered in (points, points[::-1]):
         chain: list[tuple[float, float]] = []
         for x, y in ordered:
             while len(chain) > 1:
                 (ax, ay), (bx, by) = chain[-2:]
-                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > COLLINEAR:
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
                     break
                 chain.pop()
             chain.append((x, y))

@@ -65,6 +65,15 @@ def test_depth_in_the_polygon_agrees_with_the_hull(x, y, ahead, yaw):
     assert depth(sides, x, y) == pytest.approx(-outside((x, y), (RIGHT, left), 0.0), abs=1e-9)
 
 
+@given(st.floats(-0.1, 0.1), st.integers(-15, -6), st.sampled_from((-1.0, 1.0)))
+def test_soles_that_are_almost_parallel_lose_no_corner(ahead, exponent, sign):
+    left = Footstep(True, ahead, 0.08, sign * 10.0**exponent)
+    sides = edges(support_polygon(SOLE, RIGHT, left))
+    for x, y in np.random.default_rng(0).uniform(-0.2, 0.2, (20, 2)):
+        expected = -outside((x, y), (RIGHT, left), 0.0)
+        assert depth(sides, x, y) == pytest.approx(expected, abs=1e-7)
+
+
 def test_the_polygon_of_one_foot_is_its_sole():
     foot = Footstep(True, 0.2, -0.1, 0.4)
     polygon = support_polygon(SOLE, foot, foot)
