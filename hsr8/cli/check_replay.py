@@ -1,13 +1,16 @@
 """``hsr8 check replay``: a run computed again from what it recorded."""
 
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from hsr8.cli.options import CheckReplay
 from hsr8.errors import UsageError
-from hsr8.evaluation.replay import Replayed, replay
 from hsr8.recorder import atomic
 from hsr8.recorder.manifest import other_versions
 from hsr8.recorder.run_reader import open_run
+
+if TYPE_CHECKING:
+    from hsr8.evaluation.replay import Replayed
 
 FAILED = 1
 
@@ -19,6 +22,10 @@ def main(options: CheckReplay) -> int:
         UsageError: there is no such run, or its records cannot be read.
     """
     run = open_run(options.run)
+    if not options.json:
+        print(f"run         {run.path}", flush=True)
+    from hsr8.evaluation.replay import replay  # noqa: PLC0415  takes seconds
+
     stages = replay(run)
     if not any(stage.count for stage in stages):
         raise UsageError(
@@ -29,7 +36,6 @@ def main(options: CheckReplay) -> int:
         told = [asdict(stage) | {"equal": stage.equal} for stage in stages]
         print(atomic.dumps({"run": str(run.path), "equal": equal, "stages": told}))
         return 0 if equal else FAILED
-    print(f"run         {run.path}")
     for stage in stages:
         print(f"{stage.stage:<12}{_verdict(stage)}")
     if not equal:
@@ -38,7 +44,7 @@ def main(options: CheckReplay) -> int:
     return 0 if equal else FAILED
 
 
-def _verdict(stage: Replayed) -> str:
+def _verdict(stage: "Replayed") -> str:
     if stage.equal:
         return f"equal, {stage.count} {stage.unit}, bit for bit"
     unit = stage.unit.removesuffix("s")

@@ -39,6 +39,8 @@ def main(options: Colours) -> int:
     """
     if options.out.suffix != SUFFIX:
         raise UsageError(f"--out {options.out}: a colour table is a {SUFFIX} file")
+    if not options.images:
+        raise UsageError("colours needs IMAGE: images with masks beside them, NAME.mask.png")
     pairs = [_read(path) for path in options.images]
     try:
         table = learn(pairs)

@@ -1,10 +1,11 @@
 """``hsr8 plot``: how a run walked, as a picture to print."""
 
+import sys
+
 from hsr8.cli.options import Plot
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic
 from hsr8.recorder.run_reader import open_run
-from hsr8.render.walk_figure import SUFFIXES, draw, save
 
 
 def main(options: Plot) -> int:
@@ -23,6 +24,9 @@ def main(options: Plot) -> int:
         raise UsageError(
             f"nothing to plot from {start:g} s to {stop:g} s: the run ended at {end:g} s"
         )
+    print(f"plotting    {run.path}", file=sys.stderr, flush=True)
+    from hsr8.render.walk_figure import SUFFIXES, draw, save  # noqa: PLC0415  takes seconds
+
     out = options.out or run.path / f"{options.what}.png"
     if out.suffix.lower() not in SUFFIXES:
         raise UsageError(f"--out {out}: give a file that ends in {', '.join(SUFFIXES)}")

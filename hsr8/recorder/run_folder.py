@@ -112,7 +112,8 @@ class RunFolder:
                 return path
         except OSError as error:
             if error.errno in NO_ROOM:
-                raise failure(parent, error.strerror or str(error)) from error
+                reason = f"{error.strerror}; choose another with --out"
+                raise failure(parent, reason) from error
             raise UsageError(
                 f"cannot write the run folder {parent}: {error.strerror}; choose another with --out"
             ) from error

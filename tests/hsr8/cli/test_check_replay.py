@@ -135,7 +135,7 @@ def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
         printed = capsys.readouterr()
         assert text in printed.err
         assert printed.err.count("\n") == 1
-        assert not printed.out
+        assert printed.out.splitlines() == [f"run         {run}"]
 
     file.write_bytes(content[: places[5] + 100] + b"?" + content[places[5] + 101 :])
     refused("is damaged in frame 5")

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from hsr8.cli.colours import main, mask_colours
+from hsr8.cli.main import entry
 from hsr8.cli.options import Colours
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.scenario.loader import load
@@ -59,3 +60,8 @@ def test_what_is_missing_or_no_image_is_told(picture, tmp_path):
 def test_a_wrong_table_in_a_scenario_is_a_mistake_of_the_scenario(tmp_path):
     with pytest.raises(ScenarioError, match=r"vision\.colour_table.*nowhere\.npz"):
         load("quick", ["vision.colour_table=nowhere.npz"])
+
+
+def test_images_are_needed(capsys):
+    assert entry(["colours"]) == 2
+    assert "colours needs IMAGE" in capsys.readouterr().err

@@ -1,4 +1,6 @@
 import json
+import subprocess
+import sys
 
 import pytest
 
@@ -57,3 +59,12 @@ def test_a_run_without_the_table_says_so(run, tmp_path, capsys):
     (tmp_path / "manifest.json").write_text((folder / "manifest.json").read_text())
     assert entry(["plot", str(tmp_path)]) == 2
     assert "run it again" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("module", ["hsr8.cli.plot", "hsr8.cli.check_replay"])
+def test_what_takes_seconds_to_load_waits_for_the_first_line(module):
+    script = f"import sys, {module}; print('matplotlib' in sys.modules, 'pinocchio' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout.split() == ["False", "False"]
