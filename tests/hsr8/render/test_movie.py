@@ -122,6 +122,8 @@ def test_an_unknown_camera_is_a_usage_error_that_names_the_others(run, tmp_path)
     with pytest.raises(UsageError, match="dashboard, follow, head, top, corner, front, egocentric"):
         film(run, Shot(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
     assert list(tmp_path.iterdir()) == []
+    with pytest.raises(UsageError, match="did you mean 'follow'"):
+        film(run, Shot(camera="fllow"), tmp_path / "v.mp4", lambda n, total: None)
 
 
 @pytest.mark.gl
