@@ -70,7 +70,7 @@ class Watch:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self.radii = [o.radius for o in simulation.layout.obstacles]
+        self.radii = np.array([o.radius for o in simulation.layout.obstacles])
         self.forward = simulation.scenario.speed_limits().forward
         self.recent: deque[Truth] = deque()
         self.trail: list[list[float]] = []
@@ -116,7 +116,7 @@ def cause_of(watch: Watch, end: Truth) -> tuple[str, str]:
     track = min(near, key=lambda t: float(np.hypot(*(t.position - place))))
     if track.age > FORGOTTEN:
         return "unseen", f"{what}; seen last {track.age:.1f} s ago"
-    wrong = _wrong(track, place, velocity, watch.radii[contact.obstacle])
+    wrong = _wrong(track, place, velocity, float(watch.radii[contact.obstacle]))
     if wrong:
         return "misjudged", f"{what}; {wrong}"
     if not _is_free(then, watch.radii, watch.forward):
@@ -153,7 +153,7 @@ def _wrong(track: Track, place: Array, velocity: Array, radius: float) -> str:
     return ""
 
 
-def _is_free(truth: Truth, radii: list[float], forward: float) -> bool:
+def _is_free(truth: Truth, radii: Array, forward: float) -> bool:
     """Whether some straight walk touches nothing for a while, all going on as they do."""
     turns = 2.0 * pi * np.arange(HEADINGS) / HEADINGS
     times = np.linspace(0.0, STRIDE, 11)

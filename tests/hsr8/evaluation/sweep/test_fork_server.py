@@ -83,12 +83,15 @@ def test_one_that_is_killed_takes_no_other_with_it(server, pipe):
     assert other.returncode == -signal.SIGTERM
 
 
-def test_one_that_does_not_end_can_be_killed(server):
-    process = server.start(["import signal; signal.signal(15, signal.SIG_IGN); signal.pause()"])
-    with pytest.raises(subprocess.TimeoutExpired):
-        process.communicate(timeout=0.01)
-    process.terminate()
-    process.kill()
+def test_one_that_does_not_end_can_be_killed(server, pipe):
+    deaf = "import signal; signal.signal(15, signal.SIG_IGN); "
+    process = server.start([deaf + STAYS.format(str(pipe))])
+    with pipe.open() as end:
+        assert end.read(2) == "on"
+        with pytest.raises(subprocess.TimeoutExpired):
+            process.communicate(timeout=0.01)
+        process.terminate()
+        process.kill()
     process.communicate(timeout=LIMIT)
     assert process.returncode == -signal.SIGKILL
 
