@@ -13,6 +13,7 @@ import tyro
 from hsr8.cli import options
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.guidance import hints, no_command
+from hsr8.cli.loading import loading
 from hsr8.cli.wrong_line import mistakes
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.version import VERSION
@@ -85,7 +86,8 @@ def _answer(given: list[str]) -> int:
             command = _parsed(given)
             if isinstance(command, int):
                 return command
-            module = importlib.import_module(MODULES[type(command)])
+            with loading():
+                module = importlib.import_module(MODULES[type(command)])
             code: int = module.main(command)
     except Hsr8Error as error:
         print(f"hsr8: {error}", file=sys.stderr)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from hsr8.cli.command_line import log_level, option_tables, run_command, settings
 from hsr8.cli.cost import estimate
+from hsr8.cli.loading import loading
 from hsr8.cli.options import Run
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic
@@ -23,7 +24,8 @@ def main(options: Run) -> int:
     if options.checkpoint < 0:
         raise UsageError(f"--checkpoint {options.checkpoint}: give seconds, 1 or more")
     if options.resume:
-        from hsr8.cli.recorded_run import resume  # noqa: PLC0415  takes seconds
+        with loading():
+            from hsr8.cli.recorded_run import resume  # noqa: PLC0415  takes seconds
 
         return resume(options)
     scenario = load(
@@ -35,7 +37,8 @@ def main(options: Run) -> int:
         return 0
     if not options.quiet:
         print(f"{scenario.name}, seed {scenario.seed}", file=sys.stderr, flush=True)
-    from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
+    with loading():
+        from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
     return start(options, scenario, command)
 

@@ -5,6 +5,7 @@ import pytest
 
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.assembly import Optics, assemble
+from hsr8.world.kinematic import KinematicBody
 from hsr8.world.layout import Layout, Obstacle, standard_beacons
 
 
@@ -31,3 +32,13 @@ def world():
         return layout, assemble(layout, "vision", Optics())
 
     return make
+
+
+@pytest.fixture
+def body(world, silent):
+    """A robot that looks down a little at a red obstacle ahead."""
+    layout, model = world(Obstacle((1.0, 0.2), 0.08, 0.3, "red"))
+    body = KinematicBody(model, layout, silent, np.random.default_rng(0))
+    body.data.joint("head_tilt").qpos[0] = -0.3
+    body.update_kinematics()
+    return body

@@ -6,22 +6,12 @@ import pytest
 
 from hsr8.scenario.camera import Camera, CameraNoise
 from hsr8.world.camera import RenderedCamera
-from hsr8.world.kinematic import KinematicBody
-from hsr8.world.layout import Obstacle
 from vision.camera import CameraPose, PinholeCamera
 from vision.detector import Detector
 from vision.parameters import VisionParameters
 
 CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))
 pytestmark = pytest.mark.gl
-
-
-@pytest.fixture
-def body(world, silent):
-    layout, model = world(Obstacle((1.0, 0.2), 0.08, 0.3, "red"))
-    body = KinematicBody(model, layout, silent, np.random.default_rng(0))
-    body.data.joint("head_tilt").qpos[0] = -0.3
-    return body
 
 
 def test_an_image_shows_the_world_as_it_is_now(body):

@@ -4,21 +4,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.world.kinematic import KinematicBody
-from hsr8.world.layout import Obstacle
 from hsr8.world.offscreen import Offscreen
 
 CAMERA, WIDTH, HEIGHT = "egocentric", 96, 72
 pytestmark = pytest.mark.gl
-
-
-@pytest.fixture
-def body(world, silent):
-    layout, model = world(Obstacle((1.0, 0.2), 0.08, 0.3, "red"))
-    body = KinematicBody(model, layout, silent, np.random.default_rng(0))
-    body.data.joint("head_tilt").qpos[0] = -0.3
-    body.update_kinematics()
-    return body
 
 
 def look_aside(body):
