@@ -24,16 +24,20 @@ from vision.camera import PinholeCamera
 from vision.colour import COLOUR_CLASSES
 from vision.detection import Detection
 
-OBSTACLE_RANGE = 3.0  # farther obstacles are not reported [m]
-BEACON_RANGE = 5.0  # farther beacons are not reported [m]
-DETECTED = 0.97  # share of visible things that are detected
+OBSTACLE_RANGE = 4.5  # farther obstacles are not reported [m]
+BEACON_RANGE = 5.5  # farther beacons are not reported [m]
+DETECTED = 0.999  # share of visible things that are detected
 HIDDEN = 0.7  # hidden share of the width beyond which nothing is detected
-BEARING_SIGMA = 0.008  # [rad]
-RANGE_SIGMA = 0.010  # at no distance [m]
-RANGE_SIGMA_RATE = 0.015  # and per metre
-RADIUS_SIGMA = 0.006  # [m]
+# Errors as vision's are in full physics, docs/results/vision.md.
+LEAST_SIGMA = 0.002  # of the range [m]
+RANGE_SIGMA = 0.0027  # per squared distance [1/m]
+BEARING_SIGMA = 0.0009  # [rad]
+RADIUS_SIGMA = 0.0018  # [m]
+PART_RANGE_SIGMA = 0.0065  # of an obstacle cut by the border or partly hidden [1/m]
+PART_SIDE_SIGMA = 0.012  # of its middle, across the line of sight [m]
+PART_RADIUS_SIGMA = 0.010  # [m]
 OBSTACLE_COLOURS = tuple(c.name for c in COLOUR_CLASSES.values() if c.kind == "obstacle")
-CUT_FACTOR = 3.0  # a thing cut by the border is located so much worse
+CLEAR = 0.04  # hidden share of the outline up to which a thing is seen whole
 FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of what is not there [m]
 FALSE_RANGE = (0.3, 2.5)  # where things seem to be that are not there [m]
 
@@ -156,6 +160,14 @@ def _polar(x: float, y: float, robot: tuple[float, float, float]) -> tuple[float
     return hypot(x, y), atan2(y, x) - robot[2]
 
 
+def _deviations(distance: float, whole: bool) -> tuple[float, float, float]:
+    """Standard deviations of range [m], bearing [rad] and radius [m] of a thing seen whole or not."""
+    if whole:
+        return max(LEAST_SIGMA, RANGE_SIGMA * distance**2), BEARING_SIGMA, RADIUS_SIGMA
+    sigma = max(LEAST_SIGMA, PART_RANGE_SIGMA * distance**2)
+    return sigma, PART_SIDE_SIGMA / distance, PART_RADIUS_SIGMA
+
+
 def _detection(
     polar: tuple[float, float],
     thing: _Thing,
@@ -167,12 +179,13 @@ def _detection(
     """A noisy look at a thing at true (distance, bearing) in R."""
     distance, true_bearing = polar
     left, top, right, bottom, cut = box
-    factor = CUT_FACTOR if cut else 1.0 + 2.0 * hidden
-    range_sigma = factor * (RANGE_SIGMA + RANGE_SIGMA_RATE * distance)
-    bearing_sigma = factor * BEARING_SIGMA
-    bearing = true_bearing + bearing_sigma * noise[1]
     beacon = thing.kind == "beacon"
-    radius = thing.radius + (0.0 if beacon else factor * RADIUS_SIGMA * noise[2])
+    whole = beacon or (not cut and hidden <= CLEAR)
+    range_sigma, bearing_sigma, radius_sigma = _deviations(distance, whole)
+    if beacon:
+        radius_sigma = 0.0
+    bearing = true_bearing + bearing_sigma * noise[1]
+    radius = thing.radius + radius_sigma * noise[2]
     return Detection(
         kind="beacon" if beacon else "obstacle",
         label=thing.label,
@@ -180,8 +193,8 @@ def _detection(
         distance=max(0.05, distance + range_sigma * noise[0]),
         covariance=np.array([[range_sigma**2, 0.0], [0.0, bearing_sigma**2]]),
         radius=max(0.01, radius),
-        radius_sigma=0.0 if beacon else factor * RADIUS_SIGMA,
+        radius_sigma=radius_sigma,
         cut=bool(cut),
-        occluded=hidden > 0.1,
+        occluded=hidden > CLEAR,
         box=(int(left), int(top), int(right), int(bottom)),
     )

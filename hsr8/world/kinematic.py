@@ -21,8 +21,10 @@ from walking.targets import JointTargets
 
 Array = NDArray[np.float64]
 
-SLIP = 0.002  # standard deviation of a foot's slip at touch-down, per axis [m]
-YAW_SLIP = 0.008  # and about the vertical [rad]
+# Of a foot's slip at touch-down, standard deviations that drift as full physics does,
+# `walking.odometry`.
+SLIP = 0.0003  # per axis [m]
+YAW_SLIP = 0.0006  # about the vertical [rad]
 LANDED = 0.0005  # the swing foot takes over when it is lower than the stance foot by this [m]
 LIFTED = 0.001  # a foot higher than the other by this carries nothing [m]
 BOTH = 2
