@@ -161,7 +161,7 @@ def _polar(x: float, y: float, robot: tuple[float, float, float]) -> tuple[float
 
 
 def _deviations(distance: float, whole: bool) -> tuple[float, float, float]:
-    """Standard deviations of range [m], bearing [rad] and radius [m] of a thing seen whole or not."""
+    """Standard deviations of range [m], bearing [rad] and radius [m]."""
     if whole:
         return max(LEAST_SIGMA, RANGE_SIGMA * distance**2), BEARING_SIGMA, RADIUS_SIGMA
     sigma = max(LEAST_SIGMA, PART_RANGE_SIGMA * distance**2)

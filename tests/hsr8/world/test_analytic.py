@@ -89,7 +89,7 @@ def test_beacons_carry_their_names(see):
 
 
 def test_far_things_are_not_reported(see):
-    assert not obstacles_in(see(Obstacle((3.6, 0.0), 0.1, 0.3, "red")))
+    assert not obstacles_in(see(Obstacle((4.6, 0.0), 0.1, 0.3, "red")))
 
 
 @pytest.mark.parametrize("bearing", np.radians([0.0, 100.0, -160.0, 180.0]))
