@@ -116,7 +116,7 @@ class Checkpoint:
                     f"{file} is shorter than at the checkpoint: {found} < {size} bytes"
                 )
         for name, size in self.sizes.items():
-            with (folder / name).open("r+b") as stream:
+            with (folder / name).open("ab") as stream:  # makes an empty one that is gone
                 stream.truncate(size)
 
 

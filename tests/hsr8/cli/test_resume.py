@@ -136,6 +136,14 @@ def test_a_file_that_lost_its_end_is_found_out(cut, capsys):
     assert "is shorter than at the checkpoint" in capsys.readouterr().err
 
 
+def test_an_empty_file_that_is_gone_is_made_again(cut, whole, capsys):
+    file = cut.path / "events.jsonl"
+    assert not file.read_bytes()  # what is missing of it is nothing
+    file.unlink()
+    assert entry(["run", str(cut.path), "--resume", "--quiet"]) == 1
+    check_the_same(open_run(cut.path), whole)
+
+
 def test_checkpoints_change_nothing(whole, tmp_path, capsys):
     entry([*QUICK, *STAND_INS, "--no-log", "--checkpoint", "2", "--out", str(tmp_path)])
     check_the_same(open_run(tmp_path), whole)
