@@ -1,6 +1,7 @@
 """What happens in a run, as events: faults, contacts, falls, pushes, via points, the goal."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.scenario.fault import Fault
@@ -11,16 +12,22 @@ from hsr8.world.truth import Truth
 INSTANT = 1e-6  # times nearer to one another are the same [s]
 
 
+class Event(NamedTuple):
+    """What happened, and when [s]."""
+
+    time: float
+    kind: str
+    text: str
+
+
 class EventWatch:
     """Turns records into events.
 
     Args:
-        tell: takes kind, text, and the time where it is not now [s].
         faults: of the scenario.
     """
 
-    def __init__(self, tell: Callable[..., None], faults: Sequence[Fault] = ()) -> None:
-        self._tell = tell
+    def __init__(self, faults: Sequence[Fault] = ()) -> None:
         told = [(f.start, f"{f.text()}: begins") for f in faults]
         told += [(f.end, f"{f.text()}: ends") for f in faults if f.end is not None]
         self._faults = sorted(told, key=lambda line: line[0])
@@ -31,30 +38,33 @@ class EventWatch:
         self._lost = False
         self._done = False
 
-    def look(self, truth: Truth, frame: FrameRecord | None) -> None:
-        """Tell what changed since the last record."""
-        while self._faults and self._faults[0][0] <= truth.time + INSTANT:
+    def look(self, truth: Truth, frame: FrameRecord | None) -> Iterator[Event]:
+        """What changed since the last record."""
+        now = truth.time
+        while self._faults and self._faults[0][0] <= now + INSTANT:
             time, text = self._faults.pop(0)
-            self._tell("fault", text, time)
+            yield Event(time, "fault", text)
         for push in truth.pushes:
             if push.number >= self._pushes:
                 self._pushes = push.number + 1
-                self._tell("push", push.text(), push.begin)
-        if self._falls.add(truth.time, fallen=truth.fallen):
-            self._tell("fall", "the robot has fallen")
-        for collision in self._episodes.add(truth.time, truth.contacts):
+                yield Event(push.begin, "push", push.text())
+        if self._falls.add(now, fallen=truth.fallen):
+            yield Event(now, "fall", "the robot has fallen")
+        for collision in self._episodes.add(now, truth.contacts):
             what = "mover" if collision.moving else "obstacle"
-            self._tell("collision", f"{collision.robot_geom} touches {what} {collision.obstacle}")
+            text = f"{collision.robot_geom} touches {what} {collision.obstacle}"
+            yield Event(now, "collision", text)
         if frame is None:
             return
         if frame.task.index > self._index:
             self._index = frame.task.index
-            self._tell("via_point", f"via point {self._index} passed")
+            yield Event(now, "via_point", f"via point {self._index} passed")
         if frame.task.done and not self._done:
             self._done = True
-            self._tell("goal", "goal reached")
+            yield Event(now, "goal", "goal reached")
         if frame.belief.lost != self._lost:
             self._lost = frame.belief.lost
-            self._tell(
-                *(("lost", "localization is lost") if self._lost else ("found", "localized again"))
-            )
+            if self._lost:
+                yield Event(now, "lost", "localization is lost")
+            else:
+                yield Event(now, "found", "localized again")

@@ -11,7 +11,7 @@ import cv2
 from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import Looks, Moves
 from hsr8.errors import ScenarioError, SimulationDiverged
-from hsr8.event_watch import EventWatch
+from hsr8.event_watch import Event, EventWatch
 from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.recorder.tape import TapeWriter
 from hsr8.robot import Robot, SensorFrame
@@ -19,7 +19,6 @@ from hsr8.robot_builder import build_robot, head_camera
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.analytic import AnalyticCamera
-from hsr8.world.body import Body
 from hsr8.world.camera import RenderedCamera
 from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.camera_feed import CameraFeed, Picture
@@ -83,7 +82,7 @@ class Simulation:
     Attributes:
         listeners: told of every record; may be added to before the run.
         tape: where set-points and hashes go, if anywhere.
-        each_second: called before the first tick of every simulated second.
+        each_second: called with the simulation before the first tick of every simulated second.
         layout: the world that was drawn.
         model: MuJoCo model of it, with the robot.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted once the run has
@@ -108,14 +107,14 @@ class Simulation:
         self.seed = seed
         self.listeners = list(listeners)
         self.tape: TapeWriter | None = None
-        self.each_second: Callable[[], None] | None = None
+        self.each_second: Callable[[Simulation], None] | None = None
         self.layout = draw_layout(scenario, seed)
         self.model = build_model(scenario, self.layout)
         self.exit_reason: str | None = None
         self.tick = 0
         self._body = build_body(scenario, seed, self.layout, self.model)
         self._robot = self._built(planner, gaze)
-        self._watch = EventWatch(self._tell, scenario.fault)
+        self._watch = EventWatch(scenario.fault)
         self._sensor_faults = SensorFaults(scenario.fault)
         self._servo_faults = ServoFaults(scenario.fault)
         self._camera_faults = CameraFaults(scenario.fault)
@@ -133,9 +132,7 @@ class Simulation:
                 scenario.camera,
                 self._camera_faults,
             )
-        self._feed = CameraFeed(
-            camera, self._take, named_rng(seed, "camera_feed"), self._camera_faults
-        )
+        self._feed = CameraFeed(camera, named_rng(seed, "camera_feed"), self._camera_faults)
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
@@ -231,7 +228,7 @@ class Simulation:
             return self._step()
         except SimulationDiverged as error:
             self.exit_reason = "diverged"
-            self._tell("diverged", str(error))
+            self._tell(Event(self._body.time, "diverged", str(error)))
             raise
 
     def state_hash(self) -> str:
@@ -272,7 +269,7 @@ class Simulation:
         tick, record = self.tick, None
         if tick % TICKS_A_SECOND == 0:
             if self.each_second is not None:
-                self.each_second()
+                self.each_second(self)
             self._mark(tick)
         targets = self._robot.step(self._sense(tick))
         if tick % self._record_ticks == 0:
@@ -300,13 +297,14 @@ class Simulation:
 
     def _sense(self, tick: int) -> SensorFrame:
         body, time = self._sensor_faults.spoil(self._body.sense(), tick), self._body.time
-        shutter, picture = self._feed.shutter(tick), self._feed.arrived(tick, self._body)
+        shutter, picture = self._feed.shutter(tick), self._feed.arrived(tick, self._take)
         if picture is None:
             return SensorFrame(time, body, shutter)
         image = None if picture.exposure is None else picture.exposure.image
         return SensorFrame(time, body, shutter, picture.captured, image, picture.detections)
 
-    def _take(self, body: Body) -> Picture:
+    def _take(self) -> Picture:
+        body = self._body
         if self._rendered is not None:
             return Picture(body.time, self._rendered.capture(body))
         assert self._analytic is not None
@@ -330,7 +328,8 @@ class Simulation:
     def _publish(self, tick: int, truth: Truth) -> TickRecord:
         frame = self._robot.frame if self._robot.frame is not self._published else None
         self._published = self._robot.frame
-        self._watch.look(truth, frame)
+        for event in self._watch.look(truth, frame):
+            self._tell(event)
         record = TickRecord(
             tick=tick,
             time=self._body.time,
@@ -345,6 +344,6 @@ class Simulation:
             listener.on_record(record)
         return record
 
-    def _tell(self, kind: str, text: str, time: float | None = None) -> None:
+    def _tell(self, event: Event) -> None:
         for listener in self.listeners:
-            listener.on_event(self._body.time if time is None else time, kind, text)
+            listener.on_event(*event)

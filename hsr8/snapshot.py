@@ -9,7 +9,7 @@ import io
 import pickle
 import struct
 from collections.abc import Mapping
-from types import FunctionType, MethodType
+from types import FunctionType
 from typing import Any
 
 import mujoco
@@ -62,10 +62,10 @@ class Refused(pickle.UnpicklingError):
     """A snapshot asks for something that is none of its business."""
 
 
-def encode(parts: Mapping[str, Any], owner: object) -> bytes:
-    """Bytes of `parts`; shared objects stay shared, methods of `owner` stay its methods."""
+def encode(parts: Mapping[str, Any]) -> bytes:
+    """Bytes of `parts`; shared objects stay shared."""
     buffer = io.BytesIO()
-    _Writer(buffer, owner).dump(dict(parts))
+    _Writer(buffer, protocol=5).dump(dict(parts))
     payload = buffer.getvalue()
     return MAGIC + _LENGTH.pack(len(payload)) + hashlib.sha256(payload).digest() + payload
 
@@ -75,7 +75,7 @@ def decode(content: bytes, anchors: Mapping[str, Any], name: str) -> dict[str, A
 
     Args:
         content: bytes of a snapshot.
-        anchors: ``owner``, ``model`` and ``robot model``, which are made anew and not stored.
+        anchors: ``model`` and ``robot model``, which are made anew and not stored.
         name: of the snapshot, for messages.
 
     Raises:
@@ -104,17 +104,11 @@ def decode(content: bytes, anchors: Mapping[str, Any], name: str) -> dict[str, A
 class _Writer(pickle.Pickler):
     """Leaves out what is made anew."""
 
-    def __init__(self, file: io.BytesIO, owner: object) -> None:
-        super().__init__(file, protocol=5)
-        self._owner = owner
-
-    def persistent_id(self, obj: Any) -> tuple[str, str] | None:
+    def persistent_id(self, obj: Any) -> str | None:
         if isinstance(obj, mujoco.MjModel):
-            return ("model", "")
+            return "model"
         if isinstance(obj, RobotModel):
-            return ("robot model", "")
-        if isinstance(obj, MethodType) and obj.__self__ is self._owner:
-            return ("owner", obj.__name__)
+            return "robot model"
         return None
 
 
@@ -126,13 +120,9 @@ class _Reader(pickle.Unpickler):
         self._anchors = anchors
 
     def persistent_load(self, pid: Any) -> Any:
-        kind, name = pid
-        anchor = self._anchors[kind]
-        if kind != "owner" and not name:
-            return anchor
-        if kind != "owner" or name not in OWN_METHODS:
-            raise Refused(f"it asks for the method {name!r}")
-        return getattr(anchor, name)
+        if pid not in self._anchors:
+            raise Refused(f"it asks for {pid!r}")
+        return self._anchors[pid]
 
     def find_class(self, module: str, name: str) -> Any:
         if name in NAMES.get(module, ()):
@@ -144,6 +134,3 @@ class _Reader(pickle.Unpickler):
             if (isinstance(found, type) or function) and found.__module__ == module:
                 return found
         raise Refused(f"it asks for {module}.{name}")
-
-
-OWN_METHODS = ("_take", "_tell")

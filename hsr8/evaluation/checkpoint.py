@@ -40,8 +40,7 @@ class Checkpoints:
     """Saves a run every few simulated seconds; each takes the place of the one before.
 
     Args:
-        simulation: the run, with its tape and listeners.
-        metrics: its results so far.
+        metrics: the run's results so far.
         folder: its run folder.
         period: simulated time between two of them, whole seconds [s].
         writers: of the files that are kept.
@@ -49,28 +48,24 @@ class Checkpoints:
 
     def __init__(
         self,
-        simulation: Simulation,
         metrics: Metrics,
         folder: Path,
         period: int,
         writers: Sequence[Writes],
     ) -> None:
-        self._simulation = simulation
         self._metrics = metrics
         self._folder = folder
         self._ticks = period * TICKS_A_SECOND
         self._writers = writers
 
-    def __call__(self) -> None:
-        """Save, if it is time to."""
-        simulation = self._simulation
+    def __call__(self, simulation: Simulation) -> None:
+        """Save the run, if it is time to."""
         if simulation.tick == 0 or simulation.tick % self._ticks:
             return
         with writing(self._folder):
-            self._save()
+            self._save(simulation)
 
-    def _save(self) -> None:
-        simulation = self._simulation
+    def _save(self, simulation: Simulation) -> None:
         for writer in self._writers:
             writer.flush()
         parts = simulation.snapshot() | {
@@ -79,7 +74,7 @@ class Checkpoints:
             "metrics": self._metrics,
             "sizes": {name: (self._folder / name).stat().st_size for name in KEPT},
         }
-        atomic.write_bytes(self._folder / FILE, snapshot.encode(parts, simulation))
+        atomic.write_bytes(self._folder / FILE, snapshot.encode(parts))
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +131,7 @@ def read_checkpoint(run: Run, simulation: Simulation) -> Checkpoint:
         ) from None
     except OSError as error:
         raise UsageError(f"cannot read {file}: {error.strerror}") from error
-    anchors = {"owner": simulation, "model": simulation.model, "robot model": robot_model()}
+    anchors = {"model": simulation.model, "robot model": robot_model()}
     parts = snapshot.decode(content, anchors, str(file))
     then, now = parts.get("made_by"), _made_by()
     if then != now:

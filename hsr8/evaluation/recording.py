@@ -135,7 +135,7 @@ class Recording:
             self._listeners = writers + self._listeners
             if checkpoint:
                 simulation.each_second = Checkpoints(
-                    simulation, self._metrics, path, checkpoint, (folder, table, tape)
+                    self._metrics, path, checkpoint, (folder, table, tape)
                 )
 
     def resume(self, run: Run) -> None:

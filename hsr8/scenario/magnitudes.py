@@ -25,6 +25,7 @@ BOUNDS: dict[Path, tuple[float, float]] = {
     ("navigation", "evaluation", "ray_step"): (0.01, 7.0),
     ("navigation", "gaze", "step"): (0.01, 7.0),
     ("navigation", "gaze", "pan_limit"): (0.01, 7.0),
+    ("navigation", "gaze", "tilt_min"): (-2.0, 2.0),
     ("navigation", "gaze", "tilt_max"): (0.0, 2.0),
     ("navigation", "mover", "samples"): (2, 1000),
     ("navigation", "filter", "headings"): (1, 360),

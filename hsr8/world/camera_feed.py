@@ -3,7 +3,6 @@
 from collections import deque
 from collections.abc import Callable
 from math import ceil
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +12,6 @@ from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.exposure import Exposure
 from vision.detection import Detection
 from walking.value import value
-
-if TYPE_CHECKING:
-    from hsr8.world.body import Body
 
 
 @value
@@ -38,7 +34,6 @@ class CameraFeed:
 
     Args:
         settings: period and latency.
-        take: takes a picture of the world as it is now.
         rng: generator of the dropped images.
         faults: images that are dropped, or late by whole periods; one that a newer one overtakes
             never arrives.
@@ -47,11 +42,9 @@ class CameraFeed:
     def __init__(
         self,
         settings: Camera,
-        take: Callable[["Body"], Picture],
         rng: np.random.Generator,
         faults: CameraFaults | None = None,
     ) -> None:
-        self._take = take
         self._rng = rng
         self._faults = faults or CameraFaults()
         self._period = settings.period_ms // CONTROL_PERIOD_MS
@@ -62,10 +55,15 @@ class CameraFeed:
         """Whether a picture is taken in control tick `tick`."""
         return tick % self._period == 0
 
-    def arrived(self, tick: int, body: "Body") -> Picture | None:
-        """Take the picture that is due in control tick `tick`; return the one that arrives."""
+    def arrived(self, tick: int, take: Callable[[], Picture]) -> Picture | None:
+        """The picture that arrives in control tick `tick`, if any.
+
+        Args:
+            tick: control tick.
+            take: takes a picture of the world as it is now; called if one is due.
+        """
         if self.shutter(tick):
-            picture = self._take(body)
+            picture = take()
             dropped = self._faults.dropped(tick)
             if not (dropped and self._rng.random() < dropped):
                 late = ceil(self._faults.late(tick) / self._period) * self._period

@@ -23,13 +23,13 @@ def truth_with(time, *obstacles):
 
 
 def test_a_contact_that_goes_on_is_one_event_and_a_later_one_another():
-    told = []
-    watch = EventWatch(lambda kind, text: told.append(kind))
-    for time in np.arange(0.0, 1.0, 0.02):
-        watch.look(truth_with(time, 3), None)
-    assert told == ["collision"]
-    watch.look(truth_with(1.2, 3), None)
-    assert told == ["collision"]
-    watch.look(truth_with(1.9, 3), None)
-    watch.look(truth_with(1.9, 4), None)
-    assert told == ["collision"] * 3
+    watch = EventWatch()
+
+    def told(time, obstacle):
+        return [event.kind for event in watch.look(truth_with(time, obstacle), None)]
+
+    assert told(0.0, 3) == ["collision"]
+    for time in np.arange(0.02, 1.0, 0.02):
+        assert told(time, 3) == []
+    assert told(1.2, 3) == []
+    assert told(1.9, 3) == told(1.9, 4) == ["collision"]

@@ -145,11 +145,11 @@ def test_a_run_with_all_faults_goes_on_from_any_tick(tick):
     with Simulation(scenario, 2) as first:
         while first.tick < tick:
             first.step()
-        content = encode(first.snapshot(), first)
+        content = encode(first.snapshot())
         while first.exit_reason is None:
             first.step()
     with Simulation(scenario, 2) as second:
-        anchors = {"owner": second, "model": second.model}
+        anchors = {"model": second.model}
         anchors["robot model"] = second._robot._walking._robot
         second.restore(decode(content, anchors, "x"))
         while second.exit_reason is None:

@@ -1,5 +1,3 @@
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,13 +13,12 @@ def deliveries(ticks=400, seed=0, faults=(), **settings):
     """Tick and capture time [s] of every picture that arrives."""
     feed = CameraFeed(
         Camera(**settings),
-        lambda body: Picture(body.time),
         np.random.default_rng(seed),
         CameraFaults(faults),
     )
     arrived = []
     for tick in range(ticks):
-        picture = feed.arrived(tick, SimpleNamespace(time=0.005 * tick))
+        picture = feed.arrived(tick, lambda tick=tick: Picture(0.005 * tick))
         if picture is not None:
             arrived.append((tick, picture.captured))
     return arrived

@@ -1,0 +1,30 @@
+import gc
+import weakref
+
+import pytest
+
+from hsr8.evaluation.recording import Recording
+from hsr8.loop import Simulation
+from hsr8.recorder.manifest import Manifest
+from hsr8.scenario.loader import load
+
+
+@pytest.fixture
+def uncollected():
+    """Nothing is freed but what nobody holds."""
+    gc.disable()
+    yield
+    gc.enable()
+
+
+@pytest.mark.usefixtures("uncollected")
+def test_a_run_that_is_over_is_gone_without_a_collection(tmp_path):
+    settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=1.2"]
+    simulation = Simulation(load("quick", settings), 1)
+    model = weakref.ref(simulation.model)
+    recording = Recording(simulation)
+    manifest = Manifest.now("quick", 1, ("test",), "analytic")
+    recording.into(tmp_path, manifest, checkpoint=1)
+    recording.run()
+    del simulation, recording
+    assert model() is None
