@@ -69,6 +69,7 @@ class GazeGrid:
             half_pan: half width of a box [rad].
             half_tilt: half height of a box [rad].
         """
+        self._step = step
         columns = round(pan_limit / step)
         self.pan: Array = step * np.arange(-columns, columns + 1, dtype=np.float64)
         rows = round((tilt_max - tilt_min) / step) + 1
@@ -142,9 +143,8 @@ class GazeGrid:
         return int(rows[nearest]), int(columns[nearest])
 
     def _cell(self, pan: float, tilt: float) -> tuple[int, int]:
-        step = float(self.pan[1] - self.pan[0])
-        row = round((tilt - float(self.tilt[0])) / step)
-        column = round((pan - float(self.pan[0])) / step)
+        row = round((tilt - float(self.tilt[0])) / self._step)
+        column = round((pan - float(self.pan[0])) / self._step)
         return (
             min(max(row, 0), len(self.tilt) - 1),
             min(max(column, 0), len(self.pan) - 1),

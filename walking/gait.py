@@ -60,7 +60,7 @@ class Gait:
         self._planner = planner
         self._reference = ZmpReference(parameters, planner.sole)
         self._contact_decay = parameters.stabilizer.contact_decay
-        self._start = round(gait.start_time / CONTROL_PERIOD)
+        self._start = max(1, round(gait.start_time / CONTROL_PERIOD))
         self._freeze = gait.landing_freeze
         self._shortest_single = round(gait.catch_single / CONTROL_PERIOD)
         self._shortest_double = round(gait.catch_double / CONTROL_PERIOD)

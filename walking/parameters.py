@@ -140,13 +140,13 @@ class EstimatorParameters:
 class OdometryParameters:
     """How much of the robot's motion its dead reckoning does not see."""
 
-    forward_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0004
+    forward_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0004
     """Random walk along the heading while stepping [m/√s]."""
-    left_noise: Annotated[float, Ge(0.0), DIFFUSION] = 0.0005
+    left_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0005
     """Random walk across the heading while stepping [m/√s]."""
-    slip_share: Annotated[float, Ge(0.0), NUMBER] = 0.5
+    slip_share: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.5
     """Unseen displacement per axis, by how far the feet slid against each other [1]."""
-    yaw_drift: Annotated[float, Ge(0.0), NUMBER] = 0.00095
+    yaw_drift: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.00095
     """Random walk of the IMU's yaw [rad/√s]."""
 
 

@@ -27,6 +27,7 @@ BOUNDS: dict[Path, tuple[float, float]] = {
     ("navigation", "gaze", "pan_limit"): (0.01, 7.0),
     ("navigation", "gaze", "tilt_min"): (-2.0, 2.0),
     ("navigation", "gaze", "tilt_max"): (0.0, 2.0),
+    ("navigation", "gaze", "deadline", "exponent"): (0.0, 10.0),
     ("navigation", "mover", "samples"): (2, 1000),
     ("navigation", "filter", "headings"): (1, 360),
     ("navigation", "filter", "speeds"): (1, 100),
@@ -34,6 +35,18 @@ BOUNDS: dict[Path, tuple[float, float]] = {
     ("navigation", "way_search", "cell"): (0.01, 10.0),
     ("navigation", "way_search", "reach"): (0.01, 20.0),
     ("navigation", "way_search", "around"): (0.01, 20.0),
+}
+
+LONGEST = 10.0  # of the times of a footstep, which is planned tick by tick [s]
+TIMES = {
+    "gait": (
+        *("footstep_time", "shortest_time", "start_time", "stop_time", "settle_time"),
+        *("shortest_swing", "catch_single", "catch_double"),
+    ),
+    "limits": ("braking_time", "shortest_single", "longest_single", "longest_double"),
+}
+BOUNDS |= {
+    ("walking", part, name): (0.0, LONGEST) for part, names in TIMES.items() for name in names
 }
 
 

@@ -1,6 +1,6 @@
 """Bad input of every kind: a good answer, or an error that says where; never anything else."""
 
-import importlib.util
+import importlib
 import json
 import os
 import random
@@ -19,6 +19,7 @@ from hsr8.errors import ScenarioError, UsageError
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.folder import LEDGER, SweepFolder
 from hsr8.evaluation.sweep.seeds import parse_seeds
+from hsr8.loop import Simulation
 from hsr8.render import viewer
 from hsr8.scenario.loader import dump, load, loads
 from vision.colour_file import LARGEST, load_table
@@ -28,12 +29,8 @@ CASES = 700  # of each of the three kinds
 
 
 def _script():
-    path = Path(__file__).resolve().parents[2] / "scripts" / "fuzz.py"
-    spec = importlib.util.spec_from_file_location("fuzz", path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["fuzz"] = module
-    spec.loader.exec_module(module)
-    return module
+    sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+    return importlib.import_module("fuzz")
 
 
 fuzz = _script()
@@ -119,9 +116,13 @@ def test_no_number_is_out_of_all_bounds(key, value):
         "robot.speed.turn=1e-09",
         "robot.speed.forward=1e-05",
         "walking.gait.preview_steps=100000000",
+        "walking.gait.shortest_time=11.0",
+        "walking.odometry.yaw_drift=500000",
         "belief.tracking.particles=1000000000",
         "navigation.mover.samples=1000000000",
         "navigation.gaze.step=1e-9",
+        "navigation.gaze.tilt_min=-649177",
+        "navigation.gaze.deadline.exponent=1e6",
         "navigation.evaluation.ring_step=1e-8",
         "navigation.way_search.cell=1e-8",
         "belief.local_map.cell=1e-8",
@@ -134,6 +135,28 @@ def test_no_number_is_out_of_all_bounds(key, value):
 def test_what_would_take_all_memory_or_time_is_refused_by_name(setting):
     with pytest.raises(ScenarioError, match=setting.split("=")[0]):
         load("quick", (setting,))
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        "walking.gait.start_time=1e-9",
+        "walking.gait.shortest_time=10.0",
+        "walking.odometry.yaw_drift=1.0",
+        "walking.odometry.left_noise=1.0",
+        "belief.tracking.stop_rate=1e6",
+        "navigation.gaze.step=7.0",
+        "navigation.gaze.pan_limit=0.01",
+        "navigation.gaze.tilt_min=-2.0",
+        "navigation.gaze.deadline.exponent=10.0",
+    ],
+)
+def test_a_run_bears_what_is_just_allowed(setting):
+    scenario = load("course", ['robot.body="kinematic"', 'camera.source="analytic"', setting])
+    with Simulation(scenario, 1) as simulation:
+        for _ in range(100):
+            simulation.step()
+    assert np.isfinite(simulation._robot.frame.belief.pose).all()
 
 
 def test_seeds_without_end_are_refused():
