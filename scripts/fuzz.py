@@ -31,7 +31,7 @@ from vision.colour import COLOUR_CLASSES, ColourTable
 from vision.colour_file import load_table, save_table
 from vision.errors import VisionError
 
-TICKS = 30  # of a run that is begun
+TICKS = 100  # of a run that is begun
 SLOW = 10.0  # a case that takes more processor time hangs [s]
 COMMANDS: tuple[tuple[str, ...], ...] = (
     ("info", "RUN"),
