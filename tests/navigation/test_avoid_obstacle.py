@@ -70,6 +70,12 @@ def test_inside_is_dead_as_printed_and_outward_in_extended():
     assert behind == pytest.approx([1.0, 0.0])
 
 
+def test_outside_it_is_the_same_whatever_it_is_inside():
+    places = np.random.default_rng(1).uniform(-1, 1, (300, 2))
+    places = places[np.hypot(*places.T) > 0.3]
+    assert np.array_equal(field(places, inside="outward"), field(places))
+
+
 def test_on_the_circle_it_still_acts():
     assert field([-0.3, 0.0])[0] == pytest.approx([-1.0, 0.0])
 

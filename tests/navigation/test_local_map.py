@@ -88,7 +88,7 @@ def test_rolling_keeps_what_is_known_in_its_place_in_the_world(view):
     look(rolled, 0.0, view(pan=0.3))
     points = np.random.default_rng(0).uniform(-2.2, 2.2, (400, 2))
     before = rolled.age_at(points)
-    for k, centre in enumerate([(0.3, 0.1), (0.75, -0.42), (-0.33, 0.6)], 1):
+    for k, centre in enumerate([(0.3, 0.1), (0.75, -0.42), (0.75, 0.6), (-0.33, 0.6)], 1):
         look(rolled, 0.0, view(tilt=1.5), pose=(*centre, 0.1 * k))
         assert np.array_equal(rolled.age_at(points), before)
     look(rolled, 0.0, view(tilt=1.5), pose=(40.0, 0.0, 0.0))

@@ -21,6 +21,10 @@ def test_touch_down_needs_the_phase_the_force_and_the_duration():
     assert not touch.update(0.76, 50.0)
 
 
+def test_one_touch_is_none():
+    assert not TouchDown(PARAMETERS).update(0.7, 50.0)
+
+
 def test_the_steady_gains_are_where_the_filter_settles():
     dt, p = CONTROL_PERIOD, PARAMETERS
     A = np.array([LIPM.step(1.0, 0.0, 0.0), LIPM.step(0.0, 1.0, 0.0)]).T

@@ -10,7 +10,7 @@ from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
 from walking.generator import make_generator
 from walking.lipm import Lipm
-from walking.parameters import PatternParameters, WalkingParameters
+from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
 from walking.pattern import PendulumState
 from walking.stabilizer import Stabilizer
 from walking.state import Footstep
@@ -138,6 +138,27 @@ def test_mirrored_errors_move_mirrored_landings(robot, generator, velocity, erro
     assert landing == pytest.approx(other, abs=1e-6)
     assert moved == pytest.approx(other_moved, abs=1e-6)
     assert bound == other_bound
+
+
+def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, monkeypatch):
+    walk = Pendulum(robot, "robust").to_swing(VelocityCommand(0.1))
+    slow, before = walk.gait.landing.x, walk.placement.given
+    generator, asked = walk.placement._generator, []
+
+    def admits(*_):
+        asked.append(None)
+        return len(asked) == 2  # half of the change, no more
+
+    monkeypatch.setattr(generator, "admits", admits)
+    fast = VelocityCommand(0.1 + 5 * walk.parameters.limits.forward_acceleration * CONTROL_PERIOD)
+    for _ in range(5):
+        walk.steering.follow(fast, 1.0, settled=True, balanced=True)
+    walk.tick(fast)
+    half = [0.5 * (a + b) for a, b in zip(before, walk.steering.velocity, strict=True)]
+    assert walk.placement.given == pytest.approx(half)
+    assert Limit.ZMP_REGION in walk.placement.bound
+    assert walk.placement.admitted is not None
+    assert slow < walk.placement.landing.x < walk.gait.nominal(walk.steering.wish(STILL)).x
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from walking import foothold_kernel
-from walking.parameters import WalkingParameters
+from walking.parameters import PatternParameters, WalkingParameters
 from walking.ramps import Ramps
 from walking.robot_model import Sole
 from walking.state import Footstep
 from walking.stride import Timing
 from walking.zmp_reference import ZmpReference
 
-REFERENCE = ZmpReference(WalkingParameters(), Sole(centre=0.01, half_length=0.05, half_width=0.03))
+SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
+REFERENCE = ZmpReference(WalkingParameters(), SOLE)
 LEFT, RIGHT = Footstep(True, 0.0, 0.042, 0.1), Footstep(False, 0.05, -0.042, -0.1)
 TIMING = Timing(14, 54, 0.025)
 
@@ -59,10 +60,9 @@ def test_both_feet_carry_alike_halfway_between_them():
 
 
 def test_under_a_foot_it_is_ahead_of_the_ankle_and_inward():
-    parameters = WalkingParameters()
-    x, y = REFERENCE.under(Footstep(True, 0.0, 0.0, 0.0))
-    assert x == pytest.approx(0.01 + parameters.pattern.zmp_forward)
-    assert y == pytest.approx(-parameters.pattern.zmp_inward)
+    pattern = PatternParameters(zmp_forward=0.004, zmp_inward=0.003)
+    reference = ZmpReference(WalkingParameters(pattern=pattern), SOLE)
+    assert reference.under(Footstep(True, 0.0, 0.0, 0.0)) == pytest.approx((0.014, -0.003))
 
 
 def test_each_step_takes_its_double_and_its_single_support():
