@@ -1,4 +1,6 @@
 import gc
+import sys
+from types import ModuleType
 
 import pytest
 
@@ -12,13 +14,21 @@ def _as_before():
     gc.enable()
 
 
-def test_what_is_loaded_is_never_looked_through():
+def test_what_is_loaded_is_never_looked_through(monkeypatch):
     before = gc.get_freeze_count()
     with loading():
         assert not gc.isenabled()
         kept = [[number] for number in range(1000)]
+        monkeypatch.setitem(sys.modules, "loaded", ModuleType("loaded"))
     assert gc.get_freeze_count() - before > len(kept)
     assert gc.isenabled()
+
+
+def test_what_a_command_left_behind_is_not_kept_by_the_next_one():
+    gc.unfreeze()
+    with loading():
+        pass
+    assert gc.get_freeze_count() == 0
 
 
 def test_the_collector_goes_on_after_a_failed_import():
