@@ -30,11 +30,13 @@ class Particles:
     Attributes:
         positions: in W (n, 2) [m].
         velocities: in W (n, 2) [m/s].
+        turn_rates: of the velocities, left positive (n,) [rad/s].
         weights: sum to one (n,).
     """
 
     positions: Array
     velocities: Array
+    turn_rates: Array
     weights: Array
 
 
@@ -59,6 +61,7 @@ class Track:
         reach: radius of the disc about `last_seen` that its axis cannot have left by the time of
             the frame: three standard deviations of that sighting and, unless it stands still,
             the way of the fastest obstacle since [m].
+        turn_rate: of the velocity, left positive; zero for a static track [rad/s].
     """
 
     id: int
@@ -75,6 +78,7 @@ class Track:
     visible: bool
     particles: Particles | None = None
     reach: float = 0.0
+    turn_rate: float = 0.0
 
 
 @value

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief import Track
+from navigation.bend import mean_velocity
 from navigation.decision_parameters import FilterParameters
 from navigation.obstacle_set import ObstacleSet
 
@@ -62,7 +63,8 @@ def collision_hypotheses(
 ) -> Hypotheses:
     """Build the hypotheses of all tracks.
 
-    A lost mover counts as its particles; a visible one also as its own reversal.
+    A lost mover counts as its particles; a visible one also as its own reversal. What walks a
+    bend counts as walking along its chord.
 
     Args:
         tracks: of the belief.
@@ -76,10 +78,12 @@ def collision_hypotheses(
     lost = np.array([t.particles is not None for t in tracks], dtype=np.bool_)
     seen = ~lost
     still = obstacles.static[seen]
+    time = parameters.bend_time
+    onward = mean_velocity(obstacles.velocity, obstacles.turn_rate, time)
     parts = [
         Hypotheses(
             obstacles.position[seen],
-            obstacles.velocity[seen],
+            onward[seen],
             np.where(still, base[seen], swollen[seen]),
             np.where(still, parameters.static_horizon, parameters.moving_horizon),
             np.ones(int(seen.sum())),
@@ -88,10 +92,11 @@ def collision_hypotheses(
     reversing = seen & obstacles.moving
     if parameters.reversal_weight > 0.0 and reversing.any():
         n = int(reversing.sum())
+        backward = mean_velocity(obstacles.velocity, -obstacles.turn_rate, time)
         parts.append(
             Hypotheses(
                 obstacles.position[reversing],
-                -obstacles.velocity[reversing],
+                -backward[reversing],
                 swollen[reversing],
                 np.full(n, parameters.reversal_horizon),
                 np.full(n, parameters.reversal_weight),
@@ -99,14 +104,15 @@ def collision_hypotheses(
         )
     for index, track in enumerate(tracks):
         if track.particles is not None:
-            n = len(track.particles.weights)
+            cloud = track.particles
+            n = len(cloud.weights)
             parts.append(
                 Hypotheses(
-                    track.particles.positions,
-                    track.particles.velocities,
+                    cloud.positions,
+                    mean_velocity(cloud.velocities, cloud.turn_rates, time),
                     np.full(n, base[index]),
                     np.full(n, parameters.moving_horizon),
-                    parameters.particle_weight * track.particles.weights,
+                    parameters.particle_weight * cloud.weights,
                 )
             )
     if parameters.reachable:

@@ -1,9 +1,9 @@
 """Compiled part of the filters of obstacles: all obstacles and all modes in one pass.
 
-Modes are STILL, ON, BACK, see `motion_modes`; states are (x, y, vx, vy).
+Modes are STILL, ON, BACK, see `motion_modes`; states are (x, y, vx, vy, turn rate).
 """
 
-from math import exp, inf, log
+from math import cos, exp, inf, log, sin
 
 import numpy as np
 from numba import njit
@@ -13,11 +13,13 @@ Array = NDArray[np.float64]
 Parts = tuple[Array, Array, Array]
 
 STILL, ON, BACK = 0, 1, 2
+SIZE = 5
+"""Of a state."""
 
 
 @njit(cache=True)
 def _reversal(i: int, j: int) -> float:
-    """What a change from mode i to mode j does to the velocity."""
+    """What a change from mode i to mode j does to the velocity and its turn rate."""
     if min(i, j) == STILL:
         return 0.0
     return 1.0 if i == j else -1.0
@@ -31,24 +33,26 @@ def interact(
     change: Array,
     dt: float,
     start_variance: float,
+    turn_variance: float,
 ) -> Parts:
     """Mix the modes as an obstacle may have changed its mode (Blom & Bar-Shalom).
 
     Args:
         weights: probabilities (n, 3).
-        states: (n, 3, 4).
-        covariances: (n, 3, 4, 4).
+        states: (n, 3, 5).
+        covariances: (n, 3, 5, 5).
         change: probability of mode j after mode i (3, 3).
         dt: time for which it may have done so [s].
         start_variance: of the velocity of what begins to move [m²/s²].
+        turn_variance: of its turn rate [rad²/s²].
 
     Returns:
         Weights, states and covariances, new.
     """
     n = len(weights)
-    mixed_weights, mixed = np.zeros((n, 3)), np.zeros((n, 3, 4))
-    spread, parts = np.zeros((n, 3, 4, 4)), np.empty((3, 4))
-    factor, share = np.ones(4), np.empty(3)
+    mixed_weights, mixed = np.zeros((n, 3)), np.zeros((n, 3, SIZE))
+    spread, parts = np.zeros((n, 3, SIZE, SIZE)), np.empty((3, SIZE))
+    factor, share = np.ones(SIZE), np.empty(3)
     for k in range(n):
         for j in range(3):
             for i in range(3):
@@ -62,57 +66,112 @@ def interact(
                 for a in range(2):
                     parts[i, a] = states[k, i, a] + forth * states[k, i, 2 + a]
                     parts[i, 2 + a] = velocity * states[k, i, 2 + a]
-                for a in range(4):
+                parts[i, 4] = velocity * states[k, i, 4]
+                for a in range(SIZE):
                     mixed[k, j, a] += share[i] * parts[i, a]
             for i in range(3):
                 velocity = _reversal(i, j)
-                factor[2] = factor[3] = velocity
+                factor[2] = factor[3] = factor[4] = velocity
                 forth = dt if velocity < 0.0 else 0.0
-                for a in range(4):
+                for a in range(SIZE):
                     off = parts[i, a] - mixed[k, j, a]
-                    for b in range(4):
+                    for b in range(SIZE):
                         part = covariances[k, i, a, b] * factor[a] * factor[b]
                         part += off * (parts[i, b] - mixed[k, j, b])
                         if a < 2 and b < 2:
                             way = forth * states[k, i, 2 + a] * forth * states[k, i, 2 + b]
                             part += way / 3.0
                         if a == b and a > 1 and i == STILL and j == ON:
-                            part += start_variance
+                            part += start_variance if a < 4 else turn_variance
                         spread[k, j, a, b] += share[i] * part
     return mixed_weights, mixed, spread
 
 
 @njit(cache=True)
-def move_on(states: Array, covariances: Array, dt: float, q: float, diffusion: float) -> None:
-    """Constant velocity for ON and BACK, a random walk for STILL, in place.
+def arc(turn: float, dt: float) -> tuple[float, float, float, float]:
+    """How a velocity that turns carries on.
 
     Args:
-        states: (n, 3, 4).
-        covariances: (n, 3, 4, 4).
+        turn: its turn rate [rad/s].
+        dt: time [s].
+
+    Returns:
+        Its mean over that time is (a -b; b a) times what it was; the derivatives of a and b by
+        the turn rate follow [s].
+    """
+    half = 0.5 * turn * dt
+    c, s = cos(half), sin(half)
+    # sin(h)/h and its slope, which near zero are differences of almost equal numbers.
+    near = abs(half) < 1e-3
+    share = 1.0 - half * half / 6.0 if near else s / half
+    slope = -half / 3.0 if near else (c - share) / half
+    by = 0.5 * dt
+    return share * c, share * s, by * (slope * c - share * s), by * (slope * s + share * c)
+
+
+@njit(cache=True)
+def move_on(
+    states: Array,
+    covariances: Array,
+    dt: float,
+    q: float,
+    diffusion: float,
+    keep: float,
+    turn_variance: float,
+) -> None:
+    """Constant speed and turn rate for ON and BACK, a random walk for STILL, in place.
+
+    Args:
+        states: (n, 3, 5).
+        covariances: (n, 3, 5, 5).
         dt: [s].
         q: square root of the density of the white acceleration [m/s^1.5].
         diffusion: of what stands still [m²/s].
+        keep: share of the turn rate that is left after dt [1].
+        turn_variance: of the turn rates of all movers [rad²/s²].
     """
+    F = np.eye(SIZE)
+    moved = np.empty((SIZE, SIZE))
     for k in range(len(states)):
         P = covariances[k, STILL]
         P[0, 0] += diffusion * dt
         P[1, 1] += diffusion * dt
         for mode in range(ON, BACK + 1):
             x, P = states[k, mode], covariances[k, mode]
-            for a in range(2):
-                x[a] += dt * x[2 + a]
-            # P := F P F' with F = [1 dt; 0 1], rows first.
-            for a in range(2):
-                for b in range(4):
-                    P[a, b] += dt * P[2 + a, b]
-            for a in range(4):
-                for b in range(2):
-                    P[a, b] += dt * P[a, 2 + b]
+            u, v, turn = x[2], x[3], x[4]
+            along, across, along_slope, across_slope = arc(turn, dt)
+            c, s = cos(turn * dt), sin(turn * dt)
+            F[0, 2] = F[1, 3] = dt * along
+            F[1, 2] = dt * across
+            F[0, 3] = -F[1, 2]
+            F[0, 4] = dt * (along_slope * u - across_slope * v)
+            F[1, 4] = dt * (across_slope * u + along_slope * v)
+            F[2, 2] = F[3, 3] = c
+            F[3, 2] = s
+            F[2, 3] = -s
+            F[2, 4] = -dt * (s * u + c * v)
+            F[3, 4] = dt * (c * u - s * v)
+            F[4, 4] = keep
+            x[0] += dt * (along * u - across * v)
+            x[1] += dt * (across * u + along * v)
+            x[2], x[3], x[4] = c * u - s * v, s * u + c * v, keep * turn
+            for a in range(SIZE):
+                for b in range(SIZE):
+                    moved[a, b] = 0.0
+                    for i in range(SIZE):
+                        moved[a, b] += F[a, i] * P[i, b]
+            for a in range(SIZE):
+                for b in range(a, SIZE):
+                    P[a, b] = 0.0
+                    for i in range(SIZE):
+                        P[a, b] += moved[a, i] * F[b, i]
+                    P[b, a] = P[a, b]
             for a in range(2):
                 P[a, a] += dt**3 / 3.0 * (q * q)
                 P[a, 2 + a] += 0.5 * dt * dt * (q * q)
                 P[2 + a, a] += 0.5 * dt * dt * (q * q)
                 P[2 + a, 2 + a] += dt * (q * q)
+            P[4, 4] += (1.0 - keep * keep) * turn_variance
 
 
 @njit(cache=True)
@@ -139,8 +198,8 @@ def surprise(states: Array, covariances: Array, z: Array, R: Array) -> Array:
     """Squared Mahalanobis distance of every obstacle's position to its nearest mode (n,).
 
     Args:
-        states: (n, 3, 4).
-        covariances: (n, 3, 4, 4).
+        states: (n, 3, 5).
+        covariances: (n, 3, 5, 5).
         z: position of each (n, 2) [m].
         R: its covariance (n, 2, 2) [m²].
     """
@@ -168,8 +227,8 @@ def costs(
 
     Args:
         weights: (n, 3).
-        states: (n, 3, 4).
-        covariances: (n, 3, 4, 4).
+        states: (n, 3, 5).
+        covariances: (n, 3, 5, 5).
         z: positions (m, 2) [m].
         R: their covariances (m, 2, 2) [m²].
         gate: squared Mahalanobis distance to the nearest mode from which the cost is infinite.
@@ -197,8 +256,8 @@ def correct(x: Array, P: Array, z: Array, R: Array) -> float:
     """Correct one filter by a position, in Joseph's form, in place.
 
     Args:
-        x: predicted state (4,).
-        P: its covariance (4, 4).
+        x: predicted state (5,).
+        P: its covariance (5, 5).
         z: position measured (2,) [m].
         R: its covariance (2, 2) [m²].
 
@@ -209,16 +268,16 @@ def correct(x: Array, P: Array, z: Array, R: Array) -> float:
     det = a * d - b * b
     u, v = z[0] - x[0], z[1] - x[1]
     _, likelihood = fit(u, v, a, b, d)
-    K, left = np.empty((4, 2)), np.empty((4, 4))
-    for i in range(4):
+    K, left = np.empty((SIZE, 2)), np.empty((SIZE, SIZE))
+    for i in range(SIZE):
         K[i, 0] = (P[i, 0] * d - P[i, 1] * b) / det
         K[i, 1] = (P[i, 1] * a - P[i, 0] * b) / det
-    for i in range(4):
+    for i in range(SIZE):
         x[i] += K[i, 0] * u + K[i, 1] * v
-        for j in range(4):
+        for j in range(SIZE):
             left[i, j] = P[i, j] - K[i, 0] * P[0, j] - K[i, 1] * P[1, j]
-    for i in range(4):
-        for j in range(i, 4):
+    for i in range(SIZE):
+        for j in range(i, SIZE):
             # (left - left H' K') + K R K', averaged with its transpose.
             noise = K[i, 0] * (R[0, 0] * K[j, 0] + R[0, 1] * K[j, 1])
             noise += K[i, 1] * (R[0, 1] * K[j, 0] + R[1, 1] * K[j, 1])
@@ -242,8 +301,8 @@ def update(
 
     Args:
         weights: (n, 3).
-        states: predicted (n, 3, 4).
-        covariances: (n, 3, 4, 4).
+        states: predicted (n, 3, 5).
+        covariances: (n, 3, 5, 5).
         z: position of each obstacle (n, 2) [m].
         R: its covariance (n, 2, 2) [m²].
         limit: largest ratio of the modes' likelihoods, logarithm [1].
@@ -267,30 +326,30 @@ def update(
 
 @njit(cache=True)
 def mean(weights: Array, states: Array) -> Array:
-    """Mean (4,) of one obstacle, given that it moves; weights (3,), states (3, 4)."""
+    """Mean (5,) of one obstacle, given that it moves; weights (3,), states (3, 5)."""
     moving = weights[ON] + weights[BACK]
-    average = np.empty(4)
-    for a in range(4):
+    average = np.empty(SIZE)
+    for a in range(SIZE):
         average[a] = (weights[ON] * states[ON, a] + weights[BACK] * states[BACK, a]) / moving
     return average
 
 
 @njit(cache=True)
 def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, Array]:
-    """Mean (4,) and covariance (4, 4) of one obstacle, given that it moves.
+    """Mean (5,) and covariance (5, 5) of one obstacle, given that it moves.
 
     Args:
         weights: (3,).
-        states: (3, 4).
-        covariances: (3, 4, 4).
+        states: (3, 5).
+        covariances: (3, 5, 5).
     """
     on = weights[ON] / (weights[ON] + weights[BACK])
     back = weights[BACK] / (weights[ON] + weights[BACK])
-    average, covariance = np.empty(4), np.empty((4, 4))
-    for a in range(4):
+    average, covariance = np.empty(SIZE), np.empty((SIZE, SIZE))
+    for a in range(SIZE):
         average[a] = on * states[ON, a] + back * states[BACK, a]
-    for a in range(4):
-        for b in range(4):
+    for a in range(SIZE):
+        for b in range(SIZE):
             apart = (states[ON, a] - states[BACK, a]) * (states[ON, b] - states[BACK, b])
             within = on * covariances[ON, a, b] + back * covariances[BACK, a, b]
             covariance[a, b] = within + (on * back) * apart
@@ -301,11 +360,11 @@ def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, A
 def standing(
     states: Array, covariances: Array, best: Array, lasting: float, speed_variance: float
 ) -> tuple[Array, Array]:
-    """Mean (4,) and covariance (4, 4) of one obstacle that stands still.
+    """Mean (5,) and covariance (5, 5) of one obstacle that stands still.
 
     Args:
-        states: (3, 4).
-        covariances: (3, 4, 4).
+        states: (3, 5).
+        covariances: (3, 5, 5).
         best: covariance of the most precise detection (2, 2) [m²].
         lasting: share of that variance which no number of detections brings down [1].
         speed_variance: of each component of the velocity [m²/s²].

@@ -1,10 +1,10 @@
 """How an obstacle may move: three Kalman filters that interact (Blom & Bar-Shalom).
 
-An obstacle stands still, goes on, or has turned back. Every mode has a filter of
-(x, y, vx, vy) and a probability. Before a prediction the modes mix as an obstacle may
-change its mode: what turns back keeps its place and reverses its velocity. ON and BACK are
-each other's reversal, so after one the other takes over without any switch. All tracks
-are stacked: n obstacles, 3 modes.
+An obstacle stands still, goes on, or has turned back; what moves may walk a bend. Every mode
+has a filter of (x, y, vx, vy, turn rate) and a probability. Before a prediction the modes mix
+as an obstacle may change its mode: what turns back walks its path again, with its velocity and
+turn rate reversed. ON and BACK are each other's reversal, so after one the other takes over
+without any switch. All tracks are stacked: n obstacles, 3 modes.
 """
 
 from math import exp
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from navigation import mode_kernel
 from navigation.belief_parameters import TrackingParameters
-from navigation.mode_kernel import BACK, ON, STILL
+from navigation.mode_kernel import BACK, ON, SIZE, STILL
 
 Array = NDArray[np.float64]
 
@@ -30,8 +30,8 @@ class Modes(NamedTuple):
 
     Attributes:
         weights: probabilities of the modes (n, 3).
-        states: x, y, vx, vy (n, 3, 4).
-        covariances: (n, 3, 4, 4).
+        states: x, y, vx, vy, turn rate (n, 3, 5).
+        covariances: (n, 3, 5, 5).
     """
 
     weights: Array
@@ -45,20 +45,21 @@ class Modes(NamedTuple):
         return probability
 
 
-def begun(z: Array, R: Array, moving: float, velocity_sigma: float) -> Modes:
+def begun(z: Array, R: Array, moving: float, p: TrackingParameters) -> Modes:
     """One obstacle seen for the first time, or again where nothing explains it.
 
     Args:
         z: position (2,) [m].
         R: its covariance (2, 2) [m²].
         moving: probability that it moves.
-        velocity_sigma: standard deviation of its velocity if it does [m/s].
+        p: how it moves if it does.
     """
-    states = np.zeros((3, 4))
+    states = np.zeros((3, SIZE))
     states[:, :2] = z
-    covariances = np.zeros((3, 4, 4))
+    covariances = np.zeros((3, SIZE, SIZE))
     covariances[:, :2, :2] = R
-    covariances[ON:, 2, 2] = covariances[ON:, 3, 3] = velocity_sigma**2
+    covariances[ON:, 2, 2] = covariances[ON:, 3, 3] = p.velocity_sigma**2
+    covariances[ON:, 4, 4] = p.turn_sigma**2
     weights = np.array([1.0 - moving, moving - FLOOR, FLOOR])
     return Modes(weights, states, covariances)
 
@@ -77,9 +78,16 @@ def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
             [stops, turns, 1.0 - stops - turns],
         ]
     )
-    mixed = Modes(*mode_kernel.interact(*modes, change, dt, p.velocity_sigma**2))
+    turning = p.turn_sigma**2
+    mixed = Modes(*mode_kernel.interact(*modes, change, dt, p.velocity_sigma**2, turning))
     mode_kernel.move_on(
-        mixed.states, mixed.covariances, dt, p.acceleration_noise, p.static_diffusion
+        mixed.states,
+        mixed.covariances,
+        dt,
+        p.acceleration_noise,
+        p.static_diffusion,
+        exp(-dt / p.turn_time),
+        turning,
     )
     return mixed
 
@@ -122,10 +130,10 @@ def update(modes: Modes, z: Array, R: Array, limit: float) -> Modes:
 
 
 def mean(modes: Modes) -> Array:
-    """Mean (4,) of one obstacle, given that it moves."""
+    """Mean (5,) of one obstacle, given that it moves."""
     return mode_kernel.mean(modes.weights, modes.states)
 
 
 def moments(modes: Modes) -> tuple[Array, Array]:
-    """Mean (4,) and covariance (4, 4) of one obstacle, given that it moves."""
+    """Mean (5,) and covariance (5, 5) of one obstacle, given that it moves."""
     return mode_kernel.moments(*modes)

@@ -28,6 +28,7 @@ class ObstacleSet:
         speed_sigma: the same of the velocity (n,) [m/s].
         static, moving: verdicts of the tracker (n,); neither means undecided.
         age: time since last seen (n,) [s].
+        turn_rate: of the velocity, left positive (n,) [rad/s].
     """
 
     ids: NDArray[np.int64]
@@ -40,6 +41,7 @@ class ObstacleSet:
     static: Mask
     moving: Mask
     age: Array
+    turn_rate: Array
 
     def __len__(self) -> int:
         return len(self.ids)
@@ -64,6 +66,7 @@ class ObstacleSet:
             static=static,
             moving=np.array([t.motion is Motion.MOVING for t in tracks], dtype=np.bool_),
             age=np.array([t.age for t in tracks], dtype=np.float64),
+            turn_rate=np.array([t.turn_rate for t in tracks], dtype=np.float64),
         )
 
     def where(self, mask: Mask) -> "ObstacleSet":
@@ -79,6 +82,7 @@ class ObstacleSet:
             self.static[mask],
             self.moving[mask],
             self.age[mask],
+            self.turn_rate[mask],
         )
 
 

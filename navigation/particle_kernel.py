@@ -1,6 +1,6 @@
 """Compiled part of the clouds of lost movers."""
 
-from math import exp, log
+from math import cos, exp, log, sin
 
 import numpy as np
 from numba import njit
@@ -11,27 +11,39 @@ Array = NDArray[np.float64]
 
 @njit(cache=True)
 def advance(
-    positions: Array, velocities: Array, draws: Array, probability: float, dt: float
-) -> tuple[Array, Array]:
+    positions: Array,
+    velocities: Array,
+    turn_rates: Array,
+    draws: Array,
+    probability: float,
+    dt: float,
+) -> tuple[Array, Array, Array]:
     """Move on for `dt` [s]; particles whose draw is below the probability turn back.
 
     Args:
         positions: (n, 2) [m].
         velocities: (n, 2) [m/s].
+        turn_rates: of the velocities (n,) [rad/s].
         draws: uniform in [0, 1) (n,).
-        probability: of turning back [1].
+        probability: of turning back on its path [1].
         dt: [s].
 
     Returns:
-        Positions and velocities, new.
+        Positions, velocities and turn rates, new.
     """
     moved, turned = np.empty_like(positions), np.empty_like(velocities)
+    rates = np.empty_like(turn_rates)
     for i in range(len(draws)):
         sign = -1.0 if draws[i] < probability else 1.0
-        for a in range(2):
-            turned[i, a] = sign * velocities[i, a]
-            moved[i, a] = positions[i, a] + dt * turned[i, a]
-    return moved, turned
+        u, v, rate = sign * velocities[i, 0], sign * velocities[i, 1], sign * turn_rates[i]
+        angle = rate * dt
+        # Over a time so short the mean velocity is that of its middle.
+        c, s = cos(0.5 * angle), sin(0.5 * angle)
+        moved[i, 0] = positions[i, 0] + dt * (c * u - s * v)
+        moved[i, 1] = positions[i, 1] + dt * (s * u + c * v)
+        c, s = cos(angle), sin(angle)
+        turned[i, 0], turned[i, 1], rates[i] = c * u - s * v, s * u + c * v, rate
+    return moved, turned, rates
 
 
 @njit(cache=True)

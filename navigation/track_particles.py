@@ -1,7 +1,7 @@
 """Particles of a lost mover: where it may be while nobody looks.
 
 A mover out of sight goes on, or turns back, so its whereabouts have several modes that
-no Gaussian holds. A few particles walk on, reverse at a constant rate, lose weight
+no Gaussian holds. A few particles walk on in bends, reverse at a constant rate, lose weight
 where the camera looks and finds nothing, and are redistributed over what it could have
 reached when all of them are refuted.
 """
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from navigation import particle_kernel
 from navigation.belief import Particles
+from navigation.belief_parameters import TrackingParameters
+from navigation.mode_kernel import SIZE
 from navigation.motion_modes import Modes
 from navigation.visibility import Mask
 
@@ -34,22 +36,28 @@ def spawn(modes: Modes, count: int, rng: np.random.Generator) -> Particles:
     """
     ticks = (np.arange(count) + rng.random()) / count
     mode = np.minimum(np.searchsorted(np.cumsum(modes.weights), ticks), len(modes.weights) - 1)
-    roots = np.linalg.cholesky(modes.covariances + 1e-12 * np.eye(4))
+    roots = np.linalg.cholesky(modes.covariances + 1e-12 * np.eye(SIZE))
     drawn = modes.states[mode]
-    drawn = drawn + (roots[mode] @ rng.standard_normal((count, 4, 1)))[:, :, 0]
-    return Particles(drawn[:, :2].copy(), drawn[:, 2:].copy(), np.full(count, 1.0 / count))
+    drawn = drawn + (roots[mode] @ rng.standard_normal((count, SIZE, 1)))[:, :, 0]
+    place, velocity, turn = drawn[:, :2].copy(), drawn[:, 2:4].copy(), drawn[:, 4].copy()
+    return Particles(place, velocity, turn, np.full(count, 1.0 / count))
 
 
-def advance(cloud: Particles, dt: float, rate: float, rng: np.random.Generator) -> Particles:
-    """Move on for `dt` [s], each particle turning back at `rate` [1/s]."""
-    positions, velocities = particle_kernel.advance(
+def advance(
+    cloud: Particles, dt: float, p: TrackingParameters, rng: np.random.Generator
+) -> Particles:
+    """Move on for `dt` [s], bending and turning back as movers do."""
+    count, keep = len(cloud.weights), exp(-dt / p.turn_time)
+    parts = particle_kernel.advance(
         cloud.positions,
         cloud.velocities,
-        rng.random(len(cloud.weights)),
-        1.0 - exp(-rate * dt),
+        keep * cloud.turn_rates
+        + (1.0 - keep * keep) ** 0.5 * p.turn_sigma * rng.standard_normal(count),
+        rng.random(count),
+        1.0 - exp(-p.reversal_rate * dt),
         dt,
     )
-    return Particles(positions, velocities, cloud.weights)
+    return Particles(*parts, cloud.weights)
 
 
 def refute(cloud: Particles, expected: Mask, survival: float) -> tuple[Particles, float]:
@@ -68,7 +76,7 @@ def refute(cloud: Particles, expected: Mask, survival: float) -> tuple[Particles
     total = float(weights.sum())
     if total <= 0.0:
         return cloud, 0.0
-    return Particles(cloud.positions, cloud.velocities, weights / total), total
+    return Particles(cloud.positions, cloud.velocities, cloud.turn_rates, weights / total), total
 
 
 def resample(cloud: Particles, share: float, rng: np.random.Generator) -> Particles:
@@ -88,6 +96,7 @@ def resample(cloud: Particles, share: float, rng: np.random.Generator) -> Partic
     return Particles(
         cloud.positions[chosen] + POSITION_JITTER * rng.standard_normal((count, 2)),
         cloud.velocities[chosen] + VELOCITY_JITTER * rng.standard_normal((count, 2)),
+        cloud.turn_rates[chosen],
         np.full(count, 1.0 / count),
     )
 
@@ -116,14 +125,18 @@ def scatter(
     offsets[:half] = along[:, None] * ahead + POSITION_JITTER * rng.standard_normal((half, 2))
     velocities[:half] = np.where(rng.random(half) < 0.5, 1.0, -1.0)[:, None] * velocity
     mixed = rng.permutation(count)
-    return Particles(centre + offsets[mixed], velocities[mixed], np.full(count, 1.0 / count))
+    places, even = centre + offsets[mixed], np.full(count, 1.0 / count)
+    return Particles(places, velocities[mixed], np.zeros(count), even)
 
 
 def chosen(cloud: Particles, indices: NDArray[np.intp]) -> Particles:
     """The particles at `indices`, equally weighted."""
     count = len(indices)
     return Particles(
-        cloud.positions[indices], cloud.velocities[indices], np.full(count, 1.0 / count)
+        cloud.positions[indices],
+        cloud.velocities[indices],
+        cloud.turn_rates[indices],
+        np.full(count, 1.0 / count),
     )
 
 

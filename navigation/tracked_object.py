@@ -71,10 +71,10 @@ class TrackedObject:
     @property
     def speed(self) -> float:
         """Speed if it moves [m/s]."""
-        return hypot(*motion_modes.mean(self.modes)[2:].tolist())
+        return hypot(*motion_modes.mean(self.modes)[2:4].tolist())
 
     def estimate(self, p: TrackingParameters) -> tuple[Array, Array]:
-        """Mean (4,) and covariance (4, 4) of x, y, vx, vy under the verdict."""
+        """Mean (5,) and covariance (5, 5) of x, y, vx, vy, turn rate under the verdict."""
         if self.motion is not Motion.STATIC:
             return motion_modes.moments(self.modes)
         return mode_kernel.standing(
@@ -116,14 +116,16 @@ class TrackedObject:
         """Publish a copy as of `time` [s]."""
         if self.particles is not None:
             mean, covariance = track_particles.moments(self.particles)
+            turn_rate = float(self.particles.weights @ self.particles.turn_rates)
         else:
             mean, covariance = self.estimate(p)
+            turn_rate = float(mean[4])
         return Track(
             id=self.id,
             label=self.label,
             position=mean[:2],
-            velocity=mean[2:],
-            covariance=covariance,
+            velocity=mean[2:4],
+            covariance=covariance[:4, :4],
             radius=self.radius,
             radius_sigma=self.radius_sigma,
             motion=self.motion,
@@ -133,4 +135,5 @@ class TrackedObject:
             visible=self.last_time == time,
             particles=self.particles,
             reach=self.reach(time, p),
+            turn_rate=turn_rate,
         )

@@ -94,9 +94,7 @@ class Tracker:
             for i, o in enumerate(self._objects):
                 o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
                 if o.particles is not None:
-                    o.particles = track_particles.advance(
-                        o.particles, dt, p.reversal_rate, self._rng
-                    )
+                    o.particles = track_particles.advance(o.particles, dt, p, self._rng)
         return modes
 
     def _costs(self, time: float, seen: Sightings, modes: Modes) -> Array:
@@ -142,7 +140,7 @@ class Tracker:
         for i in np.flatnonzero(surprise > p.gate).tolist():
             # Nothing explains where it is: what was known of its motion is void.
             moving = max(float(1.0 - modes.weights[i, STILL]), 0.5)
-            begun = motion_modes.begun(z[i], raw[i], moving, p.velocity_sigma)
+            begun = motion_modes.begun(z[i], raw[i], moving, p)
             modes.weights[i], modes.states[i], modes.covariances[i] = begun
         modes = motion_modes.update(modes, z, R, p.evidence)
         for i, (o, column) in enumerate(zip(objects, columns, strict=True)):
@@ -189,7 +187,7 @@ class Tracker:
                 TrackedObject(
                     id=self._next_id,
                     label=observation.label,
-                    modes=motion_modes.begun(z, R, moving, p.velocity_sigma),
+                    modes=motion_modes.begun(z, R, moving, p),
                     radius=observation.radius,
                     radius_sigma=max(observation.radius_sigma, p.radius_limit),
                     first_time=time,
@@ -260,7 +258,7 @@ class Tracker:
         for o in refuted:
             if o.id in ended:
                 continue
-            velocity = o.estimate(p)[0][2:]
+            velocity = o.estimate(p)[0][2:4]
             reach = p.line_width + REACH * o.speed * (time - o.last_time)
             cloud = track_particles.scatter(
                 o.last_seen, reach, velocity, SCATTER * p.particles, self._rng

@@ -69,7 +69,7 @@ def moment() -> Belief:
     """A robot that walks ahead, a mover lost on its right, one new thing on its left."""
     rng = np.random.default_rng(4)
     places = np.array([0.15, -0.85]) + rng.normal(0.0, (0.20, 0.08), (16, 2))
-    cloud = Particles(places, np.zeros((16, 2)), np.full(16, 1.0 / 16))
+    cloud = Particles(places, np.zeros((16, 2)), np.zeros(16), np.full(16, 1.0 / 16))
     tracks = (
         track((1.15, 0.25), Motion.STATIC, 0.0),
         track((1.5, -0.5), Motion.STATIC, 1.5),

@@ -16,10 +16,12 @@ def fingerprints(belief: Belief) -> tuple[bytes, ...]:
     tracks: list[bytes] = []
     for t in belief.tracks:
         told = f"{t.id} {t.label} {t.motion} {t.hits} {t.visible}"
-        tracks += (told.encode(), struct.pack("<4d", t.radius, t.radius_sigma, t.age, t.reach))
+        numbers = (t.radius, t.radius_sigma, t.age, t.reach, t.turn_rate)
+        tracks += (told.encode(), struct.pack("<5d", *numbers))
         parts = [t.position, t.velocity, t.covariance, t.last_seen]
         if t.particles is not None:
-            parts += (t.particles.positions, t.particles.velocities, t.particles.weights)
+            cloud = t.particles
+            parts += (cloud.positions, cloud.velocities, cloud.turn_rates, cloud.weights)
         tracks += [part.tobytes() for part in parts]
     state = f"{belief.seen_beacons} {belief.lost} {belief.filter_faults}"
     return (

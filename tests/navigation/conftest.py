@@ -90,7 +90,8 @@ def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0
     cloud = details.pop("particles", None)
     if cloud is not None:
         places, velocities, weights = (np.array(a, float) for a in cloud)
-        cloud = Particles(places, velocities, weights)
+        rates = np.array(details.pop("turn_rates", np.zeros(len(weights))), float)
+        cloud = Particles(places, velocities, rates, weights)
     return Track(
         id=id,
         label="red",
@@ -106,6 +107,7 @@ def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0
         visible=age == 0.0,
         particles=cloud,
         reach=details.pop("reach", 0.0),
+        turn_rate=details.pop("turn_rate", 0.0),
     )
 
 

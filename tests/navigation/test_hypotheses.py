@@ -55,6 +55,19 @@ def test_a_lost_mover_is_its_particles(track):
     assert h.weight == pytest.approx([1.0, 0.25 * P.particle_weight, 0.75 * P.particle_weight])
 
 
+def test_what_walks_a_bend_is_followed_along_its_chord_and_back_on_it(track):
+    """In two seconds about a quarter circle; turned back, it walks the same circle."""
+    turn = 0.25 * np.pi
+    h = build(track((1, 0), (0.1, 0.0), turn_rate=turn))
+    chord = 0.1 * 2.0 * np.sqrt(2.0) / np.pi / np.sqrt(2.0) * np.array([1.0, 1.0])
+    assert P.bend_time == 2.0
+    assert h.velocity[0] == pytest.approx(chord)
+    assert h.velocity[1] == pytest.approx(chord * (-1.0, 1.0))
+    cloud = ([[1, 0]], [[0.1, 0]], [1.0])
+    lost = track((1, 0), (0.1, 0), age=3.0, particles=cloud, turn_rates=[turn])
+    assert build(lost).velocity[0] == pytest.approx(chord)
+
+
 def test_only_what_can_be_reached_in_time_is_kept(track):
     h = build(track((0.6, 0)), track((2, 0)), track((0, 2), (0.0, 0.1)), track((0, 2.5)))
     near = h.within_reach(np.zeros(2), 0.2)

@@ -12,7 +12,7 @@ R = np.diag([1e-4, 2e-4])
 
 
 def one(moving=0.5, z=(1.0, 0.0), R=R):
-    modes = motion_modes.begun(np.array(z), R, moving, P.velocity_sigma)
+    modes = motion_modes.begun(np.array(z), R, moving, P)
     return Modes(*(a[None] for a in modes))
 
 
@@ -36,9 +36,9 @@ def test_without_change_of_mode_it_is_a_plain_filter():
     predicted = motion_modes.predict(modes, 0.5, p)
     F, q = np.eye(4) + 0.5 * np.eye(4, k=2), p.acceleration_noise
     block = np.array([[0.5**3 / 3, 0.5**2 / 2], [0.5**2 / 2, 0.5]]) * q * q
-    covariance = F @ modes.covariances[0, ON] @ F.T + np.kron(block, np.eye(2))
-    assert np.allclose(predicted.states[0, ON], F @ modes.states[0, ON])
-    assert np.allclose(predicted.covariances[0, ON], covariance)
+    covariance = F @ modes.covariances[0, ON, :4, :4] @ F.T + np.kron(block, np.eye(2))
+    assert np.allclose(predicted.states[0, ON, :4], F @ modes.states[0, ON, :4])
+    assert np.allclose(predicted.covariances[0, ON, :4, :4], covariance)
     assert np.allclose(predicted.states[:, STILL], modes.states[:, STILL])
 
 
@@ -62,14 +62,14 @@ def test_a_reversal_shows_within_three_frames():
 
 def test_what_turned_between_two_frames_may_have_turned_at_any_time():
     """Turned at once it is as far behind as, turned just now, it is ahead."""
-    modes = motion_modes.begun(np.array([1.0, 0.0]), R, 0.9, P.velocity_sigma)
+    modes = motion_modes.begun(np.array([1.0, 0.0]), R, 0.9, P)
     modes.states[ON, 2] = 0.1
     modes.weights[BACK] = 0.0
-    modes.covariances[ON] = 1e-12 * np.eye(4)
+    modes.covariances[ON] = 1e-12 * np.eye(5)
     dt = 0.5
     p = TrackingParameters(reversal_rate=0.01, acceleration_noise=1e-9)
     after = motion_modes.predict(Modes(*(a[None] for a in modes)), dt, p)
-    assert after.states[0, BACK] == pytest.approx([1.0, 0.0, -0.1, 0.0], abs=1e-6)
+    assert after.states[0, BACK] == pytest.approx([1.0, 0.0, -0.1, 0.0, 0.0], abs=1e-6)
     assert after.covariances[0, BACK, 0, 0] == pytest.approx((0.1 * dt) ** 2 / 3, rel=1e-3)
     assert after.covariances[0, BACK, 1, 1] < 1e-9
 
@@ -89,7 +89,7 @@ def test_a_reversal_out_of_sight_is_weighed_against_going_on():
 
 
 def test_mirrored_worlds_have_mirrored_filters():
-    flip = np.array([1.0, -1.0, 1.0, -1.0])
+    flip = np.array([1.0, -1.0, 1.0, -1.0, -1.0])
     places = np.random.default_rng(3).normal((1.0, 0.2), 0.05, (40, 2))
     plain = watch(one(z=(1.0, 0.2)), places)
     mirrored = watch(one(z=(1.0, -0.2)), places * flip[:2])
@@ -103,7 +103,7 @@ def test_covariances_stay_positive_definite_over_100000_updates():
     rng = np.random.default_rng(4)
     n = 400
     z = rng.uniform(-2, 2, (n, 2))
-    start = [motion_modes.begun(p, R, 0.4, P.velocity_sigma) for p in z]
+    start = [motion_modes.begun(p, R, 0.4, P) for p in z]
     modes = Modes(*(np.stack(parts) for parts in zip(*start, strict=True)))
     for _ in range(250):
         modes = motion_modes.predict(modes, float(rng.choice([DT, DT, 0.5, 20.0])), P)
@@ -129,7 +129,7 @@ def only(mode, velocity=(0.0, 0.0)):
     """An obstacle known to be in one mode."""
     modes = one()
     modes.weights[0] = np.maximum(np.eye(3)[mode], 1e-12)
-    modes.states[0, :, 2:] = velocity
+    modes.states[0, :, 2:4] = velocity
     return modes
 
 
@@ -151,17 +151,18 @@ def test_modes_change_at_their_rates():
 def test_what_sets_out_may_go_anywhere_and_what_stops_stands_where_it_was():
     p = TrackingParameters(acceleration_noise=1e-9, reversal_rate=0.0, static_diffusion=1e-3)
     out = motion_modes.predict(only(STILL), DT, p)
-    assert out.states[0, ON] == pytest.approx([1.0, 0.0, 0.0, 0.0], abs=1e-9)
-    assert np.diag(out.covariances[0, ON])[2:] == pytest.approx(2 * [p.velocity_sigma**2])
+    assert out.states[0, ON] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
+    doubt = [*(2 * [p.velocity_sigma**2]), p.turn_sigma**2]
+    assert np.diag(out.covariances[0, ON])[2:] == pytest.approx(doubt)
     still = motion_modes.predict(only(ON, (0.1, 0.0)), 0.5, p)
-    assert still.states[0, STILL] == pytest.approx([1.0, 0.0, 0.0, 0.0], abs=1e-9)
+    assert still.states[0, STILL] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
     grown = np.diag(still.covariances[0, STILL])
-    assert grown == pytest.approx([1e-4 + 0.5e-3, 2e-4 + 0.5e-3, 0.0, 0.0], abs=1e-9)
+    assert grown == pytest.approx([1e-4 + 0.5e-3, 2e-4 + 0.5e-3, 0.0, 0.0, 0.0], abs=1e-9)
 
 
 def test_the_moments_are_those_of_the_mixture_of_both_ways():
     modes = of_one(watch(one(), line(0.6, (0.1, 0.05))))
-    modes.states[BACK, 2:] = (-0.08, 0.02)
+    modes.states[BACK, 2:4] = (-0.08, 0.02)
     modes.weights[:] = 0.2, 0.5, 0.3
     share, moving = np.array([0.625, 0.375]), modes.states[ON:]
     mean = share @ moving
@@ -174,13 +175,15 @@ def test_the_moments_are_those_of_the_mixture_of_both_ways():
 
 
 def test_a_new_obstacle_has_no_velocity_and_as_much_doubt_about_it_as_is_given():
-    modes = motion_modes.begun(np.array([1.0, 2.0]), R, 0.3, 0.15)
+    p = TrackingParameters(velocity_sigma=0.15, turn_sigma=0.25)
+    modes = motion_modes.begun(np.array([1.0, 2.0]), R, 0.3, p)
     assert modes.weights == pytest.approx([0.7, 0.3, 0.0], abs=1e-5)
     assert modes.weights.sum() == pytest.approx(1.0)
     assert modes.weights.min() > 0.0
-    for mode, doubt in ((STILL, 0.0), (ON, 0.15**2), (BACK, 0.15**2)):
-        assert modes.states[mode] == pytest.approx([1.0, 2.0, 0.0, 0.0])
-        assert modes.covariances[mode] == pytest.approx(np.diag([1e-4, 2e-4, doubt, doubt]))
+    for mode, moves in ((STILL, 0.0), (ON, 1.0), (BACK, 1.0)):
+        assert modes.states[mode] == pytest.approx([1.0, 2.0, 0.0, 0.0, 0.0])
+        doubt = np.array([0.15, 0.15, 0.25]) ** 2 * moves
+        assert modes.covariances[mode] == pytest.approx(np.diag([1e-4, 2e-4, *doubt]))
 
 
 def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit():
@@ -198,3 +201,19 @@ def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit
         after = motion_modes.update(modes, z, R[None], limit).weights[0]
         assert np.log(after[STILL] / after[ON]) == pytest.approx(min(ratio, limit), abs=1e-4)
         assert after.sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("turn", [-0.3, 0.0, 0.2])
+def test_a_bend_is_found_and_followed(turn):
+    """After four seconds of looks at what walks a circle at 0.1 m/s."""
+    angle = turn * DT * np.arange(round(4.0 / DT) + 1)
+    way = 0.1 * DT * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    places = np.array([1.0, 0.0]) + np.cumsum(way, axis=0)
+    modes = watch(one(), places, R=1e-5 * np.eye(2))
+    assert modes.states[0, ON, 4] == pytest.approx(turn, abs=0.05)
+    later = modes
+    for _ in range(round(1.0 / DT)):
+        later = motion_modes.predict(later, DT, P)
+    ahead = angle[-1] + turn * DT * np.arange(1, round(1.0 / DT) + 1)
+    met = places[-1] + 0.1 * DT * np.array([np.cos(ahead).sum(), np.sin(ahead).sum()])
+    assert later.states[0, ON, :2] == pytest.approx(met, abs=0.01)

@@ -18,7 +18,7 @@ def cloud():
 def test_compiled_and_plain_agree(cloud):
     positions, velocities, weights, z, variance = cloud
     for function, arguments in (
-        (kernel.advance, (positions, velocities, weights, 0.05, 0.1)),
+        (kernel.advance, (positions, velocities, weights - 0.06, weights, 0.05, 0.1)),
         (kernel.moments, (positions, velocities, weights)),
         (kernel.log_density, (positions, weights, z, variance, 0.03)),
         (kernel.costs, (variance, z, positions[0], 0.4, 0.2)),
@@ -31,10 +31,23 @@ def test_compiled_and_plain_agree(cloud):
 def test_only_what_is_drawn_turns_back(cloud):
     positions, velocities, *_ = cloud
     draws = np.linspace(0, 1, 16, endpoint=False)
-    moved, turned = kernel.advance(positions, velocities, draws, 0.25, 0.5)
+    rates = np.zeros(16)
+    moved, turned, _ = kernel.advance(positions, velocities, rates, draws, 0.25, 0.5)
     sign = np.where(draws < 0.25, -1.0, 1.0)[:, None]
     assert turned == pytest.approx(sign * velocities)
     assert moved == pytest.approx(positions + 0.5 * sign * velocities)
+
+
+def test_what_turns_back_walks_the_same_bend_back(cloud):
+    positions, velocities, weights, *_ = cloud
+    rates, never, always = 20.0 * (weights - 0.06), np.ones(16), np.zeros(16)
+    there = kernel.advance(positions, velocities, rates, never, 0.5, 0.1)
+    assert np.hypot(*there[1].T) == pytest.approx(np.hypot(*velocities.T))
+    assert np.array_equal(there[2], rates)
+    back = kernel.advance(*there, always, 0.5, 0.1)
+    assert back[0] == pytest.approx(positions)
+    assert back[1] == pytest.approx(-velocities)
+    assert back[2] == pytest.approx(-rates)
 
 
 def test_the_moments_are_those_of_weighted_samples(cloud):

@@ -1,21 +1,29 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from navigation import track_particles
 from navigation.belief import Particles
+from navigation.belief_parameters import TrackingParameters
 from navigation.motion_modes import Modes
 
-STATE = np.array([1.0, 2.0, 0.1, -0.05])
-COVARIANCE = np.diag([1e-4, 4e-4, 1e-4, 1e-4])
+STATE = np.array([1.0, 2.0, 0.1, -0.05, 0.2])
+COVARIANCE = np.diag([1e-4, 4e-4, 1e-4, 1e-4, 1e-4])
 
 
 def modes(still=0.0):
     """Goes on for sure, or stands still at (5, 5) with a probability."""
-    states = np.stack([np.array([5.0, 5.0, 0.0, 0.0]), STATE, STATE])
-    standing = np.diag([1e-4, 1e-4, 0.0, 0.0])
+    states = np.stack([np.array([5.0, 5.0, 0.0, 0.0, 0.0]), STATE, STATE])
+    standing = np.diag([1e-4, 1e-4, 0.0, 0.0, 0.0])
     return Modes(
         np.array([still, 1.0 - still, 0.0]), states, np.stack([standing, COVARIANCE, COVARIANCE])
     )
+
+
+def straight(rate):
+    """Movers that keep their line and turn back at a rate [1/s]."""
+    return TrackingParameters(turn_sigma=1e-9, reversal_rate=rate)
 
 
 @pytest.fixture
@@ -26,8 +34,10 @@ def rng():
 def test_particles_have_the_moments_of_the_filter(rng):
     cloud = track_particles.spawn(modes(), 20000, rng)
     mean, covariance = track_particles.moments(cloud)
-    assert np.allclose(mean, STATE, atol=1e-3)
-    assert np.allclose(covariance, COVARIANCE, atol=2e-5)
+    assert np.allclose(mean, STATE[:4], atol=1e-3)
+    assert np.allclose(covariance, COVARIANCE[:4, :4], atol=2e-5)
+    assert np.mean(cloud.turn_rates) == pytest.approx(STATE[4], abs=1e-3)
+    assert np.var(cloud.turn_rates) == pytest.approx(COVARIANCE[4, 4], rel=0.1)
     assert cloud.weights.sum() == pytest.approx(1.0)
 
 
@@ -40,20 +50,32 @@ def test_as_many_stand_still_as_is_probable(rng):
 
 def test_reversals_come_at_their_rate(rng):
     cloud = track_particles.spawn(modes(), 20000, rng)
+    cloud = replace(cloud, turn_rates=np.zeros(20000))
     for _ in range(100):
-        cloud = track_particles.advance(cloud, 0.05, 1.0 / 15.0, rng)
+        cloud = track_particles.advance(cloud, 0.05, straight(1.0 / 15.0), rng)
     # Expected sign after time t of a process that flips at a rate: exp(-2 rate t).
     assert np.mean(np.sign(cloud.velocities[:, 0])) == pytest.approx(np.exp(-2 * 5 / 15), abs=0.02)
 
 
 def test_without_reversals_particles_go_straight(rng):
-    cloud = track_particles.spawn(modes(), 10, rng)
-    later = track_particles.advance(cloud, 2.0, 0.0, rng)
+    cloud = replace(track_particles.spawn(modes(), 10, rng), turn_rates=np.zeros(10))
+    later = track_particles.advance(cloud, 2.0, straight(0.0), rng)
     assert np.allclose(later.positions, cloud.positions + 2.0 * cloud.velocities)
 
 
+def test_turn_rates_drift_about_zero_with_the_spread_of_movers(rng):
+    p = TrackingParameters(turn_sigma=0.3, turn_time=1.0)
+    cloud = track_particles.spawn(modes(), 20000, rng)
+    for _ in range(50):
+        cloud = track_particles.advance(cloud, 0.1, p, rng)
+    assert np.mean(cloud.turn_rates) == pytest.approx(0.0, abs=0.01)
+    assert np.std(cloud.turn_rates) == pytest.approx(0.3, rel=0.02)
+
+
 def test_refutation_is_bayes_rule():
-    cloud = Particles(np.zeros((4, 2)), np.zeros((4, 2)), np.array([0.1, 0.2, 0.3, 0.4]))
+    cloud = Particles(
+        np.zeros((4, 2)), np.zeros((4, 2)), np.zeros(4), np.array([0.1, 0.2, 0.3, 0.4])
+    )
     expected = np.array([True, False, True, False])
     refuted, left = track_particles.refute(cloud, expected, 0.25)
     assert left == pytest.approx(0.25 * 0.4 + 0.6)
@@ -65,10 +87,10 @@ def test_refutation_is_bayes_rule():
 
 def test_resampling_keeps_the_mean_and_only_happens_when_needed(rng):
     positions = rng.standard_normal((500, 2))
-    even = Particles(positions, np.zeros((500, 2)), np.full(500, 1 / 500))
+    even = Particles(positions, np.zeros((500, 2)), np.zeros(500), np.full(500, 1 / 500))
     assert track_particles.resample(even, 0.35, rng) is even
     weights = np.where(positions[:, 0] > 1.0, 1.0, 1e-6)
-    skewed = Particles(positions, np.zeros((500, 2)), weights / weights.sum())
+    skewed = Particles(positions, np.zeros((500, 2)), np.zeros(500), weights / weights.sum())
     drawn = track_particles.resample(skewed, 0.35, rng)
     assert np.allclose(drawn.weights, 1 / 500)
     before, _ = track_particles.moments(skewed)
@@ -90,7 +112,7 @@ def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
 
 
 def test_log_density_of_one_particle_is_a_gaussian():
-    cloud = Particles(np.array([[1.0, 0.0]]), np.zeros((1, 2)), np.ones(1))
+    cloud = Particles(np.array([[1.0, 0.0]]), np.zeros((1, 2)), np.zeros(1), np.ones(1))
     z = np.array([[1.0, 0.0], [1.2, 0.1]])
     variance = np.array([0.01, 0.04])
     wide = variance + track_particles.POSITION_JITTER**2

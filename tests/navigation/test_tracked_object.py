@@ -11,8 +11,9 @@ P = TrackingParameters()
 
 def make(moving=0.5, velocity=(0.03, 0.0), **changes):
     """Stands still at (0.9, 2) or goes on from (1, 2)."""
-    states = np.array([[0.9, 2.0, 0.0, 0.0], [1.0, 2.0, *velocity], [1.0, 2.0, *velocity]])
-    covariances = np.stack([np.diag([1e-4, 1e-4, 0.0, 0.0])] + 2 * [np.eye(4) * 1e-3])
+    walks = [1.0, 2.0, *velocity, 0.2]
+    states = np.array([[0.9, 2.0, 0.0, 0.0, 0.0], walks, walks])
+    covariances = np.stack([np.diag([1e-4, 1e-4, 0.0, 0.0, 0.0])] + 2 * [np.eye(5) * 1e-3])
     values = {
         "id": 3,
         "label": "red",
@@ -67,9 +68,11 @@ def test_each_verdict_publishes_its_own_filter():
     moving = make(motion=Motion.MOVING).track(5.0, P)
     assert moving.position.tolist() == [1.0, 2.0]
     assert moving.velocity.tolist() == [0.03, 0.0]
+    assert moving.turn_rate == 0.2
     static = make(motion=Motion.STATIC).track(5.5, P)
     assert static.position.tolist() == [0.9, 2.0]
     assert static.velocity.tolist() == [0.0, 0.0]
+    assert static.turn_rate == 0.0
     assert static.age == pytest.approx(0.5)
     assert np.linalg.eigvalsh(static.covariance)[0] > 0
     assert moving.visible
@@ -105,11 +108,13 @@ def test_a_cloud_is_published_by_its_moments():
     cloud = Particles(
         np.array([[0.0, 0.0], [1.0, 0.0]]),
         np.array([[0.1, 0.0], [-0.1, 0.0]]),
+        np.array([0.1, -0.3]),
         np.array([0.25, 0.75]),
     )
     track = make(motion=Motion.MOVING, particles=cloud).track(8.0, P)
     assert np.allclose(track.position, [0.75, 0.0])
     assert np.allclose(track.velocity, [-0.05, 0.0])
+    assert track.turn_rate == pytest.approx(-0.2)
     assert track.covariance[0, 0] == pytest.approx(0.1875)
 
 

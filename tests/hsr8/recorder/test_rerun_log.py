@@ -126,7 +126,7 @@ def test_the_field_is_shown_while_there_is_one(folder, model, layout, fake):
 
 def test_particles_show_where_a_lost_mover_may_be(folder, model, layout, fake):
     places = np.array([[1.0, 0.5], [1.2, -0.5]])
-    cloud = Particles(places, np.zeros((2, 2)), np.array([0.1, 0.9]))
+    cloud = Particles(places, np.zeros((2, 2)), np.zeros(2), np.array([0.1, 0.9]))
     lost = replace(fake.track(2, 0.0), particles=cloud)
     record = fake.record(0.0, frame=fake.frame(0.0, tracks=(fake.track(0, 0.0), lost)))
     path = _logged(folder, model, layout, [record])
