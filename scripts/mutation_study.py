@@ -32,6 +32,8 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "results" / "mutation.md"
 TESTS = {  # where they are not those of the same name
     "walking/zmp_layout_kernel": ("walking/test_zmp_kernel",),
+    "walking/swing_kernel": ("walking/test_swing_kernel", "walking/test_swing_reaction"),
+    "walking/foothold_kernel": ("walking/test_foothold_kernel", "walking/test_zmp_reference"),
     "walking/estimation_kernel": tuple(
         f"walking/test_{name}"
         for name in ("estimation_kernel", "estimation", "odometry", "leg_kinematics")

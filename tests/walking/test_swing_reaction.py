@@ -81,6 +81,29 @@ def test_the_acceleration_is_that_of_the_offset():
     assert np.sqrt((error**2).mean()) < 0.05 * np.sqrt((expected**2).mean())
 
 
+def turned(planned, angle):
+    """The same swings of a walk in another direction."""
+    turn = np.exp(1j * angle)
+    table = planned.table.copy()
+    for x in (2, 5, 8):
+        place = turn * (table[:, x] + 1j * table[:, x + 1])
+        table[:, x], table[:, x + 1] = place.real, place.imag
+    table[:, [4, 7]] += angle
+    return Swings(table, planned.first, planned.later)
+
+
+def test_a_walk_in_another_direction_has_its_offsets_turned():
+    here, there = SwingCompensation(LIPM, REACTION), SwingCompensation(LIPM, REACTION)
+    for k in range(300):
+        here.advance(swings(k, 0.07))
+        there.advance(turned(swings(k, 0.07), 0.8))
+        for one, other in (
+            (here.offset, there.offset),
+            (here.acceleration, there.acceleration),
+        ):
+            assert complex(*other) == pytest.approx(np.exp(0.8j) * complex(*one), abs=1e-12)
+
+
 def test_offsets_stay_small_and_mirror():
     right, left = track(0.07), track(0.07, side=-1.0)
     assert np.abs(right[:, :2]).max() < 0.02
