@@ -1,5 +1,7 @@
 """The command line ``hsr8``."""
 
+import atexit
+import gc
 import importlib
 import os
 import sys
@@ -63,6 +65,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         0 done or passed, 1 ran but failed its criteria, 2 usage or scenario error,
         3 diverged or internal error, 130 interrupted.
     """
+    atexit.register(gc.freeze)  # an ending process has nothing to look for
     try:
         code = _answer(list(sys.argv[1:] if arguments is None else arguments))
         for stream in (sys.stdout, sys.stderr):

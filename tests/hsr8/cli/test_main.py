@@ -164,3 +164,16 @@ def test_the_module_can_be_run():
     )
     names = [s["name"] for s in json.loads(done.stdout)["scenarios"]]
     assert {"paper", "course", "quick"} <= set(names)
+
+
+def test_nothing_is_looked_through_when_it_ends():
+    script = (
+        "import atexit, gc; atexit.register(gc.set_debug, gc.DEBUG_STATS); "
+        "from hsr8.cli.main import entry; entry(['--version'])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
+    )
+    told = [line for line in done.stderr.splitlines() if "objects in each generation" in line]
+    assert told
+    assert all(sum(map(int, line.split(":")[-1].split())) < 1000 for line in told)
