@@ -10,13 +10,13 @@ from annotated_types import Ge, Gt, Interval
 class PoseParameters:
     """How well the body knows where its camera is: measured while walking, noise and all."""
 
-    tilt_sigma: Annotated[float, Ge(0.0)] = 0.0009
+    tilt_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0009
     """Standard deviation of the camera's pitch [rad]."""
-    roll_sigma: Annotated[float, Ge(0.0)] = 0.0008
+    roll_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0008
     """Standard deviation of its roll [rad]."""
-    yaw_sigma: Annotated[float, Ge(0.0)] = 0.0005
+    yaw_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0005
     """Standard deviation of its direction from the robot's heading [rad]."""
-    height_sigma: Annotated[float, Ge(0.0)] = 0.0003
+    height_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0003
     """Standard deviation of its height [m]."""
 
 

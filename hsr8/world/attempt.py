@@ -55,12 +55,16 @@ class Attempt:
     Args:
         scenario: what is asked for.
         rng: draws everything.
+
+    Attributes:
+        tried: lanes of movers that were looked at [1].
     """
 
     def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:
         self._scenario = scenario
         self._world = scenario.world
         self._rng = rng
+        self.tried = 0
         self._half = 0.5 * np.asarray(scenario.world.size)
         self._static: list[Obstacle] = []
         self._lanes: list[Lane] = []
@@ -190,6 +194,7 @@ class Attempt:
         goal = points[-1] if points and self._has_goal() else None
         route = [start, *points] if start is not None and points else []
         for _ in range(LANE_TRIES):
+            self.tried += 1
             law = self._draw_law(route)
             if law is None:
                 continue

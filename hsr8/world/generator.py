@@ -28,6 +28,7 @@ from hsr8.world.certificate import Certificate, certify
 from hsr8.world.layout import Layout, with_faults
 
 WORLDS = 20  # worlds begun before giving up
+LANES = 4000  # lanes of movers looked at in crowded worlds before giving up, which take their time
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,12 +68,16 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
     sequence = np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(b"layout"),))
     rng = np.random.default_rng(sequence)
     crowded: Counter[str] = Counter()
-    rejected = 0
+    rejected = lanes = 0
     for _ in range(WORLDS):
+        attempt = Attempt(scenario, rng)
         try:
-            layout = Attempt(scenario, rng).layout()
+            layout = attempt.layout()
         except CrowdedError as error:
             crowded[str(error)] += 1
+            lanes += attempt.tried
+            if lanes > LANES:
+                break
             continue
         certificate = certify(layout, scenario.robot.speed)
         if certificate.solvable or not _draws(scenario):
@@ -80,11 +85,12 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
             return FairWorld(faulty, certificate, rejected, crowded.total())
         rejected += 1
     width, depth = scenario.world.size
+    attempts = crowded.total() + rejected
     reasons = [f"for want of room for {thing} {n} times" for thing, n in crowded.most_common()]
     if rejected:
         reasons.append(f"for want of a way through it {rejected} times")
     raise ScenarioError(
-        f"scenario {scenario.name!r}, seed {seed}: no fair world found in {WORLDS} attempts "
+        f"scenario {scenario.name!r}, seed {seed}: no fair world found in {attempts} attempts "
         f"in a field of {width:g} m x {depth:g} m, {', '.join(reasons)}; "
         "make world.size larger or world.n_static, world.n_moving or world.radius smaller"
     )

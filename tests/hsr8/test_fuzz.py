@@ -118,6 +118,7 @@ def test_no_number_is_out_of_all_bounds(key, value):
         "walking.gait.preview_steps=100000000",
         "walking.gait.shortest_time=11.0",
         "walking.odometry.yaw_drift=500000",
+        "vision.pose.yaw_sigma=10.0",
         "belief.tracking.particles=1000000000",
         "navigation.mover.samples=1000000000",
         "navigation.gaze.step=1e-9",

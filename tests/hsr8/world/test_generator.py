@@ -1,3 +1,4 @@
+import re
 from itertools import combinations, pairwise
 from math import hypot
 
@@ -8,7 +9,7 @@ from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load
 from hsr8.world import fairness
 from hsr8.world.attempt import Attempt
-from hsr8.world.generator import draw_layout
+from hsr8.world.generator import WORLDS, draw_layout
 
 SEEDS = range(1000, 1025)
 SAMPLED = 0.002  # the drawing takes lanes as points: its distances are this exact [m]
@@ -118,6 +119,13 @@ def test_sensors_and_camera_do_not_change_the_world():
 def test_a_world_without_room_is_an_error_that_says_what_to_change():
     with pytest.raises(ScenarioError, match=r"no fair world.*world\.n_static"):
         draw_layout(load("quick", ["world.n_static=40"]), 1)
+
+
+def test_movers_without_room_are_given_up_soon():
+    with pytest.raises(ScenarioError, match="no fair world") as refused:
+        draw_layout(load("course", ["world.n_moving=30"]), 0)
+    attempts = int(re.search(r"(\d+) attempts", str(refused.value))[1])
+    assert 1 <= attempts < WORLDS / 2
 
 
 def test_things_placed_by_hand_stand_where_they_are_put():
