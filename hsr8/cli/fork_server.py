@@ -25,6 +25,7 @@ from contextlib import suppress
 from typing import Any
 
 from hsr8.cli.attended import ORPHAN, ends_with
+from hsr8.cli.loading import loading
 from hsr8.cli.main import entry
 
 LONGEST = 1 << 16  # of a message [bytes]
@@ -49,9 +50,10 @@ def main(arguments: list[str]) -> int:
 
 def load_everything() -> None:
     """Import what a run needs, and load its kernels."""
-    import hsr8.cli.recorded_run  # noqa: F401, PLC0415  MuJoCo was to wait for the backend
-    from hsr8.loop import Simulation  # noqa: PLC0415
-    from hsr8.scenario.loader import load  # noqa: PLC0415
+    with loading():
+        import hsr8.cli.recorded_run  # noqa: F401, PLC0415  MuJoCo was to wait for the backend
+        from hsr8.loop import Simulation  # noqa: PLC0415
+        from hsr8.scenario.loader import load  # noqa: PLC0415
 
     Simulation(load("quick", FIRST, 0), 0).run()
     gc.collect()
