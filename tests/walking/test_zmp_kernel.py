@@ -177,6 +177,20 @@ def test_a_zmp_outside_its_cell_counts_as_on_its_edge():
     assert turned[6:12] == pytest.approx((0.0, 0.0, 0.025, 0.04, -0.015, 0.015))
 
 
+@given(st.floats(-0.1, 0.1), st.floats(-0.12, -0.07), st.floats(-0.6, 0.6), st.floats(-0.6, 0.6))
+def test_a_cell_of_two_feet_has_two_edges_each_in_one_sole(x, y, yaw, other_yaw):
+    ramp, cell, sole = np.zeros(13), np.zeros(CELL), (0.01, 0.05, 0.03)
+    ramp[5:13] = 0.0, 0.0, yaw, 1.0, x, y, other_yaw, 0.0
+    zmp_layout_kernel._between(ramp, 0.0, sole, cell)
+    for v, foot in ((cell[10], ramp[5:8]), (cell[11], ramp[9:12])):
+        c, s = np.cos(foot[2]), np.sin(foot[2])
+        for u in cell[8:10]:
+            corner = cell[:2] + u * cell[2:4] + v * cell[4:6] - foot[:2]
+            ahead, left = c * corner[0] + s * corner[1], c * corner[1] - s * corner[0]
+            assert abs(ahead - 0.01) <= 0.05 + 1e-9
+            assert abs(left) <= 0.03 + 1e-9
+
+
 @given(st.floats(-3.0, 3.0), st.floats(0.3, 2.8), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_the_coordinates_along_two_directions_lead_back(angle, between, x, y):
     a = (float(np.cos(angle)), float(np.sin(angle)))
