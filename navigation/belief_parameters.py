@@ -37,11 +37,11 @@ class LocalizationParameters:
 class TrackingParameters:
     """Obstacle tracks: filters, association, classification, birth and death."""
 
-    acceleration_noise: Positive = 0.005
+    acceleration_noise: Positive = 0.003
     """White acceleration of a mover [m/s^1.5]."""
     turn_sigma: Positive = 0.15
     """Standard deviation of the rate at which movers bend [rad/s]."""
-    turn_time: Positive = 30.0
+    turn_time: Positive = 100.0
     """Time over which a mover changes that rate [s]."""
     static_diffusion: Positive = 5e-7
     """Random walk of what stands still [m²/s]."""

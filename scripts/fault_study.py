@@ -70,7 +70,7 @@ LADDERS = {
     "camera-late": Ladder("s", "size={}", (0.06, 0.12, 0.24, 0.48)),
     "imu-tilt pitch": Ladder("rad", 'axis="pitch",size={}', (0.02, 0.04, 0.08, 0.12)),
     "imu-tilt roll": Ladder("rad", 'axis="roll",size={}', (0.02, 0.04, 0.08, 0.12)),
-    "imu-turn": Ladder("rad/s", "size={}", (0.02, 0.05, 0.1, 0.2, 0.4)),
+    "imu-turn": Ladder("rad/s", "size={}", (0.002, 0.005, 0.01, 0.02, 0.05, 0.1)),
     "imu-frozen": Ladder("duration [s]", "duration={}", (0.1, 0.3, 1, 3)),
     "encoder-offset ankle": Ladder(
         "rad", 'joint="l_ankle_pitch",size={}', (0.02, 0.05, 0.1, 0.2, 0.4)
