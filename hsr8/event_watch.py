@@ -39,7 +39,7 @@ class EventWatch:
         self._done = False
 
     def look(self, truth: Truth, frame: FrameRecord | None) -> Iterator[Event]:
-        """What changed since the last record."""
+        """What changed since the last record; to be taken to its end."""
         now = truth.time
         while self._faults and self._faults[0][0] <= now + INSTANT:
             time, text = self._faults.pop(0)

@@ -178,7 +178,7 @@ class FilterParameters:
     moving_horizon: Positive = 6.0
     """Time to contact below which movers count [s]."""
     bend_time: Positive = 2.0
-    """Time over which a mover's bend is followed; then it counts as going straight [s]."""
+    """Time over which a mover's bend is averaged: it counts as going along that chord [s]."""
     reversal_horizon: Positive = 2.5
     """Time to contact below which the reversal of a mover counts [s]."""
     urgent_time: Positive = 1.5

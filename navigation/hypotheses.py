@@ -64,7 +64,7 @@ def collision_hypotheses(
     """Build the hypotheses of all tracks.
 
     A lost mover counts as its particles; a visible one also as its own reversal. What walks a
-    bend counts as walking along its chord.
+    bend counts as going straight along its chord over `bend_time`, as fast as it gets on there.
 
     Args:
         tracks: of the belief.

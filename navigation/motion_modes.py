@@ -69,7 +69,7 @@ def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
     # Turning back twice is going on.
     turns = 0.5 * (1.0 - exp(-2.0 * p.reversal_rate * dt))
     stops, starts = 1.0 - exp(-p.stop_rate * dt), 1.0 - exp(-p.start_rate * dt)
-    stops = min(stops, 1.0 - FLOOR)  # else nothing goes back, and is divided by
+    stops = min(stops, 1.0 - FLOOR)  # else BACK has no probability left to divide by
     turns *= 1.0 - stops
     change = np.array(
         [

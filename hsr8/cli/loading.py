@@ -13,11 +13,12 @@ def loading() -> Iterator[None]:
     It would go through all of it again and again while it grows, an eighth of a start. Where all
     was loaded before, nothing is kept: it would be what an earlier command left behind.
     """
-    loaded = len(sys.modules)
+    loaded, collects = len(sys.modules), gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if len(sys.modules) > loaded:
             gc.freeze()
-        gc.enable()
+        if collects:
+            gc.enable()

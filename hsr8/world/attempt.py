@@ -57,7 +57,7 @@ class Attempt:
         rng: draws everything.
 
     Attributes:
-        tried: lanes of movers that were looked at [1].
+        tried: lanes that were tried for movers, encounters not counted [1].
     """
 
     def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:

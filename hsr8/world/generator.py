@@ -28,7 +28,7 @@ from hsr8.world.certificate import Certificate, certify
 from hsr8.world.layout import Layout, with_faults
 
 WORLDS = 20  # worlds begun before giving up
-LANES = 4000  # lanes of movers looked at in crowded worlds before giving up, which take their time
+LANES = 4000  # lanes of movers tried in crowded worlds before giving up: each takes its time
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,8 +21,8 @@ from walking.targets import JointTargets
 
 Array = NDArray[np.float64]
 
-# Of a foot's slip at touch-down, standard deviations that drift as full physics does,
-# `walking.odometry`.
+# Standard deviations of a foot's slip at touch-down. With them the robot drifts as in full
+# physics, see `walking.odometry`.
 SLIP = 0.0003  # per axis [m]
 YAW_SLIP = 0.0006  # about the vertical [rad]
 LANDED = 0.0005  # the swing foot takes over when it is lower than the stance foot by this [m]

@@ -27,7 +27,7 @@ def test_a_beacon_moved_by_half_a_metre_is_ignored(simulate):
 def test_beacons_hold_the_heading_of_a_drifting_gyro(simulate):
     _, recorded, _ = simulate("quick", "sensors.gyro_bias=0.01", duration=5.0)
     position, heading, lost = errors(recorded)
-    assert not (lost[1:] & lost[:-1]).any()  # the beacons contradict it: it asks them at once
+    assert not (lost[1:] & lost[:-1]).any()  # where beacons contradict it, it asks them at once
     assert heading.max() < 0.03  # by itself it would be 0.05
     assert position.max() < 0.08
 

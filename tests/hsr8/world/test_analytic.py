@@ -50,14 +50,29 @@ def test_detections_are_unbiased_in_the_robot_frame(see, start, place):
     assert np.all(np.abs(errors.mean(axis=0)) < 4 * sigma / np.sqrt(len(found)) + 1e-6)
 
 
-def test_covariance_is_honest(see):
-    found = obstacles_in(see(Obstacle((1.2, 0.2), 0.08, 0.3, "red"), frames=400))
-    truth = np.array([np.hypot(1.2, 0.2), np.arctan2(0.2, 1.2)])
+@pytest.mark.parametrize("hidden", [False, True])
+def test_covariance_is_honest(see, hidden):
+    """Of a thing seen whole as of one partly behind another."""
+    things = [Obstacle((1.4, 0.18), 0.1, 0.3, "red")]
+    things += [Obstacle((0.8, 0.0), 0.1, 0.3, "green")] if hidden else []
+    found = [d for d in obstacles_in(see(*things, frames=400)) if d.label == "red"]
+    truth = np.array([np.hypot(1.4, 0.18), np.arctan2(0.18, 1.4)])
     nees = [
         (e := np.array([d.distance, d.bearing]) - truth) @ np.linalg.solve(d.covariance, e) / 2
         for d in found
     ]
+    assert {d.occluded for d in found} == {hidden}
     assert 0.8 < np.mean(nees) < 1.2
+    off = [(d.radius - 0.1) / d.radius_sigma for d in found]
+    assert 0.9 < np.std(off) < 1.1
+
+
+def test_what_is_seen_in_part_is_located_worse(see):
+    near, far = Obstacle((0.8, 0.0), 0.1, 0.3, "green"), Obstacle((1.4, 0.18), 0.1, 0.3, "red")
+    (whole,) = obstacles_in(see(far, frames=1))
+    (part,) = (d for d in obstacles_in(see(near, far, frames=1)) if d.label == "red")
+    assert (np.diag(part.covariance) > 2.0 * np.diag(whole.covariance)).all()
+    assert part.radius_sigma > 2.0 * whole.radius_sigma
 
 
 def test_what_is_behind_another_or_behind_the_robot_is_not_seen(see):
@@ -89,6 +104,7 @@ def test_beacons_carry_their_names(see):
 
 
 def test_far_things_are_not_reported(see):
+    assert obstacles_in(see(Obstacle((4.4, 0.0), 0.1, 0.3, "red")))
     assert not obstacles_in(see(Obstacle((4.6, 0.0), 0.1, 0.3, "red")))
 
 
