@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from navigation.bend import mean_velocity
+from navigation.mode_kernel import arc
 
 VELOCITY = np.array([[0.1, 0.0], [0.03, -0.04], [0.0, 0.0]])
 
@@ -22,3 +23,10 @@ def test_it_is_the_mean_over_the_time(turn):
 
 def test_a_full_turn_leads_nowhere():
     assert mean_velocity(VELOCITY, np.full(3, np.pi), 2.0) == pytest.approx(np.zeros((3, 2)))
+
+
+@pytest.mark.parametrize("turn", [-1.3, 0.0, 1e-4, 0.4])
+def test_the_filters_of_the_tracks_follow_the_same_arc(turn):
+    along, across, *_ = arc(turn, 2.5)
+    wanted = VELOCITY @ np.array([[along, across], [-across, along]])
+    assert mean_velocity(VELOCITY, np.full(3, turn), 2.5) == pytest.approx(wanted, abs=1e-12)
