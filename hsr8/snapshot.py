@@ -15,9 +15,10 @@ from typing import Any
 import mujoco
 
 from hsr8.errors import UsageError
+from hsr8.file_format import check_magic
 from walking.robot_model import RobotModel
 
-MAGIC = b"HSR8SNP1"
+MAGIC = b"HSR8SNP2"  # its format last: raise it when classes in it change
 _LENGTH = struct.Struct("<Q")
 _DIGEST = 32
 LARGEST = 256 * 1024 * 1024  # no snapshot is larger [byte]
@@ -79,11 +80,12 @@ def decode(content: bytes, anchors: Mapping[str, Any], name: str) -> dict[str, A
         name: of the snapshot, for messages.
 
     Raises:
-        UsageError: it is damaged, no snapshot of this version, or asks for what it must not.
+        UsageError: it is damaged, no snapshot of this format, or asks for what it must not.
     """
     start = len(MAGIC) + _LENGTH.size + _DIGEST
-    if not content.startswith(MAGIC) or len(content) < start:
-        raise UsageError(f"{name} is no snapshot of this version of hsr8")
+    check_magic(content, MAGIC, name, "snapshot")
+    if len(content) < start:
+        raise UsageError(f"{name} is cut off")
     (length,) = _LENGTH.unpack_from(content, len(MAGIC))
     payload = content[start:]
     if length != len(payload) or length > LARGEST:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hsr8.errors import UsageError
+from hsr8.file_format import check_magic
 from hsr8.recorder.reading import read_bytes
 from hsr8.recorder.writing import writing
 
@@ -62,14 +63,13 @@ def read_payloads(
         whole: whether the last payload must be complete; that of a killed run need not be.
 
     Raises:
-        UsageError: it is missing, damaged, or another kind of file.
+        UsageError: it is missing, damaged, or of another kind or format.
     """
     try:
         content = read_bytes(path)
     except OSError as error:
         raise UsageError(f"cannot read the {file} {path}: {error.strerror}") from error
-    if not content.startswith(magic):
-        raise UsageError(f"{path} is no {file} of this version of hsr8")
+    check_magic(content, magic, path, file)
     place, count = len(magic), 0
     while place < len(content):
         where, start = f"in {payload} {count}, at byte {place}", place + _GUARD.size

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import UsageError
+from hsr8.file_format import check_magic
 from hsr8.recorder.reading import read_bytes
 from hsr8.recorder.writing import writing
 
@@ -63,15 +64,16 @@ def read_headed(path: Path, magic: bytes, file: str) -> tuple[dict[str, Any], by
         file: what the file is, for messages: ``walking table``.
 
     Raises:
-        UsageError: it is missing, cut off in its header, or another kind of file.
+        UsageError: it is missing, cut off in its header, or of another kind or format.
     """
     try:
         content = read_bytes(path)
     except OSError as error:
         raise UsageError(f"cannot read the {file} {path}: {error.strerror}") from error
     start = len(magic) + _LENGTH.size
-    if len(content) < start or not content.startswith(magic):
-        raise UsageError(f"{path} is no {file} of this version of hsr8")
+    check_magic(content, magic, path, file)
+    if len(content) < start:
+        raise UsageError(f"{path} has no whole header")
     end = start + _LENGTH.unpack_from(content, len(magic))[0]
     try:
         header = json.loads(content[start:end])

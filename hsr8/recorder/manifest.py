@@ -23,6 +23,7 @@ LIBRARIES = (
     "pydantic",
     "av",
 )
+FORMAT = 2  # of run folders; those without a number are of format 1
 RUNNING = "running"
 
 
@@ -42,6 +43,7 @@ class Manifest:
         python: version.
         machine: operating system and processor.
         libraries: version by name.
+        format: number of the run folder's.
     """
 
     scenario: str
@@ -54,6 +56,7 @@ class Manifest:
     python: str
     machine: str
     libraries: dict[str, str]
+    format: int = FORMAT
 
     @classmethod
     def now(cls, scenario: str, seed: int, command: Sequence[str], renderer: str) -> "Manifest":

@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ScenarioError, UsageError
+from hsr8.file_format import check_number
 from hsr8.recorder import run_folder
 from hsr8.recorder.frame_summary import FrameSummary, from_line
 from hsr8.recorder.json_lines import read_lines
+from hsr8.recorder.manifest import FORMAT
 from hsr8.recorder.reading import LARGEST_JSON, read_bytes
 from hsr8.recorder.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.walking_table import WalkingTable, read_walking_table
@@ -141,6 +143,10 @@ def _run(path: Path) -> Run:
     manifest = _json(file)
     if not isinstance(manifest.get("seed"), int):
         raise UsageError(f"cannot read {file}: it names no seed")
+    number = manifest.get("format", 1)
+    if not isinstance(number, int):
+        raise UsageError(f"cannot read {file}: its format is no number")
+    check_number(number, FORMAT, path, "run folder")
     return Run(path, manifest)
 
 

@@ -83,7 +83,7 @@ def test_nothing_but_data_is_read(what, tmp_path, monkeypatch):
 def test_damage_is_told(place, value):
     content = bytearray(encode({"a": np.arange(20.0)}))
     content[place % len(content)] ^= value
-    with pytest.raises(UsageError, match=r"is damaged|is cut off|is no snapshot"):
+    with pytest.raises(UsageError, match=r"is damaged|is cut off|is no snapshot|of format"):
         decode(bytes(content), ANCHORS, "x")
 
 

@@ -7,6 +7,7 @@ import pytest
 from hsr8.cli import bug_report
 from hsr8.cli.doctor import Finding
 from hsr8.cli.main import entry
+from hsr8.recorder.manifest import FORMAT
 
 
 @pytest.fixture(autouse=True)
@@ -21,7 +22,8 @@ def quick_doctor(monkeypatch):
 @pytest.fixture
 def folder(tmp_path):
     """A run folder as a crash leaves it."""
-    (tmp_path / "manifest.json").write_text(json.dumps({"seed": 1, "exit_reason": "running"}))
+    manifest = {"seed": 1, "exit_reason": "running", "format": FORMAT}
+    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
     (tmp_path / "crash.txt").write_text("Traceback: oh no")
     (tmp_path / "frames.jsonl").write_text("x" * (bug_report.LARGEST + 5) + "END")
     (tmp_path / "log.rrd").write_bytes(b"large and not sent")

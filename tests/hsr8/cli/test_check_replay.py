@@ -166,6 +166,8 @@ def test_a_damaged_cut_or_missing_tape_is_one_clear_error(run, capsys):
     refused("is cut off in block")
     file.write_bytes(b"something else")
     refused("is no tape")
+    file.write_bytes(b"HSR8TAP9" + content[8:])
+    refused("is a tape of format 9, hsr8")
     file.unlink()
     refused("cannot read the tape")
 

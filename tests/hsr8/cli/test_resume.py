@@ -114,6 +114,7 @@ def test_a_damaged_checkpoint_is_reported_and_leaves_the_run_as_it_was(cut, caps
         (content[:1000], "is cut off"),
         (content[:5000] + b"?" + content[5001:], "is damaged"),
         (b"something else", "is no snapshot"),
+        (b"HSR8SNP1" + content[8:], "is a snapshot of format 1, hsr8"),
     ):
         file.write_bytes(wrong)
         assert entry(["run", str(cut.path), "--resume"]) == 2

@@ -67,6 +67,9 @@ def test_another_file_is_refused(tmp_path):
     (tmp_path / "other").write_bytes(b"something else")
     with pytest.raises(UsageError, match="is no list"):
         read(tmp_path / "other")
+    (tmp_path / "old").write_bytes(MAGIC[:-1] + b"2")
+    with pytest.raises(UsageError, match="is a list of format 2"):
+        read(tmp_path / "old")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")

@@ -54,6 +54,8 @@ def test_a_file_cut_in_its_header_is_refused_and_never_misread(tmp_path_factory,
     [
         (b"OTHER123" + bytes(8), "is no list"),
         (b"", "is no list"),
+        (MAGIC[:-1] + b"2" + bytes(8), "is a list of format 2"),
+        (MAGIC + bytes(7), "no whole header"),
         (MAGIC + struct.pack("<Q", 2) + b"[]", "no whole header"),
         (MAGIC + struct.pack("<Q", 2) + b"{x", "no whole header"),
         (MAGIC + struct.pack("<Q", 2**63) + b"{}", "no whole header"),

@@ -7,7 +7,7 @@ import pytest
 
 from hsr8.errors import UsageError
 from hsr8.recorder import run_folder
-from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.manifest import FORMAT, Manifest
 from hsr8.recorder.run_folder import RunFolder, write_metrics
 from hsr8.recorder.run_reader import open_run
 
@@ -102,6 +102,23 @@ def test_a_broken_manifest_is_a_usage_error(tmp_path):
         (tmp_path / run_folder.MANIFEST).write_text(text)
         with pytest.raises(UsageError, match="cannot read"):
             open_run(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("number", "message"),
+    [
+        (None, f"is a run folder of format 1, .* reads format {FORMAT}: run the scenario again"),
+        (FORMAT + 1, f"is a run folder of format {FORMAT + 1}, .* reads format {FORMAT}"),
+        ("two", "its format is no number"),
+    ],
+)
+def test_a_folder_of_another_format_is_refused_by_its_number(folder, number, message):
+    file = folder.path / run_folder.MANIFEST
+    manifest = json.loads(file.read_text())
+    assert manifest.pop("format") == FORMAT
+    file.write_text(json.dumps(manifest | ({"format": number} if number else {})))
+    with pytest.raises(UsageError, match=message):
+        open_run(folder.path)
 
 
 @pytest.mark.parametrize("name", [run_folder.EVENTS, run_folder.FRAMES])
