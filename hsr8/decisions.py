@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from navigation.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
+from navigation.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraView, Frame
 from navigation.prediction import predict
 from walking.value import value
@@ -68,7 +69,7 @@ class Moves(Protocol):
     """Chooses how to move."""
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
-        """Motion for the next footstep."""
+        """Motion for the next footstep; landmarks near are among the tracks of `belief`."""
 
 
 class Decisions:
@@ -78,13 +79,24 @@ class Decisions:
         mission: sequence of destinations.
         planner: motion planner.
         gaze: gaze planner.
+        landmarks: what the planner must avoid beside the tracks; the gaze looks at them as
+            landmarks alone.
         footstep: time between two motion decisions [s].
     """
 
-    def __init__(self, *, mission: Goes, planner: Moves, gaze: Looks, footstep: float) -> None:
+    def __init__(
+        self,
+        *,
+        mission: Goes,
+        planner: Moves,
+        gaze: Looks,
+        landmarks: LandmarkObstacles,
+        footstep: float,
+    ) -> None:
         self._mission = mission
         self._planner = planner
         self._gaze = gaze
+        self._landmarks = landmarks
         self._footstep = footstep
         self._motion: MotionDecision | None = None
         self._planned_at = -np.inf
@@ -115,7 +127,7 @@ class Decisions:
         since = now.time - self._planned_at
         due = now.step_count != self._planned_step or since >= self._footstep
         if self._motion is None or due:
-            self._motion = self._planner.plan(belief, task)
+            self._motion = self._planner.plan(self._landmarks.added_to(belief), task)
             self._planned_at = now.time
             self._planned_step = now.step_count
         return self._motion

@@ -51,8 +51,7 @@ class EventWatch:
         if self._falls.add(now, fallen=truth.fallen):
             yield Event(now, "fall", "the robot has fallen")
         for collision in self._episodes.add(now, truth.contacts):
-            what = "mover" if collision.moving else "obstacle"
-            text = f"{collision.robot_geom} touches {what} {collision.obstacle}"
+            text = f"{collision.robot_geom} touches {collision.name}"
             yield Event(now, "collision", text)
         if frame is None:
             return

@@ -14,6 +14,7 @@ from hsr8.world.layout import Layout
 from hsr8.world.models import models_dir
 from navigation.estimator import Estimator
 from navigation.gaze import GazePlanner
+from navigation.landmark_obstacles import LandmarkObstacles
 from navigation.mission import Mission
 from navigation.peers.choice import build_planner
 from vision.camera import PinholeCamera
@@ -98,6 +99,7 @@ def build_decisions(
     `gaze` takes the place of the scenario's.
     """
     navigation, limits = scenario.navigation, scenario.speed_limits()
+    beacons = known_beacons(scenario, layout)
     mission: Goes
     if script is not None:
         mission, planner = ScriptedMission(), ScriptedPlanner(script)
@@ -106,8 +108,14 @@ def build_decisions(
         planner = planner or build_planner(navigation, limits, named_rng(seed, "planner"))
     if gaze is None:
         fov = field_of_view(scenario, head_camera(scenario))
-        gaze = GazePlanner(navigation, limits, known_beacons(scenario, layout), *fov)
-    return Decisions(mission=mission, planner=planner, gaze=gaze, footstep=limits.footstep)
+        gaze = GazePlanner(navigation, limits, beacons, *fov)
+    return Decisions(
+        mission=mission,
+        planner=planner,
+        gaze=gaze,
+        landmarks=LandmarkObstacles(beacons, scenario.vision.beacon_radius),
+        footstep=limits.footstep,
+    )
 
 
 def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, float]]:

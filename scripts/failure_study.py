@@ -39,6 +39,7 @@ SLOW = 0.5  # share of its forward speed below which the robot is slow [1]
 PICTURE = (640, 640)
 KINDS = {
     "fell": "the robot fell, and touched nothing before",
+    "beacon": "it touched a beacon, whose place it knew",
     "unseen": "what it touched had no track, or was seen last more than a second ago",
     "misjudged": "seen, but its place, velocity, size or class was wrong",
     "trapped": "seen and right, but two seconds before no straight walk was free",
@@ -70,7 +71,9 @@ class Watch:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self.radii = np.array([o.radius for o in simulation.layout.obstacles])
+        layout = simulation.layout
+        self.radii = np.array([o.radius for o in (*layout.obstacles, *layout.beacons)])
+        self.beacons = np.array([b.position for b in layout.beacons]).reshape(-1, 2)
         self.forward = simulation.scenario.speed_limits().forward
         self.recent: deque[Truth] = deque()
         self.trail: list[list[float]] = []
@@ -92,6 +95,14 @@ class Watch:
             self.end = record.truth
             self._simulation.interrupt()
 
+    def solids(self, truth: Truth) -> tuple[Array, Array]:
+        """Axes and velocities of obstacles and, after them, beacons (n, 2), (n, 2) [m, m/s]."""
+        still = np.zeros_like(self.beacons)
+        return (
+            np.concatenate([truth.obstacle_positions, self.beacons]),
+            np.concatenate([truth.obstacle_velocities, still]),
+        )
+
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Records say it all."""
 
@@ -105,10 +116,11 @@ def cause_of(watch: Watch, end: Truth) -> tuple[str, str]:
     if not end.contacts:
         return "fell", "no contact before"
     contact = end.contacts[0]
-    place = end.obstacle_positions[contact.obstacle]
-    velocity = end.obstacle_velocities[contact.obstacle]
+    place, velocity = (of_all[contact.obstacle] for of_all in watch.solids(end))
     walk = hypot(*(end.robot[:2] - then.robot[:2]).tolist()) / max(end.time - then.time, 1e-9)
-    what = _words(contact, end, walk)
+    what = _words(contact, end, place, velocity, walk)
+    if contact.obstacle >= len(end.obstacle_positions):
+        return "beacon", what
     tracks = watch.frame.belief.tracks if watch.frame is not None else ()
     near = [t for t in tracks if float(np.hypot(*(t.position - place))) <= NEAR]
     if not near:
@@ -119,21 +131,19 @@ def cause_of(watch: Watch, end: Truth) -> tuple[str, str]:
     wrong = _wrong(track, place, velocity, float(watch.radii[contact.obstacle]))
     if wrong:
         return "misjudged", f"{what}; {wrong}"
-    if not _is_free(then, watch.radii, watch.forward):
+    if not _is_free(watch, then):
         return "trapped", what
     if contact.moving and walk < SLOW * watch.forward:
         return "too slow", what
     return "grazed", what
 
 
-def _words(contact: Contact, end: Truth, walk: float) -> str:
-    x, y = (end.obstacle_positions[contact.obstacle] - end.robot[:2]).tolist()
+def _words(contact: Contact, end: Truth, place: Array, velocity: Array, walk: float) -> str:
+    x, y = (place - end.robot[:2]).tolist()
     bearing = degrees(wrap(float(np.arctan2(y, x)) - float(end.robot[2])))
-    speed = hypot(*end.obstacle_velocities[contact.obstacle].tolist())
-    name = f"{'mover' if contact.moving else 'obstacle'} {contact.obstacle}"
-    moving = f" at {speed:.2f} m/s" if contact.moving else ""
+    moving = f" at {hypot(*velocity.tolist()):.2f} m/s" if contact.moving else ""
     return (
-        f"{contact.robot_geom} touches {name}{moving}, bearing {bearing:.0f} deg, "
+        f"{contact.robot_geom} touches {contact.name}{moving}, bearing {bearing:.0f} deg, "
         f"walking {walk:.2f} m/s"
     )
 
@@ -153,15 +163,16 @@ def _wrong(track: Track, place: Array, velocity: Array, radius: float) -> str:
     return ""
 
 
-def _is_free(truth: Truth, radii: Array, forward: float) -> bool:
+def _is_free(watch: Watch, truth: Truth) -> bool:
     """Whether some straight walk touches nothing for a while, all going on as they do."""
     turns = 2.0 * pi * np.arange(HEADINGS) / HEADINGS
     times = np.linspace(0.0, STRIDE, 11)
-    offset = truth.obstacle_positions - truth.robot[:2]
+    places, velocities = watch.solids(truth)
+    offset = places - truth.robot[:2]
     for direction in turns.tolist():
-        walk = forward * np.array([np.cos(direction), np.sin(direction)])
-        relative = offset[:, None] + times[:, None] * (truth.obstacle_velocities[:, None] - walk)
-        if (np.hypot(relative[..., 0], relative[..., 1]).min(axis=1) > BODY + radii).all():
+        walk = watch.forward * np.array([np.cos(direction), np.sin(direction)])
+        relative = offset[:, None] + times[:, None] * (velocities[:, None] - walk)
+        if (np.hypot(relative[..., 0], relative[..., 1]).min(axis=1) > BODY + watch.radii).all():
             return True
     return False
 

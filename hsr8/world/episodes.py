@@ -9,18 +9,20 @@ EPISODE_GAP = 0.5  # a contact after a pause as long as this is a new collision 
 
 @dataclass(frozen=True, slots=True)
 class Collision:
-    """One contact episode with one obstacle.
+    """One contact episode with one obstacle or beacon.
 
     Attributes:
         time: when it began [s].
-        obstacle: index in the layout.
-        moving: whether the obstacle moves.
+        obstacle: number of what was touched, see `Contact`.
+        name: of what was touched, in words.
+        moving: whether that moves.
         robot_geom: geom of the robot that touched it.
         closing: the robot's own motion closed the gap when it began.
     """
 
     time: float
     obstacle: int
+    name: str
     moving: bool
     robot_geom: str
     closing: bool
@@ -50,6 +52,7 @@ class Episodes:
                 Collision(
                     time=time,
                     obstacle=obstacle,
+                    name=touching[0].name,
                     moving=touching[0].moving,
                     robot_geom=touching[0].robot_geom,
                     closing=any(c.closing for c in touching),

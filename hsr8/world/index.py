@@ -29,8 +29,10 @@ class ModelIndex:
         bumps: geom ids of what lies on the floor.
         base_body: body id of ``base_link``.
         robot_geoms: ids of the robot's colliding geoms.
-        obstacle_of_geom: obstacle index of every geom, -1 for anything else (ngeom,).
+        obstacle_of_geom: number of the obstacle or, after all obstacles, of the beacon of every
+            geom, -1 for anything else (ngeom,).
         obstacle_geoms: geom id of every obstacle, layout order.
+        beacon_geoms: geom ids of the lower and upper half of every beacon, layout order (n, 2).
         mover_mocap: mocap index of every mover, layout order.
     """
 
@@ -49,6 +51,7 @@ class ModelIndex:
     robot_geoms: Ints
     obstacle_of_geom: Ints
     obstacle_geoms: Ints
+    beacon_geoms: Ints
     mover_mocap: Ints
 
     @classmethod
@@ -65,6 +68,10 @@ class ModelIndex:
         obstacle_geoms = np.array([int(b.geomadr[0]) for b in bodies], dtype=np.intp)
         obstacle_of_geom = np.full(model.ngeom, -1, dtype=np.intp)
         obstacle_of_geom[obstacle_geoms] = np.arange(len(bodies))
+        posts = [b for b in map(model.body, range(model.nbody)) if b.name.startswith("beacon_")]
+        lower = np.array([int(b.geomadr[0]) for b in posts], dtype=np.intp)
+        beacon_geoms = lower[:, None] + np.arange(2)
+        obstacle_of_geom[beacon_geoms] = len(bodies) + np.arange(len(posts))[:, None]
         collides = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
         on_robot = np.array([model.body_rootid[b] == base for b in model.geom_bodyid])
         return cls(
@@ -88,5 +95,6 @@ class ModelIndex:
             robot_geoms=np.flatnonzero(collides & on_robot),
             obstacle_of_geom=obstacle_of_geom,
             obstacle_geoms=obstacle_geoms,
+            beacon_geoms=beacon_geoms,
             mover_mocap=np.array([int(b.mocapid[0]) for b in bodies[n_static:]], dtype=np.intp),
         )

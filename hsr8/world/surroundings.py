@@ -31,7 +31,7 @@ class Surroundings:
         self._static = np.array([o.position for o in static], dtype=float).reshape(-1, 2)
         self._still = np.zeros_like(self._static)
         self.index = ModelIndex.of(model, len(static), len(self._movers))
-        self.watch = ContactWatch(model, self.index, len(static))
+        self.watch = ContactWatch(model, self.index, layout)
         self._timestep = float(model.opt.timestep)
         self._first, self._places = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))
 

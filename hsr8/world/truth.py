@@ -14,17 +14,19 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """The robot touches an obstacle.
+    """The robot touches an obstacle or a beacon.
 
     Attributes:
-        obstacle: index in the layout's obstacles.
-        moving: whether that obstacle is a mover.
+        obstacle: number of what it touches: the layout's obstacles, after them its beacons.
+        name: of what it touches, in words.
+        moving: whether that is a mover.
         robot_geom: name of the robot's geom.
         force: normal force [N].
         closing: the robot's own motion closes the gap.
     """
 
     obstacle: int
+    name: str
     moving: bool
     robot_geom: str
     force: float
@@ -77,7 +79,7 @@ class Truth:
         obstacle_positions: axes of all obstacles, layout order (n, 2) [m].
         obstacle_velocities: (n, 2) [m/s].
         contacts: everything touched since the previous record.
-        clearance: distance from the robot's body to the nearest obstacle [m].
+        clearance: distance from the robot's body to the nearest obstacle or beacon [m].
         joint_torque: (26,) [N m].
         foot_force: true normal force under the left and right foot (2,) [N].
         zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.

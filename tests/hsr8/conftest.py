@@ -169,6 +169,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
         "contacts": tuple(
             Contact(
                 obstacle=i,
+                name=f"obstacle {i}",
                 moving=layout.obstacles[i].motion is not None,
                 robot_geom="l_sole",
                 force=3.0,

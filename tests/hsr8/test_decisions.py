@@ -5,6 +5,7 @@ import pytest
 
 from hsr8.decisions import Decisions
 from navigation.decision import GazeDecision, MotionDecision
+from navigation.landmark_obstacles import LandmarkObstacles
 
 FOOTSTEP = 0.34
 
@@ -14,6 +15,7 @@ class Parts:
 
     def __init__(self, task):
         self.task, self.poses, self.plans, self.looks = task, [], [], []
+        self.avoided, self.seen = [], []
 
     def update(self, pose):
         self.poses.append(pose)
@@ -22,10 +24,12 @@ class Parts:
     def plan(self, belief, task):
         assert task is self.task
         self.plans.append(belief.time)
+        self.avoided.append([track.label for track in belief.tracks])
         return MotionDecision(np.array([0.1 * len(self.plans), 0.0, 0.0]))
 
     def choose(self, belief, task, motion):
         self.looks.append(motion)
+        self.seen.append(belief)
         return GazeDecision(0.0, 0.0)
 
 
@@ -33,7 +37,10 @@ class Parts:
 def made(fake):
     """Decisions, their parts, and a decision at a time with so many steps made."""
     parts = Parts(fake.frame(0.0).decided.task)
-    decisions = Decisions(mission=parts, planner=parts, gaze=parts, footstep=FOOTSTEP)
+    landmarks = LandmarkObstacles({"far": (1.5, 0.0), "near": (0.5, 0.0)}, 0.05)
+    decisions = Decisions(
+        mission=parts, planner=parts, gaze=parts, landmarks=landmarks, footstep=FOOTSTEP
+    )
 
     def make(time, steps, late=0.0, moved=(0.0, 0.0, 0.0)):
         frame = fake.frame(time)
@@ -75,3 +82,11 @@ def test_a_late_frame_is_carried_on_to_now(made):
     assert decided.belief.time == pytest.approx(0.1)
     assert np.allclose(parts.poses[0], (0.02, 0.0, 0.0))
     assert np.allclose(make(1.0, 9).belief.pose, 0.0)
+
+
+def test_only_the_planner_takes_landmarks_for_obstacles(made):
+    _, parts, make = made
+    decided = make(0.0, 0)
+    tracks = [track.label for track in decided.belief.tracks]
+    assert parts.avoided == [["near", *tracks]]
+    assert parts.seen == [decided.belief]

@@ -5,7 +5,9 @@ from hsr8.world.truth import Contact, Truth
 
 
 def truth_with(time, *obstacles):
-    contacts = tuple(Contact(o, False, "l_sole", 1.0, closing=False) for o in obstacles)
+    contacts = tuple(
+        Contact(o, f"beacon {o}", False, "l_sole", 1.0, closing=False) for o in obstacles
+    )
     empty = np.zeros(0)
     return Truth(
         time=time,
@@ -20,6 +22,11 @@ def truth_with(time, *obstacles):
         zmp=empty,
         fallen=False,
     )
+
+
+def test_a_contact_is_told_with_the_name_of_what_is_touched():
+    (event,) = EventWatch().look(truth_with(0.0, 3), None)
+    assert event.text == "l_sole touches beacon 3"
 
 
 def test_a_contact_that_goes_on_is_one_event_and_a_later_one_another():

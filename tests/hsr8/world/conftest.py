@@ -8,6 +8,8 @@ from hsr8.world.assembly import Optics, assemble
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.layout import Layout, Obstacle, standard_beacons
 
+BEACONS = standard_beacons((5.0, 5.0))
+
 
 @pytest.fixture
 def silent():
@@ -19,11 +21,11 @@ def silent():
 def world():
     """Builds a layout from obstacles, and its model in the cheap quality."""
 
-    def make(*obstacles: Obstacle, start=(0.0, 0.0, 0.0)):
+    def make(*obstacles: Obstacle, start=(0.0, 0.0, 0.0), beacons=BEACONS):
         layout = Layout(
             field_size=(5.0, 5.0),
             obstacles=obstacles,
-            beacons=standard_beacons((5.0, 5.0)),
+            beacons=beacons,
             start=start,
             waypoints=np.zeros((0, 2)),
             goal_heading=None,

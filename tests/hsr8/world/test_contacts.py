@@ -4,22 +4,24 @@ import pytest
 
 from hsr8.world.contacts import ContactWatch
 from hsr8.world.index import ModelIndex
-from hsr8.world.layout import Obstacle
+from hsr8.world.layout import Obstacle, standard_beacons
 from hsr8.world.motion import Still
+
+BEACONS = standard_beacons((5.0, 5.0))
 
 
 @pytest.fixture
 def placed(world):
     """A watch over a robot whose base is put somewhere, with a velocity."""
 
-    def place(*obstacles, at=(0.0, 0.0, 0.245), velocity=(0.0, 0.0)):
-        layout, model = world(*obstacles)
+    def place(*obstacles, at=(0.0, 0.0, 0.245), velocity=(0.0, 0.0), beacons=BEACONS):
+        layout, model = world(*obstacles, beacons=beacons)
         index = ModelIndex.of(model, len(layout.static), len(layout.movers))
         data = mujoco.MjData(model)
         data.qpos[index.root_qpos : index.root_qpos + 3] = at
         data.qvel[index.root_dof : index.root_dof + 2] = velocity
         mujoco.mj_forward(model, data)
-        return ContactWatch(model, index, len(layout.static)), data, model
+        return ContactWatch(model, index, layout), data, model
 
     return place
 
@@ -33,7 +35,7 @@ def test_every_touch_is_told_once_and_says_what_touched(placed):
     watch.watch(data)
     contacts = watch.take()
     assert contacts
-    assert {c.obstacle for c in contacts} == {0}
+    assert {(c.obstacle, c.name) for c in contacts} == {(0, "obstacle 0")}
     assert not any(c.moving for c in contacts)
     names = [c.robot_geom for c in contacts]
     assert len(set(names)) == len(names)
@@ -53,7 +55,7 @@ def test_what_can_move_is_told_from_what_cannot(placed):
     watch, data, _ = placed(far, mover)
     watch.watch(data)
     contacts = watch.take()
-    assert {c.obstacle for c in contacts} == {1}
+    assert {(c.obstacle, c.name) for c in contacts} == {(1, "mover 1")}
     assert all(c.moving for c in contacts)
 
 
@@ -74,9 +76,39 @@ def test_clearance_falls_as_the_obstacle_nears_and_is_that_of_the_body(placed):
     assert found[3] < 0.3  # the body is wider than its axis
 
 
-def test_without_obstacles_there_is_room_without_end(placed):
-    watch, data, _ = placed()
+def test_without_obstacles_and_beacons_there_is_room_without_end(placed):
+    watch, data, _ = placed(beacons=())
     assert watch.clearance(data, np.zeros(3)) == np.inf
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_a_beacon_is_touched_as_what_stands_and_has_a_name(placed, number):
+    obstacles = (Obstacle((0.0, 0.0), 0.10, 0.40, "red"), Obstacle((1.0, 0.0), 0.10, 0.40, "red"))
+    beacon = BEACONS[number]
+    x, y = beacon.position
+    watch, data, _ = placed(*obstacles, at=(x - 0.1, y, 0.245), velocity=(0.2, 0.0))
+    watch.watch(data)
+    contacts = watch.take()
+    assert {(c.obstacle, c.name) for c in contacts} == {(2 + number, f"beacon {beacon.name}")}
+    assert not any(c.moving for c in contacts)
+    assert all(c.closing for c in contacts)
+    assert watch.clearance(data, np.array([x - 0.1, y, 0.0])) < 0.0
+
+
+@pytest.mark.parametrize("lifted", [0.0, 0.4])
+def test_clearance_from_a_beacon_is_that_from_the_nearer_half(placed, lifted):
+    x, y = BEACONS[0].position
+    watch, data, model = placed(at=(x - 0.3, y, 0.245 + lifted))
+    index = ModelIndex.of(model, 0, 0)
+    lower, upper = (
+        min(
+            mujoco.mj_geomDistance(model, data, own, half, 0.5, np.zeros(6))
+            for own in index.robot_geoms.tolist()
+        )
+        for half in index.beacon_geoms[0].tolist()
+    )
+    assert watch.clearance(data, np.array([x - 0.3, y, 0.0])) == min(lower, upper)
+    assert (upper < lower) == (lifted > 0.0)
 
 
 def test_feet_in_the_air_carry_nothing_and_have_no_centre_of_pressure(placed):

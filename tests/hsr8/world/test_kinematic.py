@@ -3,7 +3,7 @@ import pytest
 
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.kinematic import KinematicBody
-from hsr8.world.layout import Obstacle
+from hsr8.world.layout import Obstacle, standard_beacons
 from hsr8.world.models import models_dir
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
@@ -17,8 +17,8 @@ def robot_model():
     return RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
 
 
-def body_in(world, noise, *obstacles, start=(0.0, 0.0, 0.0), seed=0):
-    layout, model = world(*obstacles, start=start)
+def body_in(world, noise, *obstacles, seed=0, **details):
+    layout, model = world(*obstacles, **details)
     return KinematicBody(model, layout, noise, np.random.default_rng(seed))
 
 
@@ -90,3 +90,17 @@ def test_touching_an_obstacle_is_noticed_though_nothing_stops_it(world, silent, 
     assert not any(c.moving for c in contacts)
     assert any(c.closing for c in contacts)  # it walked into it
     assert body.truth().robot[0] > 0.2
+
+
+def test_touching_a_beacon_is_noticed_too(world, silent, robot_model):
+    beacon = standard_beacons((5.0, 5.0))[0]
+    x, y = beacon.position
+    body = body_in(world, silent, start=(x - 0.30, y, 0.0))
+    contacts = []
+    engine = WalkingEngine(robot_model, WalkingParameters())
+    for _ in range(500):
+        body.apply(engine.step(body.sense(), VelocityCommand(0.15, 0.0, 0.0), HeadTarget()))
+        contacts += body.truth().contacts
+    assert {(c.obstacle, c.name) for c in contacts} == {(0, f"beacon {beacon.name}")}
+    assert any(c.closing for c in contacts)
+    assert body.truth().clearance < 0.0

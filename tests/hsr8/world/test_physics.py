@@ -3,14 +3,14 @@ import pytest
 
 from hsr8.errors import SimulationDiverged
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.layout import Obstacle
+from hsr8.world.layout import Obstacle, standard_beacons
 from hsr8.world.motion import Line, Shuttle
 from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
 from walking.targets import JointTargets
 
 
-def body_in(world, noise, *obstacles, start=(0.0, 0.0, 0.0), seed=0):
-    layout, model = world(*obstacles, start=start)
+def body_in(world, noise, *obstacles, seed=0, **details):
+    layout, model = world(*obstacles, **details)
     return PhysicsBody(model, layout, noise, np.random.default_rng(seed))
 
 
@@ -69,8 +69,22 @@ def test_clearance_is_the_gap_to_the_body(world, silent):
     assert np.isclose(far - near, 0.05, atol=1e-3)
 
 
-def test_without_obstacles_clearance_is_infinite(world, silent):
-    assert body_in(world, silent).truth().clearance == np.inf
+def test_a_beacon_is_solid_and_its_contact_is_told(world, silent):
+    beacon = standard_beacons((5.0, 5.0))[0]
+    x, y = beacon.position
+    body = body_in(world, silent, start=(x - 0.11, y, 0.0))
+    targets = hold(body)
+    contacts = []
+    for _ in range(80):
+        body.apply(targets)
+        contacts += body.truth().contacts
+    assert {(c.obstacle, c.name) for c in contacts} == {(0, f"beacon {beacon.name}")}
+    assert max(c.force for c in contacts) > 1.0
+    assert body.truth().robot[0] < x - 0.112  # it was pushed back
+
+
+def test_without_obstacles_and_beacons_clearance_is_infinite(world, silent):
+    assert body_in(world, silent, beacons=()).truth().clearance == np.inf
 
 
 def test_same_seed_same_state(world):

@@ -9,6 +9,7 @@ import pytest
 
 from navigation.decision import Task
 from navigation.decision_parameters import NavigationParameters
+from navigation.landmark_obstacles import LandmarkObstacles
 from navigation.mission import Mission
 from navigation.peers.choice import build_planner
 from navigation.peers.parameters import Method, PlannerParameters
@@ -136,6 +137,38 @@ def test_it_walks_around_what_stands_in_the_way(method, belief, task, track, lim
             break
     assert np.hypot(*(walker.pose[:2] - [1.6, 0.0])) < 0.15
     assert least > REACH + 0.08
+
+
+@pytest.mark.parametrize("method", get_args(Method))
+@pytest.mark.parametrize("aside", [-0.05, 0.02, 0.10])
+def test_a_known_landmark_in_the_way_is_walked_round(method, aside, belief, task, limits):
+    landmarks = LandmarkObstacles({"post": (1.5, 0.0)}, 0.05)
+    walker, planned = Body((0.0, aside, 0.0), limits), planner(method, limits)
+    least = 9.0
+    for _ in range(90):
+        b = landmarks.added_to(belief(pose=walker.pose))
+        walker.step(planned.plan(b, task((2.3, 0.0))).velocity)
+        least = min(least, float(np.hypot(*(walker.pose[:2] - [1.5, 0.0]))))
+        if np.hypot(*(walker.pose[:2] - [2.3, 0.0])) < 0.15:
+            break
+    assert np.hypot(*(walker.pose[:2] - [2.3, 0.0])) < 0.15
+    assert least > REACH + 0.05
+
+
+@pytest.mark.parametrize("method", get_args(Method))
+@pytest.mark.parametrize("away", [0.6, 0.8, 1.05])
+def test_a_goal_before_a_known_landmark_is_arrived_at(method, away, belief, limits):
+    goal, heading = np.array([1.0, 0.0]), 0.0
+    landmarks = LandmarkObstacles({"post": (1.0 + away, 0.0)}, 0.05)
+    mission = Mission(goal[None], heading, False, NavigationParameters().mission)
+    walker, planned = Body((0.0, 0.2, 0.5), limits), planner(method, limits)
+    for _ in range(90):
+        task = mission.update(walker.pose)
+        if task.done:
+            break
+        b = landmarks.added_to(belief(pose=walker.pose))
+        walker.step(planned.plan(b, task).velocity)
+    assert task.done
 
 
 # The plain field knows no future: a mover that crosses is a disc that jumps.
