@@ -252,7 +252,8 @@ class Detector:
         if not beacon:
             cylinder = _somewhere_within(cylinder, parameters.max_radius, self._radius[0])
         distance, bearing, covariance = polar_in_robot(cylinder, view)
-        if distance > limit or covariance[0, 0] > (parameters.max_relative_sigma * distance) ** 2:
+        sure = covariance[0, 0] <= (parameters.max_relative_sigma * distance) ** 2
+        if not (distance <= limit and sure):  # what is not a number is neither
             return None
         blobs = sighting.blobs
         return Detection(

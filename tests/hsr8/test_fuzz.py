@@ -119,6 +119,7 @@ def test_no_number_is_out_of_all_bounds(key, value):
         "walking.gait.shortest_time=11.0",
         "walking.odometry.yaw_drift=500000",
         "vision.pose.yaw_sigma=10.0",
+        "vision.pose.tilt_sigma=1e6",
         "belief.tracking.particles=1000000000",
         "navigation.mover.samples=1000000000",
         "navigation.gaze.step=1e-9",

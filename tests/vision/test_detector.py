@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import degrees, hypot, radians
 
 import numpy as np
@@ -215,6 +216,15 @@ def test_noise_yields_nothing_but_finite_detections(tilt: float) -> None:
     for detection in DETECTOR.detect(image, pose(tilt=tilt, sigma=0.01)):
         assert np.isfinite([detection.distance, detection.bearing, detection.radius]).all()
         assert np.linalg.eigvalsh(detection.covariance).min() > 0.0
+
+
+@pytest.mark.parametrize("unknown", [{"tilt_sigma": 1e7}, {"height_sigma": 1e8}])
+def test_what_cannot_be_located_in_finite_numbers_is_not_detected(unknown) -> None:
+    view = pose(tilt=-0.1)
+    image = paint([at(1.0, 5.0, "green"), at(2.0, -20.0, "red"), at(1.6, 20.0, "blue")], view)
+    assert len(DETECTOR.detect(image, view)) == 3
+    for detection in DETECTOR.detect(image, replace(view, **unknown)):
+        assert np.isfinite([detection.distance, detection.bearing, detection.radius]).all()
 
 
 def test_pixel_noise_moves_a_detection_by_no_more_than_its_uncertainty() -> None:
