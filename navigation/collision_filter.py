@@ -14,6 +14,7 @@ from navigation import rollout_kernel
 from navigation.body_command import envelope
 from navigation.decision import SpeedLimits
 from navigation.decision_parameters import BodyParameters, FilterParameters
+from navigation.facing import Facing
 from navigation.hypotheses import Hypotheses
 from navigation.value import value
 
@@ -85,7 +86,7 @@ class CollisionFilter:
         wanted: Array,
         course: float,
         *,
-        facing: float | None,
+        facing: Facing,
         body_now: Array,
         discs: Hypotheses,
     ) -> Array:
@@ -95,7 +96,7 @@ class CollisionFilter:
             pose: of the robot (3,) [m, m, rad].
             wanted: velocity asked for in W (2,) [m/s].
             course: its direction, also when it is zero [rad].
-            facing: heading to turn to; None for the direction of motion [rad].
+            facing: where the body turns to.
             body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
             discs: what not to touch.
         """
@@ -128,7 +129,7 @@ class CollisionFilter:
         candidates: Array,
         course: float,
         *,
-        facing: float | None,
+        facing: Facing,
         body_now: Array,
         discs: Hypotheses,
     ) -> Array:
@@ -149,7 +150,7 @@ class CollisionFilter:
         )
 
     def paths(
-        self, pose: Array, candidates: Array, course: float, facing: float | None, body_now: Array
+        self, pose: Array, candidates: Array, course: float, facing: Facing, body_now: Array
     ) -> Paths:
         """Where the body would really go, footstep by footstep, for every candidate."""
         p, limits = self._parameters, self._limits
@@ -157,7 +158,8 @@ class CollisionFilter:
             candidates,
             float(pose[2]),
             course,
-            nan if facing is None else facing,
+            nan if facing.heading is None else facing.heading,
+            facing.aside,
             body_now,
             envelope(limits, self._body.turn_gain),
             (

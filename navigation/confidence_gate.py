@@ -5,7 +5,9 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.decision_parameters import GateParameters
+from navigation.belief import Belief
+from navigation.decision_parameters import GateParameters, NavigationParameters
+from navigation.gaze_map import Votes
 
 Array = NDArray[np.float64]
 
@@ -29,3 +31,24 @@ def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Ar
         [(c * along - s * across).ravel(), (s * along + c * across).ravel()], axis=1
     )
     return points
+
+
+def gate_vote(
+    belief: Belief, way: float, height: float, weight: float, parameters: NavigationParameters
+) -> list[Votes]:
+    """A vote for the ground that holds the robot up, if there is some.
+
+    Args:
+        belief: what the robot believes.
+        way: bearing of the planned velocity in R [rad].
+        height: of the camera above the floor [m].
+        weight: of the vote.
+        parameters: of the decisions.
+    """
+    g, p = parameters.gate, parameters.gaze
+    points = gate_points(belief.pose, float(belief.pose[2]) + way, g)
+    if float(np.min(belief.local_map.confidence_at(points))) >= g.confidence:
+        return []
+    pan = float(np.clip(way, -p.pan_limit, p.pan_limit))
+    tilt = -float(np.arctan2(height, 0.5 * (g.near + g.far)))
+    return [Votes.one(pan, tilt, weight)]

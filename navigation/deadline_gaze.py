@@ -10,10 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.angles import wrap_array
+from navigation.angles import wrap, wrap_array
 from navigation.belief import Belief, Motion, Track
+from navigation.confidence_gate import gate_vote
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
+from navigation.gaze_parameters import GazeParameters
 from navigation.gaze_scene import GazeScene, relative, to_field
 from navigation.integrated_gaze import beacon_votes
 from navigation.obstacle_set import largest_deviation
@@ -36,6 +38,8 @@ _MAP_SPEED = 0.7
 """Speed of unknown movers on unseen ground, share of the robot's."""
 _WAY_DISTANCE = 0.8
 """Distance of the floor looked at along the way [m]."""
+_GLANCE_TILT = -0.6
+"""Tilt that shows the floor from 0.3 m on [rad]."""
 
 
 def deadline_votes(
@@ -44,6 +48,8 @@ def deadline_votes(
     way: float,
     speed: float,
     parameters: NavigationParameters,
+    *,
+    glance: float | None = None,
 ) -> Votes:
     """All deadline votes of this moment.
 
@@ -53,6 +59,7 @@ def deadline_votes(
         way: bearing of the planned velocity in R [rad].
         speed: the robot's largest speed [m/s].
         parameters: of the decisions.
+        glance: direction in W of ground that the body turned aside for; None for none [rad].
     """
     p = parameters.gaze
     height = scene.camera_height
@@ -66,7 +73,20 @@ def deadline_votes(
         ),
         beacon_votes(scene, p.deadline.beacon_weight * self_urgency(belief, parameters)),
     ]
+    if glance is not None:
+        votes += glance_vote(belief, glance, p)
+    votes += gate_vote(belief, way, height, p.deadline.gate_weight, parameters)
     return Votes.join(votes)
+
+
+def glance_vote(belief: Belief, glance: float, parameters: GazeParameters) -> list[Votes]:
+    """The ground at `glance` in W [rad], once the gaze reaches it."""
+    p = parameters
+    bearing = wrap(glance - float(belief.pose[2]))
+    if abs(bearing) > p.pan_limit + p.box_share * belief.view.horizontal_fov:
+        return []
+    pan = min(max(bearing, -p.pan_limit), p.pan_limit)
+    return [Votes.one(pan, _GLANCE_TILT, p.deadline.glance_weight)]
 
 
 def self_urgency(belief: Belief, parameters: NavigationParameters) -> float:

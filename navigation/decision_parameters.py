@@ -5,9 +5,10 @@ the printed structure. Every difference between the two is a field of a section.
 """
 
 from dataclasses import dataclass, field
+from math import pi
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Lt
+from annotated_types import Ge, Gt, Le, Lt
 
 from navigation.gaze_parameters import (
     EvaluationParameters,
@@ -19,6 +20,7 @@ from navigation.gaze_parameters import (
 from navigation.peers.parameters import PlannerParameters
 
 Count = Annotated[int, Ge(1)]
+Angle = Annotated[float, Gt(0.0), Le(pi)]
 
 
 @dataclass(frozen=True)
@@ -223,6 +225,30 @@ class WaySearchParameters:
 
 
 @dataclass(frozen=True)
+class ShoulderParameters:
+    """Looks over the shoulder: the body turns aside so that the gaze reaches what is behind."""
+
+    enabled: bool = True
+    """Whether the body turns aside."""
+    near_angle: Angle = 0.4
+    """Angle of the body to its way for ground just out of the gaze's reach [rad]."""
+    far_angle: Angle = 0.95
+    """Angle of the body to its way for ground right behind [rad]."""
+    far_weight: NonNegative = 0.77
+    """Weight of the urgency of ground right behind, for which the robot slows down [1]."""
+    mover_speed: NonNegative = 1.1
+    """Feared speed of what was not seen, share of the robot's [1]."""
+    due: Positive = 0.7
+    """Age of ground over the time to contact from which the body turns aside [1]."""
+    seen: NonNegative = 0.3
+    """The same below which it turns back [1]."""
+    hold: Positive = 2.5
+    """Longest time turned aside [s]."""
+    rest: NonNegative = 2.0
+    """Time until the next try, if nothing was seen by then [s]."""
+
+
+@dataclass(frozen=True)
 class BodyParameters:
     """From a direction and a speed to a body velocity."""
 
@@ -254,6 +280,8 @@ class NavigationParameters:
     """Confidence gate."""
     filter: FilterParameters = field(default_factory=FilterParameters)
     """Time-to-contact filter."""
+    shoulder: ShoulderParameters = field(default_factory=ShoulderParameters)
+    """Looks over the shoulder."""
     way_search: WaySearchParameters = field(default_factory=WaySearchParameters)
     """Way-point search."""
     body: BodyParameters = field(default_factory=BodyParameters)
@@ -299,4 +327,5 @@ class NavigationParameters:
             ),
             gate=GateParameters(enabled=False),
             filter=FilterParameters(enabled=False),
+            shoulder=ShoulderParameters(enabled=False),
         )

@@ -85,6 +85,10 @@ class DeadlineParameters:
     """Weight of votes of the local map [1]."""
     way_weight: NonNegative = 0.2
     """Weight of the vote of the way [1]."""
+    gate_weight: NonNegative = 0.8
+    """Vote for ground the confidence gate waits for [1]."""
+    glance_weight: NonNegative = 3.0
+    """Vote for ground the body turned aside for [1]."""
     beacon_weight: NonNegative = 1.6
     """Weight of the votes of the beacons together [1]."""
     t_heading: Positive = 0.06

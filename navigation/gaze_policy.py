@@ -145,7 +145,8 @@ def gaze_policy(
 
 # Functions with names, so that a gaze can be saved in the middle of a run.
 def _deadline(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
-    return deadline_votes(m.scene, m.belief, way_bearing(m), speed, parameters)
+    glance = None if m.motion is None else m.motion.glance
+    return deadline_votes(m.scene, m.belief, way_bearing(m), speed, parameters, glance=glance)
 
 
 def _urgency(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:

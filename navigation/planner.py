@@ -15,12 +15,14 @@ from navigation.confidence_gate import gate_points
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.decision_parameters import NavigationParameters
 from navigation.extended_radius import extended_radius, physical_radius
+from navigation.facing import Facing
 from navigation.hypotheses import collision_hypotheses
 from navigation.motion_field import FieldScene, MotionField, VirtualForce
 from navigation.move_to_goal import ArrivalSide, arrival_gain
 from navigation.obstacle_set import ObstacleSet
 from navigation.partial_evaluation import psi_obstacle, psi_self
 from navigation.passing_side import PassingSides
+from navigation.shoulder_check import ShoulderCheck
 from navigation.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
 from navigation.way_search import way_point
 
@@ -48,6 +50,8 @@ class Planner:
         self._filter = CollisionFilter(parameters.filter, parameters.body, limits)
         self._sides = PassingSides(parameters.univector)
         self._arrival = ArrivalSide(parameters.univector)
+        self._shoulder: ShoulderCheck | None = None
+        self._way: tuple[float, float] | None = None
         self._leg = -1
         self._body = np.zeros(3)
         self._direction: float | None = None
@@ -70,17 +74,18 @@ class Planner:
         task = self._round_obstacles(belief, task, obstacles)
         scene, radii = self._scene(belief, task, obstacles)
         wanted = self._wanted(belief, task, scene)
-        facing = self._facing(belief, task)
+        facing = self._facing(belief, task, wanted)
         course, speed = self._filtered(belief, wanted, facing, obstacles)
+        self._way = course, speed
         self._body = body_velocity(
             course,
             speed,
             heading,
-            course if facing is None else facing,
+            facing.on(course),
             limits=self._limits,
             turn_gain=self._parameters.body.turn_gain,
         )
-        return replace(wanted, velocity=self._body, extended_radii=radii)
+        return replace(wanted, velocity=self._body, extended_radii=radii, glance=facing.glance)
 
     def _round_obstacles(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
         """The task, or one on the way round still obstacles that block the straight way."""
@@ -100,7 +105,7 @@ class Planner:
         self,
         belief: Belief,
         wanted: MotionDecision,
-        facing: float | None,
+        facing: Facing,
         obstacles: ObstacleSet,
     ) -> tuple[float, float]:
         """Direction [rad] and speed [m/s] that touch nothing soon."""
@@ -180,11 +185,22 @@ class Planner:
             field=self._field.planned(float(pose[2]), scene, forces),
         )
 
-    def _facing(self, belief: Belief, task: Task) -> float | None:
-        """Heading to turn to, None for the direction of motion [rad]."""
+    def _facing(self, belief: Belief, task: Task, wanted: MotionDecision) -> Facing:
+        """Where the body turns to: the task's heading at the goal, else to its way or aside."""
+        p = self._parameters
         dx, dy = (task.target - belief.pose[:2]).tolist()
-        near = hypot(dx, dy) < self._parameters.univector.holonomic_distance
-        return task.heading if task.aligning or (task.is_goal and near) else None
+        if task.aligning or (task.is_goal and hypot(dx, dy) < p.univector.holonomic_distance):
+            return Facing(task.heading)
+        # Only the deadline gaze hears what the body turned aside for.
+        if not p.shoulder.enabled or p.gaze.mode != "deadline":
+            return Facing()
+        if self._shoulder is None:
+            reach = p.gaze.pan_limit + p.gaze.box_share * belief.view.horizontal_fov
+            forward = self._limits.forward
+            self._shoulder = ShoulderCheck(p.shoulder, reach, p.univector.s_robot, forward)
+        course, speed = self._way or (wanted.direction, wanted.speed)
+        aside = self._shoulder.aside(belief, course, speed)
+        return Facing(aside=aside, glance=self._shoulder.glance(course))
 
     def _ground_velocity(self, pose: Array) -> Array:
         forward, left, _ = self._body.tolist()

@@ -60,6 +60,7 @@ def roll_out(
     heading: float,
     course: float,
     facing: float,
+    aside: float,
     body_now: Array,
     envelope: Envelope,
     gait: tuple[float, float, float, float, float],
@@ -72,6 +73,7 @@ def roll_out(
         heading: of the robot [rad].
         course: direction of a candidate that stands [rad].
         facing: heading to turn to; not a number for the direction of motion [rad].
+        aside: angle of the body to that direction, if it turns to it [rad].
         body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
         envelope: of the walking layer.
         gait: duration of a footstep [s], largest change from one to the next of velocity [m/s]
@@ -89,7 +91,7 @@ def roll_out(
     for i in range(len(candidates)):
         speed = hypot(candidates[i, 0], candidates[i, 1])
         direction = course if speed < 1e-9 else atan2(candidates[i, 1], candidates[i, 0])
-        to = direction if isnan(facing) else facing
+        to = direction + aside if isnan(facing) else facing
         forward, left, turn, now = body_now[0], body_now[1], body_now[2], heading
         for step in range(steps):
             goal = body_velocity(direction - now, speed, to - now, envelope)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief import Belief
-from navigation.confidence_gate import gate_points
+from navigation.confidence_gate import gate_vote
 from navigation.decision import Task
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
@@ -46,7 +46,7 @@ def urgency_votes(
     votes.append(way_vote(scene, belief, task, p.w_way, parameters))
     votes.append(Votes(pan, tilt, p.w_ob * obstacle_urgency(scene, way, speed, parameters)[seen]))
     votes += self_votes(scene, pan, tilt, p)
-    votes += _gate_vote(scene, belief, way, parameters)
+    votes += gate_vote(belief, way, scene.camera_height, p.urgency.gate_weight, parameters)
     return Votes.join(votes)
 
 
@@ -63,16 +63,3 @@ def obstacle_urgency(
     weight = np.where(o.static, u.static_weight, 1.0)
     value: Array = np.minimum(u.limit, age / contact) * ahead * weight
     return value
-
-
-def _gate_vote(
-    scene: GazeScene, belief: Belief, way: float, parameters: NavigationParameters
-) -> list[Votes]:
-    """Ground that holds the robot up, if there is some."""
-    g, p = parameters.gate, parameters.gaze
-    points = gate_points(belief.pose, float(belief.pose[2]) + way, g)
-    if float(np.min(belief.local_map.confidence_at(points))) >= g.confidence:
-        return []
-    pan = float(np.clip(way, -p.pan_limit, p.pan_limit))
-    tilt = -float(np.arctan2(scene.camera_height, 0.5 * (g.near + g.far)))
-    return [Votes.one(pan, tilt, p.urgency.gate_weight)]

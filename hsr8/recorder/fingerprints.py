@@ -2,6 +2,7 @@
 
 import hashlib
 import struct
+from math import nan
 
 from hsr8.decisions import Decided
 from navigation.belief import Belief
@@ -46,7 +47,8 @@ def decision_fingerprints(
     place = f"{task.is_goal} {task.index} {task.aligning} {task.done}".encode()
     place += task.target.tobytes() + struct.pack("<d", task.heading)
     move = motion.situation.encode() + motion.velocity.tobytes()
-    move += struct.pack("<2d", motion.direction, motion.speed)
+    glance = nan if motion.glance is None else motion.glance
+    move += struct.pack("<3d", motion.direction, motion.speed, glance)
     for v in motion.virtual_obstacles:
         move += v.position.tobytes() + struct.pack("<dq", v.radius, v.track_id)
     for track, radius in motion.extended_radii:

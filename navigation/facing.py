@@ -1,0 +1,22 @@
+"""Where the body turns to while it walks."""
+
+from navigation.value import value
+
+
+@value
+class Facing:
+    """A heading, or the direction of motion.
+
+    Attributes:
+        heading: to turn to; None for the direction of motion [rad].
+        aside: angle of the body to the direction of motion, if it turns to that [rad].
+        glance: direction in W of the ground it turns aside for; None for none [rad].
+    """
+
+    heading: float | None = None
+    aside: float = 0.0
+    glance: float | None = None
+
+    def on(self, course: float) -> float:
+        """Heading to turn to while walking along `course` [rad]."""
+        return course + self.aside if self.heading is None else self.heading
