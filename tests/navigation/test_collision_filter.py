@@ -10,11 +10,13 @@ from navigation.collision_filter import (
     direction_and_speed,
 )
 from navigation.decision_parameters import BodyParameters, FilterParameters
+from navigation.facing import Facing
 from navigation.hypotheses import Hypotheses
 
 HERE = np.zeros(3)
 STANDING = np.zeros(3)
 AHEAD = np.array([0.2, 0.0])
+ON_THE_WAY = Facing()
 
 
 def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
@@ -30,7 +32,7 @@ def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
     )
 
 
-def choose(limits, wanted, hypotheses, pose=HERE, facing=None, body=STANDING, **changes):
+def choose(limits, wanted, hypotheses, pose=HERE, facing=ON_THE_WAY, body=STANDING, **changes):
     p = replace(FilterParameters(), **changes)
     return CollisionFilter(p, BodyParameters(), limits).choose(
         pose, np.asarray(wanted, float), float(np.arctan2(wanted[1], wanted[0])),
@@ -109,7 +111,7 @@ def test_the_choice_turns_with_the_scene(limits):
                 np.array([0, 0, h]),
                 filter_.candidates(v, c),
                 c,
-                facing=None,
+                facing=ON_THE_WAY,
                 body_now=body,
                 discs=d,
             )
@@ -124,7 +126,7 @@ def test_the_choice_turns_with_the_scene(limits):
 def test_without_rollout_the_path_is_turn_then_straight(limits):
     filter_ = CollisionFilter(replace(FilterParameters(), steps=0), BodyParameters(), limits)
     paths = filter_.paths(
-        HERE, np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]]), 0.0, None, STANDING
+        HERE, np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]]), 0.0, ON_THE_WAY, STANDING
     )
     assert paths.duration[0] == pytest.approx([(np.pi - 0.5) / limits.turn, 0.0, 0.0])
     assert paths.velocity[0] == pytest.approx(np.zeros((3, 2)))
@@ -134,11 +136,24 @@ def test_without_rollout_the_path_is_turn_then_straight(limits):
 def test_the_rollout_obeys_the_envelope(limits):
     p = FilterParameters()
     filter_ = CollisionFilter(p, BodyParameters(), limits)
-    paths = filter_.paths(HERE, filter_.candidates(AHEAD, 0.0), 0.0, None, STANDING)
+    paths = filter_.paths(HERE, filter_.candidates(AHEAD, 0.0), 0.0, ON_THE_WAY, STANDING)
     speed = np.hypot(paths.velocity[..., 0], paths.velocity[..., 1])[: p.steps]
     assert speed.max() <= limits.forward + 1e-9
     change = limits.acceleration * limits.footstep
     assert speed[0].max() <= change + 1e-9
+
+
+def test_a_body_turned_aside_is_rolled_out_as_it_walks(limits):
+    """The way stays the way; what the turned body must walk sideways slows it down."""
+    filter_ = CollisionFilter(FilterParameters(), BodyParameters(), limits)
+    turned, straight = (
+        filter_.paths(np.array([0.0, 0.0, a]), AHEAD[None], 0.0, Facing(aside=a), body)
+        for a, body in ((1.0, np.array([0.05, -0.08, 0.0])), (0.0, np.array([0.2, 0.0, 0.0])))
+    )
+    lateral = turned.velocity[-2 - 1, 0]
+    assert np.arctan2(lateral[1], lateral[0]) == pytest.approx(0.0, abs=1e-9)
+    assert lateral[0] == pytest.approx(limits.lateral / np.sin(1.0))
+    assert straight.velocity[-2 - 1, 0] == pytest.approx(AHEAD)
 
 
 def test_weightless_hypotheses_do_not_matter(limits):

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from navigation.confidence_gate import gate_points
-from navigation.decision_parameters import GateParameters
+from navigation.confidence_gate import gate_points, gate_vote
+from navigation.decision_parameters import GateParameters, NavigationParameters
 
 P = GateParameters()
 
@@ -17,3 +17,14 @@ def test_the_points_lie_ahead_of_the_motion_in_any_frame():
     r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
     there = gate_points(np.array([*shift, 3.0]), a, P)
     assert there == pytest.approx(here @ r.T + shift)
+
+
+@pytest.mark.parametrize("way", [-2.5, -0.4, 0.0, 1.0])
+def test_ground_that_holds_the_robot_up_asks_for_a_look_within_the_pan_stop(way, belief):
+    p = NavigationParameters.extended()
+    unseen, seen = (belief(pose=(1.0, 0.5, 0.3), confidence=lambda x, y, c=c: c) for c in (0, 1))
+    (vote,) = gate_vote(unseen, way, 0.47, 0.8, p)
+    assert vote.value.tolist() == [0.8]
+    assert vote.pan == pytest.approx(np.clip(way, -p.gaze.pan_limit, p.gaze.pan_limit))
+    assert 0.47 / -np.tan(vote.tilt) == pytest.approx(0.5 * (P.near + P.far))
+    assert gate_vote(seen, way, 0.47, 0.8, p) == []

@@ -2,7 +2,13 @@ import numpy as np
 import pytest
 
 from navigation.belief import Motion
-from navigation.deadline_gaze import map_deadlines, obstacle_deadlines, self_urgency
+from navigation.deadline_gaze import (
+    deadline_votes,
+    glance_vote,
+    map_deadlines,
+    obstacle_deadlines,
+    self_urgency,
+)
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_scene import gaze_scene
 from navigation.partial_evaluation import SamplePoints
@@ -104,3 +110,23 @@ def test_self_urgency_hears_position_and_heading(belief):
     assert self_urgency(belief(sigma=0.025, turn_sigma=0.0), P) == pytest.approx(0.5)
     assert self_urgency(belief(sigma=0.0, turn_sigma=0.03), P) == pytest.approx(0.5)
     assert self_urgency(belief(sigma=1.0), P) == 1.0
+
+
+def test_a_glance_is_voted_for_once_the_gaze_reaches_it(belief):
+    reach = P.gaze.pan_limit + P.gaze.box_share * belief().view.horizontal_fov
+    for heading in (0.0, 2.0, -3.0):
+        b = belief(pose=(1.0, 0.0, heading))
+        for bearing in np.linspace(-3.1, 3.1, 41):
+            votes = glance_vote(b, heading + bearing, P.gaze)
+            assert len(votes) == (abs(bearing) <= reach)
+            for vote in votes:
+                assert vote.value.tolist() == [P.gaze.deadline.glance_weight]
+                assert abs(vote.pan[0] - bearing) <= P.gaze.box_share * b.view.horizontal_fov + 1e-9
+
+
+def test_without_a_glance_nobody_votes_for_one(belief):
+    scene = gaze_scene(belief(), None, SAMPLES, np.zeros((0, 2)), P)
+    without, with_one = (
+        deadline_votes(scene, belief(), 0.0, 0.2, P, glance=g) for g in (None, 2.0)
+    )
+    assert len(with_one.value) == len(without.value) + 1

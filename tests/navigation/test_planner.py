@@ -218,3 +218,35 @@ def test_looking_at_the_field_changes_no_decision(p, belief, task, track, limits
 
 def test_a_robot_that_stands_has_no_field(belief, task, limits):
     assert Planner(EXTENDED, limits).plan(belief(), task(done=True)).field is None
+
+
+def _stale_behind(x, y):
+    return 9.0 if x < 0.0 else 0.0
+
+
+def test_a_body_that_walks_turns_aside_for_what_it_cannot_see_and_tells_the_gaze(
+    belief, task, limits
+):
+    decision = Planner(EXTENDED, limits).plan(belief(age=_stale_behind), task())
+    assert decision.velocity[2] != 0.0
+    assert decision.glance is not None
+    assert abs(decision.glance) > 2.0
+    seen = Planner(EXTENDED, limits).plan(belief(), task())
+    assert seen.glance is None
+    assert seen.velocity[2] == 0.0
+
+
+@pytest.mark.parametrize("mode", ["fixed", "sweep", "integrated"])
+def test_a_body_does_not_turn_aside_for_a_gaze_that_does_not_hear_of_it(mode, belief, task, limits):
+    p = replace(EXTENDED, gaze=replace(EXTENDED.gaze, mode=mode))
+    decision = Planner(p, limits).plan(belief(age=_stale_behind), task())
+    assert decision.glance is None
+    assert decision.velocity[2] == 0.0
+
+
+def test_at_the_goal_and_in_the_paper_nothing_is_turned_aside_for(belief, task, limits):
+    near = task((0.2, 0.0), is_goal=True)
+    for p, t in ((EXTENDED, near), (PAPER, task())):
+        decision = Planner(p, limits).plan(belief(age=_stale_behind), t)
+        assert decision.glance is None
+        assert decision.velocity[2] == pytest.approx(0.0)
