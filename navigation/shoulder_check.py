@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.belief import Belief
+from navigation.belief import Belief, Track
 from navigation.decision_parameters import ShoulderParameters
 from navigation.value import value
 
@@ -73,7 +73,11 @@ class ShoulderCheck:
         self._s_robot = s_robot
         self._feared = parameters.mover_speed * speed
         self._sectors = sectors(parameters, reach)
-        self._chosen: Sector | None = None
+        self._weight = np.array([s.weight for s in self._sectors])
+        rays = np.stack([s.bearing for s in self._sectors])
+        self._distance = np.tile(np.repeat(_RINGS, _RAYS), (len(rays), 1))
+        self._bearing = np.tile(rays, (1, len(_RINGS)))
+        self._chosen: int | None = None
         self._since = 0.0
         self._rest_until = 0.0
 
@@ -86,45 +90,56 @@ class ShoulderCheck:
             speed: along it [m/s].
         """
         p, now = self._parameters, belief.time
+        urgency = self.urgency(belief, course, speed)
         if self._chosen is not None:
             late = now - self._since > p.hold
-            if late or self.urgency(self._chosen, belief, course, speed) < p.seen:
+            if late or urgency[self._chosen] < p.seen:
                 self._chosen = None
                 self._rest_until = now + p.rest if late else now
         if self._chosen is None and now >= self._rest_until:
-            urgency = [s.weight * self.urgency(s, belief, course, speed) for s in self._sectors]
-            worst = int(np.argmax(urgency))
-            if urgency[worst] > p.due:
-                self._chosen, self._since = self._sectors[worst], now
-        return 0.0 if self._chosen is None else self._chosen.aside
+            weighted = self._weight * urgency
+            worst = int(np.argmax(weighted))
+            if weighted[worst] > p.due:
+                self._chosen, self._since = worst, now
+        return 0.0 if self._chosen is None else self._sectors[self._chosen].aside
 
     def glance(self, course: float) -> float | None:
         """Direction in W of what the body turns aside for, None for nothing [rad]."""
-        return None if self._chosen is None else course + self._chosen.middle
+        return None if self._chosen is None else course + self._sectors[self._chosen].middle
 
-    def urgency(self, sector: Sector, belief: Belief, course: float, speed: float) -> float:
-        """How overdue a look at a sector is: at its ground, or for a lost mover, if that is more.
+    def urgency(self, belief: Belief, course: float, speed: float) -> Array:
+        """How overdue a look at each sector is (4,): at its ground, or for a lost mover.
 
         Args:
-            sector: what is asked about.
             belief: what the robot believes.
             course: direction of the way in W [rad].
             speed: along it [m/s].
         """
-        distance, bearing = np.meshgrid(_RINGS, sector.bearing, indexing="ij")
-        way = course + bearing
-        points = np.stack([distance * np.cos(way), distance * np.sin(way)], axis=-1)
-        age = belief.local_map.age_at(belief.pose[:2] + points.reshape(-1, 2)).reshape(way.shape)
-        found = [float(np.mean(self._overdue(age, distance - self._s_robot, bearing, speed)))]
+        way = course + self._bearing
+        points = np.stack([self._distance * np.cos(way), self._distance * np.sin(way)], axis=-1)
+        age = belief.local_map.age_at(belief.pose[:2] + points.reshape(-1, 2))
+        room = self._distance - self._s_robot
+        overdue = self._overdue(age.reshape(way.shape), room, self._bearing, speed)
+        most: Array = overdue.mean(axis=1)
         for track in belief.tracks:
             if track.particles is not None:
-                offset = track.particles.positions - belief.pose[:2]
-                distance = np.hypot(offset[:, 0], offset[:, 1])
-                bearing = np.arctan2(offset[:, 1], offset[:, 0]) - course
-                inside = sector.contains(bearing) & (distance <= _RINGS[-1])
-                overdue = self._overdue(track.age, distance - track.radius, bearing, speed)
-                found.append(float(np.sum(track.particles.weights * inside * overdue)))
-        return max(found)
+                most = np.maximum(most, self._of_lost(track, belief.pose, course, speed))
+        return most
+
+    def _of_lost(self, track: Track, pose: Array, course: float, speed: float) -> Array:
+        """Urgency of a look at each sector for a lost track (4,)."""
+        cloud = track.particles
+        assert cloud is not None
+        offset = cloud.positions - pose[:2]
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        near = distance <= _RINGS[-1]
+        if not near.any():
+            return np.zeros(len(self._sectors))
+        bearing = np.arctan2(offset[:, 1], offset[:, 0]) - course
+        overdue = self._overdue(track.age, distance - track.radius, bearing, speed)
+        inside = np.array([s.contains(bearing) for s in self._sectors])
+        urgency: Array = (inside * near) @ (cloud.weights * overdue)
+        return urgency
 
     def _overdue(self, age: Array | float, room: Array, bearing: Array, speed: float) -> Array:
         """Age [s] over the time in which what comes from `bearing` [rad] is here, bounded."""

@@ -32,6 +32,10 @@ def right_behind(bearing):
     return abs(bearing) > REACH + P.near_angle - EDGE
 
 
+def sector(aside):
+    return [s.aside for s in sectors(P, REACH)].index(aside)
+
+
 def cloud(place):
     return ([place], [[0.0, 0.0]], [1.0])
 
@@ -97,9 +101,9 @@ def test_what_cannot_be_seen_is_given_up_for_a_while(check, belief):
 
 
 def test_the_slower_the_robot_the_sooner_what_is_right_behind_is_due(check, belief):
-    behind = next(s for s in sectors(P, REACH) if s.aside == P.far_angle)
+    behind = sector(P.far_angle)
     b = belief(age=stale(right_behind, age=2.0))
-    urgency = [check.urgency(behind, b, 0.0, v) for v in (0.0, 0.05, 0.1, 0.2)]
+    urgency = [check.urgency(b, 0.0, v)[behind] for v in (0.0, 0.05, 0.1, 0.2)]
     assert np.all(np.diff(urgency) < 0.0)
 
 
@@ -113,14 +117,14 @@ def test_a_lost_mover_behind_is_turned_for_and_one_in_view_is_not(check, belief,
 
 
 def test_a_lost_mover_counts_by_the_share_of_it_that_may_be_there(check, belief, track):
-    near = next(s for s in sectors(P, REACH) if s.aside == P.near_angle)
+    near = sector(P.near_angle)
     bearing = REACH + 0.5 * P.near_angle
     place, far = (0.5 * cos(bearing), 0.5 * sin(bearing)), (2.0, 0.0)
 
     def urgency(*weights):
         particles = ([place, far], np.zeros((2, 2)), weights)
         lost = track(place, (0.1, 0.0), age=0.5, particles=particles)
-        return check.urgency(near, belief([lost]), 0.0, SPEED)
+        return check.urgency(belief([lost]), 0.0, SPEED)[near]
 
     assert 0.0 < urgency(0.5, 0.5) == pytest.approx(0.5 * urgency(1.0, 0.0))
     assert urgency(0.0, 1.0) == 0.0
