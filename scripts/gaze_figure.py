@@ -1,9 +1,9 @@
 """Picture of the deadline gaze: one moment, its votes, its gaze map and the choice.
 
-python scripts/gaze_figure.py docs/images/deadline-gaze.png
+python scripts/gaze_figure.py
 """
 
-import sys
+import argparse
 from math import cos, sin
 from pathlib import Path
 
@@ -25,6 +25,7 @@ from navigation.partial_evaluation import SamplePoints
 
 Array = NDArray[np.float64]
 
+PICTURE = Path(__file__).parents[1] / "docs" / "images" / "deadline-gaze.png"
 LIMITS = SpeedLimits(0.20, 0.10, 0.08, 0.8, 0.3, 0.34)
 BEACONS = {"yellow/cyan": (2.2, 1.6), "cyan/magenta": (1.9, -1.9)}
 COLOUR = {Motion.STATIC: "#8a8a8a", Motion.MOVING: "#c0392b", Motion.UNKNOWN: "#d68910"}
@@ -93,6 +94,13 @@ def moment() -> Belief:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=PICTURE, help="picture to write")
+    draw(parser.parse_args().out)
+
+
+def draw(out: Path) -> None:
+    """Draw the moment into `out`."""
     parameters = NavigationParameters.extended()
     belief, task = moment(), Task(np.array([2.0, 0.0]), 0.0, False, 0, False, False)
     gaze = GazePlanner(parameters, LIMITS, BEACONS, HFOV, VFOV)
@@ -128,8 +136,7 @@ def main() -> None:
         xlim=(130, -130), ylim=(-75, 40), xlabel="pan, left positive [deg]", ylabel="tilt [deg]"
     )
     right.set_title("votes (dots), their map, the view it chooses", fontsize=10)
-    path = Path(sys.argv[1])
-    figure.savefig(path, dpi=110)
+    figure.savefig(out, dpi=110)
 
 
 def _draw_world(axes: Axes, belief: Belief, pan: float, bearings: Array, values: Array) -> None:
