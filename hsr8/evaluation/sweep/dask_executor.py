@@ -8,6 +8,7 @@ from typing import Any
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep.definition import code_digest
 from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
+from hsr8.evaluation.sweep.launcher import of_this_process
 
 PATIENCE = 30.0  # a scheduler answers within this time [s]
 
@@ -16,7 +17,7 @@ def work(job: Job) -> Row:
     """Run `job` on the worker that this is called on."""
     from distributed import get_worker  # noqa: PLC0415  an extra
 
-    return run_job(job, worker=str(get_worker().address))
+    return run_job(job, of_this_process().start, worker=str(get_worker().address))
 
 
 class DaskExecutor:

@@ -1,7 +1,6 @@
 """Who runs the jobs of a sweep: processes of this machine, or a cluster's workers."""
 
 import re
-import sys
 import time as clock
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -10,9 +9,9 @@ from threading import Lock
 from typing import Protocol
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.fork_server import ForkServer
 from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
-from hsr8.evaluation.sweep.process import Process, start
+from hsr8.evaluation.sweep.launcher import Launcher
+from hsr8.evaluation.sweep.process import Process
 
 GRACE = 5.0  # an interrupted run has so long to close its files [s]
 NAMES = "local, dask, dask://HOST:PORT, ray or ray://HOST:PORT"
@@ -81,7 +80,7 @@ class LocalExecutor:
         self._pool = ThreadPoolExecutor(workers)
         self._ended: SimpleQueue[tuple[Job, Row]] = SimpleQueue()
         self._running: set[Process] = set()
-        self._server: ForkServer | None = None
+        self._launcher = Launcher()
         self._lock = Lock()
         self._closed = False
 
@@ -114,15 +113,14 @@ class LocalExecutor:
             if process.returncode is None:
                 process.kill()
         self._pool.shutdown()
-        if self._server is not None:
-            self._server.close()
+        self._launcher.close()
 
     def _run(self, job: Job) -> None:
         mine: list[Process] = []
 
         def begin(words: Sequence[str]) -> Process:
             with self._lock:
-                process = self._start(words)
+                process = self._launcher.start(words)
                 mine.append(process)
                 self._running.add(process)
                 if self._closed:
@@ -137,13 +135,3 @@ class LocalExecutor:
             with self._lock:
                 self._running.difference_update(mine)
         self._ended.put((job, row))
-
-    def _start(self, words: Sequence[str]) -> Process:
-        if not sys.platform.startswith("linux"):
-            return start(words)
-        if self._server is not None and self._server.gone:
-            self._server.close()
-            self._server = None
-        if self._server is None:
-            self._server = ForkServer()
-        return self._server.start(words)

@@ -6,6 +6,12 @@ from typing import Any
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep.definition import code_digest
 from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
+from hsr8.evaluation.sweep.launcher import of_this_process
+
+
+def work(job: Job) -> Row:
+    """Run `job` on the worker that this is called on."""
+    return run_job(job, of_this_process().start)
 
 
 class RayExecutor:
@@ -49,7 +55,7 @@ class RayExecutor:
                 "same version there"
             )
         # A run whose worker died is ours to retry, and to mark.
-        self._work: Any = ray.remote(max_retries=0, scheduling_strategy="SPREAD")(run_job)
+        self._work: Any = ray.remote(max_retries=0, scheduling_strategy="SPREAD")(work)
         self._running: dict[Any, Job] = {}
         self.workers = int(ray.cluster_resources().get("CPU", 1))
 

@@ -66,7 +66,7 @@ def test_closing_ends_what_runs(monkeypatch, stubborn):
 
     monkeypatch.setattr(module, "run_job", run)
     executor = LocalExecutor(1)
-    monkeypatch.setattr(executor, "_start", begin)
+    monkeypatch.setattr(executor._launcher, "start", begin)
     executor.submit(JOB)
     executor.submit(JOB)  # waits, and never begins
     while not processes:
