@@ -19,6 +19,7 @@ from navigation.gaze_parameters import GazeParameters
 from navigation.gaze_scene import GazeScene, relative, to_field
 from navigation.integrated_gaze import beacon_votes
 from navigation.obstacle_set import largest_deviation
+from navigation.overdue import AGE_LIMIT, LEAST_TIME
 
 Array = NDArray[np.float64]
 
@@ -26,12 +27,8 @@ _FRAME = 0.1
 """Age of what was seen in the latest frame, one decision [s]."""
 _HALF = 0.5
 """Share of the time to contact within which to look again."""
-_LEAST_TIME = 0.4
-"""Shortest time to contact counted [s]."""
 _CLEARANCE = 0.05
 """Distance from contact at which it is too late [m]."""
-_AGE_LIMIT = 8.0
-"""Age of ground from which nothing grows worse [s]."""
 _RAYS = np.radians(np.linspace(-120.0, 120.0, 17))
 _RINGS = np.array([0.45, 0.8, 1.2, 1.7])
 _MAP_SPEED = 0.7
@@ -138,7 +135,7 @@ def obstacle_deadlines(
     )
     approach = feared + speed * np.maximum(0.25, 0.5 + 0.5 * np.cos(bearing - way))
     gap = distance - o.radius[index_] - parameters.univector.s_robot - _CLEARANCE
-    contact = np.maximum(_LEAST_TIME, gap / approach)
+    contact = np.maximum(LEAST_TIME, gap / approach)
     age = o.age[index_] + _FRAME + d.unknown_bonus * unknown + d.fresh_bonus * fresh
     urgency = np.minimum(d.urgency_limit, age / (_HALF * contact)) ** d.exponent
     value = weight * urgency * np.where(static, d.static_weight, 1.0)
@@ -166,10 +163,10 @@ def map_deadlines(
     rays = _RAYS[np.abs(_RAYS) <= reach]
     distance, bearing = (a.ravel() for a in np.meshgrid(_RINGS, rays, indexing="ij"))
     points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
-    age = np.minimum(_AGE_LIMIT, belief.local_map.age_at(to_field(points, belief.pose)))
+    age = np.minimum(AGE_LIMIT, belief.local_map.age_at(to_field(points, belief.pose)))
     approach = speed * (_MAP_SPEED + np.maximum(0.1, np.cos(bearing - way)))
     room = distance - 2.0 * parameters.univector.s_robot
-    contact = np.maximum(_LEAST_TIME, room / approach)
+    contact = np.maximum(LEAST_TIME, room / approach)
     value = d.map_weight * np.minimum(d.urgency_limit, age / contact) ** d.exponent
     tilt = -np.arctan2(scene.camera_height, distance)
     return Votes(wrap_array(bearing), tilt, value)

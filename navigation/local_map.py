@@ -10,14 +10,12 @@ from math import floor
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from navigation import local_map_kernel
 from navigation.belief_parameters import LocalMapParameters
 from navigation.visibility import Mask, Viewpoint
 from navigation.visibility_kernel import take_in
 
 Array = NDArray[np.float64]
-
-
-_CROSS = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
 
 
 class LocalMap:
@@ -80,28 +78,18 @@ class LocalMap:
 
         Infinite where never seen, 0 outside the map.
         """
-        rows, columns, inside = self._cells_of(points)
-        age = np.zeros(len(inside))
-        age[inside] = self._time - self._seen_at[rows[inside], columns[inside]]
+        age: Array = self._time - self._under(points, self._seen_at, self._time)
         return age
 
     def occupancy_at(self, points: ArrayLike) -> Array:
         """Probability of an obstacle under points in W (n, 2); 1/2 where unknown (n,)."""
-        rows, columns, inside = self._cells_of(points)
-        log_odds = np.zeros(len(inside))
-        log_odds[inside] = self._log_odds[rows[inside], columns[inside]]
-        probability: Array = 1.0 / (1.0 + np.exp(-log_odds))
+        probability: Array = 1.0 / (1.0 + np.exp(-self._under(points, self._log_odds, 0.0)))
         return probability
 
     def free_at(self, points: ArrayLike) -> Mask:
         """Whether all the floor around points in W (n, 2) was once seen empty (n,)."""
-        rows, columns, _ = self._cells_of(points)
-        n = self._count
-        free = np.empty(len(rows), np.bool_)
-        for k, (row, column) in enumerate(zip(rows.tolist(), columns.tolist(), strict=True)):
-            inside = 0 < row < n - 1 and 0 < column < n - 1
-            free[k] = inside and all(self._log_odds[row + i, column + j] < 0.0 for i, j in _CROSS)
-        return free
+        places = np.ascontiguousarray(points, np.float64)
+        return local_map_kernel.free(places, self._corner, self.cell, self._log_odds)
 
     def update(
         self,
@@ -151,15 +139,9 @@ class LocalMap:
         half = self._count // 2
         return floor(centre[0] / self.cell) - half, floor(centre[1] / self.cell) - half
 
-    def _cells_of(
-        self, points: ArrayLike
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
-        coordinates = np.floor(np.asarray(points, float).reshape(-1, 2) / self.cell)
-        columns = coordinates[:, 0].astype(np.intp) - self._corner[0]
-        rows = coordinates[:, 1].astype(np.intp) - self._corner[1]
-        n = self._count
-        inside = (rows >= 0) & (rows < n) & (columns >= 0) & (columns < n)
-        return rows, columns, inside
+    def _under(self, points: ArrayLike, cells: Array, outside: float) -> Array:
+        places = np.ascontiguousarray(points, np.float64)
+        return local_map_kernel.under(places, self._corner, self.cell, cells, outside)
 
     def _roll(self, centre: tuple[float, float]) -> None:
         """Move the map by whole cells so that the robot stays near its middle."""

@@ -8,9 +8,10 @@ ground right behind is due, and tells the gaze what it turned for.
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.angles import wrap_array
+from navigation import shoulder_kernel
 from navigation.belief import Belief, Track
 from navigation.decision_parameters import ShoulderParameters
+from navigation.overdue import AGE_LIMIT, LEAST_TIME
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -19,14 +20,6 @@ _RINGS = np.array([0.40, 0.65, 0.90, 1.20])
 """Distances of the ground asked for [m]."""
 _RAYS = 4
 """Directions asked for in a sector."""
-_AGE_LIMIT = 8.0
-"""Age of ground from which nothing grows worse [s]."""
-_URGENCY_LIMIT = 2.0
-"""Largest urgency of a point."""
-_LEAST_TIME = 0.4
-"""Shortest time to contact counted [s]."""
-_LEAST_APPROACH = 0.02
-"""Least speed at which something unseen is taken to come nearer [m/s]."""
 
 
 @value
@@ -48,11 +41,10 @@ class Sector:
         """Bearing of its middle from the way [rad]."""
         return 0.5 * float(self.bearing[0] + self.bearing[-1])
 
-    def contains(self, bearing: Array) -> NDArray[np.bool_]:
-        """Whether bearings from the way (n,) [rad] are in it (n,)."""
-        half = 0.5 * abs(float(self.bearing[-1] - self.bearing[0]))
-        within: NDArray[np.bool_] = np.abs(wrap_array(bearing - self.middle)) <= half
-        return within
+    @property
+    def half(self) -> float:
+        """Half its width [rad]."""
+        return 0.5 * abs(float(self.bearing[-1] - self.bearing[0]))
 
 
 class ShoulderCheck:
@@ -70,13 +62,11 @@ class ShoulderCheck:
             speed: the robot's largest [m/s].
         """
         self._parameters = parameters
-        self._s_robot = s_robot
-        self._feared = parameters.mover_speed * speed
+        self._fear = (parameters.mover_speed * speed, s_robot, LEAST_TIME, AGE_LIMIT)
         self._sectors = sectors(parameters, reach)
         self._weight = np.array([s.weight for s in self._sectors])
-        rays = np.stack([s.bearing for s in self._sectors])
-        self._distance = np.tile(np.repeat(_RINGS, _RAYS), (len(rays), 1))
-        self._bearing = np.tile(rays, (1, len(_RINGS)))
+        self._bearing = np.concatenate([s.bearing for s in self._sectors])
+        self._extent = np.array([(s.middle, s.half) for s in self._sectors])
         self._chosen: int | None = None
         self._since = 0.0
         self._rest_until = 0.0
@@ -115,12 +105,9 @@ class ShoulderCheck:
             course: direction of the way in W [rad].
             speed: along it [m/s].
         """
-        way = course + self._bearing
-        points = np.stack([self._distance * np.cos(way), self._distance * np.sin(way)], axis=-1)
-        age = belief.local_map.age_at(belief.pose[:2] + points.reshape(-1, 2))
-        room = self._distance - self._s_robot
-        overdue = self._overdue(age.reshape(way.shape), room, self._bearing, speed)
-        most: Array = overdue.mean(axis=1)
+        points = shoulder_kernel.places(belief.pose, course, _RINGS, self._bearing)
+        age, count = belief.local_map.age_at(points), len(self._sectors)
+        most = shoulder_kernel.of_ground(age, _RINGS, self._bearing, speed, self._fear, count)
         for track in belief.tracks:
             if track.particles is not None:
                 most = np.maximum(most, self._of_lost(track, belief.pose, course, speed))
@@ -130,23 +117,16 @@ class ShoulderCheck:
         """Urgency of a look at each sector for a lost track (4,)."""
         cloud = track.particles
         assert cloud is not None
-        offset = cloud.positions - pose[:2]
-        distance = np.hypot(offset[:, 0], offset[:, 1])
-        near = distance <= _RINGS[-1]
-        if not near.any():
-            return np.zeros(len(self._sectors))
-        bearing = np.arctan2(offset[:, 1], offset[:, 0]) - course
-        overdue = self._overdue(track.age, distance - track.radius, bearing, speed)
-        inside = np.array([s.contains(bearing) for s in self._sectors])
-        urgency: Array = (inside * near) @ (cloud.weights * overdue)
-        return urgency
-
-    def _overdue(self, age: Array | float, room: Array, bearing: Array, speed: float) -> Array:
-        """Age [s] over the time in which what comes from `bearing` [rad] is here, bounded."""
-        approach = np.maximum(_LEAST_APPROACH, self._feared + speed * np.cos(bearing))
-        contact = np.maximum(_LEAST_TIME, (room - self._s_robot) / approach)
-        urgency: Array = np.minimum(_URGENCY_LIMIT, np.minimum(_AGE_LIMIT, age) / contact)
-        return urgency
+        return shoulder_kernel.of_cloud(
+            cloud.positions,
+            cloud.weights,
+            (track.age, track.radius, float(_RINGS[-1])),
+            pose,
+            course,
+            self._extent,
+            speed,
+            self._fear,
+        )
 
 
 def sectors(parameters: ShoulderParameters, reach: float) -> tuple[Sector, ...]:
