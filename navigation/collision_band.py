@@ -69,12 +69,12 @@ class Encounter:
         return -(self.along * x + self.across * y), -(x * self.across - y * self.along)
 
     def in_band(self) -> bool:
-        """Whether the mover sweeps over the robot if that stands."""
+        """Whether the mover sweeps over the robot if that stands: R_coll of Fig. 4."""
         al, lat = self.band()
         return abs(lat) < self.radius and al > 0.0
 
     def crossing_speeds(self) -> tuple[float, ...]:
-        """Roots of A v² + B v + C: the speeds at which the robot just touches the mover.
+        """v_c of Fig. 4, roots of A v² + B v + C: the robot just touches the mover.
 
         A = b² - S², B = 2 (S² v_o.e - a b), C = a² - S² |v_o|², with a = cross(p_ro, v_o)
         and b = cross(p_ro, e).

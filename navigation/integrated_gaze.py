@@ -40,7 +40,7 @@ def integrated_votes(
 
 
 def self_votes(scene: GazeScene, pan: Array, tilt: Array, p: GazeParameters) -> list[Votes]:
-    """Votes of psi_sf for what can localize the robot: obstacles as printed, and beacons.
+    """Votes of psi_sf in eq. (6) for what can localize the robot: obstacles, and beacons.
 
     The printed mean runs over both together, so that GM stays within [0, 1].
     """

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class LocalMap:
-    """Square grid fixed to W that rolls along with the robot in whole cells.
+    """Confidence C of eq. (1): a square grid fixed to W that rolls along with the robot.
 
     Args:
         parameters: size, cell, rates.

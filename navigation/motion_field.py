@@ -216,7 +216,7 @@ class MotionField:
     def printed_forces(
         self, pose: Array, velocity: Array, scene: FieldScene, indices: tuple[int, ...]
     ) -> tuple[VirtualForce, ...]:
-        """Virtual obstacles as printed, of the obstacles with these `indices`."""
+        """Virtual obstacles as printed, eq. (11) in (9), of the obstacles with these `indices`."""
         forces = []
         phi = float(
             move_to_goal(pose[:2], pose[2], scene.target, scene.target_heading, self._univector)

@@ -112,7 +112,7 @@ class ArrivalSide:
 
 
 def arrival_gain(distance: float, is_goal: bool, parameters: UnivectorParameters) -> float:
-    """k_rho: one at via points, falling towards the final goal; it scales the speed only."""
+    """k_rho of eq. (8): one at via points, falling towards the goal; scales the speed only."""
     if not is_goal:
         return 1.0
     slow = parameters.slow_share

@@ -115,7 +115,7 @@ def psi_way(free_distance: float, parameters: EvaluationParameters) -> float:
 
 
 def obstacle_free_distance(position: Array, centres: Array, radii: Array, limit: float) -> float:
-    """d_of: distance to the nearest extended shape, bounded by `limit` [m].
+    """d_of of eq. (4): distance to the nearest extended shape, bounded by `limit` [m].
 
     Args:
         position: of the robot (2,) [m].
@@ -131,7 +131,7 @@ def obstacle_free_distance(position: Array, centres: Array, radii: Array, limit:
 
 
 def attended(obstacles: ObstacleSet, pose: Array, velocity: Array, reach: float) -> Mask:
-    """The set O: detected obstacles that are frontal or approach from behind.
+    """The set O of eqs. (2)-(6): detected obstacles, frontal or approaching from behind.
 
     Args:
         obstacles: n obstacles in W.

@@ -22,7 +22,7 @@ class ModifiedSpeed:
 
 
 def needed_acceleration(speed: float, wanted: float, contact_time: float, footstep: float) -> float:
-    """Acceleration a = 2 (|p_oc| - |v_r| t_c)/t_c², with |p_oc| = v_c t_c [m/s²].
+    """a_i = 2 (|p_oc| - |v_r| t_c)/t_c² of sec. III-2, with |p_oc| = v_c t_c [m/s²].
 
     Args:
         speed: |v_r| now [m/s].
@@ -44,7 +44,7 @@ def modify_speed(
     horizon: float,
     wait_in_band: bool,
 ) -> ModifiedSpeed:
-    """Choose a free speed by the roots of the quadratic.
+    """Choose a free speed by the roots of the quadratic (Yoo & Kim, sec. III-2).
 
     Keep the desired speed if it is free; else the lowest free speed above that can be
     reached in time; else the highest free speed below, standing included; else give up

@@ -104,7 +104,9 @@ def swept(case: Case, out: Path, workers: int) -> Run:
 WAYS: dict[str, Callable[[Case, Path], Run]] = {
     "no log": lambda case, out: case.run(out, "--no-log"),
     "log": lambda case, out: case.run(out),
-    "checkpoint each second": lambda case, out: case.run(out, "--no-log", "--checkpoint", "1"),
+    "checkpoint each second": lambda case, out: case.run(
+        out, "--no-log", "--checkpoint", "every=1"
+    ),
     "after a run and its video, same process": after_video,
     "sweep, 1 worker": lambda case, out: swept(case, out, 1),
     "sweep, 2 workers": lambda case, out: swept(case, out, 2),
@@ -176,7 +178,15 @@ def resumed(cases: list[Case], kills: int, folder: Path) -> list[str]:
         tick = rng.randrange(round(1.0 / CONTROL_PERIOD) + 1, ticks)
         out = folder / f"killed-{number}"
         words = ["run", "course", "--seed", str(case.seed), "--quiet", *case.words]
-        words += ["--duration", case.duration, "--no-log", "--checkpoint", "1", "--out", str(out)]
+        words += [
+            "--duration",
+            case.duration,
+            "--no-log",
+            "--checkpoint",
+            "every=1",
+            "--out",
+            str(out),
+        ]
         command("-c", KILLED, str(tick), *words, codes=(KILL,))
         run = open_run(out)
         command("-m", "hsr8", "run", str(run.path), "--resume", "--quiet")

@@ -242,7 +242,7 @@ def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any
 def made(scratch: Path) -> tuple[Path, Path]:
     """A run as a kill leaves it, with log and checkpoint, and a sweep of two runs."""
     short = ("quick", *LIGHT, "--quiet", "--duration")
-    ask(["run", *short, "1.2", "--checkpoint", "1", "--out", str(scratch)])
+    ask(["run", *short, "1.2", "--checkpoint", "every=1", "--out", str(scratch)])
     (run,) = (scratch / "quick").iterdir()
     manifest = run / run_folder.MANIFEST
     manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))

@@ -13,16 +13,16 @@ NAMES = sorted(set(re.findall(r"`([\w/]+\.py)::([\w.]+)`", TEXT)))
 
 
 @cache
-def defined(file: Path) -> set[str]:
-    """Names of functions, classes and methods in a file."""
-    names = set()
+def defined(file: Path) -> dict[str, str]:
+    """Docstrings of the functions, classes and methods in a file, by name."""
+    told = {}
     for node in ast.parse(file.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.ClassDef | ast.FunctionDef):
-            names.add(node.name)
+            told[node.name] = ast.get_docstring(node) or ""
             if isinstance(node, ast.ClassDef):
-                methods = (n for n in node.body if isinstance(n, ast.FunctionDef))
-                names |= {f"{node.name}.{n.name}" for n in methods}
-    return names
+                for method in (n for n in node.body if isinstance(n, ast.FunctionDef)):
+                    told[f"{node.name}.{method.name}"] = ast.get_docstring(method) or ""
+    return told
 
 
 @pytest.mark.parametrize(("file", "name"), NAMES)
@@ -40,6 +40,15 @@ def test_every_equation_has_a_function_and_a_test():
             cells = row.split(" | ")
             assert re.search(r"`[\w/]+\.py::\w", cells[2]), row
             assert re.search(r"`[\w/]*test_\w+\.py::test_\w+`", cells[3]), row
+
+
+@pytest.mark.parametrize("number", range(1, 12))
+def test_docstrings_bear_the_number_of_their_equation(number):
+    for row in (line for line in TEXT.splitlines() if line.startswith(f"| ({number})")):
+        for file, name in re.findall(r"`(\w+\.py)::([\w.]+)`", row.split(" | ")[2]):
+            told = defined(ROOT / "navigation" / file)[name]
+            spans = re.findall(r"\((\d+)\)(?:-\((\d+)\))?", told)
+            assert any(int(a) <= number <= int(b or a) for a, b in spans), (name, told)
 
 
 def test_keys_in_the_tables_are_keys_of_a_scenario():

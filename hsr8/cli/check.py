@@ -1,7 +1,7 @@
 """``hsr8 check``: what a scenario comes to, without running it."""
 
 import json
-from math import degrees, hypot
+from math import degrees
 
 from rich.console import Console
 from rich.markup import escape
@@ -21,6 +21,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.world.certificate import Certificate, least_clearance, straight_length
 from hsr8.world.generator import FairWorld, draw_world
 from hsr8.world.layout import Layout
+from hsr8.world.motion import pace
 from hsr8.world.plan_view import PlanView
 
 Summary = dict[str, object]
@@ -73,7 +74,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> Summary:
                 "position": [round(v, 3) for v in o.position],
                 "radius": round(o.radius, 3),
                 "colour": o.colour,
-                "speed": round(hypot(*o.motion.velocity(0.0)), 3) if o.motion else 0.0,
+                "speed": round(pace(o.motion), 3) if o.motion else 0.0,
             }
             for i, o in enumerate(layout.obstacles)
         ],
@@ -99,7 +100,7 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     width, depth = layout.field_size
     x, y, heading = layout.start
     camera, mission = scenario.camera, scenario.mission
-    speeds = [hypot(*o.motion.velocity(0.0)) for o in layout.movers if o.motion]
+    speeds = [pace(o.motion) for o in layout.movers if o.motion]
     facts = Table(
         title=f"{scenario.name}, seed {scenario.seed}", title_justify="left", show_header=False
     )
@@ -202,7 +203,7 @@ def _obstacles(layout: Layout) -> Table:
     table.add_column("colour")
     table.add_column("motion")
     for i, o in enumerate(layout.obstacles):
-        speed = f"{hypot(*o.motion.velocity(0.0)):.3f}" if o.motion else ""
+        speed = f"{pace(o.motion):.3f}" if o.motion else ""
         motion = type(o.motion).__name__.lower() if o.motion else ""
         x, y = o.position
         table.add_row(str(i), f"{x:.2f}", f"{y:.2f}", f"{o.radius:.3f}", speed, o.colour, motion)

@@ -1,10 +1,12 @@
 """Command lines taken apart, and put together again for people to type."""
 
+import re
 import shlex
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from hsr8.cli.options import Check, Run, Sweep
+from hsr8.errors import UsageError
 from hsr8.recorder.log_level import LogLevel
 
 
@@ -61,3 +63,19 @@ def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
 def log_level(options: Run) -> LogLevel | None:
     """How much is logged; None for nothing."""
     return None if options.no_log else LogLevel(options.log_level)
+
+
+def checkpoint_period(options: Run) -> int:
+    """How often the whole run is saved [s]; 0 for never.
+
+    Raises:
+        UsageError: what was given is no such period.
+    """
+    if not options.checkpoint:
+        return 0
+    match = re.fullmatch(r"(?:every=)?([1-9]\d{0,5})", options.checkpoint, re.ASCII)
+    if match is None:
+        raise UsageError(
+            f"--checkpoint {options.checkpoint}: give whole simulated seconds, e.g. every=10"
+        )
+    return int(match[1])

@@ -66,11 +66,8 @@ class Run:
         ),
     ] = None
     checkpoint: Annotated[
-        int,
-        tyro.conf.arg(
-            metavar="S", help="save the run every so many simulated seconds [s]; 0: never"
-        ),
-    ] = 0
+        str, _arg("every=S", "save the run every so many whole simulated seconds; else never")
+    ] = ""
     resume: bool = False
     """Go on with a run that was killed, from its last checkpoint, to the identical end."""
     verify_determinism: bool = False

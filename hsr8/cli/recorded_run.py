@@ -9,7 +9,7 @@ from pathlib import Path
 from types import FrameType
 
 from hsr8.cli import report
-from hsr8.cli.command_line import log_level, option_tables
+from hsr8.cli.command_line import checkpoint_period, log_level, option_tables
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run
 from hsr8.cli.verify import Verified, verify
@@ -95,7 +95,8 @@ def _record(
     recording: Recording, path: Path, manifest: Manifest, options: Run, view: LiveView | None
 ) -> None:
     live = "" if view is None else view.address
-    recording.into(path, manifest, log=log_level(options), live=live, checkpoint=options.checkpoint)
+    period = checkpoint_period(options)
+    recording.into(path, manifest, log=log_level(options), live=live, checkpoint=period)
 
 
 @contextmanager

@@ -3,11 +3,10 @@
 import sys
 from collections.abc import Sequence
 
-from hsr8.cli.command_line import log_level, option_tables, run_command, settings
+from hsr8.cli.command_line import checkpoint_period, log_level, option_tables, run_command, settings
 from hsr8.cli.cost import estimate
 from hsr8.cli.loading import loading
 from hsr8.cli.options import Run
-from hsr8.errors import UsageError
 from hsr8.recorder import atomic
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
@@ -21,8 +20,7 @@ def main(options: Run) -> int:
         UsageError: the scenario, a setting or the output folder will not do.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
-    if options.checkpoint < 0:
-        raise UsageError(f"--checkpoint {options.checkpoint}: give seconds, 1 or more")
+    checkpoint_period(options)
     if options.resume:
         with loading():
             from hsr8.cli.recorded_run import resume  # noqa: PLC0415  takes seconds

@@ -155,6 +155,18 @@ class Appearing:
 MotionLaw = Still | Line | Shuttle | Circle | Passage | Wander | Appearing
 
 
+def pace(law: MotionLaw) -> float:
+    """Speed of a mover when it moves [m/s]."""
+    match law:
+        case Appearing():
+            return pace(law.law)
+        case Still():
+            return 0.0
+        case Line():
+            return hypot(*law.rate)
+    return abs(law.speed)
+
+
 class Movers:
     """All moving obstacles of a layout, evaluated together.
 

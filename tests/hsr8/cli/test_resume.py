@@ -1,6 +1,5 @@
 """A run that was killed goes on from its checkpoint, to the identical end."""
 
-import json
 import shutil
 import subprocess
 import sys
@@ -39,7 +38,7 @@ entry(sys.argv[2:])
 
 def killed(out, tick, *more):
     """A run that dies without a word before control tick `tick`."""
-    words = [*QUICK, *more, "--checkpoint", "1", "--out", str(out)]
+    words = [*QUICK, *more, "--checkpoint", "every=1", "--out", str(out)]
     command = [sys.executable, "-c", KILLED, str(tick), *words]
     assert subprocess.run(command, check=False, timeout=100).returncode == 9
     return open_run(out)
@@ -150,7 +149,10 @@ def test_checkpoints_change_nothing(whole, tmp_path, capsys):
     check_the_same(open_run(tmp_path), whole)
 
 
-def test_a_period_is_seconds(tmp_path, capsys):
-    assert entry(["run", "quick", "--checkpoint", "-1", "--out", str(tmp_path)]) == 2
-    assert "give seconds" in capsys.readouterr().err
-    assert json.dumps(list(tmp_path.iterdir())) == "[]"
+@pytest.mark.parametrize("period", ["-1", "0", "every=0", "every=1.5", "every", "every=1s", ""])
+def test_a_period_is_whole_seconds(tmp_path, capsys, period):
+    expected = 0 if not period else 2
+    words = ["run", "quick", "--checkpoint", period, "--dry-run", "--out", str(tmp_path)]
+    assert entry(words) == expected
+    assert ("whole simulated seconds" in capsys.readouterr().err) == (expected == 2)
+    assert list(tmp_path.iterdir()) == []

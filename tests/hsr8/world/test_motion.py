@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.world.motion import Circle, Line, Movers, Shuttle, Still
+from hsr8.world.motion import Appearing, Circle, Line, Movers, Shuttle, Still, pace
 from hsr8.world.passage import Passage
 from hsr8.world.wander import Wander, draw_wander
 
@@ -126,3 +126,10 @@ def _to_end(law: Shuttle, time: float) -> float:
     """Distance from the start of the lane."""
     x, y = law.position(time)
     return hypot(x - law.start[0], y - law.start[1])
+
+
+@given(laws, times)
+def test_a_mover_goes_at_its_pace_or_rests(law, time):
+    speed = hypot(*law.velocity(time))
+    assert speed == pytest.approx(pace(law)) or speed == 0.0
+    assert pace(Appearing(law, time)) == pace(law)
