@@ -17,6 +17,10 @@ class ScenarioError(UsageError):
     """A scenario file or a setting is wrong: what, where, why, and what is allowed."""
 
 
+class ModelError(UsageError):
+    """A model file is wrong: in which folder, and what MuJoCo or the walking library says."""
+
+
 class RenderingUnavailable(UsageError):
     """No OpenGL that can draw without a display was found."""
 

@@ -11,7 +11,7 @@ from hsr8.scenario.schema import Scenario
 from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
 from hsr8.seeds import named_rng
 from hsr8.world.layout import Layout
-from hsr8.world.models import models_dir
+from hsr8.world.models import models_dir, reading_models
 from navigation.estimator import Estimator
 from navigation.gaze import GazePlanner
 from navigation.landmark_obstacles import LandmarkObstacles
@@ -65,8 +65,13 @@ def build_robot(
     )
 
 
+@reading_models()
 def robot_model() -> RobotModel:
-    """Everything the walking engine must know of HSR-VIII."""
+    """Everything the walking engine must know of HSR-VIII.
+
+    Raises:
+        ModelError: its file will not do.
+    """
     return RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
 
 

@@ -124,3 +124,21 @@ def written(given: Any) -> str:
     if isinstance(given, dict):
         return "{" + ", ".join(f"{key} = {written(inner)}" for key, inner in given.items()) + "}"
     return repr(given) if not isinstance(given, str) else f'"{given}"'
+
+
+def model_changed(rng: random.Random, text: str) -> str:
+    """An MJCF file cut, garbled, or with a line, a number or a name that is not what it was."""
+    kind = rng.randrange(5)
+    if kind == 0:
+        return text[: rng.randrange(len(text))]
+    if kind == 1:
+        return mutated(rng, text.encode()).decode("utf-8", errors="replace")
+    if kind == 2:
+        lines = text.splitlines(keepends=True)
+        place = rng.randrange(len(lines))
+        lines[place : place + 1] = rng.choice(([], [rng.choice(lines), lines[place]]))
+        return "".join(lines)
+    pattern = r'(?<=[" ])-?\d+\.?\d*(?=[" ])' if kind == 3 else r'(?<=name=")\w+(?=")'
+    found = rng.choice(list(re.finditer(pattern, text)))
+    other = rng.choice(("nan", "inf", "-1", "0", "1e300", "1e-300", "x")) if kind == 3 else "other"
+    return text[: found.start()] + other + text[found.end() :]

@@ -17,8 +17,9 @@ import time as clock
 from collections import Counter
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
-from bad_input import keys, mutated, near, value, values_changed, written
+from bad_input import keys, model_changed, mutated, near, value, values_changed, written
 
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
@@ -27,11 +28,14 @@ from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
 from hsr8.recorder.log_reader import decode
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load, loads
+from hsr8.world import models
 from vision.colour import COLOUR_CLASSES, ColourTable
 from vision.colour_file import load_table, save_table
 from vision.errors import VisionError
 
 TICKS = 100  # of a run that is begun
+FIRST = 20  # of one with a damaged model
+MODELS = ("hsr8/hsr8.xml", "field/vision.xml")
 SLOW = 10.0  # a case that takes more processor time hangs [s]
 COMMANDS: tuple[tuple[str, ...], ...] = (
     ("info", "RUN"),
@@ -54,7 +58,7 @@ ON_SWEEPS: tuple[tuple[str, ...], ...] = (
 RARE = {"check replay": 0.15, "run": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
 RARE |= {"bug-report": 0.3, "check": 0.3, "sweep": 0.02}
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
-KINDS = ("text", "table", "setting", "start", "folder", "log", "sweep", "colours")
+KINDS = ("text", "table", "setting", "start", "model", "folder", "log", "sweep", "colours")
 FILES = (
     run_folder.SCENARIO,
     run_folder.MANIFEST,
@@ -96,6 +100,24 @@ def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> 
         for _ in range(TICKS):
             if simulation.exit_reason is None:
                 simulation.step()
+
+
+def model_case(rng: random.Random) -> None:
+    """The first ticks of a run whose model of robot or field is damaged."""
+    body = rng.choice(("full", "kinematic"))
+    scenario = load("quick", (f'robot.body="{body}"', 'camera.source="analytic"'))
+    with tempfile.TemporaryDirectory() as scratch:
+        copy = Path(scratch) / "models"
+        shutil.copytree(models.models_dir(), copy)
+        file = copy / rng.choice(MODELS)
+        file.write_text(model_changed(rng, file.read_text(encoding="utf-8")), encoding="utf-8")
+        with (
+            patch.object(models, "PACKAGE", copy.parent / "hsr8"),
+            Simulation(scenario, 0) as simulation,
+        ):
+            for _ in range(FIRST):
+                if simulation.exit_reason is None:
+                    simulation.step()
 
 
 def setting_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
@@ -226,6 +248,8 @@ def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any
             start_case(rng, schema)
         elif kind == "setting":
             setting_case(rng, schema)
+        elif kind == "model":
+            model_case(rng)
         else:
             assert folders is not None
             if kind == "log":

@@ -5,6 +5,7 @@ The same world is compiled in two qualities that share joints, sensors and state
 does not depend on the layout lies in ``models/field/``.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import hypot
 from typing import Any, Literal
@@ -14,7 +15,7 @@ import numpy as np
 
 from hsr8.scenario.fault import Bump
 from hsr8.world.layout import Beacon, Layout, Obstacle
-from hsr8.world.models import models_dir
+from hsr8.world.models import models_dir, reading_models
 from vision.colour import COLOUR_CLASSES
 
 Quality = Literal["vision", "show"]
@@ -57,12 +58,16 @@ class Optics:
     shadows: bool = False
 
 
+@reading_models()
 def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel:
     """Compile the world of `layout`.
 
     Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00``
     ..., beacons are ``beacon_<top>_<bottom>``, bumps are geoms ``bump_00`` ... of the world.
     For people there are the cameras ``top`` and ``corner`` beside those of the robot.
+
+    Raises:
+        ModelError: the files will not do.
     """
     spec = mujoco.MjSpec.from_file(str(models_dir() / "field" / f"{quality}.xml"))
     spec.modelname = f"hsr8_{quality}"
@@ -71,7 +76,7 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     _set_lights(spec, optics.brightness, max(layout.field_size))
     if quality == "vision" and optics.shadows:
         _cast_shadows(spec, max(layout.field_size))
-    camera = spec.camera(HEAD_CAMERA)
+    camera = _part(spec.camera, HEAD_CAMERA)
     camera.fovy = float(np.degrees(optics.vertical_fov))
     camera.resolution = [optics.width, optics.height]
     _add_rim(spec, layout.field_size)
@@ -89,6 +94,13 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     return spec.compile()
 
 
+def _part(find: Callable[[str], Any], name: str) -> Any:
+    found = find(name)
+    if found is None:
+        raise ValueError(f"there is no {find.__name__} {name!r}")
+    return found
+
+
 def _set_lights(spec: mujoco.MjSpec, brightness: float, side: float) -> None:
     """Dim the lights, and raise them over a field larger than the usual one."""
     head = spec.visual.headlight
@@ -103,7 +115,7 @@ def _cast_shadows(spec: mujoco.MjSpec, side: float) -> None:
     """Let the sun cast shadows on the whole field."""
     spec.visual.quality.shadowsize = SHADOW_SIZE
     spec.visual.map.shadowclip = (0.5 * side + APRON) / spec.stat.extent
-    spec.light("sun").castshadow = True
+    _part(spec.light, "sun").castshadow = True
 
 
 def _add_rim(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
@@ -132,7 +144,7 @@ def _add_room(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
     rest of an image. To touch, every plane is endless.
     """
     x, y = (0.5 * side + APRON for side in field_size)
-    spec.geom("floor").size = [x, y, 1.0]
+    _part(spec.geom, "floor").size = [x, y, 1.0]
     for name, place, half in (
         ("front", (x, 0.0), (0.01, y)),
         ("back", (-x, 0.0), (0.01, y)),

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world.models import reading_models
 from walking.joints import JOINT_NAMES
 
 Ints = NDArray[np.intp]
@@ -55,8 +56,13 @@ class ModelIndex:
     mover_mocap: Ints
 
     @classmethod
+    @reading_models()
     def of(cls, model: mujoco.MjModel, n_static: int, n_moving: int) -> "ModelIndex":
-        """Resolve the names in `model`, which holds so many static and moving obstacles."""
+        """Resolve the names in `model`, which holds so many static and moving obstacles.
+
+        Raises:
+            ModelError: the robot lacks one of them.
+        """
         joints = [model.joint(name) for name in JOINT_NAMES]
         base = model.body("base_link").id
         root = model.joint("root")

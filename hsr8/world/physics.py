@@ -11,6 +11,7 @@ from hsr8.errors import SimulationDiverged
 from hsr8.scenario.fault import Fault
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.layout import Layout
+from hsr8.world.models import reading_models
 from hsr8.world.pushes import Pusher, ScheduledPush
 from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product, up_component
 from hsr8.world.saturation import SaturationWatch
@@ -29,8 +30,13 @@ FALLEN_SHARE = 0.64  # a pelvis below this share of its height when ready lies [
 FALLEN_TILT = 0.5  # cosine of the tilt beyond which the robot has fallen [1]
 
 
+@reading_models()
 def place_robot(model: mujoco.MjModel, data: mujoco.MjData, start: Array) -> None:
-    """Set the robot to ``walk_ready`` at x, y, heading `start` (3,) [m, m, rad]."""
+    """Set the robot to ``walk_ready`` at x, y, heading `start` (3,) [m, m, rad].
+
+    Raises:
+        ModelError: it has no such keyframe.
+    """
     mujoco.mj_resetDataKeyframe(model, data, model.key("walk_ready").id)
     root = int(model.joint("root").qposadr[0])
     x, y, yaw = np.asarray(start, float).tolist()

@@ -43,6 +43,11 @@ def test_any_scenario_is_valid_or_refused(kind):
     assert found == {"valid", "refused"}
 
 
+def test_any_model_is_walked_with_or_refused():
+    found = {fuzz.one(random.Random(number), "model", None, SCHEMA) for number in range(60)}
+    assert found == {"valid", "refused"}
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """A run folder as a kill leaves it."""

@@ -1,0 +1,30 @@
+import shutil
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.world import models
+
+LIGHT = ["--body", "kinematic", "--camera", "analytic", "--quiet", "--no-log", "--duration", "0.1"]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "told"),
+    [
+        ("hsr8/hsr8.xml", 'name="l_knee"', 'name="left_knee"', "'l_knee'"),
+        ("hsr8/hsr8.xml", 'key name="walk_ready"', 'key name="ready"', "'walk_ready'"),
+        ("hsr8/hsr8.xml", "</mujoco>", "", "XML"),
+        ("field/vision.xml", 'name="floor"', 'name="ground"', "'floor'"),
+    ],
+)
+def test_a_model_that_will_not_do_is_one_line(tmp_path, monkeypatch, capsys, file, old, new, told):
+    folder = tmp_path / "models"
+    shutil.copytree(models.models_dir(), folder)
+    text = (folder / file).read_text(encoding="utf-8")
+    assert old in text
+    (folder / file).write_text(text.replace(old, new), encoding="utf-8")
+    monkeypatch.setattr(models, "PACKAGE", tmp_path / "hsr8")
+    assert entry(["run", "quick", *LIGHT, "--out", str(tmp_path / "runs")]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert str(folder) in line
+    assert told in line
