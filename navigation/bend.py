@@ -1,11 +1,15 @@
 """Bends: the mean velocity of what turns while it moves."""
 
+from math import cos, pi, sin
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 
+@njit(cache=True)
 def mean_velocity(velocity: Array, turn_rate: Array, time: float) -> Array:
     """Velocity along the chord of the arc walked within `time` (n, 2) [m/s].
 
@@ -14,9 +18,11 @@ def mean_velocity(velocity: Array, turn_rate: Array, time: float) -> Array:
         turn_rate: of it, left positive (n,) [rad/s].
         time: [s].
     """
-    half = 0.5 * time * turn_rate
-    # numpy's sinc is sin(pi x)/(pi x).
-    share = np.sinc(half / np.pi)
-    c, s = share * np.cos(half), share * np.sin(half)
-    u, v = velocity[:, 0], velocity[:, 1]
-    return np.stack([c * u - s * v, s * u + c * v], axis=1)
+    mean = np.empty_like(velocity)
+    for i in range(len(turn_rate)):
+        half = 0.5 * time * turn_rate[i]
+        share = sin(half) / half if half != 0.0 else 1.0
+        c, s = share * cos(half), share * sin(half)
+        u, v = velocity[i, 0], velocity[i, 1]
+        mean[i, 0], mean[i, 1] = c * u - s * v, s * u + c * v
+    return mean

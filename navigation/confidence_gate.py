@@ -1,5 +1,6 @@
 """Ground ahead that must have been seen before the robot walks there fast."""
 
+from functools import cache
 from math import cos, sin
 
 import numpy as np
@@ -23,14 +24,17 @@ def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Ar
         parameters: extent of the ground.
     """
     p = parameters
-    along, across = np.meshgrid(
-        np.linspace(p.near, p.far, _ROWS), np.array([-p.half_width, 0.0, p.half_width])
-    )
+    along, across = _ground(p.near, p.far, p.half_width)
     c, s = cos(direction), sin(direction)
-    points: Array = pose[:2] + np.stack(
-        [(c * along - s * across).ravel(), (s * along + c * across).ravel()], axis=1
-    )
+    points: Array = pose[:2] + np.stack([c * along - s * across, s * along + c * across], axis=1)
     return points
+
+
+@cache
+def _ground(near: float, far: float, half_width: float) -> tuple[Array, Array]:
+    """The points along and across the motion, from the robot (12,), (12,) [m]."""
+    along, across = np.meshgrid(np.linspace(near, far, _ROWS), (-half_width, 0.0, half_width))
+    return along.ravel(), across.ravel()
 
 
 def gate_vote(

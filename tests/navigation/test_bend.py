@@ -30,3 +30,9 @@ def test_the_filters_of_the_tracks_follow_the_same_arc(turn):
     along, across, *_ = arc(turn, 2.5)
     wanted = VELOCITY @ np.array([[along, across], [-across, along]])
     assert mean_velocity(VELOCITY, np.full(3, turn), 2.5) == pytest.approx(wanted, abs=1e-12)
+
+
+def test_compiled_and_plain_agree():
+    turns = np.array([-1.3, 0.0, 1e-9])
+    compiled, plain = (f(VELOCITY, turns, 2.5) for f in (mean_velocity, mean_velocity.py_func))
+    assert np.array_equal(compiled, plain)
