@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
 Parts = tuple[Array, Array, Array]
 
 STILL, ON, BACK = 0, 1, 2
@@ -194,25 +195,27 @@ def fit(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, flo
 
 
 @njit(cache=True)
-def surprise(states: Array, covariances: Array, z: Array, R: Array) -> Array:
-    """Squared Mahalanobis distance of every obstacle's position to its nearest mode (n,).
+def surprise(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) -> Array:
+    """Squared Mahalanobis distance of some obstacles' positions to their nearest modes (m,).
 
     Args:
         states: (n, 3, 5).
         covariances: (n, 3, 5, 5).
-        z: position of each (n, 2) [m].
-        R: its covariance (n, 2, 2) [m²].
+        rows: which obstacles (m,).
+        z: position of each (m, 2) [m].
+        R: its covariance (m, 2, 2) [m²].
     """
-    surprises = np.empty(len(z))
-    for k in range(len(z)):
+    surprises = np.empty(len(rows))
+    for k in range(len(rows)):
+        x, P = states[rows[k]], covariances[rows[k]]
         least = inf
         for mode in range(3):
             distance, _ = fit(
-                z[k, 0] - states[k, mode, 0],
-                z[k, 1] - states[k, mode, 1],
-                covariances[k, mode, 0, 0] + R[k, 0, 0],
-                covariances[k, mode, 0, 1] + R[k, 0, 1],
-                covariances[k, mode, 1, 1] + R[k, 1, 1],
+                z[k, 0] - x[mode, 0],
+                z[k, 1] - x[mode, 1],
+                P[mode, 0, 0] + R[k, 0, 0],
+                P[mode, 0, 1] + R[k, 0, 1],
+                P[mode, 1, 1] + R[k, 1, 1],
             )
             least = min(least, distance)
         surprises[k] = least
@@ -292,36 +295,40 @@ def update(
     weights: Array,
     states: Array,
     covariances: Array,
+    rows: Rows,
     z: Array,
     R: Array,
     limit: float,
     floor: float,
 ) -> None:
-    """Correct all filters and weigh the modes by their likelihoods, in place.
+    """Correct the filters of some obstacles and weigh their modes by the likelihoods, in place.
 
     Args:
         weights: (n, 3).
         states: predicted (n, 3, 5).
         covariances: (n, 3, 5, 5).
-        z: position of each obstacle (n, 2) [m].
-        R: its covariance (n, 2, 2) [m²].
+        rows: which obstacles (m,).
+        z: position of each (m, 2) [m].
+        R: its covariance (m, 2, 2) [m²].
         limit: largest ratio of the modes' likelihoods, logarithm [1].
         floor: least probability of a mode [1].
     """
     gain = np.empty(3)
-    for k in range(len(weights)):
+    for k in range(len(rows)):
+        share = weights[rows[k]]
         for mode in range(3):
-            gain[mode] = correct(states[k, mode], covariances[k, mode], z[k], R[k])
+            x, P = states[rows[k], mode], covariances[rows[k], mode]
+            gain[mode] = correct(x, P, z[k], R[k])
         best = max(gain[0], gain[1], gain[2])
         for mode in range(3):
-            weights[k, mode] *= exp(max(gain[mode] - best, -limit))
+            share[mode] *= exp(max(gain[mode] - best, -limit))
         for least in (0.0, floor):
             total = 0.0
             for mode in range(3):
-                weights[k, mode] = max(weights[k, mode], least)
-                total += weights[k, mode]
+                share[mode] = max(share[mode], least)
+                total += share[mode]
             for mode in range(3):
-                weights[k, mode] /= total
+                share[mode] /= total
 
 
 @njit(cache=True)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from navigation import mode_kernel
 from navigation.belief_parameters import TrackingParameters
-from navigation.mode_kernel import BACK, ON, SIZE, STILL
+from navigation.mode_kernel import BACK, ON, SIZE, STILL, Rows
 
 Array = NDArray[np.float64]
 
@@ -92,15 +92,16 @@ def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
     return mixed
 
 
-def surprise(modes: Modes, z: Array, R: Array) -> Array:
-    """Squared Mahalanobis distance of each obstacle's position to its nearest mode (n,).
+def surprise(modes: Modes, rows: Rows, z: Array, R: Array) -> Array:
+    """Squared Mahalanobis distance of some obstacles' positions to their nearest modes (m,).
 
     Args:
         modes: predicted.
-        z: positions (n, 2) [m].
-        R: their covariances (n, 2, 2) [m²].
+        rows: which obstacles (m,).
+        z: position of each (m, 2) [m].
+        R: its covariance (m, 2, 2) [m²].
     """
-    return mode_kernel.surprise(modes.states, modes.covariances, z, R)
+    return mode_kernel.surprise(modes.states, modes.covariances, rows, z, R)
 
 
 def costs(modes: Modes, z: Array, R: Array, gate: float) -> Array:
@@ -115,18 +116,17 @@ def costs(modes: Modes, z: Array, R: Array, gate: float) -> Array:
     return mode_kernel.costs(*modes, z, R, gate)
 
 
-def update(modes: Modes, z: Array, R: Array, limit: float) -> Modes:
-    """Correct the filters, and weigh the modes by their likelihoods.
+def update(modes: Modes, rows: Rows, z: Array, R: Array, limit: float) -> None:
+    """Correct the filters of some obstacles, and weigh their modes by the likelihoods, in place.
 
     Args:
-        modes: predicted.
-        z: positions (n, 2) [m].
-        R: their covariances (n, 2, 2) [m²].
+        modes: predicted, changed.
+        rows: which obstacles (m,).
+        z: position of each (m, 2) [m].
+        R: its covariance (m, 2, 2) [m²].
         limit: largest ratio of the modes' likelihoods, logarithm [1].
     """
-    corrected = Modes(*(part.copy() for part in modes))
-    mode_kernel.update(*corrected, z, R, limit, FLOOR)
-    return corrected
+    mode_kernel.update(*modes, rows, z, R, limit, FLOOR)
 
 
 def mean(modes: Modes) -> Array:

@@ -16,7 +16,7 @@ from navigation.association import assign, overlapping
 from navigation.belief import Motion, Track
 from navigation.belief_parameters import TrackingParameters
 from navigation.correlated_noise import variance_inflation
-from navigation.motion_modes import STILL, Modes
+from navigation.motion_modes import Modes
 from navigation.observation import Observation
 from navigation.sightings import Sightings
 from navigation.tracked_object import TrackedObject
@@ -47,6 +47,7 @@ class Tracker:
         self._parameters = parameters
         self._rng = rng
         self._objects: list[TrackedObject] = []
+        self._stacked_ids: list[int] = []
         self._time: float | None = None
         self._freed: Mask = np.zeros(0, np.bool_)
         self._next_id = 1
@@ -84,18 +85,24 @@ class Tracker:
         self._objects.clear()
 
     def _predict(self, dt: float) -> Modes:
-        """Carry everything on by `dt` [s]; the filters of all obstacles, stacked."""
+        """Carry everything on by `dt` [s]; the filters of all obstacles, each one's its rows."""
         p = self._parameters
-        # For arrays as small as these np.array is several times faster than np.stack.
-        parts = zip(*(o.modes for o in self._objects), strict=True)
-        modes = Modes(*(np.array(part) for part in parts))
-        if dt > 0.0:
-            modes = motion_modes.predict(modes, dt, p)
-            for i, o in enumerate(self._objects):
-                o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
-                if o.particles is not None:
-                    o.particles = track_particles.advance(o.particles, dt, p, self._rng)
+        modes = self._modes = motion_modes.predict(self._stacked(), dt, p)
+        for o, *parts in zip(self._objects, *modes, strict=True):
+            o.modes = Modes(*parts)
+            if o.particles is not None:
+                o.particles = track_particles.advance(o.particles, dt, p, self._rng)
         return modes
+
+    def _stacked(self) -> Modes:
+        """The filters of all obstacles, one after the other."""
+        ids = [o.id for o in self._objects]
+        if ids != self._stacked_ids:
+            self._stacked_ids = ids
+            # For arrays as small as these np.array is several times faster than np.stack.
+            parts = zip(*(o.modes for o in self._objects), strict=True)
+            self._modes = Modes(*(np.array(part) for part in parts))
+        return self._modes
 
     def _costs(self, time: float, seen: Sightings, modes: Modes) -> Array:
         """Cost of every track with every sighting against the sighting being new (n, m).
@@ -124,27 +131,25 @@ class Tracker:
         return costs
 
     def _correct(
-        self, time: float, pairs: list[tuple[int, int]], seen: Sightings, predicted: Modes
+        self, time: float, pairs: list[tuple[int, int]], seen: Sightings, modes: Modes
     ) -> None:
         """Update the filters, verdict and radius of the tracks that were detected."""
         if not pairs:
             return
         p = self._parameters
-        rows, columns = (list(indices) for indices in zip(*pairs, strict=True))
-        objects = [self._objects[row] for row in rows]
+        rows, columns = np.array(pairs).T.copy()
+        objects = [self._objects[row] for row in rows.tolist()]
         z, raw = seen.positions[columns], seen.covariances[columns]
         inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o in objects]
         R = raw * np.array(inflation)[:, None, None]
-        modes = Modes(*(part[rows] for part in predicted))
-        surprise = motion_modes.surprise(modes, z, raw)
+        surprise = motion_modes.surprise(modes, rows, z, raw)
         for i in np.flatnonzero(surprise > p.gate).tolist():
             # Nothing explains where it is: what was known of its motion is void.
-            moving = max(float(1.0 - modes.weights[i, STILL]), 0.5)
+            k, moving = rows[i], max(float(objects[i].modes.moving), 0.5)
             begun = motion_modes.begun(z[i], raw[i], moving, p)
-            modes.weights[i], modes.states[i], modes.covariances[i] = begun
-        modes = motion_modes.update(modes, z, R, p.evidence)
-        for i, (o, column) in enumerate(zip(objects, columns, strict=True)):
-            o.modes = Modes(modes.weights[i], modes.states[i], modes.covariances[i])
+            modes.weights[k], modes.states[k], modes.covariances[k] = begun
+        motion_modes.update(modes, rows, z, R, p.evidence)
+        for i, (o, column) in enumerate(zip(objects, columns.tolist(), strict=True)):
             self._widen(o, seen.observations[column], inflation[i])
             o.hits += 1
             o.misses = 0

@@ -21,7 +21,7 @@ def watch(modes, places, R=R, rng=None):
     for place in places:
         modes = motion_modes.predict(modes, DT, P)
         z = np.array([place]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
-        modes = motion_modes.update(modes, z, R[None], P.evidence)
+        motion_modes.update(modes, np.array([0]), z, R[None], P.evidence)
     return modes
 
 
@@ -113,7 +113,7 @@ def test_covariances_stay_positive_definite_over_100000_updates():
         Q = np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
         noise = Q @ (sigma[:, :, None] ** 2 * np.eye(2)) @ np.swapaxes(Q, 1, 2)
         z = z + rng.normal(0, 0.03, (n, 2))
-        modes = motion_modes.update(modes, z, noise, P.evidence)
+        motion_modes.update(modes, np.arange(n), z, noise, P.evidence)
         C = modes.covariances
         assert np.array_equal(C, np.swapaxes(C, 2, 3))
         assert np.linalg.eigvalsh(C[:, ON:]).min() > 0.0
@@ -198,7 +198,9 @@ def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit
     ratio = still.logpdf(z[0]) - on.logpdf(z[0])
     assert 0.1 < ratio < 2.0
     for limit in (10.0, 0.5 * ratio):
-        after = motion_modes.update(modes, z, R[None], limit).weights[0]
+        corrected = Modes(*(a.copy() for a in modes))
+        motion_modes.update(corrected, np.array([0]), z, R[None], limit)
+        after = corrected.weights[0]
         assert np.log(after[STILL] / after[ON]) == pytest.approx(min(ratio, limit), abs=1e-4)
         assert after.sum() == pytest.approx(1.0)
 
@@ -217,3 +219,13 @@ def test_a_bend_is_found_and_followed(turn):
     ahead = angle[-1] + turn * DT * np.arange(1, round(1.0 / DT) + 1)
     met = places[-1] + 0.1 * DT * np.array([np.cos(ahead).sum(), np.sin(ahead).sum()])
     assert later.states[0, ON, :2] == pytest.approx(met, abs=0.01)
+
+
+def test_only_what_was_seen_is_corrected():
+    both = Modes(*(np.repeat(a, 2, axis=0) for a in one()))
+    z = np.array([[1.01, 0.0]])
+    motion_modes.update(both, np.array([1]), z, R[None], P.evidence)
+    seen = one()
+    motion_modes.update(seen, np.array([0]), z, R[None], P.evidence)
+    for parts, before, after in zip(both, one(), seen, strict=True):
+        assert np.array_equal(parts, np.concatenate([before, after]))
