@@ -1,6 +1,6 @@
 """Bends: the mean velocity of what turns while it moves."""
 
-from math import cos, pi, sin
+from math import cos, sin
 
 import numpy as np
 from numba import njit

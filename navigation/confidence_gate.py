@@ -53,6 +53,6 @@ def gate_vote(
     points = gate_points(belief.pose, float(belief.pose[2]) + way, g)
     if float(np.min(belief.local_map.confidence_at(points))) >= g.confidence:
         return []
-    pan = float(np.clip(way, -p.pan_limit, p.pan_limit))
+    pan = min(max(way, -p.pan_limit), p.pan_limit)
     tilt = -float(np.arctan2(height, 0.5 * (g.near + g.far)))
     return [Votes.one(pan, tilt, weight)]

@@ -6,6 +6,7 @@ must be renewed, and a lost mover votes wherever it may be.
 """
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from navigation.gaze_scene import GazeScene, relative, to_field
 from navigation.integrated_gaze import beacon_votes
 from navigation.obstacle_set import largest_deviation
 from navigation.overdue import AGE_LIMIT, LEAST_TIME
+from navigation.partial_evaluation import SamplePoints
 
 Array = NDArray[np.float64]
 
@@ -64,7 +66,7 @@ def deadline_votes(
         obstacle_deadlines(scene, belief, way, speed, parameters),
         map_deadlines(scene, belief, way, speed, parameters),
         Votes.one(
-            float(np.clip(way, -p.pan_limit, p.pan_limit)),
+            min(max(way, -p.pan_limit), p.pan_limit),
             float(-np.arctan2(height, _WAY_DISTANCE)),
             p.deadline.way_weight,
         ),
@@ -160,13 +162,18 @@ def map_deadlines(
     """Votes of ground not seen for long; arguments as `deadline_votes`."""
     p, d = parameters.gaze, parameters.gaze.deadline
     reach = p.pan_limit + p.box_share * belief.view.horizontal_fov
-    rays = _RAYS[np.abs(_RAYS) <= reach]
-    distance, bearing = (a.ravel() for a in np.meshgrid(_RINGS, rays, indexing="ij"))
-    points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
-    age = np.minimum(AGE_LIMIT, belief.local_map.age_at(to_field(points, belief.pose)))
+    ground = _ground(reach)
+    distance, bearing = ground.distance, ground.bearing
+    age = np.minimum(AGE_LIMIT, belief.local_map.age_at(to_field(ground.points, belief.pose)))
     approach = speed * (_MAP_SPEED + np.maximum(0.1, np.cos(bearing - way)))
     room = distance - 2.0 * parameters.univector.s_robot
     contact = np.maximum(LEAST_TIME, room / approach)
     value = d.map_weight * np.minimum(d.urgency_limit, age / contact) ** d.exponent
     tilt = -np.arctan2(scene.camera_height, distance)
     return Votes(wrap_array(bearing), tilt, value)
+
+
+@cache
+def _ground(reach: float) -> SamplePoints:
+    """The ground that votes, as far round as the gaze sees, `reach` [rad]."""
+    return SamplePoints.of(_RINGS, _RAYS[np.abs(_RAYS) <= reach])

@@ -120,10 +120,10 @@ class GazeGrid:
         if top <= 0.0:
             return pan, tilt
         labels, count = ndimage.label(gaze_map >= top - _FLAT * max(1.0, top))
-        sizes = np.bincount(labels.ravel())[1:]
+        sizes = np.bincount(labels.ravel())[1:].tolist()
         best: tuple[float, float, int] | None = None
         for label in range(1, count + 1):
-            if sizes[label - 1] < sizes.max():
+            if sizes[label - 1] < max(sizes):
                 continue
             row, column = self._centre(labels == label)
             distance = abs(self.pan[column] - pan) + abs(self.tilt[row] - tilt)
@@ -135,7 +135,8 @@ class GazeGrid:
 
     def _centre(self, member: NDArray[np.bool_]) -> tuple[int, int]:
         rows, columns = np.nonzero(member)
-        centre_row, centre_column = float(rows.mean()), float(columns.mean())
+        count = len(rows)
+        centre_row, centre_column = int(rows.sum()) / count, int(columns.sum()) / count
         row, column = round(centre_row), round(centre_column)
         if member[row, column]:
             return row, column

@@ -158,17 +158,9 @@ class MotionField:
         )
         away = np.asarray(points)[..., None, :] - centres
         ramp = nearness(np.hypot(away[..., 0], away[..., 1]), radii, d_e, p.d_b)
-        shape = np.shape(points)[:-1]
         g = np.array([[cos(f.direction), sin(f.direction)] for f in forces]).reshape(-1, 2)
         weight = np.array([f.weight for f in forces])
-        return blended_sum(
-            u_muf,
-            u_auf,
-            ramp,
-            np.broadcast_to(g, (*shape, *g.shape)),
-            np.broadcast_to(weight, (*shape, *weight.shape)),
-            virtual_weight=p.virtual_weight,
-        )
+        return blended_sum(u_muf, u_auf, ramp, g, weight, virtual_weight=p.virtual_weight)
 
     def own_forces(
         self, pose: Array, velocity: Array, scene: FieldScene

@@ -35,7 +35,11 @@ class SamplePoints:
         p = parameters
         rings = np.arange(p.d_nm, p.d_fm + 1e-9, p.ring_step)
         count = int(pan_limit / p.ray_step + 1e-9)
-        rays = p.ray_step * np.arange(-count, count + 1, dtype=np.float64)
+        return cls.of(rings, p.ray_step * np.arange(-count, count + 1, dtype=np.float64))
+
+    @classmethod
+    def of(cls, rings: Array, rays: Array) -> "SamplePoints":
+        """Points at every distance (m,) [m] on every ray (l,) [rad], m l of them."""
         distance, bearing = (a.ravel() for a in np.meshgrid(rings, rays, indexing="ij"))
         points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
         return cls(distance, bearing, points)

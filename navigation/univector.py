@@ -36,7 +36,7 @@ def weighted_sum(u_muf: Array, u_auf: Array, w_muf: float, w_auf: float) -> Arra
 def nearness(rho: Array, s_oe: Array, d_e: ArrayLike, d_b: float) -> Array:
     """Ramp of an obstacle: 1 up to S_oe + d_e/2, falling to 0 at S_oe + d_e + d_b (..., n)."""
     half = 0.5 * np.asarray(d_e)
-    ramp: Array = np.clip(1.0 - (rho - s_oe - half) / (half + d_b), 0.0, 1.0)
+    ramp: Array = np.minimum(1.0, np.maximum(0.0, 1.0 - (rho - s_oe - half) / (half + d_b)))
     return ramp
 
 
@@ -58,8 +58,8 @@ def blended_sum(
         u_muf: unit vectors (..., 2).
         u_auf: of n obstacles (..., n, 2).
         ramp: their nearness (..., n).
-        u_virtual: directions at m dynamic virtual obstacles (..., m, 2).
-        weight: their f in [0, 1] (..., m).
+        u_virtual: directions at m dynamic virtual obstacles (..., m, 2), or (m, 2) for all.
+        weight: their f in [0, 1] (..., m), or (m,) for all.
         virtual_weight: weight of virtual against real obstacles.
 
     Returns:
