@@ -120,10 +120,10 @@ class GazeGrid:
         if top <= 0.0:
             return pan, tilt
         labels, count = ndimage.label(gaze_map >= top - _FLAT * max(1.0, top))
-        sizes = np.bincount(labels.ravel())[1:].tolist()
+        sizes = np.bincount(labels.ravel())[1:]
         best: tuple[float, float, int] | None = None
         for label in range(1, count + 1):
-            if sizes[label - 1] < max(sizes):
+            if sizes[label - 1] < sizes.max():
                 continue
             row, column = self._centre(labels == label)
             distance = abs(self.pan[column] - pan) + abs(self.tilt[row] - tilt)
@@ -135,8 +135,7 @@ class GazeGrid:
 
     def _centre(self, member: NDArray[np.bool_]) -> tuple[int, int]:
         rows, columns = np.nonzero(member)
-        count = len(rows)
-        centre_row, centre_column = int(rows.sum()) / count, int(columns.sum()) / count
+        centre_row, centre_column = float(rows.mean()), float(columns.mean())
         row, column = round(centre_row), round(centre_column)
         if member[row, column]:
             return row, column

@@ -1,7 +1,6 @@
 """What the collision filter must not touch: tracks, particles of lost movers, reversals."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from navigation.belief import Track
 from navigation.bend import mean_velocity
 from navigation.decision_parameters import FilterParameters
 from navigation.obstacle_set import ObstacleSet
+from navigation.value import value
 
 if TYPE_CHECKING:
     from navigation.local_map import LocalMap
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Hypotheses:
     """m discs that may be where they say, moving at constant velocity.
 

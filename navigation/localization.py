@@ -10,6 +10,7 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation import pose_kernel
 from navigation.angles import wrap
 from navigation.belief_parameters import LocalizationParameters
 from navigation.observation import Frame, Observation
@@ -147,11 +148,7 @@ class Localizer:
         fit = np.flatnonzero(f.distances(z, noise, places) <= self._parameters.gate)
         if len(fit) == 0:
             return []
-        R = np.zeros((2 * len(fit), 2 * len(fit)))
-        smallest = float(noise[fit, 1, 1].min())
-        R[1::2, 1::2] = min(frame.view.yaw_sigma**2, SHARED_LIMIT * smallest)
-        for i, k in enumerate(fit.tolist()):
-            R[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = noise[k]
+        R = pose_kernel.together(noise[fit], frame.view.yaw_sigma**2, SHARED_LIMIT)
         f.correct(z[fit], R, places[fit])
         self._sound = f.x.copy()
         return [beacons[k].label for k in fit.tolist()]

@@ -170,6 +170,28 @@ def cross_covariance(
 
 
 @njit(cache=True)
+def together(noise: Array, shared: float, limit: float) -> Array:
+    """Covariance (2 k, 2 k) of sightings whose bearings have one error in common.
+
+    Args:
+        noise: covariance of every sighting by itself (k, 2, 2).
+        shared: variance of the common error [rad²].
+        limit: largest share that it may have in the variance of a bearing [1].
+    """
+    n = len(noise)
+    common, covariance = shared, np.zeros((2 * n, 2 * n))
+    for i in range(n):
+        common = min(common, limit * noise[i, 1, 1])
+    for i in range(n):
+        for j in range(n):
+            covariance[2 * i + 1, 2 * j + 1] = common
+        for a in range(2):
+            for b in range(2):
+                covariance[2 * i + a, 2 * i + b] = noise[i, a, b]
+    return covariance
+
+
+@njit(cache=True)
 def distances(
     poses: Array, mean_weights: Array, weights: Array, landmarks: Array, z: Array, noise: Array
 ) -> Array:

@@ -40,6 +40,7 @@ def test_compiled_and_plain_agree(drawn):
         (kernel.transform, (points, mean_weights, weights, P, 3)),
         (kernel.cross_covariance, (points, pose, seen, seen[0], weights, 2)),
         (kernel.distances, (points, mean_weights, weights, landmarks, z, noise)),
+        (kernel.together, (noise, 2e-5, 0.9)),
     ):
         assert same(function(*arguments), function.py_func(*arguments))
 
@@ -99,3 +100,17 @@ def test_the_cross_covariance_is_the_weighted_sum_of_outer_products(drawn):
     dz[:, 1::2] = wrap_array(dz[:, 1::2])
     wanted = np.einsum("k,ki,kj->ij", weights, dx, dz)
     assert kernel.cross_covariance(points, pose, seen, seen[0], weights, 2) == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(("shared", "common"), [(2e-5, 2e-5), (1.0, 0.9e-4)])
+def test_bearings_have_one_error_in_common_and_are_no_surer_for_it(shared, common):
+    A = np.random.default_rng(1).standard_normal((3, 2, 2))
+    noise = 1e-3 * A @ np.swapaxes(A, 1, 2)
+    noise[:, 1, 1] = 3e-4, 1e-4, 2e-4
+    noise[:, 0, 0] = 1.0
+    found = kernel.together(noise, shared, 0.9)
+    wanted = np.kron(np.ones((3, 3)), np.diag([0.0, common]))
+    for i in range(3):
+        wanted[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = noise[i]
+    assert np.array_equal(found, wanted)
+    assert np.linalg.eigvalsh(found).min() > 0.0
