@@ -1,9 +1,9 @@
 """What became of a command: what was asked, what is given, and what stood in the way."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 from walking.command import Command
+from walking.value import value
 
 
 class Limit(StrEnum):
@@ -27,7 +27,7 @@ class Limit(StrEnum):
     FALLEN = "fallen"
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class AdmissionReport:
     """One tick's answer to the command.
 

@@ -39,6 +39,8 @@ class FootstepPlanner:
         self._near = PLACE_TOLERANCE * gait.half_stance
         self._stance = (STANCE_TOLERANCE * gait.half_stance, STANCE_TURN)
         self.sole = sole
+        self._heel = sole.centre - sole.half_length
+        self._toe = sole.centre + sole.half_length
         self._asked: tuple[Velocity, float] = (STILL, gait.footstep_time)
         self.still = self._strides = self._make(STILL, gait.footstep_time)
         self._cadence: tuple[Velocity, Timing] = (STILL, self._timing(gait.footstep_time))
@@ -272,12 +274,10 @@ class FootstepPlanner:
 
     def _clear(self, y: float, turned: float, side: float, clearance: float) -> float:
         """Lateral landing with every corner clear of the strip of the support foot."""
-        sole = self.sole
-        heel = sole.centre - sole.half_length
-        toe = sole.centre + sole.half_length
+        width = self.sole.half_width
         s = side * sin(turned)
-        inner = min(s * heel, s * toe) - sole.half_width * cos(turned)
-        nearest = sole.half_width + clearance - inner
+        inner = min(s * self._heel, s * self._toe) - width * cos(turned)
+        nearest = width + clearance - inner
         return side * max(side * y, nearest)
 
     @staticmethod

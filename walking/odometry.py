@@ -1,6 +1,5 @@
 """Where the robot went: support-foot kinematics with the IMU's heading."""
 
-from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from walking import estimation_kernel
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.state import Odometry
+from walking.value import value
 
 Array = NDArray[np.float64]
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 COVARIANCE = np.array([[14, 15, 16], [15, 17, 18], [16, 18, 19]])
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Increment:
     """Motion of the robot frame between two readings of the odometry.
 

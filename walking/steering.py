@@ -55,6 +55,7 @@ class Steering:
         self._state: CommandState | None = None
         self._bound: list[Limit] = []
         self._steady: Steady | None = None
+        self._too_fast: tuple[VelocityCommand | None, list[Limit]] = (None, [])
         self.timing = planner.cadence(self.velocity)
 
     @property
@@ -158,7 +159,7 @@ class Steering:
             return
         if self._state is not None or self._differs(limited(command, self._limits)):
             bound.append(Limit.BALANCE)
-        bound.extend(speed_limits(command, self._limits))
+        bound.extend(self._speed_limits(command))
         if self._state is None:
             bound.extend(self._planner.stride_limits(self.velocity, self.timing.duration))
 
@@ -166,7 +167,18 @@ class Steering:
         """Whether the robot is not meant to have a velocity; from standing any is another."""
         if wanted == STILL:
             return self._slew.moving
-        return max(abs(a - b) for a, b in zip(self.velocity, wanted, strict=True)) > SAME_SPEED
+        forward, left, turn = self.velocity
+        return (
+            abs(forward - wanted[0]) > SAME_SPEED
+            or abs(left - wanted[1]) > SAME_SPEED
+            or abs(turn - wanted[2]) > SAME_SPEED
+        )
+
+    def _speed_limits(self, command: VelocityCommand) -> list[Limit]:
+        """Limits that alter the speed of a command, which stays for many ticks."""
+        if command is not self._too_fast[0]:
+            self._too_fast = (command, speed_limits(command, self._limits))
+        return self._too_fast[1]
 
     def _follow_velocity(self, command: VelocityCommand, share: float) -> None:
         before, self._state = self._state, None
@@ -179,7 +191,7 @@ class Steering:
         if self._selective and command.velocity == STILL:
             self._slew.start(STILL)
         wanted = self._slew.follow(dared)
-        bound.extend(speed_limits(command, self._limits))
+        bound.extend(self._speed_limits(command))
         given = self.velocity
         self.timing = self._planner.cadence(given)
         if self._differs(wanted):

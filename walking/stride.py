@@ -1,8 +1,7 @@
 """What a command makes of a footstep: where each foot goes, how long it takes, how high."""
 
-from dataclasses import dataclass
-
 from walking.parameters import CONTROL_PERIOD
+from walking.value import value
 
 Velocity = tuple[float, float, float]
 """Forward [m/s], left [m/s], turn [rad/s]."""
@@ -13,7 +12,7 @@ Placement = tuple[float, float, float]
 """Landing in the frame of the support foot: x [m], y [m], direction [rad]."""
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Strides:
     """Landing of either foot in the frame of the other.
 
@@ -32,7 +31,7 @@ class Strides:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@value
 class Timing:
     """Clock and lift of a footstep.
 
