@@ -26,7 +26,7 @@ from walking.posture import ready_stance
 from walking.pressure_hold import PressureHold
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
-from walking.snapshot import PlanToOdometry, balance, camera_pose
+from walking.snapshot import camera_pose, plan_seen
 from walking.speed_hold import SpeedHold
 from walking.stabilizer import Stabilizer
 from walking.state import WalkingState
@@ -188,38 +188,32 @@ class WalkingEngine:
             raise RuntimeError("the walking engine has no state before its first tick")
         gait, pendulum = self._gait, self._pendulum
         odometry = self._odometry.pose()
-        plan = PlanToOdometry(gait.footholds[gait.support], body, gait.support, odometry)
-        w = self._lipm.omega
+        plan = plan_seen(
+            gait,
+            pendulum,
+            body,
+            odometry,
+            error=self._estimation.com_error,
+            omega=self._lipm.omega,
+            footing=self._footing,
+            capture=self._placement.moved,
+        )
         c, s = cos(odometry.yaw), sin(odometry.yaw)
         x, y, _ = body.com
-        zmp, dcm = plan.points(
-            [
-                (pendulum.zmp_x, pendulum.zmp_y),
-                (pendulum.x + pendulum.vx / w, pendulum.y + pendulum.vy / w),
-            ]
-        )
         return WalkingState(
             phase=gait.phase,
             odometry=odometry,
             camera=camera_pose(self._robot, self._sensors, body),
             given=np.array(self._placement.given),
-            footsteps=plan.footsteps(gait.footsteps()),
-            zmp=zmp,
-            dcm=dcm,
+            footsteps=plan.footsteps,
+            zmp=plan.zmp,
+            dcm=plan.dcm,
             com=np.array([odometry.x + c * x - s * y, odometry.y + s * x + c * y]),
             roll=body.roll,
             pitch=body.pitch,
             step_count=gait.completed,
             fallen=self.fallen,
-            balance=balance(
-                plan,
-                gait,
-                pendulum,
-                error=self._estimation.com_error,
-                omega=w,
-                footing=self._footing,
-                capture=self._placement.moved,
-            ),
+            balance=plan.balance,
             admission=self.admission,
         )
 

@@ -296,7 +296,9 @@ class Gait:
         support = self.footholds[self.support]
         if not self.stepping:
             return np.array([support.row, self.footholds[self.swing].row])
-        return np.array([support.row, *self._future.tolist()])
+        rows = np.empty((1 + len(self._future), 4))
+        rows[0], rows[1:] = support.row, self._future
+        return rows
 
     def touch_down(self) -> None:
         """The swing foot has met the floor early: leave it where it is."""

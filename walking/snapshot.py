@@ -1,6 +1,5 @@
 """The engine's state as others see it, in the odometry frame."""
 
-from collections.abc import Sequence
 from math import cos, sin
 
 import numpy as np
@@ -16,54 +15,29 @@ from walking.sensing import BodySensors
 from walking.state import Balance, Footstep, HeadCameraPose, Odometry, foothold
 from walking.support import Footing
 from walking.swing_foot_kernel import HEIGHT
+from walking.value import value
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
-YAW = 2  # column of a foot's direction
+BALANCE = np.array([0, 1, HEIGHT, 2])  # columns of a foot's reference as `Balance` has them
 
 
-class PlanToOdometry:
-    """Rigid transform that puts the planned support foot where odometry sees it.
+@value
+class PlanSeen:
+    """What a snapshot tells of the plan, all of it in the odometry frame; see `WalkingState`.
 
-    Args:
-        planned: support foot in the plan frame.
-        body: measured body.
-        support: index of the support foot.
-        odometry: pose of the robot frame.
+    Attributes:
+        footsteps: planned footholds, the support foot first.
+        zmp: planned zero-moment point (2,) [m].
+        dcm: planned divergent component of motion (2,) [m].
+        balance: planned and measured motion in detail.
     """
 
-    def __init__(
-        self, planned: Footstep, body: BodyMeasurement, support: int, odometry: Odometry
-    ) -> None:
-        foot = body.feet[support]
-        self._frame = snapshot_kernel.frame_of(
-            (planned.x, planned.y, planned.yaw),
-            (foot.x, foot.y, foot.yaw),
-            (odometry.x, odometry.y, odometry.yaw),
-        )
-
-    def points(self, points: Sequence[Point]) -> Array:
-        """Points of the plan frame in the odometry frame (n, 2) [m]."""
-        table = np.array(points)
-        snapshot_kernel.place(self._frame, table, -1)
-        return table
-
-    def vector(self, x: float, y: float) -> Array:
-        """A direction of the plan frame in the odometry frame (2,)."""
-        return np.array(snapshot_kernel.turn(self._frame, (x, y)))
-
-    def footsteps(self, rows: Array) -> tuple[Footstep, ...]:
-        """Footholds of the plan frame, see `Footstep.row`, in the odometry frame."""
-        table = rows.copy()
-        snapshot_kernel.place(self._frame, table, YAW)
-        return tuple(foothold(row) for row in table.tolist())
-
-    def feet(self, feet: Array) -> Array:
-        """References of the feet as `Balance` has them (2, 4)."""
-        table = feet.take((0, 1, HEIGHT, YAW), axis=1)
-        snapshot_kernel.place(self._frame, table, 3)
-        return table
+    footsteps: tuple[Footstep, ...]
+    zmp: Array
+    dcm: Array
+    balance: Balance
 
 
 def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
@@ -78,36 +52,57 @@ def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) 
     return HeadCameraPose(rotation=R_RB @ R_BC, position=position, pan=pan, tilt=tilt)
 
 
-def balance(
-    plan: PlanToOdometry,
+def plan_seen(
     gait: Gait,
     pendulum: PendulumState,
+    body: BodyMeasurement,
+    odometry: Odometry,
     *,
     error: tuple[float, float, float, float],
     omega: float,
     footing: Footing,
-    capture: tuple[float, float],
-) -> Balance:
-    """Planned and measured motion of one tick in the odometry frame.
+    capture: Point,
+) -> PlanSeen:
+    """The plan where the planned support foot stands as odometry sees it.
 
     Args:
-        plan: transform from the plan frame.
-        gait: references of the feet.
+        gait: references of the feet, and the footsteps to come.
         pendulum: planned motion.
-        error: of the body against it, x, y [m], vx, vy [m/s].
+        body: as measured.
+        odometry: pose of the robot frame.
+        error: of the body against the plan, x, y [m], vx, vy [m/s].
         omega: of the pendulum [1/s].
         footing: soles that carry.
         capture: what balance adds to the landing, plan frame [m].
     """
     ex, ey, evx, evy = error
-    x, y = pendulum.x, pendulum.y
-    dcm = x + ex + (pendulum.vx + evx) / omega, y + ey + (pendulum.vy + evy) / omega
-    placed = plan.points([(x, y), dcm, *footing.polygon()])
-    return Balance(
-        com=placed[0],
-        dcm=placed[1],
-        support=placed[2:],
-        zmp_depth=footing.depth(pendulum.zmp_x, pendulum.zmp_y),
-        feet=plan.feet(gait.feet),
-        capture=plan.vector(*capture),
+    x, y, vx, vy = pendulum.x, pendulum.y, pendulum.vx, pendulum.vy
+    zmp = (pendulum.zmp_x, pendulum.zmp_y)
+    planned = (x + vx / omega, y + vy / omega)
+    measured = (x + ex + (vx + evx) / omega, y + ey + (vy + evy) / omega)
+    points = np.array([zmp, planned, (x, y), measured, *footing.polygon()])
+    feet = gait.feet.take(BALANCE, axis=1)
+    footsteps = gait.footsteps()
+    support, foot = gait.footholds[gait.support], body.feet[gait.support]
+    turned = snapshot_kernel.bring_over(
+        (support.x, support.y, support.yaw),
+        (foot.x, foot.y, foot.yaw),
+        (odometry.x, odometry.y, odometry.yaw),
+        points,
+        feet,
+        footsteps,
+        capture,
+    )
+    return PlanSeen(
+        footsteps=tuple(map(foothold, footsteps.tolist())),
+        zmp=points[0],
+        dcm=points[1],
+        balance=Balance(
+            com=points[2],
+            dcm=points[3],
+            support=points[4:],
+            zmp_depth=footing.depth(*zmp),
+            feet=feet,
+            capture=np.array(turned),
+        ),
     )

@@ -15,6 +15,37 @@ Frame = tuple[float, float, float, float, float]
 
 
 @njit(cache=True)
+def bring_over(
+    planned: Vector,
+    foot: Vector,
+    odometry: Vector,
+    points: Array,
+    feet: Array,
+    footsteps: Array,
+    way: Point,
+) -> Point:
+    """Bring all that a snapshot shows of the plan over into the odometry frame.
+
+    Args:
+        planned: see `frame_of`.
+        foot: see `frame_of`.
+        odometry: see `frame_of`.
+        points: x, y [m], brought over (n, 2).
+        feet: x, y, height [m], yaw [rad], brought over (2, 4).
+        footsteps: x, y [m], yaw [rad] first, brought over (m, 4).
+        way: a direction of the plan frame.
+
+    Returns:
+        the direction in the odometry frame.
+    """
+    frame = frame_of(planned, foot, odometry)
+    place(frame, points, -1)
+    place(frame, feet, 3)
+    place(frame, footsteps, 2)
+    return turn(frame, way)
+
+
+@njit(cache=True)
 def frame_of(planned: Vector, foot: Vector, odometry: Vector) -> Frame:
     """Where the plan frame is if the planned foot stands where odometry sees it.
 

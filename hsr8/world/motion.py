@@ -191,6 +191,9 @@ class Movers:
         self._speed = np.array([lane[2] for lane in lanes], dtype=float)
         self._length = np.array([lane[3] for lane in lanes], dtype=float)
         self._offset = np.array([lane[4] for lane in lanes], dtype=float)
+        self._round_trip = 2.0 * self._length
+        self._there = self._speed[:, None] * self._way
+        self._back = -self._there
         circles = [law for law in laws if isinstance(law, Circle)]
         self._centre = np.array([c.centre for c in circles], dtype=float).reshape(-1, 2)
         self._radius = np.array([c.radius for c in circles], dtype=float)
@@ -203,8 +206,8 @@ class Movers:
     def positions(self, time: float | Array) -> Array:
         """Positions at `time` [s], of any shape (...), in layout order (..., n, 2) [m]."""
         time = np.asarray(time, dtype=float)[..., None]
-        gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
-        along = np.minimum(gone, 2.0 * self._length - gone)
+        gone = np.mod(self._offset + self._speed * time, self._round_trip)
+        along = np.minimum(gone, self._round_trip - gone)
         straight: Array = self._origin + along[..., None] * self._way
         if self._all_straight:
             return straight
@@ -218,9 +221,8 @@ class Movers:
 
     def velocities(self, time: float) -> Array:
         """Velocities at `time` [s], layout order (n, 2) [m/s]."""
-        gone = np.mod(self._offset + self._speed * time, 2.0 * self._length)
-        speed = np.where(gone < self._length, self._speed, -self._speed)
-        straight: Array = speed[:, None] * self._way
+        gone = np.mod(self._offset + self._speed * time, self._round_trip)
+        straight: Array = np.where((gone < self._length)[:, None], self._there, self._back)
         if self._all_straight:
             return straight
         angle = self._angle + self._rim_speed / self._radius * time

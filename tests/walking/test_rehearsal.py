@@ -36,7 +36,7 @@ from walking.rehearsal import rehearse
         (leg_kernel, "offsets"),
         (head_kernel, "advance"),
         (head_kernel, "camera_pose"),
-        (snapshot_kernel, "place"),
+        (snapshot_kernel, "bring_over"),
     ],
 )
 def test_it_calls_what_a_tick_calls(robot, monkeypatch, module, name):

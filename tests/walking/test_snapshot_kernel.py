@@ -53,3 +53,23 @@ def test_compiled_it_is_what_it_says(plainly, seed, yaw):
         call("place", frame, own, yaw)
         outcomes.append((frame, own.tolist(), call("turn", frame, vector)))
     assert outcomes[0] == outcomes[1]
+
+
+@settings(max_examples=30)
+@given(SEEDS)
+def test_all_that_a_snapshot_shows_is_brought_over_alike(plainly, seed):
+    rng, motion = draw(seed)
+    tables = [rng.uniform(-1.0, 1.0, shape) for shape in ((8, 2), (2, 4), (5, 4))]
+    way, outcomes = (0.3, -0.2), []
+    for call in (
+        snapshot_kernel.bring_over,
+        lambda *a: plainly(snapshot_kernel, "bring_over", *a),
+    ):
+        own = [table.copy() for table in tables]
+        turned = call(*motion, *own, way)
+        outcomes.append((turned, *(table.tolist() for table in own)))
+    assert outcomes[0] == outcomes[1]
+    frame = frame_of(*motion)
+    for table, yaw in zip(tables, (-1, 3, 2), strict=True):
+        place(frame, table, yaw)
+    assert outcomes[0] == (turn(frame, way), *(table.tolist() for table in tables))
