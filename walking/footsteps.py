@@ -2,13 +2,14 @@
 
 from math import cos, sin, sqrt
 
+from walking import stride_kernel
 from walking.admission import Limit
 from walking.command import CommandState
 from walking.foothold_kernel import Chain
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters
 from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.stride import STILL, Placement, Strides, Timing, Velocity
+from walking.stride import STILL, Strides, Timing, Velocity
 
 PLACE_TOLERANCE = 0.024  # between footholds that count as the same, of half the stance [1]
 TURN_TOLERANCE = 1e-3  # between their directions [rad]
@@ -39,8 +40,10 @@ class FootstepPlanner:
         self._near = PLACE_TOLERANCE * gait.half_stance
         self._stance = (STANCE_TOLERANCE * gait.half_stance, STANCE_TURN)
         self.sole = sole
-        self._heel = sole.centre - sole.half_length
-        self._toe = sole.centre + sole.half_length
+        heel, toe = sole.centre - sole.half_length, sole.centre + sole.half_length
+        self._sole = heel, toe, sole.half_width
+        self._build = gait.half_stance, gait.foot_clearance, *self._sole
+        self._longest = limits.step_forward, limits.step_side, limits.step_turn
         self._asked: tuple[Velocity, float] = (STILL, gait.footstep_time)
         self.still = self._strides = self._make(STILL, gait.footstep_time)
         self._cadence: tuple[Velocity, Timing] = (STILL, self._timing(gait.footstep_time))
@@ -92,7 +95,7 @@ class FootstepPlanner:
             command: the command state.
             turn: added to its direction [rad].
         """
-        limits, bound = self._limits, []
+        limits, gap, bound = self._limits, self._gait.foot_clearance, []
         dx = min(limits.step_forward, max(-limits.step_forward, command.forward))
         widest = 2.0 * self._gait.half_stance + limits.step_side
         apart = min(widest, command.side)
@@ -106,16 +109,14 @@ class FootstepPlanner:
             bound.append(Limit.STEP_TURN)
         placements = []
         for side in (-1.0, 1.0):
-            x, y = self._stance_after(dx, 0.0, turned, 0.5 * side * apart)
-            clear = self._clear(y, turned, side, self._gait.foot_clearance)
+            x, y = stride_kernel.stance_after(dx, 0.0, turned, 0.5 * side * apart)
+            clear = stride_kernel.clear(y, turned, side, gap, self._sole)
             if clear != y and Limit.CLEARANCE not in bound:
                 bound.append(Limit.CLEARANCE)
             rx, ry = self._within_reach(x, clear, side)
             if (rx, ry) != (x, clear) and Limit.REACH not in bound:
                 bound.append(Limit.REACH)
-            placements.append(
-                (rx, self._clear(ry, turned, side, self._gait.foot_clearance), turned)
-            )
+            placements.append((rx, stride_kernel.clear(ry, turned, side, gap, self._sole), turned))
         return Strides(right=placements[0], left=placements[1]), bound
 
     def timing(self, command: CommandState) -> tuple[Timing, list[Limit]]:
@@ -156,11 +157,8 @@ class FootstepPlanner:
             bound.append(Limit.STEP_SIDE)
         if 2.0 * abs(turn) * time > limits.step_turn:
             bound.append(Limit.STEP_TURN)
-        for side in (-1.0, 1.0):
-            _, y, turned = self._step(velocity, time, side)
-            if self._clear(y, turned, side, self._gait.foot_clearance) != y:
-                bound.append(Limit.CLEARANCE)
-                break
+        if stride_kernel.strides(velocity, time, self._longest, self._build)[2]:
+            bound.append(Limit.CLEARANCE)
         return bound
 
     def velocity(self, strides: Strides, time: float) -> Velocity:
@@ -186,39 +184,8 @@ class FootstepPlanner:
         return Timing(double, ticks - double, self._gait.lift)
 
     def _make(self, velocity: Velocity, time: float) -> Strides:
-        return Strides(
-            right=self._stride(velocity, time, -1.0), left=self._stride(velocity, time, 1.0)
-        )
-
-    def _stride(self, velocity: Velocity, time: float, side: float) -> Placement:
-        """Landing in the frame of the support foot; `side` is that of the swing foot."""
-        x, y, turned = self._step(velocity, time, side)
-        return x, self._clear(y, turned, side, self._gait.foot_clearance), turned
-
-    def _step(self, velocity: Velocity, time: float, side: float) -> Placement:
-        """The same before it is kept clear of the support foot."""
-        forward, left, turn = velocity
-        gait, limits = self._gait, self._limits
-        dx = min(limits.step_forward, max(-limits.step_forward, forward * time))
-        dy = 2.0 * left * time if left * side > 0.0 else 0.0
-        dy = min(limits.step_side, max(-limits.step_side, dy))
-        turned = 2.0 * turn * time if turn * side > 0.0 else 0.0
-        turned = min(limits.step_turn, max(-limits.step_turn, turned))
-        x, y = self._stance_after(dx, dy, turned, side * gait.half_stance)
-        return x, y, turned
-
-    @staticmethod
-    def _stance_after(dx: float, dy: float, turned: float, stance: float) -> tuple[float, float]:
-        """Landing when the middle of the stance moves along the chord of the arc.
-
-        The foot then stands `stance` beside it in the new direction, in the frame of the
-        support foot [m].
-        """
-        ch, sh = cos(0.5 * turned), sin(0.5 * turned)
-        return (
-            ch * dx - sh * dy - stance * sin(turned),
-            stance + sh * dx + ch * dy + stance * cos(turned),
-        )
+        right, left, _ = stride_kernel.strides(velocity, time, self._longest, self._build)
+        return Strides(right=right, left=left)
 
     def reachable(self, support: Footstep, landing: Footstep, dx: float, dy: float) -> Footstep:
         """`landing` moved by dx, dy [m], kept within reach and clear of the support foot."""
@@ -227,7 +194,7 @@ class FootstepPlanner:
         wx, wy = landing.x + dx - support.x, landing.y + dy - support.y
         x, y = self._within_reach(c * wx + s * wy, c * wy - s * wx, side)
         turned = landing.yaw - support.yaw
-        clear = self._clear(y, turned, side, self._gait.catch_clearance)
+        clear = stride_kernel.clear(y, turned, side, self._gait.catch_clearance, self._sole)
         return self._at(support, x, clear, turned)
 
     def _within_reach(self, x: float, y: float, side: float) -> tuple[float, float]:
@@ -271,14 +238,6 @@ class FootstepPlanner:
             and abs(one.y - other.y) < self._near
             and abs(one.yaw - other.yaw) < TURN_TOLERANCE
         )
-
-    def _clear(self, y: float, turned: float, side: float, clearance: float) -> float:
-        """Lateral landing with every corner clear of the strip of the support foot."""
-        width = self.sole.half_width
-        s = side * sin(turned)
-        inner = min(s * self._heel, s * self._toe) - width * cos(turned)
-        nearest = width + clearance - inner
-        return side * max(side * y, nearest)
 
     @staticmethod
     def _at(support: Footstep, x: float, y: float, turned: float) -> Footstep:

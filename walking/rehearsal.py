@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from walking.command import HeadTarget, VelocityCommand
+from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.robot_model import RobotModel
@@ -34,4 +34,5 @@ def rehearse(robot: RobotModel, parameters: WalkingParameters) -> None:
     forward = VelocityCommand(parameters.limits.forward_acceleration * CONTROL_PERIOD)
     for _ in range(TICKS):
         engine.step(sensors, forward, HeadTarget())
+    engine.step(sensors, CommandState(), HeadTarget())
     engine.state()

@@ -8,6 +8,7 @@ from walking import (
     head_kernel,
     leg_kernel,
     snapshot_kernel,
+    stride_kernel,
     support_kernel,
     swing_foot_kernel,
     swing_kernel,
@@ -37,6 +38,9 @@ from walking.rehearsal import rehearse
         (head_kernel, "advance"),
         (head_kernel, "camera_pose"),
         (snapshot_kernel, "bring_over"),
+        (stride_kernel, "strides"),
+        (stride_kernel, "stance_after"),
+        (stride_kernel, "clear"),
     ],
 )
 def test_it_calls_what_a_tick_calls(robot, monkeypatch, module, name):

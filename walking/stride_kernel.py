@@ -1,0 +1,95 @@
+"""Landings of a velocity in the frame of the support foot, compiled; see `FootstepPlanner`."""
+
+from math import cos, sin
+
+from numba import njit
+
+Vector = tuple[float, float, float]
+Point = tuple[float, float]
+
+Placement = tuple[float, float, float]
+"""x, y [m] and direction [rad] of a landing in the frame of the support foot."""
+
+Build = tuple[float, float, float, float, float]
+"""Half the distance between the feet, gap that they keep; heel and toe ahead of the ankle, half of
+a sole's width [m]."""
+
+
+@njit(cache=True)
+def strides(
+    velocity: Vector, time: float, limits: Vector, build: Build
+) -> tuple[Placement, Placement, bool]:
+    """Landings of a velocity.
+
+    Args:
+        velocity: of the stance's middle (forward, left, turn) [m/s, m/s, rad/s].
+        time: duration of a footstep [s].
+        limits: longest footstep forward and to the side [m], and turn [rad].
+        build: of the feet.
+
+    Returns:
+        landing of the right and of the left foot, and whether one is moved to clear the other foot.
+    """
+    forward, left, turn = velocity
+    half, gap, heel, toe, width = build
+    dx = min(limits[0], max(-limits[0], forward * time))
+    right_x, right_y, right_turn = _opened(dx, left, turn, time, -1.0, limits, half)
+    left_x, left_y, left_turn = _opened(dx, left, turn, time, 1.0, limits, half)
+    right = clear(right_y, right_turn, -1.0, gap, (heel, toe, width))
+    left = clear(left_y, left_turn, 1.0, gap, (heel, toe, width))
+    return (
+        (right_x, right, right_turn),
+        (left_x, left, left_turn),
+        right != right_y or left != left_y,
+    )
+
+
+@njit(cache=True)
+def stance_after(dx: float, dy: float, turned: float, stance: float) -> Point:
+    """Landing when the middle of the stance moves along the chord of the arc.
+
+    Args:
+        dx: of the middle, forward [m].
+        dy: the same to the left [m].
+        turned: of the direction [rad].
+        stance: how far beside the middle the foot then stands in the new direction [m].
+
+    Returns:
+        x, y in the frame of the support foot [m].
+    """
+    ch, sh = cos(0.5 * turned), sin(0.5 * turned)
+    return (
+        ch * dx - sh * dy - stance * sin(turned),
+        stance + sh * dx + ch * dy + stance * cos(turned),
+    )
+
+
+@njit(cache=True)
+def clear(y: float, turned: float, side: float, gap: float, sole: Vector) -> float:
+    """Lateral landing with every corner clear of the strip of the support foot.
+
+    Args:
+        y: wanted [m].
+        turned: direction of the landing [rad].
+        side: of the swing foot, left 1, right -1.
+        gap: that the feet keep [m].
+        sole: heel and toe ahead of the ankle, half of the width [m].
+    """
+    heel, toe, width = sole
+    s = side * sin(turned)
+    inner = min(s * heel, s * toe) - width * cos(turned)
+    nearest = width + gap - inner
+    return side * max(side * y, nearest)
+
+
+@njit(cache=True)
+def _opened(
+    dx: float, left: float, turn: float, time: float, side: float, limits: Vector, half: float
+) -> Placement:
+    """Landing of the foot on a side, which opens the stance if the motion is to that side."""
+    dy = 2.0 * left * time if left * side > 0.0 else 0.0
+    dy = min(limits[1], max(-limits[1], dy))
+    turned = 2.0 * turn * time if turn * side > 0.0 else 0.0
+    turned = min(limits[2], max(-limits[2], turned))
+    x, y = stance_after(dx, dy, turned, side * half)
+    return x, y, turned
