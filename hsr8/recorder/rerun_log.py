@@ -24,7 +24,7 @@ from hsr8.recorder.plot_layer import PlotLayer
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.recorder.walk_layer import WalkLayer
 from hsr8.recorder.walking_table import OdometryToWorld
-from hsr8.recorder.writing import failure
+from hsr8.recorder.writing import refusal
 from hsr8.world.layout import Layout
 from walking.state import Footstep
 
@@ -82,7 +82,7 @@ class RerunLog:
         try:
             self._stream.begin(sinks, shown)
         except RuntimeError as error:
-            raise failure(self._folder, f"the log: {error}") from error
+            raise refusal(self._folder, f"the log: {error}") from error
         self._stream.send_recording_name(name)
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._n_movers = len(layout.movers)
@@ -201,7 +201,7 @@ class RerunLog:
             self._stream.flush(timeout_sec=PATIENCE)
         except RuntimeError as error:
             self._waits = False  # the library would wait in vain again
-            raise failure(self._folder, f"the log: {error}") from error
+            raise refusal(self._folder, f"the log: {error}") from error
 
     def _log_way_points(self, layout: Layout) -> None:
         points = np.asarray(layout.waypoints, float).reshape(-1, 2)

@@ -154,6 +154,8 @@ def _failed(viewer: subprocess.Popen[bytes]) -> UsageError:
     said = ""
     if viewer.poll() is not None and viewer.stderr is not None:
         said = complaint(viewer.stderr.read().decode(errors="replace"))
+    if "Failed to load file" in said:
+        return UsageError(f"the log is damaged, the Rerun viewer cannot read it: {said}")
     return UsageError(
         f"the Rerun viewer did not start{f': {said}' if said else ''}"
         f"\n  without a graphics card it needs Vulkan in software; as root:  {VULKAN_LINE}"

@@ -12,6 +12,7 @@ from hsr8.recorder import rerun_log, run_folder
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.writing import refusal
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
 RECORDS = (
@@ -116,3 +117,9 @@ def test_a_read_only_disk_is_no_usage_error(tmp_path, capfd, monkeypatch):
     (said,) = capfd.readouterr().err.splitlines()
     assert said.startswith(f"hsr8: cannot write the run folder {tmp_path / 'quick'}: Read-only")
     assert "--out" in said
+
+
+def test_the_system_says_what_a_library_does_not(tmp_path):
+    assert str(refusal(tmp_path, "it ended")).endswith("it ended")
+    assert list(tmp_path.iterdir()) == []
+    assert "No such file" in str(refusal(tmp_path / "gone", "it ended"))
