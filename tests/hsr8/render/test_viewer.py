@@ -55,6 +55,6 @@ def test_a_viewer_that_goes_down_leads_to_the_cure(monkeypatch):
 def test_a_damaged_log_is_not_laid_to_the_graphics(monkeypatch):
     program = "import sys; sys.exit('ERROR Failed to load file: no metadata')"
     monkeypatch.setattr(viewer, "_command", lambda log, port: [sys.executable, "-c", program])
-    with pytest.raises(UsageError, match="the log is damaged.*no metadata") as caught:
+    with pytest.raises(UsageError, match=r"the log is damaged.*no metadata") as caught:
         viewer.screenshot(Path("log.rrd"), 0.0, (64, 64))
     assert VULKAN_LINE not in str(caught.value)
