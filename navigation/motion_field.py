@@ -174,17 +174,6 @@ class MotionField:
         """
         forces = []
         banded = set()
-        phi = float(
-            move_to_goal(
-                pose[:2],
-                pose[2],
-                scene.target,
-                scene.target_heading,
-                self._univector,
-                side=scene.side,
-            )
-        )
-        u_muf = (cos(phi), sin(phi))
         for index in np.nonzero(scene.obstacles.speed >= self._mover.least_speed)[0].tolist():
             foot = self._foot(pose, scene, index)
             s_oe = float(scene.s_oe[index])
@@ -197,13 +186,20 @@ class MotionField:
                 continue
             track = int(scene.obstacles.ids[index])
             banded.add(track)
-            side = self._sides.update(track, foot, u_muf)
+            side = self._sides.update(track, foot, self._to_goal(pose, scene))
             f = oval(foot.along / length, self._mover.xi)
             forces.append(
                 self._force(track, foot, side, weight=f, radius=f * s_oe, pose=pose, scene=scene)
             )
         self._sides.keep(banded)
         return tuple(forces)
+
+    def _to_goal(self, pose: Array, scene: FieldScene) -> tuple[float, float]:
+        """u_muf at the robot."""
+        p = self._univector
+        goal, heading = scene.target, scene.target_heading
+        phi = float(move_to_goal(pose[:2], pose[2], goal, heading, p, side=scene.side))
+        return cos(phi), sin(phi)
 
     def printed_forces(
         self, pose: Array, velocity: Array, scene: FieldScene, indices: tuple[int, ...]

@@ -47,7 +47,7 @@ class Tracker:
         self._parameters = parameters
         self._rng = rng
         self._objects: list[TrackedObject] = []
-        self._stacked_ids: list[int] = []
+        self._stack: tuple[list[int], Modes] | None = None  # whose filters, and these
         self._time: float | None = None
         self._freed: Mask = np.zeros(0, np.bool_)
         self._next_id = 1
@@ -87,22 +87,22 @@ class Tracker:
     def _predict(self, dt: float) -> Modes:
         """Carry everything on by `dt` [s]; the filters of all obstacles, each one's its rows."""
         p = self._parameters
-        modes = self._modes = motion_modes.predict(self._stacked(), dt, p)
+        ids = [o.id for o in self._objects]
+        modes = motion_modes.predict(self._stacked(ids), dt, p)
+        self._stack = ids, modes
         for o, *parts in zip(self._objects, *modes, strict=True):
             o.modes = Modes(*parts)
             if o.particles is not None:
                 o.particles = track_particles.advance(o.particles, dt, p, self._rng)
         return modes
 
-    def _stacked(self) -> Modes:
+    def _stacked(self, ids: list[int]) -> Modes:
         """The filters of all obstacles, one after the other."""
-        ids = [o.id for o in self._objects]
-        if ids != self._stacked_ids:
-            self._stacked_ids = ids
-            # For arrays as small as these np.array is several times faster than np.stack.
-            parts = zip(*(o.modes for o in self._objects), strict=True)
-            self._modes = Modes(*(np.array(part) for part in parts))
-        return self._modes
+        if self._stack is not None and self._stack[0] == ids:
+            return self._stack[1]
+        # For arrays as small as these np.array is several times faster than np.stack.
+        parts = zip(*(o.modes for o in self._objects), strict=True)
+        return Modes(*(np.array(part) for part in parts))
 
     def _costs(self, time: float, seen: Sightings, modes: Modes) -> Array:
         """Cost of every track with every sighting against the sighting being new (n, m).

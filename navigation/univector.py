@@ -36,7 +36,7 @@ def weighted_sum(u_muf: Array, u_auf: Array, w_muf: float, w_auf: float) -> Arra
 def nearness(rho: Array, s_oe: Array, d_e: ArrayLike, d_b: float) -> Array:
     """Ramp of an obstacle: 1 up to S_oe + d_e/2, falling to 0 at S_oe + d_e + d_b (..., n)."""
     half = 0.5 * np.asarray(d_e)
-    ramp: Array = np.minimum(1.0, np.maximum(0.0, 1.0 - (rho - s_oe - half) / (half + d_b)))
+    ramp: Array = np.clip(1.0 - (rho - s_oe - half) / (half + d_b), 0.0, 1.0)
     return ramp
 
 

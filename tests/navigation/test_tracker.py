@@ -1,3 +1,4 @@
+from copy import deepcopy
 from math import hypot
 
 import numpy as np
@@ -252,14 +253,20 @@ def test_the_order_of_detections_does_not_matter(view, observe):
         assert a[2] == b[2]
 
 
-def test_a_seed_determines_everything(view, observe):
-    def run():
+def test_a_seed_determines_everything_whatever_is_copied(view, observe):
+    def run(*, copied=False):
         stage = Stage(view, observe, 5)
-        stage.watch(3.0, (1.0, -0.4, 0.0, 0.12), (1.3, 0.5, 0.0, 0.0))
+        for seconds, *movers in (
+            (1.5, (1.0, -0.4, 0.0, 0.12)),
+            (1.5, (1.0, -0.22, 0.0, 0.12), (1.3, 0.5, 0.0, 0.0)),
+        ):
+            stage.watch(seconds, *movers)
+            if copied:
+                stage.tracker = deepcopy(stage.tracker)
         stage.look_away(4.0)
         return stage.tracks
 
-    for a, b in zip(run(), run(), strict=True):
+    for a, b in zip(run(), run(copied=True), strict=True):
         assert np.array_equal(a.position, b.position)
         assert np.array_equal(a.covariance, b.covariance)
         assert (a.particles is None) == (b.particles is None)
