@@ -6,6 +6,7 @@ from math import cos, fmod, hypot, inf, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from hsr8.world import motion_kernel
 from hsr8.world.passage import Passage
 from hsr8.world.wander import Wander
 
@@ -186,14 +187,13 @@ class Movers:
         self._straight = np.array(straight, dtype=np.intp)
         self._round = np.array(round_, dtype=np.intp)
         lanes = [_lane(laws[k]) for k in straight]
-        self._origin = np.array([lane[0] for lane in lanes], dtype=float).reshape(-1, 2)
-        self._way = np.array([lane[1] for lane in lanes], dtype=float).reshape(-1, 2)
-        self._speed = np.array([lane[2] for lane in lanes], dtype=float)
-        self._length = np.array([lane[3] for lane in lanes], dtype=float)
-        self._offset = np.array([lane[4] for lane in lanes], dtype=float)
-        self._round_trip = 2.0 * self._length
-        self._there = self._speed[:, None] * self._way
-        self._back = -self._there
+        self._lanes = (
+            np.array([lane[0] for lane in lanes], dtype=float).reshape(-1, 2),
+            np.array([lane[1] for lane in lanes], dtype=float).reshape(-1, 2),
+            np.array([lane[2] for lane in lanes], dtype=float),
+            np.array([lane[3] for lane in lanes], dtype=float),
+            np.array([lane[4] for lane in lanes], dtype=float),
+        )
         circles = [law for law in laws if isinstance(law, Circle)]
         self._centre = np.array([c.centre for c in circles], dtype=float).reshape(-1, 2)
         self._radius = np.array([c.radius for c in circles], dtype=float)
@@ -205,24 +205,22 @@ class Movers:
 
     def positions(self, time: float | Array) -> Array:
         """Positions at `time` [s], of any shape (...), in layout order (..., n, 2) [m]."""
-        time = np.asarray(time, dtype=float)[..., None]
-        gone = np.mod(self._offset + self._speed * time, self._round_trip)
-        along = np.minimum(gone, self._round_trip - gone)
-        straight: Array = self._origin + along[..., None] * self._way
+        times = np.asarray(time, dtype=float)
+        found = motion_kernel.positions(times.ravel(), self._lanes)
+        straight: Array = found.reshape(*times.shape, -1, 2)
         if self._all_straight:
             return straight
-        angle = self._angle + self._rim_speed / self._radius * time
+        angle = self._angle + self._rim_speed / self._radius * times[..., None]
         rim = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         both = self._ordered(straight, self._centre + self._radius[:, None] * rim)
         for k, law in self._others:
-            places = [law.position(instant) for instant in time.ravel().tolist()]
+            places = [law.position(instant) for instant in times.ravel().tolist()]
             both[..., k, :] = np.reshape(places, both[..., k, :].shape)
         return both
 
     def velocities(self, time: float) -> Array:
         """Velocities at `time` [s], layout order (n, 2) [m/s]."""
-        gone = np.mod(self._offset + self._speed * time, self._round_trip)
-        straight: Array = np.where((gone < self._length)[:, None], self._there, self._back)
+        straight: Array = motion_kernel.velocities(time, self._lanes)
         if self._all_straight:
             return straight
         angle = self._angle + self._rim_speed / self._radius * time
