@@ -177,8 +177,9 @@ class PhysicsBody:
         return self._state.tobytes()
 
     def _guard(self) -> None:
-        # A sum is finite only if all of its terms are.
-        if not any(self.data.warning.number.tolist()) and isfinite(self.data.qacc.sum()):
+        # A sum of squares is finite only if all of its terms are.
+        qacc = self.data.qacc
+        if isfinite(qacc.dot(qacc)) and not any(self.data.warning.number.tolist()):
             return
         speeds = np.abs(self.data.qvel)
         dof = int(np.argmax(np.where(np.isfinite(speeds), speeds, np.inf)))

@@ -28,12 +28,14 @@ class Surroundings:
     def __init__(self, model: mujoco.MjModel, layout: Layout) -> None:
         static = layout.static
         self._movers = layout.motion()
-        self._static = np.array([o.position for o in static], dtype=float).reshape(-1, 2)
-        self._still = np.zeros_like(self._static)
+        self._n_static = len(static)
+        self._places = np.zeros((len(layout.obstacles), 2))  # of what stands, and room for movers
+        self._places[: len(static)] = np.reshape([o.position for o in static], (-1, 2))
+        self._still = np.zeros_like(self._places)
         self.index = ModelIndex.of(model, len(static), len(self._movers))
         self.watch = ContactWatch(model, self.index, layout)
         self._timestep = float(model.opt.timestep)
-        self._first, self._places = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))
+        self._first, self._block = -BLOCK, np.zeros((BLOCK, model.nmocap, 3))
 
     def move(self, data: mujoco.MjData, time: float) -> None:
         """Put every mover where its law wants it at `time` [s]."""
@@ -47,18 +49,25 @@ class Surroundings:
         if not 0 <= number - self._first < BLOCK:
             self._first = number
             ends = np.arange(number + 1.0, number + 1.0 + BLOCK) * self._timestep
-            self._places[:] = data.mocap_pos
-            self._places[:, self.index.mover_mocap, :2] = self._movers.positions(ends)
-        data.mocap_pos[:] = self._places[number - self._first]
+            self._block[:] = data.mocap_pos
+            self._block[:, self.index.mover_mocap, :2] = self._movers.positions(ends)
+        data.mocap_pos[:] = self._block[number - self._first]
 
     def positions(self, time: float) -> Array:
         """Axes of all obstacles at `time` [s], layout order (n, 2) [m]."""
-        return np.concatenate([self._static, self._movers.positions(time)])
+        return self._with(self._places, self._movers.positions(time))
 
     def placed(self, data: mujoco.MjData) -> Array:
         """Axes of all obstacles where they were put last, layout order (n, 2) [m]."""
-        return np.concatenate([self._static, data.mocap_pos[self.index.mover_mocap, :2]])
+        movers = data.mocap_pos.take(self.index.mover_mocap, axis=0)
+        return self._with(self._places, movers[:, :2])
 
     def velocities(self, time: float) -> Array:
         """Velocities of all obstacles at `time` [s], layout order (n, 2) [m/s]."""
-        return np.concatenate([self._still, self._movers.velocities(time)])
+        return self._with(self._still, self._movers.velocities(time))
+
+    def _with(self, static: Array, movers: Array) -> Array:
+        """Rows of what stands, then those of the movers."""
+        rows = static.copy()
+        rows[self._n_static :] = movers
+        return rows
