@@ -8,6 +8,7 @@ import rerun.blueprint as rrb
 import rerun_bindings
 
 APPLICATION = "hsr8"
+ABANDONED: list["BlockStream"] = []  # held, for the library would finish what nobody holds
 
 
 class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typed
@@ -70,3 +71,12 @@ class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typ
         native = self.to_native()
         for path, times, values in kept:
             rerun_bindings.send_arrow_chunk(path, times, values, native)
+
+    def abandon(self) -> None:
+        """Leave the recording as it is: its file takes no more.
+
+        To finish it the library would wait for a thread that is no more, now, with the next
+        recording or when the process ends.
+        """
+        ABANDONED.append(self)
+        rr.unregister_shutdown()

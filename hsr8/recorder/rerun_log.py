@@ -76,6 +76,7 @@ class RerunLog:
         sinks = [rr.FileSink(str(path), write_footer=index), *([rr.GrpcSink(live)] if live else [])]
         self._folder = path.parent
         self._waits = not live  # for the file; a viewer may leave
+        self._full = False
         shown = blueprint(
             max(layout.field_size), walking=len(layout.waypoints) == 0, pictures=rates.pictures
         )
@@ -120,13 +121,16 @@ class RerunLog:
         self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
 
     def close(self, exit_reason: str) -> None:
-        """Write what is left and finish the file."""
+        """Write what is left and finish the file, unless it takes no more."""
         try:
             self._flush()
             self._wait()
             self.on_event(self._time, "end", exit_reason)
         finally:
-            self._stream.disconnect()
+            if self._full:
+                self._stream.abandon()
+            else:
+                self._stream.disconnect()
 
     def _add(self, record: TickRecord) -> None:
         time, truth = record.time, record.truth
@@ -200,7 +204,7 @@ class RerunLog:
         try:
             self._stream.flush(timeout_sec=PATIENCE)
         except RuntimeError as error:
-            self._waits = False  # the library would wait in vain again
+            self._waits, self._full = False, True  # the library would wait in vain again
             raise refusal(self._folder, f"the log: {error}") from error
 
     def _log_way_points(self, layout: Layout) -> None:

@@ -10,9 +10,11 @@ import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
 
+from hsr8.errors import RecordingFailed
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.log_reader import Log
-from hsr8.recorder.rerun_log import RerunLog
+from hsr8.recorder.rerun_log import PATIENCE, RerunLog
 from hsr8.world.truth import PushActing
 from navigation.belief import Particles
 from walking.admission import AdmissionReport, Limit
@@ -181,6 +183,28 @@ def test_logs_one_after_the_other_leave_no_threads(folder, model, layout, walk):
         gc.collect()
         counts.append(len(list(Path("/proc/self/task").iterdir())))
     assert counts[-1] == counts[1]
+
+
+def test_a_log_that_takes_no_more_is_left_and_not_waited_for(log, walk, monkeypatch):
+    _, listener = log
+    left, asked = [], []
+
+    def stalled(stream, *, timeout_sec):
+        asked.append(timeout_sec)
+        if timeout_sec > 0.0:
+            raise RuntimeError("timed out")
+
+    monkeypatch.setattr(BlockStream, "flush", stalled)
+    monkeypatch.setattr(BlockStream, "disconnect", lambda stream: pytest.fail("waits for ever"))
+    monkeypatch.setattr("hsr8.recorder.block_stream.ABANDONED", left)
+    monkeypatch.setattr(rr, "unregister_shutdown", lambda: left.append("at the end of the process"))
+    for record in walk(0.1):
+        listener.on_record(record)
+    with pytest.raises(RecordingFailed, match="timed out"):
+        listener.close("goal")
+    assert [type(entry) for entry in left] == [BlockStream, str]
+    listener.close("goal")  # at once, without another wait
+    assert [timeout for timeout in asked if timeout > 0.0] == [PATIENCE]
 
 
 def test_nothing_believed_nothing_seen_is_logged_too(log, fake):
