@@ -111,7 +111,7 @@ class TrackingParameters:
     """Share of effective particles below which they are resampled [1]."""
     forget_time: Positive = 25.0
     """Time unseen after which a track that may move is dropped [s]."""
-    tentative_time: Positive = 2.0
+    tentative_time: Positive = 12.0
     """The same for a track with too few detections to move [s]."""
     sure_range: Positive = 2.2
     """Distance up to which an obstacle in clear view is sure to be detected [m]."""

@@ -6,6 +6,7 @@ must be renewed, and a lost mover votes wherever it may be.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -31,12 +32,14 @@ _HALF = 0.5
 """Share of the time to contact within which to look again."""
 _CLEARANCE = 0.05
 """Distance from contact at which it is too late [m]."""
-_RAYS = np.radians(np.linspace(-120.0, 120.0, 17))
+_RAYS = 17
 _RINGS = np.array([0.45, 0.8, 1.2, 1.7])
 _MAP_SPEED = 0.7
 """Speed of unknown movers on unseen ground, share of the robot's."""
 _WAY_DISTANCE = 0.8
 """Distance of the floor looked at along the way [m]."""
+_SACCADE = 0.25
+"""Time in which the head turns to where it is told to look [s]."""
 _GLANCE_TILT = -0.6
 """Tilt that shows the floor from 0.3 m on [rad]."""
 
@@ -49,8 +52,9 @@ def deadline_votes(
     parameters: NavigationParameters,
     *,
     glance: float | None = None,
+    turn: float = 0.0,
 ) -> Votes:
-    """All deadline votes of this moment.
+    """All deadline votes of this moment, for where things are once the head has turned there.
 
     Args:
         scene: partial evaluations.
@@ -59,8 +63,11 @@ def deadline_votes(
         speed: the robot's largest speed [m/s].
         parameters: of the decisions.
         glance: direction in W of ground that the body turned aside for; None for none [rad].
+        turn: rate of the body [rad/s].
     """
     p = parameters.gaze
+    x, y, heading = belief.pose.tolist()
+    belief = replace(belief, pose=np.array([x, y, heading + _SACCADE * turn]))
     height = scene.camera_height
     votes = [
         obstacle_deadlines(scene, belief, way, speed, parameters),
@@ -176,4 +183,4 @@ def map_deadlines(
 @cache
 def _ground(reach: float) -> SamplePoints:
     """The ground that votes, as far round as the gaze sees, `reach` [rad]."""
-    return SamplePoints.of(_RINGS, _RAYS[np.abs(_RAYS) <= reach])
+    return SamplePoints.of(_RINGS, np.linspace(-reach, reach, _RAYS))

@@ -246,6 +246,8 @@ class ShoulderParameters:
     """Longest time turned aside [s]."""
     rest: NonNegative = 2.0
     """Time until the next try, if nothing was seen by then [s]."""
+    clearance: NonNegative = 0.25
+    """Gap to what may move within which the robot leaves first and looks round later [m]."""
 
 
 @dataclass(frozen=True)

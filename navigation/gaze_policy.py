@@ -145,8 +145,11 @@ def gaze_policy(
 
 # Functions with names, so that a gaze can be saved in the middle of a run.
 def _deadline(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
-    glance = None if m.motion is None else m.motion.glance
-    return deadline_votes(m.scene, m.belief, way_bearing(m), speed, parameters, glance=glance)
+    way = way_bearing(m)
+    if m.motion is None:
+        return deadline_votes(m.scene, m.belief, way, speed, parameters)
+    turn, glance = float(m.motion.velocity[2]), m.motion.glance
+    return deadline_votes(m.scene, m.belief, way, speed, parameters, glance=glance, turn=turn)
 
 
 def _urgency(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:

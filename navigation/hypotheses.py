@@ -73,7 +73,8 @@ def collision_hypotheses(
         parameters: horizons, weights and margins.
         local_map: when a place was last looked at.
     """
-    base = s_robot + obstacles.radius + parameters.margin
+    unsure = np.array([t.radius_sigma for t in tracks], dtype=np.float64)
+    base = s_robot + obstacles.radius + unsure + parameters.margin
     swollen = base + np.minimum(parameters.sigma_limit, obstacles.sigma)
     lost = np.array([t.particles is not None for t in tracks], dtype=np.bool_)
     seen = ~lost

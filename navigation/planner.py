@@ -200,7 +200,7 @@ class Planner:
             self._shoulder = ShoulderCheck(p.shoulder, reach, p.univector.s_robot, forward)
         course, speed = self._way or (wanted.direction, wanted.speed)
         aside = self._shoulder.aside(belief, course, speed)
-        return Facing(aside=aside, glance=self._shoulder.glance(course))
+        return Facing(aside=aside, glance=self._shoulder.glance())
 
     def _ground_velocity(self, pose: Array) -> Array:
         forward, left, _ = self._body.tolist()

@@ -5,11 +5,14 @@ gaze is chosen. The planner therefore turns the body, a little while it walks on
 ground right behind is due, and tells the gaze what it turned for.
 """
 
+from math import copysign, hypot
+
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation import shoulder_kernel
-from navigation.belief import Belief, Track
+from navigation.angles import wrap
+from navigation.belief import Belief, Motion, Track
 from navigation.decision_parameters import ShoulderParameters
 from navigation.overdue import AGE_LIMIT, LEAST_TIME
 from navigation.value import value
@@ -62,6 +65,7 @@ class ShoulderCheck:
             speed: the robot's largest [m/s].
         """
         self._parameters = parameters
+        self._s_robot = s_robot
         self._fear = (parameters.mover_speed * speed, s_robot, LEAST_TIME, AGE_LIMIT)
         self._sectors = sectors(parameters, reach)
         self._weight = np.array([s.weight for s in self._sectors])
@@ -69,10 +73,13 @@ class ShoulderCheck:
         self._extent = np.array([(s.middle, s.half) for s in self._sectors])
         self._chosen: int | None = None
         self._since = 0.0
+        self._course = 0.0
         self._rest_until = 0.0
 
     def aside(self, belief: Belief, course: float, speed: float) -> float:
         """Angle of the body to its way for the next footstep, left positive [rad].
+
+        What the body turned aside for stays where it is in W, also when the way turns.
 
         Args:
             belief: what the robot believes.
@@ -80,22 +87,28 @@ class ShoulderCheck:
             speed: along it [m/s].
         """
         p, now = self._parameters, belief.time
-        urgency = self.urgency(belief, course, speed)
+        if self._must_leave(belief):
+            self._chosen = None
+            return 0.0
         if self._chosen is not None:
             late = now - self._since > p.hold
-            if late or urgency[self._chosen] < p.seen:
+            if late or self.urgency(belief, self._course, speed)[self._chosen] < p.seen:
                 self._chosen = None
                 self._rest_until = now + p.rest if late else now
         if self._chosen is None and now >= self._rest_until:
-            weighted = self._weight * urgency
+            weighted = self._weight * self.urgency(belief, course, speed)
             worst = int(np.argmax(weighted))
             if weighted[worst] > p.due:
-                self._chosen, self._since = worst, now
-        return 0.0 if self._chosen is None else self._sectors[self._chosen].aside
+                self._chosen, self._since, self._course = worst, now, course
+        if self._chosen is None:
+            return 0.0
+        aside = self._sectors[self._chosen].aside
+        side = copysign(1.0, aside)
+        return side * min(max(side * wrap(self._course + aside - course), 0.0), p.far_angle)
 
-    def glance(self, course: float) -> float | None:
+    def glance(self) -> float | None:
         """Direction in W of what the body turns aside for, None for nothing [rad]."""
-        return None if self._chosen is None else course + self._sectors[self._chosen].middle
+        return None if self._chosen is None else self._course + self._sectors[self._chosen].middle
 
     def urgency(self, belief: Belief, course: float, speed: float) -> Array:
         """How overdue a look at each sector is (4,): at its ground, or for a lost mover.
@@ -112,6 +125,17 @@ class ShoulderCheck:
             if track.particles is not None:
                 most = np.maximum(most, self._of_lost(track, belief.pose, course, speed))
         return most
+
+    def _must_leave(self, belief: Belief) -> bool:
+        """Whether something that may move is so near that there is no time to look round."""
+        reach = self._parameters.clearance + self._s_robot
+        x, y, _ = belief.pose.tolist()
+        for track in belief.tracks:
+            if track.motion is not Motion.STATIC:
+                u, v = track.position.tolist()
+                if hypot(u - x, v - y) < reach + track.radius:
+                    return True
+        return False
 
     def _of_lost(self, track: Track, pose: Array, course: float, speed: float) -> Array:
         """Urgency of a look at each sector for a lost track (4,)."""

@@ -31,6 +31,10 @@ SCATTER = 4
 """Places tried per particle of a refuted cloud; it ends if three of four are in view."""
 
 
+VAGUE_RADIUS = 0.01
+"""Standard deviation above which the radius of what is seen in part is mostly what was taken for
+granted; fusing it again and again would make that certain [m]."""
+
 REACH = 1.2
 """How much farther than its speed says a lost mover may have got [1]."""
 
@@ -163,8 +167,9 @@ class Tracker:
             o.classify(p)
 
     def _widen(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
-        """Fuse the radius, unless only part of the obstacle was seen."""
-        if observation.cut or observation.occluded:
+        """Fuse the radius, unless the part that was seen tells next to nothing about it."""
+        part = observation.cut or observation.occluded
+        if part and observation.radius_sigma > VAGUE_RADIUS:
             return
         measured = observation.radius_sigma**2 * inflation
         prior = o.radius_sigma**2

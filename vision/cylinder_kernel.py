@@ -14,7 +14,8 @@ ITERATIONS = 3
 MAX_RIMS = 3  # a beacon shows three
 SIDES = 2
 PRIOR = SIDES + MAX_RIMS  # row of the prior of the radius
-ROWS = PRIOR + 1
+SPAN = PRIOR + 1  # row of the span of a side
+ROWS = SPAN + 1
 NO_INFORMATION = 1e3  # standard deviation of what was not measured
 RIM_WIDTH = 0.75  # share of the half width within which points of a rim are used
 OUTER = 0.92  # share of the half width where a rim is too steep to predict
@@ -28,6 +29,7 @@ MIN_RUN = 0.02  # [m]
 STEEPEST = -3.0  # slope at which a side is taken to be seen at most
 UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
 MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
+SPAN_SIGMA = 0.02  # least standard deviation of a distance from a span, relative to itself [1]
 TURNS = 3.0  # an edge that crosses a pixel errs so many times less, and one time less
 
 
@@ -79,14 +81,45 @@ def _rim_distance(rims: Array, points: Table, slope: Array, h: float, radius: fl
 
 
 @njit(cache=True)
-def _guess(
-    x: Array, sides: Array, known: Array, rims: Array, points: Table, slope: Array, h: float
-) -> None:
-    """Fill the first azimuth, distance and radius of a candidate; see `locate`."""
+def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
+    """Distance to the only side that is trusted, from the part of it that is seen.
+
+    That part lies between foot and head. Near the border of the image a thing close by shows
+    little else: its foot is below the image, and its head beside it.
+
+    Args:
+        sides: as for `locate`, of one candidate.
+        height: of the candidate [m].
+        h: height of the camera [m].
+
+    Returns:
+        Distance and its standard deviation [m]; 0, 0 if the span tells none.
+    """
+    if (sides[0, 5] != 0.0) == (sides[1, 5] != 0.0):
+        return 0.0, 0.0
+    low, high = sides[0, 3], sides[0, 4]
+    if sides[1, 5] != 0.0:
+        low, high = sides[1, 3], sides[1, 4]
+    if h <= height or high >= -MIN_SLOPE or low >= high:
+        return 0.0, 0.0
+    farthest, nearest = -h / low, (height - h) / high
+    middle = 0.5 * (farthest + nearest)
+    return middle, hypot(SPAN_SIGMA * middle, (farthest - nearest) / UNIFORM)
+
+
+@njit(cache=True)
+def _guess(x: Array, sides: Array, known: Array, distance: float) -> None:
+    """Fill the first azimuth, distance and radius of a candidate; see `locate`.
+
+    Args:
+        x: to fill.
+        sides: of the candidate.
+        known: of the candidate.
+        distance: if something tells it, else 0 [m].
+    """
     left, right, radius = sides[0, 0], sides[1, 0], known[0]
     left_trusted, right_trusted = sides[0, 5] != 0.0, sides[1, 5] != 0.0
     half = min(max(0.5 * (left - right), MIN_HALF), MAX_HALF)
-    distance = _rim_distance(rims, points, slope, h, radius)
     if distance == 0.0:
         distance = radius / sin(half)
     if left_trusted and right_trusted:
@@ -110,7 +143,7 @@ def _keep_inner(
     slope: Array,
     h: float,
     common: float,
-) -> None:
+) -> int:
     """Tell the points not near the ends of their rims, and how well their means are known.
 
     Args:
@@ -123,8 +156,12 @@ def _keep_inner(
         slope: as for `locate`.
         h: height of the camera [m].
         common: correlation of the errors of two points of one edge [1].
+
+    Returns:
+        How many points are used.
     """
     theta, d, r = x[0], x[1], x[2]
+    used = 0
     mean_sigma[:] = NO_INFORMATION
     for j in range(len(rims)):
         count, low, high = 0, inf, -inf
@@ -137,6 +174,8 @@ def _keep_inner(
         if count:
             own = independent(float(count), (high - low) / (UNIFORM * rims[j, 2]))
             mean_sigma[j] = rims[j, 2] * _of_mean(own, common)
+            used += count
+    return used
 
 
 @njit(cache=True)
@@ -153,8 +192,9 @@ def _linearise(
     azimuth: Array,
     slope: Array,
     h: float,
+    span: float,
 ) -> None:
-    """Fill the Jacobian (6, 3) and the residuals (6,) of a candidate at x, and of its points."""
+    """Fill the Jacobian (7, 3) and the residuals (7,) of a candidate at x, and of its points."""
     theta, d, r = x[0], x[1], x[2]
     H[:] = 0.0
     residual[:] = 0.0
@@ -165,6 +205,9 @@ def _linearise(
     H[0, 1], H[0, 2] = -r / (d * reach), 1.0 / reach
     H[1, 1], H[1, 2] = r / (d * reach), -1.0 / reach
     residual[PRIOR] = prior - r
+    if span > 0.0:
+        residual[SPAN] = span - reach
+        H[SPAN, 1], H[SPAN, 2] = d / reach, -r / reach
     for j in range(len(rims)):
         sign, drop = rims[j, 1], rims[j, 0] - h
         count, total, by_theta, by_d, by_r = 0, 0.0, 0.0, 0.0, 0.0
@@ -205,8 +248,9 @@ def _covariance(
     pose_variance: Array,
     roundness: float,
     h: float,
+    span_sigma: float,
 ) -> None:
-    """Fill the covariance of the measurements (6, 6): pixels, roundness and camera pose."""
+    """Fill the covariance of the measurements (7, 7): pixels, roundness and camera pose."""
     theta, d, r = x[0], x[1], x[2]
     s, c = sin(theta), cos(theta)
     R[:] = 0.0
@@ -227,6 +271,7 @@ def _covariance(
         sigma = hypot(mean_sigma[j], slope * roundness * r / d)
         R[k, k] = sigma * sigma
     R[PRIOR, PRIOR] = known[1] * known[1]
+    R[SPAN, SPAN] = span_sigma * span_sigma if span_sigma > 0.0 else 1.0
     for i in range(PRIOR):
         for j in range(i + 1):
             for k in range(4):
@@ -334,8 +379,15 @@ def locate(
     for k in range(n):
         side, x = sides[k], result[k, :3]
         rim, ends = rims[owned[k] : owned[k + 1]], points[owned[k] : owned[k + 1] + 1]
-        _guess(x, side, known[k], rim, ends, slope, h)
-        _keep_inner(keep, mean_sigma, x, rim, ends, azimuth, slope, h, common)
+        told = _rim_distance(rim, ends, slope, h, known[k, 0])
+        _guess(x, side, known[k], told)
+        used = _keep_inner(keep, mean_sigma, x, rim, ends, azimuth, slope, h, common)
+        span = span_sigma = 0.0
+        if used == 0:
+            span, span_sigma = _span(side, known[k, 2], h)
+            if span > 0.0:
+                _guess(x, side, known[k], span)
+                _keep_inner(keep, mean_sigma, x, rim, ends, azimuth, slope, h, common)
         for j in range(SIDES):
             side_sigma[j] = side[j, 1] * _of_mean(side[j, 2], common)
             trusted[j] = side[j, 5] != 0.0
@@ -353,6 +405,7 @@ def locate(
                 azimuth,
                 slope,
                 h,
+                span,
             )
             for j in range(MAX_RIMS):
                 means[j] = residual[SIDES + j]
@@ -378,6 +431,7 @@ def locate(
                 pose[1:],
                 roundness,
                 h,
+                span_sigma,
             )
             _whiten(R, H, residual)
             _step(x, covariances[k], H, residual)

@@ -158,7 +158,7 @@ class Detector:
             if outline.top.slope.size and view.height > head:
                 rims.append(RimCue(outline.top, head, near=False))
             left, right = outline.left, outline.right
-            if not rims and not (left.trusted and right.trusted):
+            if not (rims or left.trusted or right.trusted):
                 continue
             sightings.append(
                 _Sighting(

@@ -19,6 +19,17 @@ Settings = UseAppendAction[
         _arg("KEY=VALUE", "any setting, e.g. --set world.n_moving=8; may be repeated"),
     ]
 ]
+Body = Annotated[
+    Literal["full", "kinematic"] | None,
+    _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
+]
+Camera = Annotated[
+    Literal["egl", "analytic", "all-round"] | None,
+    _arg(
+        "{egl,analytic,all-round}",
+        "rendered head camera; geometry alone, without OpenGL; that, of all around at once",
+    ),
+]
 RunPath = Annotated[
     Path, tyro.conf.arg(metavar="RUN", help="run folder, or a folder whose newest run is meant")
 ]
@@ -38,17 +49,8 @@ class Run:
         float | None, _arg("S", "simulated time at most [s]; else the scenario's")
     ] = None
     set: Settings = ()
-    body: Annotated[
-        Literal["full", "kinematic"] | None,
-        _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
-    ] = None
-    camera: Annotated[
-        Literal["egl", "analytic", "all-round"] | None,
-        _arg(
-            "{egl,analytic,all-round}",
-            "rendered head camera; geometry alone, without OpenGL; that, of all around at once",
-        ),
-    ] = None
+    body: Body = None
+    camera: Camera = None
     no_log: bool = False
     """Write no Rerun log."""
     log_level: Annotated[
@@ -110,14 +112,8 @@ class Sweep:
     duration: Annotated[
         float | None, _arg("S", "simulated time at most [s]; else the scenario's")
     ] = None
-    body: Annotated[
-        Literal["full", "kinematic"] | None,
-        _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
-    ] = None
-    camera: Annotated[
-        Literal["egl", "analytic"] | None,
-        _arg("{egl,analytic}", "rendered head camera, or geometry alone, without OpenGL"),
-    ] = None
+    body: Body = None
+    camera: Camera = None
     executor: str = "local"
     """Who runs: local, dask, dask://HOST:PORT, ray or ray://HOST:PORT."""
     shard: Annotated[

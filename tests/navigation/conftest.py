@@ -99,7 +99,7 @@ def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0
         velocity=np.array(velocity, float),
         covariance=np.diag([sigma**2, sigma**2, 0.01**2, 0.01**2]),
         radius=details.pop("radius", 0.08),
-        radius_sigma=0.005,
+        radius_sigma=details.pop("radius_sigma", 0.005),
         motion=motion or moving,
         hits=details.pop("hits", 20),
         age=age,

@@ -124,6 +124,23 @@ def test_a_glance_is_voted_for_once_the_gaze_reaches_it(belief):
                 assert abs(vote.pan[0] - bearing) <= P.gaze.box_share * b.view.horizontal_fov + 1e-9
 
 
+@pytest.mark.parametrize("turn", [0.8, -0.8])
+def test_a_body_that_turns_votes_for_what_comes_into_reach(belief, track, turn):
+    def pans(bearing, rate):
+        place = (np.cos(bearing), np.sin(bearing))
+        b = belief([track(place, (0.05, 0.0), age=3.0)], age=lambda x, y: 0.0)
+        scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
+        v = deadline_votes(scene, b, 0.0, 0.2, P, turn=rate)
+        return v.pan[v.value > P.gaze.deadline.way_weight]
+
+    reach = P.gaze.pan_limit + P.gaze.box_share * belief().view.horizontal_fov
+    behind = np.copysign(reach + 0.1, turn)
+    assert len(pans(behind, 0.0)) == 0
+    assert len(pans(-behind, turn)) == 0
+    (pan,) = pans(behind, turn)
+    assert abs(pan) < abs(behind)
+
+
 def test_without_a_glance_nobody_votes_for_one(belief):
     scene = gaze_scene(belief(), None, SAMPLES, np.zeros((0, 2)), P)
     without, with_one = (

@@ -9,6 +9,8 @@ from navigation.hypotheses import collision_hypotheses
 from navigation.obstacle_set import ObstacleSet
 
 P = FilterParameters()
+SURE = 0.12 + 0.08 + 0.005 + P.margin
+"""Distance from the axis of a track of 0.08 m, give or take 0.005 m, at which it is touched [m]."""
 
 
 class LookedAt:
@@ -28,9 +30,15 @@ def build(*tracks, p=P, looked=np.inf):
 
 def test_static_obstacles_matter_briefly_and_without_their_sigma(track):
     h = build(track((1, 0), sigma=0.05))
-    assert h.radius == pytest.approx([0.12 + 0.08 + P.margin])
+    assert h.radius == pytest.approx([SURE])
     assert h.horizon.tolist() == [P.static_horizon]
     assert h.weight.tolist() == [1.0]
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.1, 0.0)])
+def test_the_less_sure_its_radius_the_more_room_it_gets(track, place):
+    sure, unsure = (build(track((1, 0), place, radius_sigma=s)) for s in (0.005, 0.02))
+    assert unsure.radius - sure.radius == pytest.approx(np.full(len(sure), 0.015))
 
 
 def test_a_visible_mover_may_reverse(track):
@@ -38,14 +46,14 @@ def test_a_visible_mover_may_reverse(track):
     assert h.velocity == pytest.approx(np.array([[0.1, 0.0], [-0.1, 0.0]]))
     assert h.weight == pytest.approx([1.0, P.reversal_weight])
     assert h.horizon == pytest.approx([P.moving_horizon, P.reversal_horizon])
-    assert h.radius == pytest.approx(2 * [0.20 + P.margin + 0.05])
+    assert h.radius == pytest.approx(2 * [SURE + 0.05])
 
 
 def test_the_undecided_keep_their_velocity_and_do_not_reverse(track):
     h = build(track((1, 0), (0.1, 0.0), Motion.UNKNOWN, sigma=1.0))
     assert len(h) == 1
     assert h.horizon.tolist() == [P.moving_horizon]
-    assert h.radius == pytest.approx([0.20 + P.margin + P.sigma_limit])
+    assert h.radius == pytest.approx([SURE + P.sigma_limit])
 
 
 def test_a_lost_mover_is_its_particles(track):
@@ -87,7 +95,7 @@ def test_an_unseen_mover_can_have_gone_anywhere_near_until_its_place_is_looked_a
         assert len(h) - len(without) == (grown is not None)
         if grown is not None:
             assert h.position[-1] == pytest.approx(mover.last_seen)
-            assert h.radius[-1] == pytest.approx(0.12 + 0.08 + P.margin + grown)
+            assert h.radius[-1] == pytest.approx(SURE + grown)
             assert not h.velocity[-1].any()
         assert len(build(mover, p=p, looked=0.1)) == len(without)
     assert len(build(track((1, 0), age=2.0), p=p)) == 1

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from navigation.angles import wrap
+from navigation.belief import Motion
 from navigation.decision_parameters import ShoulderParameters
 from navigation.shoulder_check import ShoulderCheck, sectors
 
@@ -54,7 +55,7 @@ def test_a_body_turned_aside_has_the_whole_sector_in_reach():
 
 def test_what_was_just_seen_is_not_turned_for(check, belief):
     assert check.aside(belief(), 0.0, SPEED) == 0.0
-    assert check.glance(0.0) is None
+    assert check.glance() is None
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -63,7 +64,7 @@ def test_old_ground_is_turned_for_from_its_side_as_far_as_it_takes(side, belief)
         check = ShoulderCheck(P, REACH, 0.12, SPEED)
         b = belief(age=stale(lambda bearing, i=inside: bearing * side > 0 and i(side * bearing)))
         assert check.aside(b, 0.0, 0.03) == side * angle
-        glance = check.glance(0.0)
+        glance = check.glance()
         assert np.sign(glance) == side
         assert abs(wrap(glance - side * angle)) < REACH
 
@@ -75,8 +76,8 @@ def test_the_answer_turns_and_moves_with_the_scene(belief):
     there = ShoulderCheck(P, REACH, 0.12, SPEED)
     one = here.aside(belief(age=stale(beside)), 0.0, SPEED)
     other = there.aside(belief(pose=pose, age=stale(beside, way)), course, SPEED)
-    assert one == other == P.near_angle
-    assert there.glance(course) == pytest.approx(here.glance(0.0) + course)
+    assert one == pytest.approx(other) == P.near_angle
+    assert there.glance() == pytest.approx(here.glance() + course)
 
 
 def test_it_keeps_to_what_it_turned_for_until_that_was_seen(check, belief):
@@ -86,6 +87,21 @@ def test_it_keeps_to_what_it_turned_for_until_that_was_seen(check, belief):
     assert check.aside(belief(age=both, time=1.0), 0.0, SPEED) == first
     assert check.aside(belief(age=right, time=1.4), 0.0, SPEED) == -first
     assert check.aside(belief(time=1.8), 0.0, SPEED) == 0.0
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_what_is_looked_at_stays_where_it_is_though_the_way_turns(check, belief, side):
+    stale_side = stale(lambda bearing: beside(side * bearing))
+    assert check.aside(belief(age=stale_side), 0.0, SPEED) == side * P.near_angle
+    glance = check.glance()
+    for course in (0.1, -0.1, 0.3, 0.0):
+        aside = check.aside(belief(age=stale_side, time=0.4), course, SPEED)
+        assert check.glance() == glance
+        assert course + aside == pytest.approx(side * P.near_angle)
+    # A way that turns to where it is in reach anyway needs no more, one that turns away no end.
+    assert check.aside(belief(age=stale_side, time=0.4), side * 1.0, SPEED) == 0.0
+    away = check.aside(belief(age=stale_side, time=0.4), -side * 2.0, SPEED)
+    assert away == side * P.far_angle
 
 
 def test_what_cannot_be_seen_is_given_up_for_a_while(check, belief):
@@ -114,6 +130,20 @@ def test_a_lost_mover_behind_is_turned_for_and_one_in_view_is_not(check, belief,
     assert check.aside(belief([seen]), 0.0, SPEED) == 0.0
     lost = track(place, (0.1, 0.0), age=3.0, particles=cloud(place))
     assert check.aside(belief([lost]), 0.0, SPEED) == P.near_angle
+
+
+def test_what_is_near_and_may_move_is_left_before_anything_is_looked_at(check, belief, track):
+    far, near = (0.0, 0.12 + 0.08 + 1.1 * P.clearance), (0.0, 0.12 + 0.08 + 0.9 * P.clearance)
+
+    def aside(place, motion):
+        there = track(place, (0.0, 0.1), motion)
+        return check.aside(belief([there], age=stale(beside)), 0.0, SPEED)
+
+    for motion in (Motion.MOVING, Motion.UNKNOWN):
+        assert aside(far, motion) == P.near_angle
+        assert aside(near, motion) == 0.0
+        assert check.glance() is None
+    assert aside(near, Motion.STATIC) == P.near_angle
 
 
 def test_a_lost_mover_counts_by_the_share_of_it_that_may_be_there(check, belief, track):

@@ -7,7 +7,7 @@ import pytest
 from navigation.belief import Motion
 from navigation.belief_parameters import TrackingParameters
 from navigation.sightings import in_world
-from navigation.tracker import Tracker
+from navigation.tracker import VAGUE_RADIUS, Tracker
 from navigation.visibility import Viewpoint
 
 DT = 0.06
@@ -212,13 +212,16 @@ def test_a_static_track_ends_when_its_place_is_seen_empty_but_not_when_hidden(st
     assert "red" not in [t.label for t in stage.tracks]
 
 
-def test_a_cut_blob_does_not_change_the_radius(stage):
+@pytest.mark.parametrize("flag", ["cut", "occluded"])
+def test_a_part_changes_the_radius_only_if_it_tells_something_about_it(stage, flag):
     stage.watch(2.0, (1.0, 0.0, 0.0, 0.0))
     radius = stage.tracks[0].radius
-    for flag in ("cut", "occluded"):
-        for _ in range(20):
-            stage.show((1.0, 0.0), radius=0.02, **{flag: True})
+    for _ in range(20):
+        stage.show((1.0, 0.0), radius=0.02, radius_sigma=1.1 * VAGUE_RADIUS, **{flag: True})
     assert stage.tracks[0].radius == radius
+    for _ in range(20):
+        stage.show((1.0, 0.0), radius=0.07, radius_sigma=0.1 * VAGUE_RADIUS, **{flag: True})
+    assert stage.tracks[0].radius == pytest.approx(0.07, abs=0.002)
 
 
 def test_radius_is_fused(stage):

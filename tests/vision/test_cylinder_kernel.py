@@ -129,16 +129,74 @@ def test_steps_are_those_of_least_squares_with_the_whole_covariance():
     made = candidates(5, 40, share=1.0)
     results, covariances = locate(*packed(made))
     assert results[:, 3].max() < NO_INFORMATION
-    start = locate.py_func.__globals__["_guess"].py_func
+    plain = locate.py_func.__globals__
+    told, start = plain["_rim_distance"].py_func, plain["_guess"].py_func
     for candidate, result, covariance in zip(made, results, covariances, strict=True):
         sides, known, rims, _, points, _, slope, *_ = packed([candidate])
         x = np.empty(3)
-        start(x, sides[0], known[0], rims, points, slope, HEIGHT)
+        start(x, sides[0], known[0], told(rims, points, slope, HEIGHT, known[0, 0]))
         x, P, misfit = reference(candidate, x)
         np.testing.assert_allclose(result[:3], x, rtol=1e-5)
         np.testing.assert_allclose(covariance, P, rtol=1e-3, atol=1e-3 * np.abs(P).max())
         assert result[3] == pytest.approx(misfit, rel=1e-3, abs=1e-6)
         assert np.all(np.abs(result[:3] - candidate["truth"]) < 4.5 * np.sqrt(np.diag(covariance)))
+
+
+def one_side(seed, n, least):
+    """The only edge of each of n cylinders: at least a share of one side, whichever."""
+    rng = np.random.default_rng(seed)
+    made = []
+    for _ in range(n):
+        x = np.array([rng.uniform(-0.9, 0.9), rng.uniform(0.35, 1.2), rng.uniform(0.05, 0.12)])
+        half, reach = asin(x[2] / x[1]), np.sqrt(x[1] ** 2 - x[2] ** 2)
+        seen, start = rng.uniform(least, 1.0), rng.random()
+        foot, head = -HEIGHT / reach, (0.3 - HEIGHT) / reach
+        low = foot + (1.0 - seen) * start * (head - foot)
+        span = (low, low + seen * (head - foot))
+        left = bool(rng.random() < 0.5)
+        inner = x[0] - half * rng.uniform(-0.9, 0.9)  # where the border of the image cuts it
+        azimuths = (x[0] + half, inner) if left else (inner, x[0] - half)
+        sides = [
+            (azimuth, 1e-3, 9.0, *(span if ok else (0.0, 0.0)), ok)
+            for azimuth, ok in zip(azimuths, (left, not left), strict=True)
+        ]
+        made.append({"sides": sides, "known": (0.085, 0.02, 0.3), "truth": x})
+    return made
+
+
+def packed_sides(made):
+    return (
+        np.array([[tuple(map(float, s)) for s in c["sides"]] for c in made]),
+        np.array([c["known"] for c in made]),
+        np.empty((0, 3)),
+        np.zeros(len(made) + 1, int),
+        np.zeros(1, int),
+        np.empty(0),
+        np.empty(0),
+        POSE,
+        OPTIONS,
+    )
+
+
+@pytest.mark.parametrize("least", [0.3, 0.6, 0.9])
+def test_a_side_alone_tells_the_distance_as_well_as_it_says(least):
+    made = one_side(3, 200, least)
+    results, covariances = locate(*packed_sides(made))
+    error = results[:, 1] - [c["truth"][1] for c in made]
+    sigma = np.sqrt(covariances[:, 1, 1])
+    assert np.abs(error / sigma).max() < 3.5
+    assert 0.3 < np.mean((error / sigma) ** 2) < 1.5
+    azimuth = results[:, 0] - [c["truth"][0] for c in made]
+    assert np.abs(azimuth / np.sqrt(covariances[:, 0, 0])).max() < 4.5
+
+
+def test_the_more_of_a_side_is_seen_the_surer_its_distance():
+    sigmas = [
+        np.mean(np.sqrt(locate(*packed_sides(one_side(4, 100, least)))[1][:, 1, 1]))
+        for least in (0.3, 0.6, 0.9)
+    ]
+    assert sigmas == sorted(sigmas, reverse=True)
+    assert sigmas[-1] < 0.05
 
 
 def test_what_stands_beside_it_changes_no_cylinder():

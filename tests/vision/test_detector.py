@@ -136,6 +136,18 @@ def test_an_obstacle_cut_by_the_border_is_flagged_and_less_certain() -> None:
     assert_located(cut, thing)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("distance", [0.4, 0.45, 0.5])
+def test_an_obstacle_of_which_one_side_shows_is_located_by_how_much_of_it(distance, side) -> None:
+    """The head looks down and aside: what is close by leaves the image below and beside it."""
+    thing = at(distance, side * 144.0, "green", 0.08)
+    view = pose(side * 1.5708, radians(-20.0), position=(0.0, 0.0, 0.45))
+    (detection,) = see([thing], view)
+    assert detection.cut
+    assert_located(detection, thing)
+    assert abs(detection.distance - distance) < 0.1 * distance
+
+
 def test_an_obstacle_whose_foot_is_out_of_the_image_is_located_by_its_head() -> None:
     thing = at(0.45, 0.0, "violet", 0.1)
     (detection,) = see([thing], pose(tilt=0.0))

@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+from hsr8.evaluation.sweep.process import environment
+
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks on Linux only")
 
 LOADED = """
@@ -20,6 +22,11 @@ print("rerun" in sys.modules)
 
 def test_it_forks_with_one_thread_and_its_kernels_and_without_a_display_and_rerun():
     done = subprocess.run(
-        [sys.executable, "-c", LOADED], capture_output=True, text=True, check=True, timeout=300
+        [sys.executable, "-c", LOADED],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+        env=environment(),
     )
     assert done.stdout.split() == ["1", "1", "None", "False"]
