@@ -205,6 +205,7 @@ class Robot:
                     covariance=d.covariance,
                     radius=d.radius,
                     radius_sigma=d.radius_sigma,
+                    by_radius=d.by_radius,
                     cut=d.cut,
                     occluded=d.occluded,
                 )

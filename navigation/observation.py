@@ -1,5 +1,7 @@
 """What reaches navigation: odometry and what one camera frame showed."""
 
+from dataclasses import field
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -24,6 +26,8 @@ class Observation:
         radius_sigma: standard deviation of `radius` [m].
         cut: the blob touches the border of the image.
         occluded: something hides part of it.
+        by_radius: by how much distance and bearing would be greater were the radius known to be
+            greater (2,) [1, rad/m].
     """
 
     kind: Literal["obstacle", "beacon"]
@@ -35,6 +39,7 @@ class Observation:
     radius_sigma: float
     cut: bool = False
     occluded: bool = False
+    by_radius: Array = field(default_factory=partial(np.zeros, 2))
 
 
 @value

@@ -21,12 +21,29 @@ class Sightings:
         positions: in W (m, 2) [m].
         covariances: of the positions, with the pose's uncertainty (m, 2, 2) [m²].
         radii: (m,) [m].
+        radius_sigmas: standard deviations of the radii (m,) [m].
+        by_radius: displacement were the radius known to be greater (m, 2) [1].
     """
 
     observations: tuple[Observation, ...]
     positions: Array
     covariances: Array
     radii: Array
+    radius_sigmas: Array
+    by_radius: Array
+
+    def of_radius(self, index: int, radius: float, sigma: float) -> tuple[Array, Array]:
+        """Position (2,) [m] and covariance (2, 2) [m²] of one whose radius is known otherwise.
+
+        Args:
+            index: of the sighting.
+            radius: what it is known to be [m].
+            sigma: standard deviation of that [m].
+        """
+        slope = self.by_radius[index]
+        surplus = sigma * sigma - float(self.radius_sigmas[index]) ** 2
+        moved = self.positions[index] + (radius - float(self.radii[index])) * slope
+        return moved, self.covariances[index] + surplus * np.outer(slope, slope)
 
     def chosen(self, indices: Sequence[int]) -> tuple[Observation, ...]:
         """The observations at `indices`."""
@@ -54,7 +71,7 @@ def in_world(
     x, y, heading = pose.tolist()
     largest = max(float(pose_covariance[0, 0]), float(pose_covariance[1, 1]), 1e-12)
     P = (pose_covariance * min(1.0, pose_sigma_limit**2 / largest)).tolist()
-    positions, covariances = [], []
+    positions, covariances, by_radius = [], [], []
     for o in seen:
         direction = heading + o.bearing
         c, s, d = cos(direction), sin(direction), o.distance
@@ -69,10 +86,14 @@ def in_world(
         xy += P[0][1] + hy * P[0][2] + hx * P[1][2] + hx * hy * P[2][2]
         positions.append((x + d * c, y + d * s))
         covariances.append(((xx, xy), (xy, yy)))
+        outwards, sideways = o.by_radius.tolist()
+        by_radius.append((c * outwards - s * d * sideways, s * outwards + c * d * sideways))
     count = len(seen)
     return Sightings(
         seen,
         np.array(positions, float).reshape(count, 2),
         np.array(covariances, float).reshape(count, 2, 2),
         np.array([o.radius for o in seen], float),
+        np.array([o.radius_sigma for o in seen], float),
+        np.array(by_radius, float).reshape(count, 2),
     )

@@ -144,6 +144,9 @@ class Tracker:
         rows, columns = np.array(pairs).T.copy()
         objects = [self._objects[row] for row in rows.tolist()]
         z, raw = seen.positions[columns], seen.covariances[columns]
+        for i, (o, column) in enumerate(zip(objects, columns.tolist(), strict=True)):
+            if o.radius_sigma < seen.radius_sigmas[column]:
+                z[i], raw[i] = seen.of_radius(column, o.radius, o.radius_sigma)
         inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o in objects]
         R = raw * np.array(inflation)[:, None, None]
         surprise = motion_modes.surprise(modes, rows, z, raw)

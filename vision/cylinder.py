@@ -89,8 +89,13 @@ def interpenetrate(a: Cylinder, b: Cylinder) -> bool:
     return gap2 < (SHARED * (a.radius + b.radius)) ** 2
 
 
-def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array]:
-    """Distance [m], bearing [rad] and their covariance (2, 2) from the origin of R."""
+def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array, Array]:
+    """The axis from the origin of R.
+
+    Returns:
+        Distance [m] and bearing [rad], their covariance (2, 2), and by how much they would be
+        greater were the radius known to be greater (2,) [1, rad/m].
+    """
     azimuth = cylinder.azimuth + view.heading
     x = view.x + cylinder.distance * cos(azimuth)
     y = view.y + cylinder.distance * sin(azimuth)
@@ -98,7 +103,7 @@ def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array]
     bearing = atan2(y, x)
     c, s = cos(azimuth - bearing), sin(azimuth - bearing)
     d = cylinder.distance
-    (p_aa, p_ad, _), (_, p_dd, _), _ = cylinder.covariance.tolist()
+    (p_aa, p_ad, p_ar), (_, p_dd, p_dr), (_, _, p_rr) = cylinder.covariance.tolist()
     # Rows of the Jacobian of (distance, bearing) with respect to (azimuth, distance).
     (a, b), (e, f) = (-d * s, c), (d * c / distance, s / distance)
     cross = a * e * p_aa + (a * f + b * e) * p_ad + b * f * p_dd
@@ -108,7 +113,8 @@ def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array]
             [cross, e * e * p_aa + 2.0 * e * f * p_ad + f * f * p_dd],
         ]
     )
-    return distance, bearing, covariance
+    by_radius = np.array([a * p_ar + b * p_dr, e * p_ar + f * p_dr]) / p_rr
+    return distance, bearing, covariance, by_radius
 
 
 def locate(

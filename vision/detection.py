@@ -22,6 +22,8 @@ class Detection:
         covariance: of (distance, bearing) (2, 2) [m², m rad, rad²].
         radius: radius of the cylinder [m].
         radius_sigma: its standard deviation [m].
+        by_radius: by how much distance and bearing would be greater were the radius known to be
+            greater (2,) [1, rad/m].
         cut: the blob touches the border of the image or the robot's own body.
         occluded: another thing hides part of it.
         box: left, top, right, bottom pixel of the blob, right and bottom exclusive.
@@ -34,6 +36,7 @@ class Detection:
     covariance: Array
     radius: float
     radius_sigma: float
+    by_radius: Array
     cut: bool
     occluded: bool
     box: tuple[int, int, int, int]

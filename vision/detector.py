@@ -251,7 +251,7 @@ class Detector:
         limit = parameters.beacon_range if beacon else parameters.obstacle_range
         if not beacon:
             cylinder = _somewhere_within(cylinder, parameters.max_radius, self._radius[0])
-        distance, bearing, covariance = polar_in_robot(cylinder, view)
+        distance, bearing, covariance, by_radius = polar_in_robot(cylinder, view)
         sure = covariance[0, 0] <= (parameters.max_relative_sigma * distance) ** 2
         if not (distance <= limit and sure):  # what is not a number is neither
             return None
@@ -264,6 +264,7 @@ class Detector:
             covariance=covariance,
             radius=cylinder.radius,
             radius_sigma=sqrt(float(cylinder.covariance[2, 2])),
+            by_radius=by_radius,
             cut=any(blob.cut for blob in blobs),
             occluded=sighting.occluded,
             box=_around(blobs),

@@ -25,13 +25,13 @@ from navigation.observation import CameraView, Frame, Observation
 
 Array = NDArray[np.float64]
 
-MAGIC = b"HSR8MEA2"
+MAGIC = b"HSR8MEA3"
 _COUNT = struct.Struct("<H")
 _VIEW = 9 + 3 + 5  # doubles of a camera view
 _FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame apart from its observations
 _NOW = 1 + 3 + _VIEW  # doubles of the moment of a decision
 _STEP = struct.Struct("<q?")
-_SEEN = struct.Struct("<8d")  # an observation
+_SEEN = struct.Struct("<10d")  # an observation
 _KINDS = ("obstacle", "beacon")
 
 
@@ -121,7 +121,9 @@ def _packed(frame: Frame) -> bytes:
         label = o.label.encode()
         flags = _KINDS.index(o.kind) | o.cut << 1 | o.occluded << 2
         (xx, xy), (yx, yy) = o.covariance.tolist()
-        seen = _SEEN.pack(o.distance, o.bearing, xx, xy, yx, yy, o.radius, o.radius_sigma)
+        slopes = o.by_radius.tolist()
+        place = (o.distance, o.bearing, xx, xy, yx, yy)
+        seen = _SEEN.pack(*place, o.radius, o.radius_sigma, *slopes)
         parts.append(bytes((flags, len(label))) + label + seen)
     return b"".join(parts)
 
@@ -152,7 +154,7 @@ def _unpacked(payload: bytes) -> Measured:
         flags, length = payload[place], payload[place + 1]
         place += 2 + length
         label = payload[place - length : place].decode()
-        distance, bearing, *covariance, radius, radius_sigma = _SEEN.unpack_from(payload, place)
+        distance, bearing, *shape = _SEEN.unpack_from(payload, place)
         place += _SEEN.size
         observations.append(
             Observation(
@@ -160,9 +162,10 @@ def _unpacked(payload: bytes) -> Measured:
                 label=label,
                 distance=distance,
                 bearing=bearing,
-                covariance=np.reshape(covariance, (2, 2)),
-                radius=radius,
-                radius_sigma=radius_sigma,
+                covariance=np.reshape(shape[:4], (2, 2)),
+                radius=shape[4],
+                radius_sigma=shape[5],
+                by_radius=np.array(shape[6:]),
                 cut=bool(flags & 2),
                 occluded=bool(flags & 4),
             )

@@ -194,6 +194,7 @@ def _detection(
         covariance=np.array([[range_sigma**2, 0.0], [0.0, bearing_sigma**2]]),
         radius=max(0.01, radius),
         radius_sigma=radius_sigma,
+        by_radius=np.zeros(2),
         cut=bool(cut),
         occluded=hidden > CLEAR,
         box=(int(left), int(top), int(right), int(bottom)),

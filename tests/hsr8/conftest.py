@@ -114,6 +114,7 @@ def _frame(layout, time, pose, **change):
                 covariance=np.eye(2) * 1e-4,
                 radius=0.1,
                 radius_sigma=0.01,
+                by_radius=np.zeros(2),
                 cut=False,
                 occluded=False,
                 box=(100, 80, 140, 160),

@@ -34,6 +34,7 @@ def _observe(
     radius_sigma=0.01,
     cut=False,
     occluded=False,
+    by_radius=(0.0, 0.0),
 ):
     distance, bearing = sighting(pose, place)
     return Observation(
@@ -46,6 +47,7 @@ def _observe(
         radius_sigma=radius_sigma,
         cut=cut,
         occluded=occluded,
+        by_radius=np.array(by_radius),
     )
 
 

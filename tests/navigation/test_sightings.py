@@ -1,6 +1,8 @@
+from dataclasses import replace
 from math import cos, sin
 
 import numpy as np
+import pytest
 
 from navigation.landmark import to_world
 from navigation.sightings import in_world
@@ -30,6 +32,28 @@ def test_covariance_is_the_first_order_propagation(observe):
         whole = np.zeros((5, 5))
         whole[:3, :3], whole[3:, 3:] = P, o.covariance
         assert np.allclose(seen.covariances[0], J @ whole @ J.T, atol=1e-8)
+
+
+def test_a_radius_known_otherwise_is_conditioning_on_it(observe):
+    """By sampling: place and radius are drawn together, and those with that radius chosen."""
+    rng = np.random.default_rng(1)
+    pose, place = (0.5, -0.2, 0.7), (1.1, 0.4)
+    o = observe(pose, place, sigma=(0.02, 0.02), radius=0.085, radius_sigma=0.02)
+    slope = np.array([0.4, -0.7])
+    joint = np.zeros((3, 3))
+    joint[:2, :2] = o.covariance + 0.02**2 * np.outer(slope, slope)
+    joint[:2, 2] = joint[2, :2] = slope * 0.02**2
+    joint[2, 2] = 0.02**2
+    seen = convert([replace(o, covariance=joint[:2, :2], by_radius=slope)], pose, np.zeros((3, 3)))
+    drawn = rng.multivariate_normal([o.distance, o.bearing, o.radius], joint, 400_000)
+    chosen = drawn[np.abs(drawn[:, 2] - 0.06) < 5e-4]
+    points = np.array([to_world(np.array(pose), d, b) for d, b, _ in chosen])
+    moved, covariance = seen.of_radius(0, 0.06, 0.0)
+    assert moved == pytest.approx(points.mean(axis=0), abs=2e-3)
+    assert covariance == pytest.approx(np.cov(points.T), abs=5e-5)
+    same, whole = seen.of_radius(0, o.radius, o.radius_sigma)
+    assert np.array_equal(same, seen.positions[0])
+    assert whole == pytest.approx(seen.covariances[0])
 
 
 def test_a_lost_pose_does_not_drown_the_tracks(observe):

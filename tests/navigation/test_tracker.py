@@ -224,6 +224,21 @@ def test_a_part_changes_the_radius_only_if_it_tells_something_about_it(stage, fl
     assert stage.tracks[0].radius == pytest.approx(0.07, abs=0.002)
 
 
+def test_a_part_is_placed_by_the_radius_that_the_track_knows(view, observe):
+    """Only its near side shows: who takes the radius for greater puts the axis farther away."""
+    places = []
+    for slope in (0.0, 1.0):
+        stage = Stage(view, observe)
+        stage.watch(4.0, (1.0, 0.0, 0.0, 0.0), radius=0.06, radius_sigma=0.002)
+        details = {"cut": True, "radius": 0.08, "radius_sigma": 0.02, "by_radius": (slope, 0.0)}
+        for _ in range(100):
+            stage.show((1.02, 0.0), noise=0.025, **details)
+        (track,) = stage.tracks
+        places.append(float(track.position[0]))
+    assert places[0] - places[1] == pytest.approx(0.02, abs=0.01)
+    assert places[1] == pytest.approx(1.0, abs=0.01)
+
+
 def test_radius_is_fused(stage):
     for k in range(60):
         stage.show((1.0, 0.0), radius=0.08 + 0.02 * (-1) ** k, radius_sigma=0.02)

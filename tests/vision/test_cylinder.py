@@ -101,7 +101,7 @@ def test_place_in_the_robot_frame_follows_the_camera() -> None:
     (cylinder,) = locate(
         [Candidate(outline.left, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view
     )
-    distance, bearing, covariance = polar_in_robot(cylinder, view)
+    distance, bearing, covariance, by_radius = polar_in_robot(cylinder, view)
     expected = true_polar(thing)
     assert abs(distance - expected[0]) < 4.0 * covariance[0, 0] ** 0.5
     assert abs(bearing - expected[1]) < 4.0 * covariance[1, 1] ** 0.5
@@ -114,6 +114,8 @@ def test_place_in_the_robot_frame_follows_the_camera() -> None:
         )
         J[:, j] = (plus[0] - minus[0]) / 2e-6, (plus[1] - minus[1]) / 2e-6
     assert covariance == pytest.approx(J @ cylinder.covariance[:2, :2] @ J.T, rel=1e-5)
+    P = cylinder.covariance
+    assert by_radius == pytest.approx(J @ P[:2, 2] / P[2, 2], rel=1e-5)
 
 
 def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:

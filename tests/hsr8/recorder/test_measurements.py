@@ -15,7 +15,7 @@ finite = st.floats(allow_nan=False, allow_infinity=False, width=64)
 
 
 @given(
-    numbers=st.lists(finite, min_size=8, max_size=8),
+    numbers=st.lists(finite, min_size=10, max_size=10),
     label=st.text(min_size=1, max_size=12),
     flags=st.tuples(st.booleans(), st.booleans(), st.booleans()),
 )
@@ -26,9 +26,10 @@ def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
         label,
         *numbers[:2],
         np.array(numbers[2:6]).reshape(2, 2),
-        *numbers[6:],
+        *numbers[6:8],
         cut,
         occluded,
+        np.array(numbers[8:]),
     )
     file = tmp_path_factory.mktemp("m") / "m"
     frame = fake.frame(0.06, (0.1, 0.2, 0.3))
@@ -46,7 +47,8 @@ def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
     assert (a.view.pan, a.view.tilt, a.view.yaw_sigma) == (b.view.pan, b.view.tilt, 0.0)
     (found,) = a.observations
     assert np.array_equal(found.covariance, seen.covariance)
-    assert replace(found, covariance=seen.covariance) == seen
+    assert np.array_equal(found.by_radius, seen.by_radius)
+    assert replace(found, covariance=seen.covariance, by_radius=seen.by_radius) == seen
     assert back.fingerprints == fingerprints(frame.estimate)
     assert back.decided == decision_fingerprints(frame.decided)
     assert (back.now.time, back.now.step_count) == (frame.now.time, frame.now.step_count)
