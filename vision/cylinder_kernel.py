@@ -323,6 +323,18 @@ def _step(x: Array, P: Array, H: Array, residual: Array) -> None:
 
 
 @njit(cache=True)
+def _positive(P: Array) -> bool:
+    """Whether P (3, 3) is positive definite."""
+    minor = P[0, 0] * P[1, 1] - P[0, 1] * P[1, 0]
+    determinant = (
+        P[2, 2] * minor
+        - P[2, 1] * (P[0, 0] * P[1, 2] - P[0, 2] * P[1, 0])
+        + P[2, 0] * (P[0, 1] * P[1, 2] - P[0, 2] * P[1, 1])
+    )
+    return bool(P[0, 0] > 0.0 and minor > 0.0 and determinant > 0.0)
+
+
+@njit(cache=True)
 def _astray(
     residual: Array, means: Array, keep: Bools, rims: Array, points: Table, stray: float
 ) -> float:
@@ -435,6 +447,9 @@ def locate(
             )
             _whiten(R, H, residual)
             _step(x, covariances[k], H, residual)
+        if not _positive(covariances[k]):
+            # Edges that are no cylinder's lead the steps astray.
+            covariances[k] = NO_INFORMATION * NO_INFORMATION * np.eye(3)
         misfit = 0.0
         for i in range(ROWS):
             misfit += residual[i] * residual[i]

@@ -199,6 +199,21 @@ def test_the_more_of_a_side_is_seen_the_surer_its_distance():
     assert sigmas[-1] < 0.05
 
 
+def test_edges_of_no_cylinder_have_a_covariance_all_the_same():
+    """One side, and an upper rim that does not belong to it."""
+    rng = np.random.default_rng(33)
+    made = one_side(33, 300, 0.1)
+    for candidate in made:
+        right, left = sorted(side[0] for side in candidate["sides"])
+        low, high = next(side[3:5] for side in candidate["sides"] if side[5])
+        azimuth = np.linspace(right, left, 28)[1:-1]
+        slope = np.linspace(*rng.uniform(low, max(high, low + 0.05), 2), len(azimuth))
+        candidate["rims"] = [(0.3, -1.0, 1e-3, azimuth, slope)]
+    _, covariances = locate(*packed(made))
+    assert np.isfinite(covariances).all()
+    np.linalg.cholesky(covariances)
+
+
 def test_what_stands_beside_it_changes_no_cylinder():
     made = candidates(7, 6)
     together, _ = locate(*packed(made))
