@@ -30,7 +30,6 @@ REFUTED = 0.05
 SCATTER = 4
 """Places tried per particle of a refuted cloud; it ends if three of four are in view."""
 
-
 VAGUE_RADIUS = 0.01
 """Standard deviation above which the radius of what is seen in part is mostly what was taken for
 granted; fusing it again and again would make that certain [m]."""

@@ -127,7 +127,7 @@ def locate(
     """Cylinders that explain the edges of each candidate best.
 
     Args:
-        candidates: edges of one cylinder each; at least one rim, or both sides trusted.
+        candidates: edges of one cylinder each; at least one rim or one side trusted.
         view: camera and pose.
         roundness_sigma: standard deviation of the outline relative to the radius [1].
         edge_correlation: correlation of the errors of two points of one edge [1].

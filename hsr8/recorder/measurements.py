@@ -121,9 +121,8 @@ def _packed(frame: Frame) -> bytes:
         label = o.label.encode()
         flags = _KINDS.index(o.kind) | o.cut << 1 | o.occluded << 2
         (xx, xy), (yx, yy) = o.covariance.tolist()
-        slopes = o.by_radius.tolist()
-        place = (o.distance, o.bearing, xx, xy, yx, yy)
-        seen = _SEEN.pack(*place, o.radius, o.radius_sigma, *slopes)
+        place, size = (o.distance, o.bearing, xx, xy, yx, yy), (o.radius, o.radius_sigma)
+        seen = _SEEN.pack(*place, *size, *o.by_radius.tolist())
         parts.append(bytes((flags, len(label))) + label + seen)
     return b"".join(parts)
 
@@ -154,7 +153,8 @@ def _unpacked(payload: bytes) -> Measured:
         flags, length = payload[place], payload[place + 1]
         place += 2 + length
         label = payload[place - length : place].decode()
-        distance, bearing, *shape = _SEEN.unpack_from(payload, place)
+        distance, bearing, *rest = _SEEN.unpack_from(payload, place)
+        covariance, (radius, radius_sigma), by_radius = rest[:4], rest[4:6], rest[6:]
         place += _SEEN.size
         observations.append(
             Observation(
@@ -162,10 +162,10 @@ def _unpacked(payload: bytes) -> Measured:
                 label=label,
                 distance=distance,
                 bearing=bearing,
-                covariance=np.reshape(shape[:4], (2, 2)),
-                radius=shape[4],
-                radius_sigma=shape[5],
-                by_radius=np.array(shape[6:]),
+                covariance=np.reshape(covariance, (2, 2)),
+                radius=radius,
+                radius_sigma=radius_sigma,
+                by_radius=np.array(by_radius),
                 cut=bool(flags & 2),
                 occluded=bool(flags & 4),
             )
