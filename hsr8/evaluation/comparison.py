@@ -31,6 +31,7 @@ METRICS = (
     "localization_rmse_m",
     "heading_rmse_deg",
     "nees_mean",
+    "head_travel_radps",
 )
 ON_ARRIVAL = ("time_to_goal_s", "arrival_error_deg", "path_length_m")  # where both succeeded
 SAME_WORLD = ("world.", "mission.")  # seeds pair only if these sections agree

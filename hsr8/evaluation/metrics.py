@@ -70,6 +70,8 @@ class Metrics:
         self._faults = 0
         self._gaze: tuple[float, float] | None = None
         self._saccades = 0
+        self._head: tuple[float, float] | None = None
+        self._head_travel = 0.0
         self._walk = WalkMetrics()
         self._tracks = TrackMetrics(layout.obstacles)
 
@@ -137,6 +139,7 @@ class Metrics:
             "max_tilt_deg": degrees(self._tilt),
             "time_standing_s": self._paused,
             "saccades_per_s": self._saccades / time if time > 0.0 else None,
+            "head_travel_radps": self._head_travel / time if time > 0.0 else None,
             "lost_share": self._lost / n if n else None,
             "filter_faults": self._faults,
             "camera_frames": n,
@@ -210,6 +213,10 @@ class Metrics:
             pan, tilt = self._gaze
             self._saccades += hypot(gaze[0] - pan, gaze[1] - tilt) > SACCADE
         self._gaze = gaze
+        head = (frame.measured.view.pan, frame.measured.view.tilt)
+        if self._head is not None:
+            self._head_travel += hypot(head[0] - self._head[0], head[1] - self._head[1])
+        self._head = head
         self._follow_mission(frame, truth)
 
     def _match(self, tracks: Sequence[Track], truth: Truth) -> None:

@@ -22,6 +22,7 @@ LABELS = {
     "time_standing_s": "time standing [s]",
     "max_tilt_deg": "largest tilt [deg]",
     "saccades_per_s": "saccades [1/s]",
+    "head_travel_radps": "head travel [rad/s]",
     "real_time_factor": "real-time factor",
 }
 COLUMNS = {

@@ -28,6 +28,7 @@ QUANTITIES: tuple[tuple[str, bool], ...] = (
     ("time_standing_s", False),
     ("max_tilt_deg", False),
     ("saccades_per_s", False),
+    ("head_travel_radps", False),
     ("real_time_factor", False),
 )
 COUNTS = (

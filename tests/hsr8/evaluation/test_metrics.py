@@ -178,3 +178,13 @@ def test_saccades_are_large_changes_of_the_wanted_gaze(metrics, fake):
         frame = replace(frame, decided=replace(frame.decided, gaze=gaze))
         records.append(fake.record(0.06 * k, frame=frame))
     assert _feed(metrics, records)["saccades_per_s"] == pytest.approx(2 / 0.24)
+
+
+def test_the_head_travels_as_far_as_the_camera_turned(metrics, fake):
+    records = []
+    for k, (pan, tilt) in enumerate(((0.0, 0.0), (0.3, -0.4), (0.3, -0.4), (0.0, -0.4))):
+        frame = fake.frame(0.06 * k)
+        view = replace(frame.measured.view, pan=pan, tilt=tilt)
+        frame = replace(frame, measured=replace(frame.measured, view=view))
+        records.append(fake.record(0.06 * k, frame=frame))
+    assert _feed(metrics, records)["head_travel_radps"] == pytest.approx((0.5 + 0.3) / 0.18)
