@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 
 VARIABLE = "NUMBA_CACHE_DIR"
-LIBRARIES = ("navigation", "vision", "walking")  # that have kernels
+FOLDERS = ("hsr8/world", "navigation", "vision", "walking")  # that have kernels
 _ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -27,7 +27,7 @@ def choose_kernel_cache(root: Path = _ROOT) -> str:
     if os.environ.get(VARIABLE):
         return os.environ[VARIABLE]
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "numba"
-    beside = (root / library / "__pycache__" for library in LIBRARIES)
+    beside = (root / folder / "__pycache__" for folder in FOLDERS)
     if all(map(_writable, beside)) or _writable(user):
         return ""
     os.environ[VARIABLE] = _temporary()

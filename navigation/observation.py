@@ -24,7 +24,7 @@ class Observation:
         covariance: of (distance, bearing) (2, 2).
         radius: [m].
         radius_sigma: standard deviation of `radius` [m].
-        cut: the blob touches the border of the image.
+        cut: the blob touches the border of the image or the robot's own body.
         occluded: something hides part of it.
         by_radius: by how much distance and bearing would be greater were the radius known to be
             greater (2,) [1, rad/m].

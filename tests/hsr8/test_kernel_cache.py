@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from hsr8 import kernel_cache
-from hsr8.kernel_cache import LIBRARIES, VARIABLE, choose_kernel_cache
+from hsr8.kernel_cache import FOLDERS, VARIABLE, choose_kernel_cache
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -15,10 +15,10 @@ ROOT = Path(__file__).resolve().parents[2]
 def places(tmp_path, monkeypatch):
     """A checkout, a home and a folder of temporary files, of which some may be written to."""
     folders = {name: tmp_path / name for name in ("root", "home", "temporary")}
-    for folder in folders.values():
-        folder.mkdir()
-    for library in LIBRARIES:
-        (folders["root"] / library).mkdir()
+    for place in folders.values():
+        place.mkdir()
+    for folder in FOLDERS:
+        (folders["root"] / folder).mkdir(parents=True)
     monkeypatch.setenv("HOME", str(folders["home"]))
     monkeypatch.setattr(kernel_cache.tempfile, "tempdir", str(folders["temporary"]))
     for variable in (VARIABLE, "XDG_CACHE_HOME"):
