@@ -32,6 +32,21 @@ def to_world(pose: Sequence[float], distance: float, bearing: float) -> tuple[fl
     return pose[0] + distance * cos(direction), pose[1] + distance * sin(direction)
 
 
+def points_from(pose: Sequence[float], points: Array) -> Array:
+    """Points in W (n, 2) as seen from `pose`: in R (n, 2) [m]."""
+    x, y, heading = pose
+    c, s = cos(heading), sin(heading)
+    seen: Array = (points - (x, y)) @ np.array([[c, -s], [s, c]])
+    return seen
+
+
+def points_to_world(pose: Array, points: Array) -> Array:
+    """Points in R (n, 2) of the robot at `pose` (3,): in W (n, 2) [m]."""
+    c, s = cos(pose[2]), sin(pose[2])
+    laid: Array = points @ np.array([[c, s], [-s, c]]) + pose[:2]
+    return laid
+
+
 def pose_from_points(seen: Array, known: Array) -> Array:
     """Pose that best lays seen points over known ones (least squares).
 

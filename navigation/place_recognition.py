@@ -8,13 +8,13 @@ another one explains as many.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import cos, hypot, sin
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.landmark import pose_from_points, to_world
+from navigation.landmark import points_from, points_to_world, pose_from_points, to_world
 from navigation.observation import Frame, Observation
 
 Array = NDArray[np.float64]
@@ -85,9 +85,7 @@ class PlaceRecognition:
         wanted = max(LEAST, SHARE * min(len(seen), len(labels)))
         if len(labels) < LEAST or len(seen) < LEAST:
             return None
-        x, y, yaw = frame.odometry.tolist()
-        c, s = cos(yaw), sin(yaw)
-        points = (np.array([s.point for s in seen]) - (x, y)) @ np.array([[c, -s], [s, c]])
+        points = points_from(frame.odometry.tolist(), np.array([s.point for s in seen]))
         same = np.array([[a.label == b for b in labels] for a in seen])
         found: list[tuple[int, Array]] = []
         for (i, j), (k, m) in self._pairs(points, places, same):
@@ -121,8 +119,7 @@ def _matched(
     points: Array, places: Array, same: NDArray[np.bool_], pose: Array
 ) -> tuple[list[int], list[int]]:
     """Sightings that fall on landmarks under a pose, and these landmarks, each once."""
-    c, s = cos(pose[2]), sin(pose[2])
-    laid = points @ np.array([[c, s], [-s, c]]) + pose[:2]
+    laid = points_to_world(pose, points)
     away = np.hypot(*(laid[:, None] - places[None]).transpose(2, 0, 1))
     away = np.where(same, away, np.inf)
     nearest = away.argmin(axis=1).tolist()

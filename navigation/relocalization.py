@@ -6,13 +6,13 @@ outlier; one beacon that does not fit while the others do stands in the wrong pl
 """
 
 from collections.abc import Iterator, Mapping
-from math import cos, hypot, sin
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief_parameters import LocalizationParameters
-from navigation.landmark import pose_from_points
+from navigation.landmark import points_from, points_to_world, pose_from_points, to_world
 from navigation.observation import Frame, Observation
 from navigation.value import value
 
@@ -52,12 +52,7 @@ class Relocalization:
 
     def remember(self, observation: Observation, frame: Frame) -> None:
         """Keep the sighting of a beacon in the odometry frame."""
-        x, y, yaw = frame.odometry.tolist()
-        direction = yaw + observation.bearing
-        point = (
-            x + observation.distance * cos(direction),
-            y + observation.distance * sin(direction),
-        )
+        point = to_world(frame.odometry.tolist(), observation.distance, observation.bearing)
         self._sightings[observation.label] = _Sighting(frame.time, point)
 
     def judge(self, time: float, accepted: list[str], rejected: list[str]) -> bool:
@@ -125,13 +120,10 @@ class Relocalization:
 
     def _fit(self, frame: Frame, points: Mapping[str, tuple[float, float]]) -> tuple[Array, float]:
         """Pose from remembered points, and the largest distance of one from its beacon [m]."""
-        x, y, yaw = frame.odometry.tolist()
-        c, s = cos(yaw), sin(yaw)
-        seen = (np.array(list(points.values())) - (x, y)) @ np.array([[c, -s], [s, c]])
+        seen = points_from(frame.odometry.tolist(), np.array(list(points.values())))
         known = np.array([self._beacons[name] for name in points])
         pose = pose_from_points(seen, known)
-        c, s = cos(pose[2]), sin(pose[2])
-        fit = seen @ np.array([[c, s], [-s, c]]) + pose[:2]
+        fit = points_to_world(pose, seen)
         return pose, float(np.max(np.linalg.norm(fit - known, axis=1)))
 
 

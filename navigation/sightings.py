@@ -45,10 +45,6 @@ class Sightings:
         moved = self.positions[index] + (radius - float(self.radii[index])) * slope
         return moved, self.covariances[index] + surplus * np.outer(slope, slope)
 
-    def chosen(self, indices: Sequence[int]) -> tuple[Observation, ...]:
-        """The observations at `indices`."""
-        return tuple(self.observations[i] for i in indices)
-
 
 def in_world(
     observations: Sequence[Observation],

@@ -6,7 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from navigation.angles import wrap
-from navigation.landmark import pose_from_points, sighting, to_world
+from navigation.landmark import (
+    points_from,
+    points_to_world,
+    pose_from_points,
+    sighting,
+    to_world,
+)
 
 metres = st.floats(-5.0, 5.0)
 headings = st.floats(-3.14, 3.14)
@@ -17,6 +23,14 @@ def test_a_sighting_leads_back_to_the_landmark(x, y, heading, a, b):
     distance, bearing = sighting((x, y, heading), (a, b))
     back = to_world((x, y, heading), distance, bearing)
     assert hypot(back[0] - a, back[1] - b) < 1e-9
+
+
+@given(metres, metres, headings, metres, metres)
+def test_points_are_seen_where_sightings_are(x, y, heading, a, b):
+    distance, bearing = sighting((x, y, heading), (a, b))
+    seen = points_from((x, y, heading), np.array([[a, b]]))
+    assert np.allclose(seen, [[distance * np.cos(bearing), distance * np.sin(bearing)]], atol=1e-9)
+    assert np.allclose(points_to_world(np.array([x, y, heading]), seen), [[a, b]], atol=1e-9)
 
 
 @given(metres, metres, headings)
