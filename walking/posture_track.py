@@ -1,24 +1,15 @@
 """Joint set-points on their way from one posture to the next."""
 
-from __future__ import annotations
-
 from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
+from walking.minimum_jerk import PEAK, minimum_jerk
 from walking.parameters import CONTROL_PERIOD
 from walking.robot_model import RobotModel
 
 Array = NDArray[np.float64]
-
-PEAK = 1.875  # peak speed of a minimum-jerk motion, in units of its mean [1]
-
-
-def minimum_jerk(share: float) -> float:
-    """Share of the way after a share of the time, at rest at both ends (Flash & Hogan 1985)."""
-    s = min(1.0, max(0.0, share))
-    return s * s * s * (10.0 + s * (6.0 * s - 15.0))
 
 
 class PostureTrack:

@@ -5,13 +5,13 @@ from math import ceil, hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from walking.minimum_jerk import PEAK
 from walking.parameters import CONTROL_PERIOD
 from walking.state import Footstep
 from walking.swing_foot_kernel import HEIGHT, RATE, WIDTH
 
 Array = NDArray[np.float64]
 
-PEAK = 1.875  # of the speed of a minimum-jerk motion over its mean [1]
 ROUNDING = 1e-7  # of a landing that another one is one move away from, of the move [1]
 
 

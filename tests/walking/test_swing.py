@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from walking.minimum_jerk import PEAK
 from walking.parameters import CONTROL_PERIOD
 from walking.state import Footstep
-from walking.swing import PEAK, least_ticks, moved, resting, stand
+from walking.swing import least_ticks, moved, resting, stand
 from walking.swing_foot_kernel import HEIGHT
 
 STANCE = Footstep(True, 0.1, 0.04, 0.2), Footstep(False, 0.1, -0.04, -0.2)
