@@ -63,7 +63,8 @@ MODULES = (
     "walking/foot_placement",
     "walking/foothold_kernel",
     "walking/swing_kernel",
-    "walking/estimator",
+    "walking/steady_gains",
+    "walking/touch_down",
     "walking/estimation_kernel",
 )
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {

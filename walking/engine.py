@@ -10,7 +10,6 @@ from walking.caution import Caution
 from walking.command import Command, HeadTarget
 from walking.cycle import Cycle
 from walking.estimation import Estimation
-from walking.estimator import TouchDown
 from walking.foot_placement import FootPlacement
 from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
@@ -34,6 +33,7 @@ from walking.steering import Steering
 from walking.stride import STILL, Strides
 from walking.support import Footing, SupportRegion
 from walking.targets import JointTargets
+from walking.touch_down import TouchDown
 from walking.whole_body import WholeBody
 
 SAME_LIFT = 1e-9  # difference of swing heights that is rounding [m]

@@ -5,12 +5,12 @@ from numpy.typing import NDArray
 
 from walking import estimation_kernel
 from walking.estimation_kernel import FOUND, LOAD, Plan
-from walking.estimator import steady_gains
 from walking.measurement import BodyMeasurement, body_of
 from walking.odometry import LegOdometry
 from walking.parameters import CONTROL_PERIOD, GRAVITY, EstimatorParameters
 from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
+from walking.steady_gains import steady_gains
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from walking import estimation_kernel
-from walking.estimator import steady_gains
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
+from walking.steady_gains import steady_gains
 
 PARAMETERS = EstimatorParameters()
 LIPM = Lipm(0.19)

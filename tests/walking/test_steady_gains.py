@@ -1,28 +1,15 @@
-"""Touch-down of the feet, and gains of the error filter."""
+"""Steady gains of the error filter."""
 
 import numpy as np
 import pytest
 
-from walking.estimator import TouchDown, steady_gains
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, EstimatorParameters
+from walking.steady_gains import steady_gains
 
 PARAMETERS = EstimatorParameters()
 LIPM = Lipm(0.19)
 OMEGA = LIPM.omega
-
-
-def test_touch_down_needs_the_phase_the_force_and_the_duration():
-    touch = TouchDown(PARAMETERS)
-    assert not touch.update(0.3, 50.0)
-    assert not touch.update(0.7, 50.0)
-    assert touch.update(0.72, 50.0)
-    assert not touch.update(0.74, 1.0)
-    assert not touch.update(0.76, 50.0)
-
-
-def test_one_touch_is_none():
-    assert not TouchDown(PARAMETERS).update(0.7, 50.0)
 
 
 def test_the_steady_gains_are_where_the_filter_settles():

@@ -1,4 +1,4 @@
-"""What the body really does: tilt of the trunk and error of the centre of mass."""
+"""Steady Kalman gains of the filter that follows the error of the centre of mass."""
 
 from dataclasses import dataclass
 from math import cosh, sinh
@@ -35,22 +35,3 @@ def steady_gains(omega: float, parameters: EstimatorParameters) -> SteadyGains:
     P = solve_discrete_are(A.T, C.T, Q, R)
     K = (P @ C.T / (C @ P @ C.T + R)).ravel().tolist()
     return SteadyGains(position=K[0], velocity=K[1])
-
-
-class TouchDown:
-    """Decides that a swinging foot has met the floor.
-
-    Args:
-        parameters: force and duration.
-    """
-
-    def __init__(self, parameters: EstimatorParameters) -> None:
-        self._force = parameters.contact_force
-        self._ticks = parameters.contact_ticks
-        self._phase = parameters.contact_phase
-        self._count = 0
-
-    def update(self, phase: float, force: float) -> bool:
-        """Whether the foot is down at `phase` of its swing under `force` [N]."""
-        self._count = self._count + 1 if phase >= self._phase and force > self._force else 0
-        return self._count >= self._ticks
