@@ -29,7 +29,7 @@ class Phase(StrEnum):
 
 @value
 class Footstep:
-    """A foothold in the odometry frame.
+    """A foothold in the plan frame; in a `WalkingState`, in the odometry frame.
 
     Attributes:
         left: whether it is the left foot.

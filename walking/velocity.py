@@ -15,9 +15,7 @@ def limited(command: VelocityCommand, limits: LimitParameters) -> Velocity:
         forward [m/s], left [m/s], turn [rad/s]; the direction of the command is kept when
         the ellipsoid binds.
     """
-    forward = min(limits.forward, max(-limits.backward, command.forward))
-    left = min(limits.lateral, max(-limits.lateral, command.left))
-    turn = min(limits.turn, max(-limits.turn, command.turn))
+    forward, left, turn = _within(command, limits)
     longest = limits.forward if forward >= 0.0 else limits.backward
     norm = sqrt((forward / longest) ** 2 + (left / limits.lateral) ** 2 + (turn / limits.turn) ** 2)
     if norm > limits.combined:
@@ -28,15 +26,21 @@ def limited(command: VelocityCommand, limits: LimitParameters) -> Velocity:
 
 def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limit]:
     """Which of the limits alter a command."""
-    forward = min(limits.forward, max(-limits.backward, command.forward))
-    left = min(limits.lateral, max(-limits.lateral, command.left))
-    turn = min(limits.turn, max(-limits.turn, command.turn))
-    bound = []
-    if (forward, left, turn) != (command.forward, command.left, command.turn):
+    within, bound = _within(command, limits), []
+    if within != (command.forward, command.left, command.turn):
         bound.append(Limit.SPEED)
-    if limited(command, limits) != (forward, left, turn):
+    if limited(command, limits) != within:
         bound.append(Limit.COMBINED_SPEED)
     return bound
+
+
+def _within(command: VelocityCommand, limits: LimitParameters) -> Velocity:
+    """The command with every component within its limit."""
+    return (
+        min(limits.forward, max(-limits.backward, command.forward)),
+        min(limits.lateral, max(-limits.lateral, command.left)),
+        min(limits.turn, max(-limits.turn, command.turn)),
+    )
 
 
 class _Axis:

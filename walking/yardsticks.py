@@ -1,7 +1,5 @@
 """The measures of a robot that its walk goes with, and those of HSR-VIII."""
 
-from __future__ import annotations
-
 from dataclasses import astuple, dataclass
 
 
