@@ -98,9 +98,9 @@ class FrameSummary:
         tracks: believed obstacles.
         virtual_obstacles: x, y, radius of each [m].
         captured: when the image was taken [s].
-        look: chosen pan and tilt [rad]; None where an older run did not tell.
+        look: chosen pan and tilt [rad].
         blobs: what vision recognised.
-        gaze_map: None where no map was made, or an older run did not tell.
+        gaze_map: None where no map was made.
     """
 
     time: float
@@ -118,7 +118,7 @@ class FrameSummary:
     tracks: tuple[TrackSummary, ...]
     virtual_obstacles: tuple[tuple[float, float, float], ...]
     captured: float
-    look: tuple[float, float] | None
+    look: tuple[float, float]
     blobs: tuple[Blob, ...]
     gaze_map: GazeMapSummary | None
 
@@ -192,11 +192,11 @@ def from_line(line: str, before: FrameSummary | None = None) -> FrameSummary:
             for number, label, x, y, vx, vy, xx, xy, yy, radius, motion, visible in row["tracks"]
         ),
         virtual_obstacles=tuple((x, y, radius) for x, y, radius in row["virtual"]),
-        captured=row.get("seen", row["t"]),
-        look=tuple(row["look"]) if "look" in row else None,
+        captured=row["seen"],
+        look=tuple(row["look"]),
         blobs=tuple(
             Blob(label, (left, top, right, bottom), distance)
-            for label, left, top, right, bottom, distance in row.get("blobs", ())
+            for label, left, top, right, bottom, distance in row["blobs"]
         ),
         gaze_map=_unpacked(row["gm"]) if "gm" in row else kept,
     )

@@ -103,7 +103,7 @@ class Dashboard:
         part[:] = eye
         self._overlay.draw(part, frame)
         picture[self._below :, self._left :] = self._above.draw(frame, moment.movers, moment.trail)
-        if self._with_panel and (frame.gaze_map is not None or frame.look is not None):
+        if self._with_panel:
             margin = round(MARGIN * self._unit)
             corner = margin, height - margin - self._panel.size[1]
             self._panel.draw(picture, corner, frame)

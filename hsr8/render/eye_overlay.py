@@ -51,8 +51,7 @@ class EyeOverlay:
         tags: list[Rectangle] = []
         for number, blob in enumerate(near_first):
             self._draw_tag(picture, blob, tags, near_first[:number])
-        if frame.look is not None:
-            self._draw_window(picture, frame.gaze, frame.look)
+        self._draw_window(picture, frame.gaze, frame.look)
 
     def _box(self, blob: Blob) -> Rectangle:
         """Left, top, right, bottom of a blob in the picture [pixel]."""

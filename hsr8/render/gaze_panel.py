@@ -48,8 +48,7 @@ class GazePanel:
         panel[:] = cv2.addWeighted(panel, 1.0 - OPACITY, np.full_like(panel, PANEL), OPACITY, 0.0)
         pad, base = self._pad, self._pad + self._letters - 1
         write(panel, (pad, base), "gaze map", INK, self._letters, strong=True)
-        if frame.look is not None:
-            write(panel, (width - pad, base), _told(frame.look), FAINT, self._letters, side="right")
+        write(panel, (width - pad, base), _told(frame.look), FAINT, self._letters, side="right")
         self._draw_map(panel, frame)
         self._draw_evaluations(panel, frame)
 
@@ -61,10 +60,9 @@ class GazePanel:
             part[:] = self._heat[shades]
         now = self._pixel(frame.gaze)
         radius = max(2, self._map[1] // 14)
-        if frame.look is not None:
-            chosen = self._pixel(frame.look)
-            cv2.line(panel, now, chosen, INK, 1, cv2.LINE_AA)
-            cv2.circle(panel, chosen, radius + 2, palette.BELIEF, 2, cv2.LINE_AA)
+        chosen = self._pixel(frame.look)
+        cv2.line(panel, now, chosen, INK, 1, cv2.LINE_AA)
+        cv2.circle(panel, chosen, radius + 2, palette.BELIEF, 2, cv2.LINE_AA)
         cv2.circle(panel, now, radius - 1, INK, -1, cv2.LINE_AA)
 
     def _draw_evaluations(self, panel: Image, frame: FrameSummary) -> None:

@@ -188,7 +188,7 @@ class Pictures:
 
     @staticmethod
     def _read_pushes(run: Run) -> tuple[SeenPush, ...]:
-        """Runs of older versions did not tell how they walked, and had no pushes."""
+        """Pushes of a run; how it walked is left unread where nothing pushed it."""
         if not any(event["kind"] == "push" for event in run.events()):
             return ()
         return pushes_of(run.walking(), run.trajectory())

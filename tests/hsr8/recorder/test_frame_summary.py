@@ -43,14 +43,6 @@ def test_round_trip_keeps_what_the_camera_saw_and_where_it_is_to_look(line):
     assert int((image > 0).sum()) == 50
 
 
-def test_a_line_of_an_older_run_tells_less(line):
-    row = json.loads(line)
-    for key in ("seen", "look", "blobs", "gm"):
-        del row[key]
-    frame = from_line(json.dumps(row))
-    assert (frame.captured, frame.look, frame.blobs, frame.gaze_map) == (0.6, None, (), None)
-
-
 def test_numbers_of_tracks_are_rounded_and_may_be_none_or_endless(fake):
     frame = fake.frame(0.6, (0.1, 0.2, 0.3))
     track = replace(

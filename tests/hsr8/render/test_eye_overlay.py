@@ -10,6 +10,7 @@ from hsr8.render.eye_overlay import EyeOverlay
 
 FOV = np.radians(60.0)
 FOCAL = 120.0 / np.tan(FOV / 2)  # of a picture 240 pixels high
+AWAY = {"gaze": (1.5, 0.0), "look": (-1.5, 0.0)}  # chosen behind the camera: no window is drawn
 
 
 @pytest.fixture
@@ -58,12 +59,12 @@ def test_the_window_lies_where_the_pinhole_shows_the_chosen_gaze(summary):
 
 
 def test_a_gaze_behind_the_camera_is_not_drawn(summary):
-    assert not _drawn(summary(blobs=(), gaze=(1.5, 0.0), look=(-1.5, 0.0))).any()
+    assert not _drawn(summary(blobs=(), **AWAY)).any()
 
 
 @pytest.mark.parametrize("scale", [1, 2])
 def test_boxes_lie_where_vision_saw_them(summary, scale):
-    frame = summary(look=None)
+    frame = summary(**AWAY)
     picture = _drawn(frame, (320 * scale, 240 * scale))
     inside = picture[84 * scale : 156 * scale, 104 * scale : 136 * scale]
     assert not inside.any()
@@ -74,8 +75,8 @@ def test_boxes_lie_where_vision_saw_them(summary, scale):
 
 def test_a_wider_picture_shows_more_at_both_sides(summary):
     """What vision saw fills the height and lies in the middle."""
-    wide = _drawn(summary(look=None), (480, 240))
-    assert np.array_equal(wide[100:, 80:400], _drawn(summary(look=None))[100:])
+    wide = _drawn(summary(**AWAY), (480, 240))
+    assert np.array_equal(wide[100:, 80:400], _drawn(summary(**AWAY))[100:])
 
 
 def _tags(frame, size=(640, 480)):
@@ -100,7 +101,7 @@ def test_no_distance_is_written_over_another(summary, seed):
         width, height = rng.integers(6, (40, 60))
         box = (int(left), int(top), int(left + width), int(top + height))
         blobs.append(Blob("red", box, 0.5 + 0.25 * number))
-    tags = _tags(summary(blobs=tuple(blobs), look=None))
+    tags = _tags(summary(blobs=tuple(blobs), **AWAY))
     assert 1 <= len(tags) <= len(blobs)
     for k, (_, left, top, right, bottom) in enumerate(tags):
         assert 0 <= top < bottom <= 480
@@ -112,7 +113,7 @@ def test_no_distance_is_written_over_another(summary, seed):
 
 def test_the_nearest_keeps_its_distance(summary):
     same = [Blob("red", (100, 80, 140, 160), distance) for distance in (3.0, 0.7, 2.0, 1.5)]
-    assert [text for text, *_ in _tags(summary(blobs=tuple(same), look=None))] == [
+    assert [text for text, *_ in _tags(summary(blobs=tuple(same), **AWAY))] == [
         "0.70 m",
         "1.50 m",
     ]
