@@ -14,15 +14,13 @@ The rules, with distances between surfaces unless a point is named:
   and the next one is drawn.
 """
 
-import zlib
 from collections import Counter
 from dataclasses import dataclass
-
-import numpy as np
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.mission import Course, Tour
 from hsr8.scenario.schema import Scenario
+from hsr8.seeds import named_rng
 from hsr8.world.attempt import Attempt, CrowdedError
 from hsr8.world.certificate import Certificate, certify
 from hsr8.world.layout import Layout, with_faults
@@ -65,8 +63,7 @@ def draw_world(scenario: Scenario, seed: int) -> FairWorld:
     Raises:
         ScenarioError: what is asked for does not fit into the field.
     """
-    sequence = np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(b"layout"),))
-    rng = np.random.default_rng(sequence)
+    rng = named_rng(seed, "layout")
     crowded: Counter[str] = Counter()
     rejected = lanes = 0
     for _ in range(WORLDS):

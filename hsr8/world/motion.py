@@ -232,21 +232,13 @@ class Movers:
 
     def top_speeds(self) -> Array:
         """Greatest speed that each ever has, layout order (n,) [m/s]."""
-        return np.array([_top_speed(law) for law in self.laws], dtype=float)
+        return np.array([pace(law) for law in self.laws], dtype=float)
 
     def _ordered(self, straight: Array, rim: Array) -> Array:
         both = np.empty((*straight.shape[:-2], len(self.laws), 2))
         both[..., self._straight, :] = straight
         both[..., self._round, :] = rim
         return both
-
-
-def _top_speed(law: MotionLaw) -> float:
-    if isinstance(law, Appearing):
-        return _top_speed(law.law)
-    if isinstance(law, Still):
-        return 0.0
-    return hypot(*law.rate) if isinstance(law, Line) else abs(law.speed)
 
 
 def _lane(law: MotionLaw) -> tuple[Point, Point, float, float, float]:
