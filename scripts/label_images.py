@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from hsr8.cli.colours import MASK, mask_colours
 from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
-from hsr8.world.assembly import Optics, assemble
-from hsr8.world.camera import HEAD_CAMERA, RenderedCamera
+from hsr8.world.assembly import HEAD_CAMERA, Optics, assemble
+from hsr8.world.camera import RenderedCamera
 from hsr8.world.generator import draw_layout
 from hsr8.world.kinematic import KinematicBody
 

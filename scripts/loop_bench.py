@@ -26,7 +26,8 @@ from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
-from hsr8.world.camera import HEAD_CAMERA, RenderedCamera
+from hsr8.world.assembly import HEAD_CAMERA
+from hsr8.world.camera import RenderedCamera
 from hsr8.world.image_noise import ImageNoise
 from hsr8.world.offscreen import Offscreen
 from hsr8.world.physics import CONTROL_PERIOD

@@ -23,7 +23,7 @@ from vision_truth import Array, Thing, sights
 from hsr8.loop import Simulation
 from hsr8.recorder.record import TickRecord
 from hsr8.scenario.loader import load
-from hsr8.world.camera import HEAD_CAMERA
+from hsr8.world.assembly import HEAD_CAMERA
 from vision.camera import PinholeCamera
 
 

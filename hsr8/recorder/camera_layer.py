@@ -12,11 +12,11 @@ from hsr8.recorder import palette
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.geometry import xyzw
 from hsr8.recorder.record import FrameRecord, Image
+from hsr8.world.assembly import HEAD_CAMERA
 from navigation.decision import GazeDecision
 
 Array = NDArray[np.float64]
 
-CAMERA = "egocentric"
 WINDOW = 0.45  # half a gaze window as a share of the field of view, where GM is summed
 PAN_LIMIT = radians(90.0)  # the gaze map spans the head's range [rad]
 TILT_MIN, TILT_MAX = radians(-60.0), radians(20.0)
@@ -46,7 +46,7 @@ class CameraLayer:
     ) -> None:
         self._jpeg_quality = jpeg
         self._gaze: GazeDecision | None = None  # that is shown
-        self._id = model.camera(CAMERA).id
+        self._id = model.camera(HEAD_CAMERA).id
         self._size = (width, height)
         self._focal = focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
         stream.log(

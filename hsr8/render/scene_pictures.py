@@ -20,8 +20,7 @@ from hsr8.render.stage import Image, Stage
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
 from hsr8.scenario.schema import Scenario
-from hsr8.world.assembly import Optics, Quality
-from hsr8.world.camera import HEAD_CAMERA
+from hsr8.world.assembly import HEAD_CAMERA, Optics, Quality
 from hsr8.world.layout import Layout
 
 Array = NDArray[np.float64]

@@ -15,8 +15,8 @@ import numpy as np
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
 from hsr8.world.analytic_kernel import box, look
+from hsr8.world.assembly import HEAD_CAMERA
 from hsr8.world.body import Body
-from hsr8.world.camera import HEAD_CAMERA
 from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.layout import Layout
 from hsr8.world.rotation import heading

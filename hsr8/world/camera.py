@@ -7,6 +7,7 @@ import numpy as np
 
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
+from hsr8.world.assembly import HEAD_CAMERA
 from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.exposure import Exposure
 from hsr8.world.frustum import Frustum
@@ -16,7 +17,6 @@ from hsr8.world.offscreen import Offscreen
 if TYPE_CHECKING:
     from hsr8.world.body import Body
 
-HEAD_CAMERA = "egocentric"
 THINGS = ("obstacle_", "mover_", "beacon_")  # names of what the robot looks for begin so
 NOT_DRAWN = 5  # a group of geoms that MuJoCo does not draw
 
