@@ -27,8 +27,8 @@ from typing import Any
 from hsr8.cli.attended import ORPHAN, ends_with
 from hsr8.cli.loading import loading
 from hsr8.cli.main import entry
+from hsr8.evaluation.sweep.fork_server import LONGEST
 
-LONGEST = 1 << 16  # of a message [bytes]
 # A short run loads what a run loads, compiled kernels too, which come from the disk one by one.
 FIRST = ("robot.body=kinematic", "camera.source=analytic", "duration=1.0")
 

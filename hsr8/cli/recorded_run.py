@@ -12,7 +12,7 @@ from hsr8.cli import report
 from hsr8.cli.command_line import checkpoint_period, log_level, option_tables
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run
-from hsr8.cli.verify import Verified, verify
+from hsr8.cli.verify import ENDED, Verified, verify
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import Check, exit_code
@@ -26,7 +26,6 @@ from hsr8.recorder.writing import FAILED
 from hsr8.render.live_view import LiveView, live_view
 from hsr8.scenario.schema import Scenario
 
-ENDED = (0, 1)  # exit codes of runs that came to their end
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 

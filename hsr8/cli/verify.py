@@ -13,7 +13,7 @@ from hsr8.recorder import run_folder
 from hsr8.recorder.run_reader import open_run
 from hsr8.recorder.tape import read_tape
 
-FINE = (0, 1)  # exit codes of a run that came to its end
+ENDED = (0, 1)  # exit codes of a run that came to its end
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ def verify(folder: Path) -> Verified:
     words = [sys.executable, "-m", "hsr8", "run", str(first.scenario_file)]
     words += ["--no-log", "--quiet", "--out", str(out)]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
-    if done.returncode not in FINE:
+    if done.returncode not in ENDED:
         raise Hsr8Error(f"the second run failed: {done.stderr.strip() or done.returncode}")
     second = open_run(out)
     difference = first_difference(first, second)

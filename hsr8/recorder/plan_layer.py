@@ -10,6 +10,7 @@ from hsr8.recorder import palette
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.record import FrameRecord
 from navigation.decision import DirectionField, MotionDecision
+from navigation.univector import normalized
 
 Array = NDArray[np.float64]
 
@@ -18,7 +19,6 @@ ARROW = 0.13  # length of each [m]
 STRIDE, STRIDES = 0.15, 8  # of the way that follows the field [m]
 SPEED_SCALE = 2.0  # the arrow of the decision shows the way of so many seconds [s]
 HEIGHT = 0.016  # at which all this is drawn [m]
-NOWHERE = 1e-9  # a shorter direction leads nowhere
 
 
 class PlanLayer:
@@ -67,7 +67,7 @@ class PlanLayer:
             here = frame.belief.pose[:2]
             points = grid(here)
             way = along(motion.field, here, frame.task.target)
-            self._draw(frame.time, points, unit(motion.field.at(points)), [way])
+            self._draw(frame.time, points, normalized(motion.field.at(points)), [way])
 
     def flush(self) -> None:
         """Send the block."""
@@ -98,15 +98,8 @@ def along(field: DirectionField, here: Array, target: Array) -> Array:
         if float(np.hypot(*(target - way[-1]))) <= STRIDE:
             way.append(target)
             break
-        way.append(way[-1] + STRIDE * unit(field.at(way[-1])))
+        way.append(way[-1] + STRIDE * normalized(field.at(way[-1])))
     return np.array(way)
-
-
-def unit(vectors: Array) -> Array:
-    """Vectors (..., 2) of length one, zero where they lead nowhere."""
-    norm = np.hypot(vectors[..., 0], vectors[..., 1])[..., None]
-    found: Array = np.where(norm > NOWHERE, vectors / np.maximum(norm, NOWHERE), 0.0)
-    return found
 
 
 def _raised(points: Array, height: float) -> Array:

@@ -192,12 +192,15 @@ def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:
 
 def logs(path: Path) -> list[Path]:
     """Rerun logs in the run folder `path`; a run that was resumed has one for each part."""
-    first = path / LOG
-    later = [path / f"{first.stem}-{k}{first.suffix}" for k in range(2, MOST_PARTS)]
-    return [file for file in (first, *later) if file.exists()]
+    return [file for k in range(1, MOST_PARTS) if (file := _log(path, k)).exists()]
 
 
 def next_log(path: Path) -> Path:
     """Log of the part of the run in `path` that begins now."""
-    part = len(logs(path)) + 1
-    return path / LOG if part == 1 else path / f"log-{part}.rrd"
+    return _log(path, len(logs(path)) + 1)
+
+
+def _log(path: Path, part: int) -> Path:
+    """Log of a part of the run, counted from 1."""
+    first = path / LOG
+    return first if part == 1 else first.with_stem(f"{first.stem}-{part}")

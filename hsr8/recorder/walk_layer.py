@@ -13,7 +13,7 @@ from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
 from hsr8.recorder.record import TickRecord
-from hsr8.recorder.walking_table import LEG_JOINTS, OdometryToWorld
+from hsr8.recorder.walking_table import LEG_JOINTS, LIGHT, OdometryToWorld
 from navigation.angles import wrap
 from walking.admission import Limit
 
@@ -31,7 +31,6 @@ GAIT = {
 POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
 FLOOR = 0.006  # height at which things on the floor are drawn [m]
 PIN = 0.16  # points on the floor are shown by pins of this height, seen above the feet [m]
-LIGHT = 1.0  # no centre of pressure is shown under feet that carry less [N]
 ARROW = 0.025  # drawn length of a push per newton [m/N]
 GAP = 0.07  # from the point of an arrow to where the push acts [m]
 STRIDE = 2  # footsteps over which the achieved velocity is measured

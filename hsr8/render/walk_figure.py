@@ -50,7 +50,7 @@ class Panel:
     """
 
     height: float
-    draw: Callable[[Axes, WalkingTable], None]
+    draw: Draw
     legend: bool = True
     patches: Callable[[], list[Patch]] = list
 

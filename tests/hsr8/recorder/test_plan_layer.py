@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import plan_layer
-from hsr8.recorder.plan_layer import along, grid, unit
+from hsr8.recorder.plan_layer import along, grid
 
 
 class Whirl:
@@ -40,8 +40,3 @@ def test_the_way_ends_at_the_destination():
     way = along(Right(), np.zeros(2), np.array([0.3, 0.0]))
     assert way[-1] == pytest.approx([0.3, 0.0])
     assert (np.diff(way[:, 0]) > 0.0).all()
-
-
-def test_directions_have_length_one_or_none():
-    vectors = np.array([[3.0, 4.0], [0.0, 0.0], [0.0, -1e-3]])
-    assert unit(vectors) == pytest.approx(np.array([[0.6, 0.8], [0.0, 0.0], [0.0, -1.0]]))
