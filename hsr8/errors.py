@@ -18,7 +18,7 @@ class ScenarioError(UsageError):
 
 
 class ModelError(UsageError):
-    """A model file is wrong: in which folder, and what MuJoCo or the walking library says."""
+    """A model file is missing or wrong: in which folder, and what MuJoCo or walking says."""
 
 
 class RenderingUnavailable(UsageError):

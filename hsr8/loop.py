@@ -80,6 +80,8 @@ class Simulation:
         gaze: chooses the gaze instead of the scenario's.
 
     Attributes:
+        scenario: what is run.
+        seed: drew the world and every noise.
         listeners: told of every record; may be added to before the run.
         tape: where set-points and hashes go, if anywhere.
         each_second: called with the simulation before the first tick of every simulated second.
@@ -91,6 +93,7 @@ class Simulation:
 
     Raises:
         ScenarioError: the world cannot be drawn as asked.
+        ModelError: a model of robot or field is missing or damaged.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
 

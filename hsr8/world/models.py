@@ -13,13 +13,13 @@ def models_dir() -> Path:
     """Folder that holds ``hsr8/hsr8.xml`` and ``field/``.
 
     Raises:
-        FileNotFoundError: the installation is incomplete.
+        ModelError: the installation is incomplete.
     """
     places = (PACKAGE / "_models", PACKAGE.parent / "models")
     for place in places:
         if (place / "hsr8" / "hsr8.xml").is_file():
             return place
-    raise FileNotFoundError(
+    raise ModelError(
         f"hsr8/hsr8.xml is in neither of {', '.join(map(str, places))}: install hsr8 again"
     )
 

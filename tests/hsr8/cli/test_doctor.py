@@ -5,6 +5,7 @@ import pytest
 from hsr8.cli import doctor
 from hsr8.cli.main import entry
 from hsr8.gl import APT_LINE, VULKAN_LINE
+from hsr8.world import models
 
 
 @pytest.fixture(autouse=True)
@@ -37,6 +38,14 @@ def test_json_names_everything(monkeypatch, capsys):
     assert findings["mujoco"]["text"].startswith("4.0")
     assert findings["models"]["state"] == "ok"
     assert "processor" in findings["OpenGL egl"]["text"]
+
+
+def test_models_that_are_nowhere_are_missing(monkeypatch, capsys, tmp_path):
+    monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
+    monkeypatch.setattr(models, "PACKAGE", tmp_path / "hsr8")
+    assert entry(["doctor", "--json"]) == 2
+    findings = {f["name"]: f for f in json.loads(capsys.readouterr().out)["findings"]}
+    assert findings["models"]["state"] == "missing"
 
 
 def test_a_backend_that_fails_is_a_note_not_an_error(monkeypatch):

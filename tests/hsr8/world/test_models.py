@@ -28,3 +28,11 @@ def test_a_model_that_will_not_do_is_one_line(tmp_path, monkeypatch, capsys, fil
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert str(folder) in line
     assert told in line
+
+
+def test_models_that_are_nowhere_are_one_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(models, "PACKAGE", tmp_path / "hsr8")
+    assert entry(["run", "quick", *LIGHT, "--out", str(tmp_path / "runs")]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert str(tmp_path) in line
+    assert "install" in line
