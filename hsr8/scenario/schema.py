@@ -10,7 +10,7 @@ from hsr8.scenario.camera import Camera
 from hsr8.scenario.command import Command
 from hsr8.scenario.disturbance import Disturbance
 from hsr8.scenario.fault import Fault
-from hsr8.scenario.mission import Course, Mission, Points, Tour, Walk
+from hsr8.scenario.mission import Mission
 from hsr8.scenario.robot import Robot
 from hsr8.scenario.section import PeriodMs, Section
 from hsr8.scenario.sensor_noise import SensorNoise
@@ -103,21 +103,3 @@ class Scenario(Section):
             acceleration=speed.acceleration,
             footstep=self.walking.gait.footstep_time,
         )
-
-
-__all__ = [
-    "Camera",
-    "Command",
-    "Course",
-    "Criteria",
-    "Disturbance",
-    "Mission",
-    "Navigation",
-    "Points",
-    "Recorder",
-    "Robot",
-    "Scenario",
-    "Tour",
-    "Walk",
-    "World",
-]
