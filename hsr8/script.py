@@ -108,7 +108,4 @@ class ScriptedPlanner:
             velocity=np.array([forward, left, turn]),
             direction=float(belief.pose[2]) + atan2(left, forward),
             speed=hypot(forward, left),
-            situation="free",
-            virtual_obstacles=(),
-            extended_radii=(),
         )

@@ -69,7 +69,7 @@ class Planner:
         if task.done or belief.lost:
             turn = self._parameters.body.lost_turn
             self._body = idle_velocity(not task.done, turn, self._limits)
-            return MotionDecision(self._body, self._direction, 0.0, "free", (), ())
+            return MotionDecision(self._body, self._direction)
         obstacles = ObstacleSet.from_tracks(belief.tracks)
         task = self._round_obstacles(belief, task, obstacles)
         scene, radii = self._scene(belief, task, obstacles)
@@ -159,7 +159,7 @@ class Planner:
         p = self._parameters
         pose = belief.pose
         if task.aligning:
-            return MotionDecision(self._body, float(pose[2]), 0.0, "free", (), ())
+            return MotionDecision(self._body, float(pose[2]))
         velocity = self._ground_velocity(pose)
         forces: tuple[VirtualForce, ...] = ()
         if p.mover.virtual_obstacle == "own":

@@ -56,7 +56,7 @@ class Tracker:
         self._next_id = 1
 
     def update(
-        self, time: float, seen: Sightings, viewpoint: Viewpoint, freed: Mask | None = None
+        self, time: float, seen: Sightings, viewpoint: Viewpoint, freed: Mask
     ) -> tuple[Track, ...]:
         """Take in one frame and return the tracks, by id.
 
@@ -67,7 +67,7 @@ class Tracker:
             freed: which of them stand where the floor was seen empty before (m,); what is new
                 there has moved.
         """
-        self._freed = np.zeros(len(seen.radii), np.bool_) if freed is None else freed
+        self._freed = freed
         dt = 0.0 if self._time is None else time - self._time
         self._time = time
         if self._objects:

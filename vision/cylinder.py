@@ -120,9 +120,9 @@ def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array,
 def locate(
     candidates: Sequence[Candidate],
     view: View,
-    roundness_sigma: float = 0.01,
-    edge_correlation: float = 0.1,
-    stray: float = 3.5,
+    roundness_sigma: float,
+    edge_correlation: float,
+    stray: float,
 ) -> list[Cylinder]:
     """Cylinders that explain the edges of each candidate best.
 

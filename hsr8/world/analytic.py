@@ -66,13 +66,13 @@ class AnalyticCamera:
         layout: Layout,
         camera: PinholeCamera,
         rng: np.random.Generator,
-        settings: Camera | None = None,
+        settings: Camera,
         faults: CameraFaults | None = None,
     ) -> None:
         self._camera = camera
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
-        self._all_round = (settings or Camera()).all_round
+        self._all_round = settings.all_round
         self._faults = faults or CameraFaults()
         self._movers = layout.motion()
         self._things = [

@@ -43,10 +43,10 @@ class CameraFeed:
         self,
         settings: Camera,
         rng: np.random.Generator,
-        faults: CameraFaults | None = None,
+        faults: CameraFaults,
     ) -> None:
         self._rng = rng
-        self._faults = faults or CameraFaults()
+        self._faults = faults
         self._period = settings.period_ms // CONTROL_PERIOD_MS
         self._latency = settings.latency_ms // CONTROL_PERIOD_MS
         self._under_way: deque[tuple[int, Picture]] = deque()

@@ -63,7 +63,7 @@ class PeerPlanner:
         if task.done or belief.lost:
             turn = self._parameters.body.lost_turn
             self._body = idle_velocity(not task.done, turn, self._limits)
-            return MotionDecision(self._body, heading, 0.0, "free", (), ())
+            return MotionDecision(self._body, heading)
         situation = self._situation(belief, task)
         limits = self._envelope
         self._body = np.clip(self._avoidance.decide(situation), limits.low(), limits.high())
@@ -72,7 +72,7 @@ class PeerPlanner:
         direction = wrap(heading + atan2(left, forward)) if speed > 1e-9 else situation.course
         radii = self._parameters.univector.s_robot + situation.radii(self._avoidance.margin)
         pairs = zip(situation.obstacles.ids.tolist(), radii.tolist(), strict=True)
-        return MotionDecision(self._body, direction, speed, "free", (), tuple(pairs))
+        return MotionDecision(self._body, direction, speed, extended_radii=tuple(pairs))
 
     def _situation(self, belief: Belief, task: Task) -> Situation:
         p = self._parameters

@@ -41,7 +41,9 @@ class Stage:
             )
         sightings = in_world(seen, pose, EXACT, pose_sigma_limit=0.1)
         viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.sure_range)
-        self.tracks = self.tracker.update(self.time, sightings, viewpoint)
+        self.tracks = self.tracker.update(
+            self.time, sightings, viewpoint, np.zeros(len(sightings.radii), bool)
+        )
         return self.tracks
 
     def watch(self, seconds, *movers, **details):

@@ -15,6 +15,7 @@ from vision.outline import Outline, trace
 from vision.view import View
 
 TYPICAL_RADIUS = (0.085, 0.02)
+NOISE = (0.01, 0.1, 3.5)  # roundness, correlation along an edge, deviation of a stray point
 
 
 def outline_of(thing: Cylinder, gaze: CameraPose) -> Outline:
@@ -50,6 +51,7 @@ def test_foot_head_and_both_agree_within_their_uncertainty(distance, bearing, ra
             for rims in ((foot,), (head,), (foot, head))
         ],
         view,
+        *NOISE,
     )
     for cylinder in found:
         sigma = np.sqrt(np.diag(cylinder.covariance))
@@ -63,7 +65,9 @@ def test_foot_head_and_both_agree_within_their_uncertainty(distance, bearing, ra
 def test_both_sides_alone_give_the_distance_of_the_typical_radius() -> None:
     outline = outline_of(at(1.5, 0.0, "red", 0.085), pose(tilt=-0.3))
     view = View(CAMERA, pose(tilt=-0.3))
-    (cylinder,) = locate([Candidate(outline.left, outline.right, (), 0.30, *TYPICAL_RADIUS)], view)
+    (cylinder,) = locate(
+        [Candidate(outline.left, outline.right, (), 0.30, *TYPICAL_RADIUS)], view, *NOISE
+    )
     assert cylinder.distance == pytest.approx(1.5, rel=0.04)
     assert cylinder.covariance[1, 1] ** 0.5 == pytest.approx(1.5 * 0.02 / 0.085, rel=0.1)
 
@@ -74,7 +78,9 @@ def test_one_side_is_enough_to_find_the_axis() -> None:
     middle = 0.5 * (outline.left.azimuth + outline.right.azimuth)
     hidden = replace(outline.left, azimuth=middle, trusted=False)
     rims = (foot_of(outline), head_of(outline))
-    (cylinder,) = locate([Candidate(hidden, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view)
+    (cylinder,) = locate(
+        [Candidate(hidden, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view, *NOISE
+    )
     assert cylinder.azimuth == pytest.approx(radians(5.0), abs=4 * cylinder.covariance[0, 0] ** 0.5)
     assert outline.right.azimuth == pytest.approx(radians(5.0) - asin(0.09 / 1.2), abs=0.004)
 
@@ -86,8 +92,8 @@ def test_every_error_of_the_pose_makes_the_place_less_certain(error: str) -> Non
     candidate = Candidate(
         outline.left, outline.right, (foot_of(outline), head_of(outline)), 0.30, *TYPICAL_RADIUS
     )
-    (exact,) = locate([candidate], View(CAMERA, gaze))
-    (vague,) = locate([candidate], View(CAMERA, replace(gaze, **{error: 0.02})))
+    (exact,) = locate([candidate], View(CAMERA, gaze), *NOISE)
+    (vague,) = locate([candidate], View(CAMERA, replace(gaze, **{error: 0.02})), *NOISE)
     slack = 0.05 * np.linalg.eigvalsh(exact.covariance).min()  # they are linearised apart
     assert np.linalg.eigvalsh(vague.covariance - exact.covariance).min() > -slack
     assert np.linalg.det(vague.covariance) > 1.05 * np.linalg.det(exact.covariance)
@@ -99,7 +105,7 @@ def test_place_in_the_robot_frame_follows_the_camera() -> None:
     outline, view = outline_of(thing, gaze), View(CAMERA, gaze)
     rims = (foot_of(outline), head_of(outline))
     (cylinder,) = locate(
-        [Candidate(outline.left, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view
+        [Candidate(outline.left, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view, *NOISE
     )
     distance, bearing, covariance, by_radius = polar_in_robot(cylinder, view)
     expected = true_polar(thing)
@@ -122,7 +128,7 @@ def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
     view = View(CAMERA, pose(tilt=-0.3))
     outline = outline_of(at(1.0, 0.0, "red", 0.1), pose(tilt=-0.3))
     (here,) = locate(
-        [Candidate(outline.left, outline.right, (foot_of(outline),), 0.30, 0.1, 0.01)], view
+        [Candidate(outline.left, outline.right, (foot_of(outline),), 0.30, 0.1, 0.01)], view, *NOISE
     )
     assert interpenetrate(here, here)
     for step in (0.1, 0.4):
@@ -131,4 +137,4 @@ def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
 
 
 def test_nothing_is_located_from_nothing() -> None:
-    assert locate([], View(CAMERA, pose())) == []
+    assert locate([], View(CAMERA, pose()), *NOISE) == []

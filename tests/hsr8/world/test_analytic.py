@@ -7,6 +7,7 @@ from hsr8.world.kinematic import KinematicBody
 from hsr8.world.layout import Obstacle
 from vision.camera import PinholeCamera
 
+AHEAD = Camera()
 CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
 
 
@@ -14,7 +15,7 @@ CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
 def see(world, silent):
     """Detections over many frames of a robot that looks down a little."""
 
-    def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35, settings=None):
+    def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35, settings=AHEAD):
         layout, model = world(*obstacles, start=start)
         body = KinematicBody(model, layout, silent, np.random.default_rng(0))
         body.data.joint("head_tilt").qpos[0] = tilt
