@@ -1,6 +1,5 @@
-"""A 2-D stand-in for field and camera: shuttling cylinders and a noisy detector."""
+"""A 2-D stand-in for the head camera: a noisy detector of cylinders."""
 
-from dataclasses import dataclass
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
 from typing import Literal
 
@@ -25,29 +24,6 @@ PITCH_SIGMA, YAW_SIGMA = 0.009, 0.006
 FRAME = 0.06
 
 
-@dataclass
-class Obstacle:
-    """A cylinder, shuttling between two ends if it has a speed."""
-
-    label: str
-    start: Array
-    end: Array
-    speed: float
-    radius: float
-    phase: float = 0.0
-
-    def state(self, time: float) -> tuple[Array, Array]:
-        """Position and velocity at a time."""
-        length = float(np.linalg.norm(self.end - self.start))
-        if self.speed == 0.0:
-            return self.start, np.zeros(2)
-        along = (self.phase + self.speed * time) % (2.0 * length)
-        way = (self.end - self.start) / length
-        if along < length:
-            return self.start + along * way, self.speed * way
-        return self.end - (along - length) * way, -self.speed * way
-
-
 class Smooth:
     """First-order Gauss-Markov error."""
 
@@ -62,17 +38,6 @@ class Smooth:
             self.rng.standard_normal()
         )
         return self.value
-
-
-BEACONS = {
-    name: (2.9 * cos(a), 2.9 * sin(a))
-    for name, a in zip(
-        ("yellow/cyan", "cyan/yellow", "yellow/magenta", "magenta/yellow", "cyan/magenta",
-         "magenta/cyan"),
-        (np.arange(6) * pi / 3 + 0.3).tolist(),
-        strict=True,
-    )
-}  # fmt: skip
 
 
 class Camera:

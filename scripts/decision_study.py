@@ -18,7 +18,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 import tyro
-from belief_world import HFOV, VFOV, Camera, view
+from belief_world import CAMERA_HEIGHT, HFOV, VFOV, Camera, view
 from decision_world import TICK, Walker, World, perfect_belief
 from numpy.typing import NDArray
 
@@ -172,7 +172,7 @@ class Run:
         dx, dy = (point - self.walker.pose[:2]).tolist()
         off = wrap(atan2(dy, dx) - float(self.walker.pose[2]) - pan)
         depth = max(0.05, hypot(dx, dy) * max(0.2, cos(off)))
-        bottom, top = atan2(low - 0.47, depth), atan2(high - 0.47, depth)
+        bottom, top = atan2(low - CAMERA_HEIGHT, depth), atan2(high - CAMERA_HEIGHT, depth)
         return bottom < tilt + 0.5 * VFOV - 0.02 and top > tilt - 0.5 * VFOV + 0.02
 
     def look(self, belief: Belief, task: Task) -> None:

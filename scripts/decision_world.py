@@ -31,6 +31,7 @@ class World:
     Attributes:
         layout: static obstacles first, movers after.
         radii: of all obstacles (n,) [m].
+        beacons: position by name [m].
     """
 
     layout: Layout

@@ -21,7 +21,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Rectangle
 from numpy.typing import NDArray
-from recorded_run import FAST, RecordedRun, run
+from recorded_run import RecordedRun, run
+from study_page import STAND_INS
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.render.walk_panels import INK
@@ -65,7 +66,10 @@ class Case:
 def case(letter: str) -> Case:
     """Run one case with and without the scheme and find the decision to show."""
     name, title, situations, duration = CASES[letter]
-    ran = run(name, (PAPER, *FAST), 0, duration), run(name, (PAPER, *FAST, *WITHOUT), 0, duration)
+    ran = (
+        run(name, (PAPER, *STAND_INS), 0, duration),
+        run(name, (PAPER, *STAND_INS, *WITHOUT), 0, duration),
+    )
     v_max = ran[0].scenario.robot.speed.forward
     for frame in ran[0].frames:
         if frame.motion.situation not in situations or not frame.motion.extended_radii:

@@ -14,11 +14,11 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 
-from study_page import command_line
+from study_page import RESULTS, command_line
 
 from hsr8.evaluation.sweep.folder import SweepFolder
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "executors.md"
+PAGE = RESULTS / "executors.md"
 EXTRAS = {"dask": "distributed", "ray": "ray"}
 
 

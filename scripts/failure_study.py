@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from study_page import add_seeds, command_line
+from study_page import STAND_INS, add_seeds, command_line
 
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
@@ -229,7 +229,7 @@ def main() -> None:
     parser.add_argument("--set", nargs="*", default=[], help="settings, key=value")
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
-    settings = ["robot.body=kinematic", "camera.source=analytic", *arguments.set]
+    settings = [*STAND_INS, *arguments.set]
     failures: list[Failure] = []
     pictures: dict[str, str] = {}
     folder = arguments.out.with_suffix("")

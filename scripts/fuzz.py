@@ -23,6 +23,7 @@ from bad_input import keys, model_changed, mutated, near, value, values_changed,
 
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
+from hsr8.evaluation import checkpoint
 from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
@@ -69,7 +70,7 @@ FILES = (
     run_folder.MEASUREMENTS,
     run_folder.TAPE,
     run_folder.FRAMES,
-    "checkpoint.bin",
+    checkpoint.FILE,
 )
 
 

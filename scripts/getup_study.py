@@ -13,11 +13,10 @@ import argparse
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import mujoco
 import numpy as np
-from study_page import add_seeds, command_line, environment
+from study_page import RESULTS, add_seeds, command_line, environment
 from walking_body import ROBOT, Body, Plant
 
 from walking.command import HeadTarget, VelocityCommand
@@ -29,7 +28,7 @@ from walking.parameters import CONTROL_PERIOD, GetUpParameters, WalkingParameter
 from walking.robot_model import RobotModel
 from walking.walker import Walker
 
-RESULT = Path(__file__).resolve().parents[1] / "docs" / "results" / "getup.md"
+RESULT = RESULTS / "getup.md"
 LEAD = (2.0, 3.0)  # of walking before the push [s]
 PUSH = 0.05  # duration [s]
 IMPULSE = (3.0, 4.0)  # [N s]

@@ -37,7 +37,7 @@ LIMIT = 10.0  # time within which it shall know [s]
 
 
 def compose(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Pose `b`, given in the frame of pose `a`, in the frame of `a`'s own pose."""
+    """Pose `b`, told in the frame of pose `a`, in the frame in which `a` is told."""
     c, s = cos(a[2]), sin(a[2])
     return np.array([a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]])
 

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
-from study_page import command_line
+from study_page import STAND_INS, command_line
 
 from hsr8.cli.main import entry
+from hsr8.evaluation import checkpoint
 from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.loop import Simulation
@@ -30,11 +31,10 @@ from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import open_run
 from hsr8.recorder.tape import read_tape
 from hsr8.scenario.loader import dump, load
+from hsr8.world.physics import CONTROL_PERIOD
 
-FAST = ('robot.body="kinematic"', 'camera.source="analytic"')
 CHECKPOINT = 2  # simulated time between two [s]
 CLOCK = struct.Struct("<d")
-PERIOD = 0.005  # control tick [s]
 
 
 class Watch:
@@ -89,10 +89,11 @@ def run(out: str, watch: str, settings: tuple[str, ...], seed: int) -> None:
     recording.run()
 
 
-def killed(
-    out: Path, settings: tuple[str, ...], seed: int, after: float, whole: dict[int, str]
-) -> Left:
-    """Kill a run `after` some simulated time [s], and look at what is left."""
+def killed(out: Path, settings: tuple[str, ...], seed: int, after: float, whole: str) -> Left:
+    """Kill a run `after` some simulated time [s], and look at what is left.
+
+    The hash of its `whole` state at the end is what it shall resume to.
+    """
     watch = out / "clock"
     watch.write_bytes(CLOCK.pack(-1.0))
     processes = get_context("forkserver")
@@ -108,7 +109,7 @@ def killed(
     return examined(out, max(time, 0.0), whole, seed)
 
 
-def examined(out: Path, time: float, whole: dict[int, str], seed: int) -> Left:
+def examined(out: Path, time: float, whole: str, seed: int) -> Left:
     """Read every record."""
     ends: dict[str, float] = {}
     readable = True
@@ -129,10 +130,10 @@ def examined(out: Path, time: float, whole: dict[int, str], seed: int) -> Left:
             ends[name] = 0.0
     found.frames(), found.events()
     resumed = "none"
-    if (found.path / "checkpoint.bin").exists():
+    if (found.path / checkpoint.FILE).exists():
         code = entry(["run", str(found.path), "--resume", "--quiet", "--no-log"])
         ended = open_run(out).metrics().get("state_hash")
-        resumed = "equal" if ended == whole[seed] else f"exit {code}"
+        resumed = "equal" if ended == whole else f"exit {code}"
     return Left(time, ends, readable, resumed)
 
 
@@ -154,7 +155,7 @@ def log_end(file: Path) -> float:
 def tape_end(folder: Path) -> float:
     """End of the last whole second of the tape [s]."""
     block = read_tape(folder / run_folder.TAPE, whole=False)[-1]
-    return (block.tick + len(block.set_points)) * PERIOD
+    return (block.tick + len(block.set_points)) * CONTROL_PERIOD
 
 
 def main() -> None:
@@ -170,10 +171,10 @@ def main() -> None:
     for k in range(arguments.kills):
         seed, full = arguments.seed + k, k < arguments.full
         length = f"duration={arguments.duration}"
-        settings = (length,) if full else (length, *FAST)
+        settings = (length,) if full else (length, *STAND_INS)
         after = draw.uniform(0.0, arguments.duration - 0.5)
         scenario = load("quick", settings, seed=seed)
-        whole = {seed: Simulation(scenario, seed).run().state_hash}
+        whole = Simulation(scenario, seed).run().state_hash
         with tempfile.TemporaryDirectory() as folder:
             left = killed(Path(folder), settings, seed, after, whole)
         ends = " | ".join(f"{left.killed - end:.2f}" for end in left.ends.values())

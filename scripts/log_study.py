@@ -12,7 +12,7 @@ from pathlib import Path
 from time import process_time
 
 from stopwatch import Stopwatch
-from study_page import command_line, environment
+from study_page import RESULTS, command_line, environment
 
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
@@ -21,7 +21,7 @@ from hsr8.recorder.rerun_log import RerunLog
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "log.md"
+PAGE = RESULTS / "log.md"
 SHARE, SIZE = 0.10, 15.0  # what the standard level may take: of the time, and [MB/min]
 
 

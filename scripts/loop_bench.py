@@ -92,7 +92,7 @@ class Bench:
         floor = Floor(simulation)
         with tempfile.TemporaryDirectory() as out, Stopwatch() as watch:
             path = RunFolder.create(Path(out), scenario.name, seed)
-            manifest = Manifest.now(scenario.name, seed, "", require_gl())
+            manifest = Manifest.now(scenario.name, seed, ("bench",), require_gl())
             mission = scenario.navigation.mission
             layout, model, camera = simulation.layout, simulation.model, scenario.camera
             simulation.listeners += [

@@ -26,10 +26,10 @@ from types import ModuleType
 
 import pytest
 from hypothesis import Phase, settings
-from study_page import command_line, environment
+from study_page import RESULTS, command_line, environment
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "results" / "mutation.md"
+PAGE = RESULTS / "mutation.md"
 TESTS = {  # where they are not those of the same name
     "walking/zmp_layout_kernel": ("walking/test_zmp_kernel",),
     "walking/swing_kernel": ("walking/test_swing_kernel", "walking/test_swing_reaction"),

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.spatial import ConvexHull
-from study_page import add_seeds, command_line, environment
+from study_page import RESULTS, add_seeds, command_line, environment
 
 from walking.command import Command, CommandState, VelocityCommand
 from walking.footsteps import FootstepPlanner
@@ -33,9 +33,8 @@ from walking.stride import STILL
 from walking.support import SupportRegion, support_region
 from walking.transition import Transition
 
-ROOT = Path(__file__).resolve().parents[1]
-ROBOT = ROOT / "models" / "hsr8" / "hsr8.xml"
-PAGE = ROOT / "docs" / "results" / "pattern.md"
+ROBOT = Path(__file__).resolve().parents[1] / "models" / "hsr8" / "hsr8.xml"
+PAGE = RESULTS / "pattern.md"
 GENERATORS = ("dcm", "preview", "paper", "robust")
 OUTSIDE = 1e-9  # [m]
 CLIPPED = 0.001  # more clipping than in the steady walk [m]
@@ -326,7 +325,7 @@ def main() -> None:
     parser.add_argument("study", choices=("every-tick", "landing", "all"))
     add_seeds(parser, range(1000, 1005))
     parser.add_argument("--duration", type=float, default=60.0)
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.relative_to(ROOT)}")
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
     parser.add_argument("--generators", nargs="+", choices=GENERATORS, default=GENERATORS)
     options = parser.parse_args()
     sole = RobotModel.from_mjcf(ROBOT).sole

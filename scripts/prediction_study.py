@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from study_page import add_seeds, environment
+from study_page import STAND_INS, add_seeds, environment
 
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
@@ -24,7 +24,6 @@ from navigation.bend import mean_velocity
 
 Array = NDArray[np.float64]
 
-STAND_INS = ("robot.body='kinematic'", "camera.source='analytic'")
 SAME, NEAR = 0.1, 1.5  # distances of a track from its mover, and of that from the robot [m]
 AHEAD = 2.0  # [s]
 AGES = ((0.05, "in view"), (1.0, "to 1 s"), (2.0, "1 to 2 s"), (4.0, "2 to 4 s"))

@@ -12,8 +12,6 @@ from hsr8.scenario.schema import Scenario
 
 Array = NDArray[np.float64]
 
-FAST = ("robot.body=kinematic", "camera.source=analytic")
-
 
 @dataclass
 class RecordedRun:

@@ -14,6 +14,8 @@ from hsr8.evaluation.sweep.seeds import parse_seeds
 
 RESULTS = Path(__file__).resolve().parents[1] / "docs" / "results"
 PACKAGES = ("hsr8", "mujoco", "numpy", "pin")
+STAND_INS = ("robot.body=kinematic", "camera.source=analytic")
+"""Settings of a run without physics and images."""
 
 
 def seeds_of(text: str) -> tuple[int, ...]:

@@ -67,8 +67,8 @@ def report(name: str, trace: Trace) -> None:
     across, elevation, height = (1e3 * np.array(trace.camera_error).std(axis=0)).tolist()
     print(
         f"    camera std: bearing {across:.1f} mrad, elevation {elevation:.1f} mrad, "
-        f"height {height:.2f} mm; engine {1e6 * trace.wall_engine / trace.ticks:.0f} us, "
-        f"physics {1e6 * trace.wall_physics / trace.ticks:.0f} us a tick",
+        f"height {height:.2f} mm; engine {1e6 * trace.cpu_engine / trace.ticks:.0f} us, "
+        f"physics {1e6 * trace.cpu_physics / trace.ticks:.0f} us a tick",
         flush=True,
     )
 

@@ -31,8 +31,8 @@ class Trace:
     falls: list[float] = field(default_factory=list)
     self_contacts: int = 0
     ticks: int = 0
-    wall_engine: float = 0.0
-    wall_physics: float = 0.0
+    cpu_engine: float = 0.0
+    cpu_physics: float = 0.0
 
     @property
     def footsteps(self) -> int:
@@ -66,12 +66,12 @@ def walk(
         sensors = body.sense()
         start = time.process_time()
         targets = engine.step(sensors, command, head)
-        trace.wall_engine += time.process_time() - start
+        trace.cpu_engine += time.process_time() - start
         if tick % SAMPLE == 0:
             trace.sample(body, engine)
         start = time.process_time()
         body.apply(targets.position + targets.offset)
-        trace.wall_physics += time.process_time() - start
+        trace.cpu_physics += time.process_time() - start
         trace.ticks += 1
         if body.fallen:
             trace.falls.append(now)

@@ -7,11 +7,10 @@ pace, blind. A world that it crosses without a contact asks nothing of navigatio
 """
 
 import argparse
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from study_page import add_seeds, command_line, environment
+from study_page import RESULTS, add_seeds, command_line, environment
 
 from hsr8.render.png import write_png
 from hsr8.scenario.loader import load
@@ -25,7 +24,7 @@ from hsr8.world.plan_view import PlanView
 
 PICTURED = "course crowd dense fast conflict behind corridor crossing blind-corner"
 FAMILIES = f"{PICTURED} paper quick"
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "results" / "worlds.md"
+PAGE = RESULTS / "worlds.md"
 PICTURES = PAGE.parents[1] / "images" / "worlds"
 PICTURE = 640  # longer side [pixel]
 STEP = 0.05  # of the nominal walk [s]
