@@ -43,14 +43,16 @@ class GroundMap:
         return np.where(points[:, 1] > 0.3, 0.6, 0.97)
 
 
-def track(place: tuple[float, float], motion: Motion, age: float, **details: object) -> Track:
+def track(
+    number: int, place: tuple[float, float], motion: Motion, age: float, **details: object
+) -> Track:
     """A track with what matters here."""
     position = np.array(place)
     velocity = np.array(details.get("velocity", (0.0, 0.0)), dtype=float)
     cloud = details.get("cloud")
     assert cloud is None or isinstance(cloud, Particles)
     return Track(
-        id=len(place),
+        id=number,
         label="red",
         position=position,
         velocity=velocity,
@@ -72,25 +74,14 @@ def moment() -> Belief:
     places = np.array([0.15, -0.85]) + rng.normal(0.0, (0.20, 0.08), (16, 2))
     cloud = Particles(places, np.zeros((16, 2)), np.zeros(16), np.full(16, 1.0 / 16))
     tracks = (
-        track((1.15, 0.25), Motion.STATIC, 0.0),
-        track((1.5, -0.5), Motion.STATIC, 1.5),
-        track((0.9, 0.75), Motion.UNKNOWN, 0.8, velocity=(0.02, -0.03)),
-        track((1.4, -0.05), Motion.MOVING, 0.0, velocity=(-0.08, 0.03)),
-        track((0.3, -0.9), Motion.MOVING, 2.2, velocity=(-0.07, 0.02), cloud=cloud),
+        track(0, (1.15, 0.25), Motion.STATIC, 0.0),
+        track(1, (1.5, -0.5), Motion.STATIC, 1.5),
+        track(2, (0.9, 0.75), Motion.UNKNOWN, 0.8, velocity=(0.02, -0.03)),
+        track(3, (1.4, -0.05), Motion.MOVING, 0.0, velocity=(-0.08, 0.03)),
+        track(4, (0.3, -0.9), Motion.MOVING, 2.2, velocity=(-0.07, 0.02), cloud=cloud),
     )
     covariance = np.diag([4e-4, 4e-4, 4e-4])
-    local_map = GroundMap()
-    return Belief(
-        5.0,
-        np.zeros(3),
-        covariance,
-        tracks,
-        local_map,
-        view(0.1, -0.4),
-        (),
-        False,
-        0,  # type: ignore[arg-type]
-    )
+    return Belief(5.0, np.zeros(3), covariance, tracks, GroundMap(), view(0.1, -0.4), (), False, 0)
 
 
 def main() -> None:
