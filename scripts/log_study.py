@@ -32,7 +32,10 @@ def row(scenario: Scenario, level: LogLevel | None) -> tuple[str, str]:
         file = Path(folder) / "log.rrd"
         size = (scenario.camera.width, scenario.camera.height)
         if level is not None:
-            log = RerunLog(file, simulation.model, simulation.layout, size, "study", level=level)
+            gaze = scenario.navigation.gaze
+            log = RerunLog(
+                file, simulation.model, simulation.layout, size, "study", gaze=gaze, level=level
+            )
             simulation.listeners.append(log)
             for method in ("on_record", "on_event", "close"):
                 watch.watch(RerunLog, method, "log")

@@ -101,7 +101,12 @@ class Bench:
                 Metrics(layout, mission.r_via, mission.r_goal),
                 WalkingTableWriter(path / run_folder.WALKING, model, simulation.index),
                 RerunLog(
-                    path / run_folder.LOG, model, layout, (camera.width, camera.height), "bench"
+                    path / run_folder.LOG,
+                    model,
+                    layout,
+                    (camera.width, camera.height),
+                    "bench",
+                    gaze=scenario.navigation.gaze,
                 ),
             ]
             self.watch = watch

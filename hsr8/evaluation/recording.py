@@ -127,6 +127,7 @@ class Recording:
                     simulation.layout,
                     size,
                     name,
+                    gaze=scenario.navigation.gaze,
                     level=log,
                     live=live,
                     index=scenario.duration <= LONGEST_INDEXED,

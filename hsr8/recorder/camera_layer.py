@@ -14,12 +14,10 @@ from hsr8.recorder.geometry import xyzw
 from hsr8.recorder.record import FrameRecord, Image
 from hsr8.world.assembly import HEAD_CAMERA
 from navigation.decision import GazeDecision
+from navigation.gaze_parameters import GazeParameters
 
 Array = NDArray[np.float64]
 
-WINDOW = 0.45  # half a gaze window as a share of the field of view, where GM is summed
-PAN_LIMIT = radians(90.0)  # the gaze map spans the head's range [rad]
-TILT_MIN, TILT_MAX = radians(-60.0), radians(20.0)
 EDGE, ONE = np.linspace(-1.0, 1.0, 7), np.ones(7)
 OUTLINE = np.concatenate(  # of the square from -1 to 1 (28, 2)
     [np.column_stack(s) for s in ((EDGE, ONE), (ONE, -EDGE), (-EDGE, -ONE), (-ONE, EDGE))]
@@ -32,22 +30,24 @@ class CameraLayer:
     Args:
         stream: where it goes.
         model: compiled world, which has the camera.
-        width, height: of the image [pixel].
+        size: width and height of the image [pixel].
         jpeg: quality of the images [%].
+        gaze: what the gaze map spans, and the window in which its votes are summed.
     """
 
     def __init__(
         self,
         stream: rr.RecordingStream,
         model: mujoco.MjModel,
-        width: int,
-        height: int,
+        size: tuple[int, int],
         jpeg: int,
+        gaze: GazeParameters,
     ) -> None:
         self._jpeg_quality = jpeg
+        self._parameters = gaze
         self._gaze: GazeDecision | None = None  # that is shown
         self._id = model.camera(HEAD_CAMERA).id
-        self._size = (width, height)
+        self._size = width, height = size
         self._focal = focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
         stream.log(
             "/world/camera",
@@ -125,7 +125,7 @@ class CameraLayer:
 
     def _add_gaze(self, frame: FrameRecord) -> None:
         gaze_map = frame.gaze.gaze_map
-        window = _window(frame)
+        window = self._outline(frame)
         view = frame.belief.view
         seen = image_points((view.pan, view.tilt), window, self._focal, self._size)
         self._seen_window.add(frame.time, strips=[] if seen is None else [seen])
@@ -139,27 +139,37 @@ class CameraLayer:
         # Left and up in the head are left and up in the picture.
         coloured = self._heat[shades[::-1, ::-1]]
         self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", coloured)[1].ravel()])
-        rows, columns = gaze_map.shape
-
-        def place(angles: Array) -> Array:
-            u = (PAN_LIMIT - angles[:, 0]) / (2.0 * PAN_LIMIT) * (columns - 1) + 0.5
-            v = (TILT_MAX - angles[:, 1]) / (TILT_MAX - TILT_MIN) * (rows - 1) + 0.5
-            return np.column_stack([np.clip(u, 0.0, columns), np.clip(v, 0.0, rows)])
-
+        chosen = np.array([[frame.gaze.pan, frame.gaze.tilt]])
         self._choice.add(
             frame.time,
-            positions=place(np.array([[frame.gaze.pan, frame.gaze.tilt]])),
+            positions=map_points(chosen, gaze_map.shape, self._parameters),
             colors=np.array([palette.packed(palette.BELIEF)], dtype=np.uint32),
         )
-        self._window.add(frame.time, strips=[place(window)])
+        self._window.add(frame.time, strips=[map_points(window, gaze_map.shape, self._parameters)])
+
+    def _outline(self, frame: FrameRecord) -> Array:
+        """Outline of the gaze window that was chosen: pan and tilt (n, 2) [rad]."""
+        view, gaze = frame.belief.view, frame.gaze
+        fov = np.minimum([view.horizontal_fov, view.vertical_fov], pi)
+        found: Array = OUTLINE * (self._parameters.box_share * fov) + (gaze.pan, gaze.tilt)
+        return found
 
 
-def _window(frame: FrameRecord) -> Array:
-    """Outline of the gaze window that was chosen: pan and tilt (n, 2) [rad]."""
-    view, gaze = frame.belief.view, frame.gaze
-    half = WINDOW * np.minimum([view.horizontal_fov, view.vertical_fov], pi)
-    found: Array = OUTLINE * half + (gaze.pan, gaze.tilt)
-    return found
+def map_points(angles: Array, shape: tuple[int, ...], gaze: GazeParameters) -> Array:
+    """Where directions are in the picture of the gaze map; what lies beyond it is on its border.
+
+    Args:
+        angles: pan and tilt of n directions (n, 2) [rad].
+        shape: cells of the map, tilts and pans.
+        gaze: what the map spans.
+
+    Returns:
+        Pixels (n, 2), those of cells at their middles.
+    """
+    rows, columns = shape
+    u = 0.5 * columns - angles[:, 0] / gaze.step
+    v = rows - 0.5 - (angles[:, 1] - gaze.tilt_min) / gaze.step
+    return np.column_stack([np.clip(u, 0.0, columns), np.clip(v, 0.0, rows)])
 
 
 def image_points(

@@ -26,6 +26,7 @@ from hsr8.recorder.walk_layer import WalkLayer
 from hsr8.recorder.walking_table import OdometryToWorld
 from hsr8.recorder.writing import refusal
 from hsr8.world.layout import Layout
+from navigation.gaze_parameters import GazeParameters
 from walking.state import Footstep
 
 Array = NDArray[np.float64]
@@ -50,6 +51,7 @@ class RerunLog:
         layout: what stands where.
         image_size: width and height of the head camera's image [pixel].
         name: of the recording, shown by the viewer.
+        gaze: of the run; spans its gaze map.
         level: how much is logged.
         live: address of a viewer that is shown everything too; empty for none.
         index: end the file with a list of its parts, for tools that read some of them only; until
@@ -64,6 +66,7 @@ class RerunLog:
         image_size: tuple[int, int],
         name: str,
         *,
+        gaze: GazeParameters,
         level: LogLevel = LogLevel.STANDARD,
         live: str = "",
         index: bool = True,
@@ -92,7 +95,7 @@ class RerunLog:
         self._camera: CameraLayer | None = None
         self._minds: tuple[BeliefLayer | PlanLayer, ...] = ()
         if rates.pictures:
-            self._camera = CameraLayer(self._stream, model, *image_size, rates.jpeg)
+            self._camera = CameraLayer(self._stream, model, image_size, rates.jpeg, gaze)
             self._minds = (
                 BeliefLayer(self._stream, rates.map),
                 PlanLayer(self._stream, rates.map),

@@ -43,7 +43,15 @@ def test_a_log_of_everything_changes_nothing(tmp_path):
     size = (scenario.camera.width, scenario.camera.height)
     for level in LogLevel:
         file = tmp_path / f"{level}.rrd"
-        log = RerunLog(file, simulation.model, simulation.layout, size, "test", level=level)
+        log = RerunLog(
+            file,
+            simulation.model,
+            simulation.layout,
+            size,
+            "test",
+            gaze=scenario.navigation.gaze,
+            level=level,
+        )
         simulation.listeners.append(log)
     assert simulation.run().state_hash == final_hash(3, STAND_INS, 3.0)
     fields = Log([file]).table("/plan/field", "Arrows3D:vectors")

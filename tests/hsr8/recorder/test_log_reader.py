@@ -9,11 +9,12 @@ from hsr8.errors import UsageError
 from hsr8.recorder import log_reader
 from hsr8.recorder.log_reader import Log, read_log
 from hsr8.recorder.rerun_log import RerunLog
+from navigation.gaze_parameters import GazeParameters
 
 
 def _write(path, model, layout, records):
     path.parent.mkdir(exist_ok=True)
-    listener = RerunLog(path, model, layout, (320, 240), "test")
+    listener = RerunLog(path, model, layout, (320, 240), "test", gaze=GazeParameters())
     for record in records:
         listener.on_record(record)
     listener.close("goal")

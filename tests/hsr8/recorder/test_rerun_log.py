@@ -17,6 +17,7 @@ from hsr8.recorder.log_reader import Log
 from hsr8.recorder.rerun_log import PATIENCE, RerunLog
 from hsr8.world.truth import PushActing
 from navigation.belief import Particles
+from navigation.gaze_parameters import GazeParameters
 from walking.admission import AdmissionReport, Limit
 from walking.command import VelocityCommand
 
@@ -47,7 +48,7 @@ def folder(tmp_path):
 def _logged(folder, model, layout, records, **options):
     """Log of `records`."""
     path = folder / "log.rrd"
-    listener = RerunLog(path, model, layout, (320, 240), "test 7", **options)
+    listener = RerunLog(path, model, layout, (320, 240), "test 7", gaze=GazeParameters(), **options)
     for record in records:
         listener.on_record(record)
     listener.close("goal")
@@ -58,7 +59,7 @@ def _logged(folder, model, layout, records, **options):
 def log(tmp_path, model, layout):
     (tmp_path / "7-abc").mkdir()
     path = tmp_path / "7-abc" / "log.rrd"
-    return path, RerunLog(path, model, layout, (320, 240), "test 7")
+    return path, RerunLog(path, model, layout, (320, 240), "test 7", gaze=GazeParameters())
 
 
 def test_a_run_is_logged_at_its_rates(log, walk):
