@@ -109,6 +109,14 @@ def colours(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]
     return result
 
 
+def sole_outline(model: mujoco.MjModel, side: str) -> Array:
+    """Outline of the sole of the left or right ("l", "r") foot in its own frame (5, 2) [m]."""
+    sole, foot = model.geom(f"{side}_sole"), model.site(f"{side}_foot")
+    corners = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)])
+    outline: Array = (sole.pos - foot.pos)[:2] + sole.size[:2] * corners
+    return outline
+
+
 def _belongs(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
     """Geoms whose name begins so (ngeom,)."""
     return np.array([model.geom(i).name.startswith(prefix) for i in range(model.ngeom)])

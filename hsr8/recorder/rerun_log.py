@@ -17,7 +17,7 @@ from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.blueprint import blueprint
 from hsr8.recorder.camera_layer import CameraLayer
 from hsr8.recorder.channel import TIMELINE, Channel
-from hsr8.recorder.geometry import Scene
+from hsr8.recorder.geometry import Scene, sole_outline
 from hsr8.recorder.log_level import RATES, LogLevel
 from hsr8.recorder.plan_layer import PlanLayer
 from hsr8.recorder.plot_layer import PlotLayer
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 APRON = 1.0  # the floor shown is larger than the field by this [m]
 LIVE_BLOCK = 0.5  # rows are sent in shorter blocks while somebody watches [s]
-FOOT_LENGTH, FOOT_WIDTH, FOOT_AHEAD = 0.105, 0.060, 0.010  # outline of a sole [m]
+SOLE_HEIGHT = 0.004  # at which footsteps are drawn [m]
 LABELLED = 12  # more way points than this are shown without their numbers
 PATIENCE = 20.0  # a block must be with the operating system within this wall time [s]
 TRAIL, TRAIL_PERIOD = 60.0, 0.12  # the path shown behind the robot, and of its points [s]
@@ -92,6 +92,7 @@ class RerunLog:
         self._n_movers = len(layout.movers)
         width, depth = layout.field_size
         self._scene = Scene(self._stream, model, (width + APRON, depth + APRON))
+        self._soles = tuple(sole_outline(model, side) for side in "lr")
         self._camera: CameraLayer | None = None
         self._minds: tuple[BeliefLayer | PlanLayer, ...] = ()
         if rates.pictures:
@@ -169,10 +170,16 @@ class RerunLog:
         ]
         self._footsteps.add(
             frame.time,
-            strips=[_sole(f) for f in placed],
+            strips=[self._sole(f) for f in placed],
             colors=_colours([palette.LEFT_FOOT if f.left else palette.RIGHT_FOOT for f in placed]),
             radii=np.full(len(placed), 0.004),
         )
+
+    def _sole(self, step: Footstep) -> Array:
+        """Outline of a foot on the floor (5, 3) [m]."""
+        c, s = cos(step.yaw), sin(step.yaw)
+        outline = self._soles[not step.left] @ np.array([[c, s], [-s, c]]) + [step.x, step.y]
+        return np.column_stack([outline, np.full(len(outline), SOLE_HEIGHT)])
 
     def _flush(self) -> None:
         for record in self._waiting.take():
@@ -241,15 +248,6 @@ class RerunLog:
                 ),
                 static=True,
             )
-
-
-def _sole(step: Footstep) -> Array:
-    """Outline of a foot on the floor (5, 3) [m]."""
-    front, back = FOOT_AHEAD + FOOT_LENGTH / 2, FOOT_AHEAD - FOOT_LENGTH / 2
-    side = FOOT_WIDTH / 2
-    c, s = cos(step.yaw), sin(step.yaw)
-    corners = ((front, side), (front, -side), (back, -side), (back, side), (front, side))
-    return np.array([[step.x + c * u - s * v, step.y + s * u + c * v, 0.004] for u, v in corners])
 
 
 def _colours(colours: Sequence[palette.Colour]) -> NDArray[np.uint32]:

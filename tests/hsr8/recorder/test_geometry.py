@@ -2,7 +2,16 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.recorder.geometry import _BOX, BASE, batches, colours, multiply, rotate, xyzw
+from hsr8.recorder.geometry import (
+    _BOX,
+    BASE,
+    batches,
+    colours,
+    multiply,
+    rotate,
+    sole_outline,
+    xyzw,
+)
 
 
 def _unit(rng, n):
@@ -60,3 +69,19 @@ def test_colours_come_from_the_material(model):
 def test_a_kind_that_does_not_occur_has_no_batch(model):
     assert [b.kind for b in batches(model, model.geom_type == _BOX)] == ["boxes"]
     assert batches(model, np.zeros(model.ngeom, bool)) == []
+
+
+@pytest.mark.parametrize("side", ["l", "r"])
+def test_the_outline_of_a_sole_is_that_of_its_geom_seen_from_above(model, side):
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    outline = sole_outline(model, side)
+    foot, sole = data.site(f"{side}_foot"), data.geom(f"{side}_sole")
+    drawn = foot.xpos[:2] + outline @ foot.xmat.reshape(3, 3)[:2, :2].T
+    half = model.geom(f"{side}_sole").size[:2]
+    signs = np.array([(u, v) for u in (-1.0, 1.0) for v in (-1.0, 1.0)])
+    corners = sole.xpos[:2] + (signs * half) @ sole.xmat.reshape(3, 3)[:2, :2].T
+    apart = np.hypot(*(drawn[:, None] - corners[None]).transpose(2, 0, 1))
+    assert drawn[0].tolist() == drawn[-1].tolist()
+    assert sorted(apart[:-1].argmin(axis=1).tolist()) == [0, 1, 2, 3]
+    assert apart.min(axis=1) == pytest.approx(0.0, abs=1e-9)
