@@ -118,7 +118,9 @@ def build_decisions(
         mission=mission,
         planner=planner,
         gaze=gaze,
-        landmarks=LandmarkObstacles(beacons, scenario.vision.beacon_radius),
+        landmarks=LandmarkObstacles(
+            beacons, scenario.vision.beacon_radius, scenario.navigation.landmarks
+        ),
         footstep=limits.footstep,
     )
 

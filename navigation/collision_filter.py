@@ -20,12 +20,6 @@ from navigation.value import value
 
 Array = NDArray[np.float64]
 
-_INSIDE = 10.0
-_INSIDE_DEPTH = 40.0
-_INSIDE_CLOSING = 100.0
-_SIDE_STEP = 1.2
-"""Speeds below this multiple of the lateral limit need no turn first."""
-
 
 @value
 class Paths:
@@ -146,7 +140,7 @@ class CollisionFilter:
             discs.horizon,
             discs.weight,
             (p.urgent_time, p.urgent_weight, p.weight),
-            (_INSIDE, _INSIDE_DEPTH, _INSIDE_CLOSING),
+            (p.inside_weight, p.inside_depth, p.inside_closing),
         )
 
     def paths(
@@ -167,7 +161,7 @@ class CollisionFilter:
                 limits.acceleration * limits.footstep,
                 p.turn_change,
                 self._body.turn_wait,
-                _SIDE_STEP * limits.lateral,
+                self._body.side_step * limits.lateral,
             ),
             p.steps,
         )

@@ -1,4 +1,4 @@
-"""Deadline votes: how late a look is, measured by half the worst-case time to contact.
+"""Deadline votes: how late a look is, measured by a share of the worst-case time to contact.
 
 The structure is the paper's: four evaluations, a gaze map, its highest centre. What fills
 the obstacle and map evaluations is the age of the knowledge over the time within which it
@@ -21,27 +21,13 @@ from navigation.gaze_parameters import GazeParameters
 from navigation.gaze_scene import GazeScene, relative, to_field
 from navigation.integrated_gaze import beacon_votes
 from navigation.obstacle_set import largest_deviation
-from navigation.overdue import AGE_LIMIT, LEAST_TIME
 from navigation.partial_evaluation import SamplePoints
 
 Array = NDArray[np.float64]
 
-_FRAME = 0.1
-"""Age of what was seen in the latest frame, one decision [s]."""
-_HALF = 0.5
-"""Share of the time to contact within which to look again."""
-_CLEARANCE = 0.05
-"""Distance from contact at which it is too late [m]."""
 _RAYS = 17
 _RINGS = np.array([0.45, 0.8, 1.2, 1.7])
-_MAP_SPEED = 0.7
-"""Speed of unknown movers on unseen ground, share of the robot's."""
-_WAY_DISTANCE = 0.8
-"""Distance of the floor looked at along the way [m]."""
-_SACCADE = 0.25
-"""Time in which the head turns to where it is told to look [s]."""
-_GLANCE_TILT = -0.6
-"""Tilt that shows the floor from 0.3 m on [rad]."""
+"""Where ground votes: directions, and distances [m]."""
 
 
 def deadline_votes(
@@ -67,14 +53,14 @@ def deadline_votes(
     """
     p = parameters.gaze
     x, y, heading = belief.pose.tolist()
-    belief = replace(belief, pose=np.array([x, y, heading + _SACCADE * turn]))
+    belief = replace(belief, pose=np.array([x, y, heading + p.deadline.saccade_time * turn]))
     height = scene.camera_height
     votes = [
         obstacle_deadlines(scene, belief, way, speed, parameters),
         map_deadlines(scene, belief, way, speed, parameters),
         Votes.one(
             min(max(way, -p.pan_limit), p.pan_limit),
-            float(-np.arctan2(height, _WAY_DISTANCE)),
+            float(-np.arctan2(height, p.deadline.way_distance)),
             p.deadline.way_weight,
         ),
         beacon_votes(scene, p.deadline.beacon_weight * self_urgency(belief, parameters)),
@@ -92,7 +78,7 @@ def glance_vote(belief: Belief, glance: float, parameters: GazeParameters) -> li
     if abs(bearing) > p.pan_limit + p.box_share * belief.view.horizontal_fov:
         return []
     pan = min(max(bearing, -p.pan_limit), p.pan_limit)
-    return [Votes.one(pan, _GLANCE_TILT, p.deadline.glance_weight)]
+    return [Votes.one(pan, p.deadline.glance_tilt, p.deadline.glance_weight)]
 
 
 def self_urgency(belief: Belief, parameters: NavigationParameters) -> float:
@@ -143,10 +129,10 @@ def obstacle_deadlines(
         ),
     )
     approach = feared + speed * np.maximum(0.25, 0.5 + 0.5 * np.cos(bearing - way))
-    gap = distance - o.radius[index_] - parameters.univector.s_robot - _CLEARANCE
-    contact = np.maximum(LEAST_TIME, gap / approach)
-    age = o.age[index_] + _FRAME + d.unknown_bonus * unknown + d.fresh_bonus * fresh
-    urgency = np.minimum(d.urgency_limit, age / (_HALF * contact)) ** d.exponent
+    gap = distance - o.radius[index_] - parameters.univector.s_robot - d.clearance
+    contact = np.maximum(d.least_time, gap / approach)
+    age = o.age[index_] + d.least_age + d.unknown_bonus * unknown + d.fresh_bonus * fresh
+    urgency = np.minimum(d.urgency_limit, age / (d.look_share * contact)) ** d.exponent
     value = weight * urgency * np.where(static, d.static_weight, 1.0)
     tilt = np.arctan2(
         parameters.evaluation.aim_height - scene.camera_height, np.maximum(distance, 0.05)
@@ -171,10 +157,10 @@ def map_deadlines(
     reach = p.pan_limit + p.box_share * belief.view.horizontal_fov
     ground = _ground(reach)
     distance, bearing = ground.distance, ground.bearing
-    age = np.minimum(AGE_LIMIT, belief.local_map.age_at(to_field(ground.points, belief.pose)))
-    approach = speed * (_MAP_SPEED + np.maximum(0.1, np.cos(bearing - way)))
+    age = np.minimum(d.age_limit, belief.local_map.age_at(to_field(ground.points, belief.pose)))
+    approach = speed * (d.map_speed + np.maximum(0.1, np.cos(bearing - way)))
     room = distance - 2.0 * parameters.univector.s_robot
-    contact = np.maximum(LEAST_TIME, room / approach)
+    contact = np.maximum(d.least_time, room / approach)
     value = d.map_weight * np.minimum(d.urgency_limit, age / contact) ** d.exponent
     tilt = -np.arctan2(scene.camera_height, distance)
     return Votes(wrap_array(bearing), tilt, value)

@@ -208,6 +208,22 @@ class FilterParameters:
     `univector.s_robot` [m]."""
     sigma_limit: NonNegative = 0.06
     """Largest part of a mover's position uncertainty added to that [m]."""
+    inside_weight: NonNegative = 10.0
+    """Penalty besides of a contact with what the robot is too near to already [1]."""
+    inside_depth: NonNegative = 40.0
+    """The same for how much too near, as a share of the distance kept [1]."""
+    inside_closing: NonNegative = 100.0
+    """The same for every speed at which it comes nearer still [s/m]."""
+
+
+@dataclass(frozen=True)
+class LandmarkParameters:
+    """Landmarks of the map as obstacles."""
+
+    attention_range: NonNegative = 1.0
+    """Distance within which one counts: farther off no planner heeds what stands, but `mppi` [m]."""
+    sigma: Positive = 0.005
+    """Standard deviation of place and velocity, that of a static track known for long [m, m/s]."""
 
 
 @dataclass(frozen=True)
@@ -248,6 +264,14 @@ class ShoulderParameters:
     """Time until the next try, if nothing was seen by then [s]."""
     clearance: NonNegative = 0.25
     """Gap to what may move within which the robot leaves first and looks round later [m]."""
+    least_approach: Positive = 0.02
+    """Least speed at which something unseen is taken to come nearer [m/s]."""
+    least_time: Positive = 0.4
+    """Shortest time to contact counted [s]."""
+    age_limit: Positive = 8.0
+    """Age of ground from which nothing grows worse [s]."""
+    urgency_limit: Positive = 2.0
+    """Largest urgency of a point on the ground [1]."""
 
 
 @dataclass(frozen=True)
@@ -258,6 +282,8 @@ class BodyParameters:
     """Turn rate per heading error [1/s]."""
     turn_wait: NonNegative = 0.5
     """Heading error below which a fast path is walked without turning first [rad]."""
+    side_step: NonNegative = 1.2
+    """Speed up to which no path needs a turn first, share of the largest sideways [1]."""
     lost_turn: NonNegative = 0.5
     """Turn rate of a lost robot, whose head alone does not reach all around [rad/s]."""
 
@@ -282,6 +308,8 @@ class NavigationParameters:
     """Confidence gate."""
     filter: FilterParameters = field(default_factory=FilterParameters)
     """Time-to-contact filter."""
+    landmarks: LandmarkParameters = field(default_factory=LandmarkParameters)
+    """Landmarks as obstacles."""
     shoulder: ShoulderParameters = field(default_factory=ShoulderParameters)
     """Looks over the shoulder."""
     way_search: WaySearchParameters = field(default_factory=WaySearchParameters)

@@ -95,6 +95,24 @@ class DeadlineParameters:
     """Heading uncertainty at which the beacons vote fully [rad]."""
     switch_ratio: Annotated[float, Ge(1.0)] = 1.03
     """Gain in the gaze map that moves the gaze [1]."""
+    saccade_time: NonNegative = 0.25
+    """Time ahead for which votes are cast: the head turns, and the body with it [s]."""
+    look_share: Positive = 0.5
+    """Share of the time to contact within which to look again [1]."""
+    least_time: Positive = 0.4
+    """Shortest time to contact counted [s]."""
+    least_age: NonNegative = 0.1
+    """Age of what was seen in the latest frame [s]."""
+    age_limit: Positive = 8.0
+    """Age of ground from which its votes grow no more [s]."""
+    clearance: NonNegative = 0.05
+    """Distance from contact at which a look comes too late [m]."""
+    map_speed: NonNegative = 0.70
+    """Feared speed of what comes from ground not seen, share of the robot's [1]."""
+    way_distance: Positive = 0.8
+    """Distance of the floor looked at along the way [m]."""
+    glance_tilt: float = -0.6
+    """Tilt of a look at what the body turned aside for; shows the floor from 0.3 m on [rad]."""
 
 
 @dataclass(frozen=True)

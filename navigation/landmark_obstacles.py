@@ -7,16 +7,7 @@ from math import hypot
 import numpy as np
 
 from navigation.belief import Belief, Motion, Track
-
-REACH = 1.0
-"""Distance within which a landmark may be in the way [m].
-
-Farther off no planner heeds what stands, to a few mm/s, but the roll-outs of `mppi`; ours does not
-from 0.7 m on.
-"""
-
-SIGMA = 0.005
-"""Standard deviation of place and velocity, that of a static track known for long [m, m/s]."""
+from navigation.decision_parameters import LandmarkParameters
 
 
 class LandmarkObstacles:
@@ -28,11 +19,18 @@ class LandmarkObstacles:
     Args:
         known: place of every landmark in W by its name [m].
         radius: of a landmark [m].
+        parameters: how near one matters, and how sure its place is.
     """
 
-    def __init__(self, known: Mapping[str, tuple[float, float]], radius: float) -> None:
+    def __init__(
+        self,
+        known: Mapping[str, tuple[float, float]],
+        radius: float,
+        parameters: LandmarkParameters,
+    ) -> None:
+        self._range = parameters.attention_range
         self._tracks = tuple(
-            _standing(number - len(known), name, place, radius)
+            _standing(number - len(known), name, place, radius, parameters.sigma)
             for number, (name, place) in enumerate(known.items())
         )
         self._places = tuple(known.values())
@@ -43,19 +41,21 @@ class LandmarkObstacles:
         near = tuple(
             track
             for track, (x, y) in zip(self._tracks, self._places, strict=True)
-            if hypot(x - here_x, y - here_y) < REACH
+            if hypot(x - here_x, y - here_y) < self._range
         )
         return replace(belief, tracks=near + belief.tracks) if near else belief
 
 
-def _standing(number: int, name: str, place: tuple[float, float], radius: float) -> Track:
+def _standing(
+    number: int, name: str, place: tuple[float, float], radius: float, sigma: float
+) -> Track:
     position = np.array(place)
     return Track(
         id=number,
         label=name,
         position=position,
         velocity=np.zeros(2),
-        covariance=SIGMA**2 * np.eye(4),
+        covariance=sigma**2 * np.eye(4),
         radius=radius,
         radius_sigma=0.0,
         motion=Motion.STATIC,

@@ -14,7 +14,6 @@ from navigation import shoulder_kernel
 from navigation.angles import wrap
 from navigation.belief import Belief, Motion, Track
 from navigation.decision_parameters import ShoulderParameters
-from navigation.overdue import AGE_LIMIT, LEAST_TIME
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -66,7 +65,15 @@ class ShoulderCheck:
         """
         self._parameters = parameters
         self._s_robot = s_robot
-        self._fear = (parameters.mover_speed * speed, s_robot, LEAST_TIME, AGE_LIMIT)
+        p = parameters
+        self._fear = (
+            p.mover_speed * speed,
+            s_robot,
+            p.least_approach,
+            p.least_time,
+            p.age_limit,
+            p.urgency_limit,
+        )
         self._sectors = sectors(parameters, reach)
         self._weight = np.array([s.weight for s in self._sectors])
         self._bearing = np.concatenate([s.bearing for s in self._sectors])

@@ -1,7 +1,8 @@
 """Compiled part of the looks over the shoulder: how overdue each sector of the ground is.
 
-A fear is (feared speed of what was not seen [m/s], radius of the robot [m], shortest time to
-contact counted [s], age from which nothing grows worse [s]). Sectors are (middle, half width)
+A fear is (feared speed of what was not seen [m/s], radius of the robot [m], least speed at which it
+comes nearer [m/s], shortest time to contact counted [s], age from which nothing grows worse [s],
+largest urgency of a point). Sectors are (middle, half width)
 from the way (n, 2) [rad].
 """
 
@@ -12,12 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Fear = tuple[float, float, float, float]
-
-URGENCY_LIMIT = 2.0
-"""Largest urgency of a point."""
-LEAST_APPROACH = 0.02
-"""Least speed at which something unseen is taken to come nearer [m/s]."""
+Fear = tuple[float, float, float, float, float, float]
 
 
 @njit(cache=True)
@@ -31,9 +27,9 @@ def urgency(age: float, gap: float, bearing: float, speed: float, fear: Fear) ->
         speed: of the robot along the way [m/s].
         fear: of what was not seen.
     """
-    approach = max(LEAST_APPROACH, fear[0] + speed * cos(bearing))
-    contact = max(fear[2], gap / approach)
-    return min(URGENCY_LIMIT, min(fear[3], age) / contact)
+    approach = max(fear[2], fear[0] + speed * cos(bearing))
+    contact = max(fear[3], gap / approach)
+    return min(fear[5], min(fear[4], age) / contact)
 
 
 @njit(cache=True)

@@ -5,6 +5,7 @@ import pytest
 
 from hsr8.decisions import Decisions
 from navigation.decision import GazeDecision, MotionDecision
+from navigation.decision_parameters import LandmarkParameters
 from navigation.landmark_obstacles import LandmarkObstacles
 
 FOOTSTEP = 0.34
@@ -37,7 +38,8 @@ class Parts:
 def made(fake):
     """Decisions, their parts, and a decision at a time with so many steps made."""
     parts = Parts(fake.frame(0.0).decided.task)
-    landmarks = LandmarkObstacles({"far": (1.5, 0.0), "near": (0.5, 0.0)}, 0.05)
+    places = {"far": (1.5, 0.0), "near": (0.5, 0.0)}
+    landmarks = LandmarkObstacles(places, 0.05, LandmarkParameters())
     decisions = Decisions(
         mission=parts, planner=parts, gaze=parts, landmarks=landmarks, footstep=FOOTSTEP
     )

@@ -2,15 +2,18 @@ import numpy as np
 import pytest
 
 from navigation.belief import Motion
-from navigation.landmark_obstacles import REACH, LandmarkObstacles
+from navigation.decision_parameters import LandmarkParameters
+from navigation.landmark_obstacles import LandmarkObstacles
 from navigation.obstacle_set import ObstacleSet
 
 PLACES = {"north": (0.0, 2.8), "south": (0.0, -2.8), "east": (2.8, 0.0), "by": (2.2, 0.3)}
+RANGE = 0.9
+PARAMETERS = LandmarkParameters(attention_range=RANGE)
 
 
 @pytest.fixture
 def landmarks():
-    return LandmarkObstacles(PLACES, 0.05)
+    return LandmarkObstacles(PLACES, 0.05, PARAMETERS)
 
 
 def test_near_ones_are_added_and_nothing_else_is_changed(landmarks, belief, track):
@@ -20,7 +23,11 @@ def test_near_ones_are_added_and_nothing_else_is_changed(landmarks, belief, trac
         tracks = [track(place, id=i) for i, place in enumerate(rng.uniform(-2, 2, (3, 2)))]
         before = belief(tracks, rng.uniform(-3, 3, 3))
         after = landmarks.added_to(before)
-        near = {n for n, p in PLACES.items() if np.hypot(*(before.pose[:2] - p)) < REACH}
+        near = {
+            n
+            for n, p in PLACES.items()
+            if np.hypot(*(before.pose[:2] - p)) < PARAMETERS.attention_range
+        }
         counts.add(len(near))
         if not near:
             assert after is before
@@ -52,7 +59,7 @@ def test_their_ids_are_no_tracks_and_stay_the_same(landmarks, belief):
 
 def test_without_landmarks_nothing_is_added(belief, track):
     before = belief([track((0.5, 0.0))])
-    assert LandmarkObstacles({}, 0.05).added_to(before) is before
+    assert LandmarkObstacles({}, 0.05, PARAMETERS).added_to(before) is before
 
 
 def test_they_are_verdicts_not_guesses(landmarks, belief):

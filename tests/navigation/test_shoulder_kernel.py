@@ -8,7 +8,7 @@ from navigation.angles import wrap_array
 
 POSE = np.array([0.4, -1.2, 2.9])
 COURSE, SPEED = 2.6, 0.15
-FEAR = (0.22, 0.12, 0.4, 8.0)
+FEAR = (0.22, 0.12, 0.1, 0.4, 8.0, 2.0)
 BODY = (3.0, 0.08, 1.2)
 RINGS = np.array([0.4, 0.7, 1.2])
 RAYS = np.array([2.2, 2.4, 2.6, -2.2, -2.4, -2.6])
@@ -28,10 +28,10 @@ def age():
 
 
 def urgency(age, gap, bearing):
-    feared, _, least_time, age_limit = FEAR
-    approach = np.maximum(kernel.LEAST_APPROACH, feared + SPEED * np.cos(bearing))
+    feared, _, least_approach, least_time, age_limit, urgency_limit = FEAR
+    approach = np.maximum(least_approach, feared + SPEED * np.cos(bearing))
     contact = np.maximum(least_time, gap / approach)
-    return np.minimum(kernel.URGENCY_LIMIT, np.minimum(age_limit, age) / contact)
+    return np.minimum(urgency_limit, np.minimum(age_limit, age) / contact)
 
 
 def test_compiled_and_plain_agree(age, cloud):
@@ -55,7 +55,7 @@ def test_ground_agrees_with_the_formula_over_arrays(age):
     each = urgency(age.reshape(6, 3), RINGS - 2.0 * FEAR[1], RAYS[:, None])
     found = kernel.of_ground(age, RINGS, RAYS, SPEED, FEAR, 2)
     assert found == pytest.approx([each[:3].mean(), each[3:].mean()])
-    assert each.max() == kernel.URGENCY_LIMIT > found.max()
+    assert each.max() == FEAR[-1] > found.max()
 
 
 def test_a_cloud_agrees_with_the_formula_over_arrays(cloud):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from navigation.decision import Task
-from navigation.decision_parameters import NavigationParameters
+from navigation.decision_parameters import LandmarkParameters, NavigationParameters
 from navigation.landmark_obstacles import LandmarkObstacles
 from navigation.mission import Mission
 from navigation.peers.choice import build_planner
@@ -142,7 +142,7 @@ def test_it_walks_around_what_stands_in_the_way(method, belief, task, track, lim
 @pytest.mark.parametrize("method", get_args(Method))
 @pytest.mark.parametrize("aside", [-0.05, 0.02, 0.10])
 def test_a_known_landmark_in_the_way_is_walked_round(method, aside, belief, task, limits):
-    landmarks = LandmarkObstacles({"post": (1.5, 0.0)}, 0.05)
+    landmarks = LandmarkObstacles({"post": (1.5, 0.0)}, 0.05, LandmarkParameters())
     walker, planned = Body((0.0, aside, 0.0), limits), planner(method, limits)
     least = 9.0
     for _ in range(90):
@@ -159,7 +159,7 @@ def test_a_known_landmark_in_the_way_is_walked_round(method, aside, belief, task
 @pytest.mark.parametrize("away", [0.6, 0.8, 1.05])
 def test_a_goal_before_a_known_landmark_is_arrived_at(method, away, belief, limits):
     goal, heading = np.array([1.0, 0.0]), 0.0
-    landmarks = LandmarkObstacles({"post": (1.0 + away, 0.0)}, 0.05)
+    landmarks = LandmarkObstacles({"post": (1.0 + away, 0.0)}, 0.05, LandmarkParameters())
     mission = Mission(goal[None], heading, False, NavigationParameters().mission)
     walker, planned = Body((0.0, 0.2, 0.5), limits), planner(method, limits)
     for _ in range(90):
