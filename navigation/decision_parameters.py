@@ -221,7 +221,7 @@ class LandmarkParameters:
     """Landmarks of the map as obstacles."""
 
     attention_range: NonNegative = 1.0
-    """Distance within which one counts: farther off no planner heeds what stands, but `mppi` [m]."""
+    """Distance within which one counts; farther off only `mppi` heeds what stands [m]."""
     sigma: Positive = 0.005
     """Standard deviation of place and velocity, that of a static track known for long [m, m/s]."""
 
