@@ -18,8 +18,9 @@ from navigation.confidence_gate import gate_vote
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
 from navigation.gaze_parameters import GazeParameters
-from navigation.gaze_scene import GazeScene, relative, to_field
+from navigation.gaze_scene import GazeScene, relative
 from navigation.integrated_gaze import beacon_votes
+from navigation.landmark import points_to_world
 from navigation.obstacle_set import largest_deviation
 from navigation.partial_evaluation import SamplePoints
 
@@ -157,7 +158,9 @@ def map_deadlines(
     reach = p.pan_limit + p.box_share * belief.view.horizontal_fov
     ground = _ground(reach)
     distance, bearing = ground.distance, ground.bearing
-    age = np.minimum(d.age_limit, belief.local_map.age_at(to_field(ground.points, belief.pose)))
+    age = np.minimum(
+        d.age_limit, belief.local_map.age_at(points_to_world(belief.pose, ground.points))
+    )
     approach = speed * (d.map_speed + np.maximum(0.1, np.cos(bearing - way)))
     room = distance - 2.0 * parameters.univector.s_robot
     contact = np.maximum(d.least_time, room / approach)

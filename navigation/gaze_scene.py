@@ -8,6 +8,7 @@ from navigation.belief import Belief
 from navigation.decision import MotionDecision
 from navigation.decision_parameters import NavigationParameters
 from navigation.extended_radius import extended_radius
+from navigation.landmark import points_to_world
 from navigation.obstacle_set import ObstacleSet
 from navigation.partial_evaluation import (
     MapEvaluation,
@@ -72,13 +73,6 @@ def relative(points: Array, pose: Array) -> tuple[Array, Array]:
     return bearing, np.hypot(offset[:, 0], offset[:, 1])
 
 
-def to_field(points: Array, pose: Array) -> Array:
-    """Points of R (n, 2) in W (n, 2) [m]."""
-    c, s = np.cos(pose[2]), np.sin(pose[2])
-    moved: Array = pose[:2] + points @ np.array([[c, s], [-s, c]])
-    return moved
-
-
 def gaze_scene(
     belief: Belief,
     motion: MotionDecision | None,
@@ -101,7 +95,7 @@ def gaze_scene(
     obstacles = ObstacleSet.from_tracks(belief.tracks)
     bearing, distance = relative(obstacles.position, pose)
     body = np.zeros(2) if motion is None else motion.velocity[:2]
-    velocity = to_field(body[None], pose)[0] - pose[:2]
+    velocity = points_to_world(pose, body[None])[0] - pose[:2]
     psi_sf = psi_self(belief.pose_covariance, e)
     psi_ob = psi_obstacle(obstacles, pose[:2], velocity, e)
     members = attended(obstacles, pose, velocity, e.attention_range)
@@ -109,7 +103,7 @@ def gaze_scene(
     in_gaze = (np.abs(wrap_array(samples.bearing - view.pan)) <= 0.5 * view.horizontal_fov) & (
         np.abs(-np.arctan2(height, samples.distance) - view.tilt) <= 0.5 * view.vertical_fov
     )
-    confidence = belief.local_map.confidence_at(to_field(samples.points, pose))
+    confidence = belief.local_map.confidence_at(points_to_world(pose, samples.points))
     radii = extended_radius(obstacles, psi_sf, psi_ob, parameters.univector)
     centres = obstacles.position[members]
     radii = radii[members]

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from navigation.belief import Belief
 from navigation.decision_parameters import NavigationParameters
 from navigation.gaze_map import Votes
-from navigation.gaze_scene import GazeScene, relative, to_field
+from navigation.gaze_scene import GazeScene, relative
+from navigation.landmark import points_to_world
 
 Array = NDArray[np.float64]
 
@@ -72,7 +73,7 @@ def pose_information(scene: GazeScene, belief: Belief, parameters: NavigationPar
 
 def ground_information(scene: GazeScene, belief: Belief, parameters: NavigationParameters) -> Votes:
     """Entropy of whether anything has come to stand on a patch since it was seen."""
-    confidence = belief.local_map.confidence_at(to_field(scene.samples.points, belief.pose))
+    confidence = belief.local_map.confidence_at(points_to_world(belief.pose, scene.samples.points))
     chance = np.clip(parameters.gaze.information.presence * (1.0 - confidence), 1e-9, 1.0 - 1e-9)
     gain = -chance * np.log(chance) - (1.0 - chance) * np.log1p(-chance)
     tilt = -np.arctan2(scene.camera_height, scene.samples.distance)

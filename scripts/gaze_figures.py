@@ -28,7 +28,8 @@ from hsr8.recorder.record import FrameRecord
 from hsr8.render.walk_panels import INK
 from navigation.decision_parameters import NavigationParameters
 from navigation.extended_radius import extended_radius
-from navigation.gaze_scene import GazeScene, gaze_scene, to_field
+from navigation.gaze_scene import GazeScene, gaze_scene
+from navigation.landmark import points_to_world
 from navigation.partial_evaluation import SamplePoints
 
 Array = NDArray[np.float64]
@@ -103,7 +104,7 @@ def _confident(axes: Axes, frame: FrameRecord, threshold: float, **look: object)
     """Outline of the confident area in R."""
     x, y = np.meshgrid(np.linspace(-1.6, 2.2, 153), np.linspace(-2.1, 2.6, 189))
     points = np.stack([x.ravel(), y.ravel()], axis=1)
-    c = frame.belief.local_map.confidence_at(to_field(points, frame.belief.pose))
+    c = frame.belief.local_map.confidence_at(points_to_world(frame.belief.pose, points))
     axes.contour(x, y, c.reshape(x.shape), [threshold], colors=CONFIDENT, **look)
 
 

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from navigation.decision_parameters import NavigationParameters
-from navigation.gaze_scene import gaze_scene, relative, to_field
+from navigation.gaze_scene import gaze_scene, relative
+from navigation.landmark import points_to_world
 from navigation.partial_evaluation import SamplePoints
 from navigation.planner import Planner
 
@@ -15,10 +16,10 @@ def scene(belief_, motion=None):
     return gaze_scene(belief_, motion, SAMPLES, BEACONS, P)
 
 
-def test_relative_undoes_to_field():
+def test_relative_undoes_points_to_world():
     rng = np.random.default_rng(0)
     pose, points = np.array([1.0, -0.5, 2.0]), rng.normal(size=(40, 2))
-    bearing, distance = relative(to_field(points, pose), pose)
+    bearing, distance = relative(points_to_world(pose, points), pose)
     back = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
     assert back == pytest.approx(points)
 
