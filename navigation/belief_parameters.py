@@ -49,6 +49,9 @@ class TrackingParameters:
     """Standard deviation of each component of the velocity of what begins to move [m/s]."""
     top_speed: Positive = 0.2
     """Speed that no obstacle exceeds [m/s]."""
+    reach_sigmas: NonNegative = 3.0
+    """Standard deviations of its last sighting by which an obstacle may be farther away at worst
+    [1]."""
     reversal_rate: NonNegative = 1.0 / 12.0
     """Rate at which a mover turns back [1/s]."""
     start_rate: Positive = 0.01
@@ -60,6 +63,8 @@ class TrackingParameters:
     lasting_error: NonNegative = 0.15
     """Share of the standard deviation of its best detection that all detections of what stands
     still have in common, so that no number of them brings it down [1]."""
+    static_velocity_sigma: Positive = 0.005
+    """Standard deviation of each component of the velocity of a static track [m/s]."""
     gate: Positive = 13.8
     """Squared Mahalanobis distance above which no mode explains a detection [1]."""
     anywhere: Annotated[float, Gt(0.0), Lt(1.0)] = 0.2
@@ -99,6 +104,8 @@ class TrackingParameters:
     """Probability of moving below which a mover is static [1]."""
     line_width: Positive = 0.15
     """Distance from where it could be at which a mover may still be found [m]."""
+    reach_factor: Positive = 1.2
+    """How many times as far as its speed says a lost mover may have got [1]."""
     lost_time: Positive = 0.35
     """Time unseen after which a track that may move becomes particles [s]."""
     particles: Annotated[int, Ge(2)] = 16
@@ -109,6 +116,15 @@ class TrackingParameters:
     """Time in view over which one failed detection counts against a hypothesis [s]."""
     resample_share: Annotated[float, Gt(0.0), Le(1.0)] = 0.35
     """Share of effective particles below which they are resampled [1]."""
+    position_jitter: Positive = 0.03
+    """Spread of the copies of one particle, and least width of each [m]."""
+    velocity_jitter: NonNegative = 0.01
+    """Spread of the velocities of these copies [m/s]."""
+    refuted: Annotated[float, Gt(0.0), Lt(1.0)] = 0.05
+    """Probability of having seen nothing, given the particles, below which they are refuted [1]."""
+    scatter: Annotated[int, Ge(1)] = 4
+    """Places tried then per particle: with fewer of them out of view than particles, the track
+    ends [1]."""
     forget_time: Positive = 25.0
     """Time unseen after which a track that may move is dropped [s]."""
     tentative_time: Positive = 12.0
@@ -127,6 +143,9 @@ class TrackingParameters:
     """Share of the sum of radii below which two tracks of a colour are one obstacle [1]."""
     radius_limit: Positive = 0.005
     """Least standard deviation of a track's radius [m]."""
+    vague_radius: Positive = 0.01
+    """Standard deviation above which the radius of what is seen in part is not fused: it is mostly
+    what was taken for granted, and fusing it again and again would make that certain [m]."""
     pose_sigma_limit: Positive = 0.10
     """Largest pose uncertainty carried into the tracks, for they matter relatively [m]."""
 

@@ -20,11 +20,6 @@ from navigation.visibility import Mask
 
 Array = NDArray[np.float64]
 
-POSITION_JITTER = 0.03
-"""Spread of copies of one particle [m]."""
-VELOCITY_JITTER = 0.01
-"""Spread of their velocities [m/s]."""
-
 
 def spawn(modes: Modes, count: int, rng: np.random.Generator) -> Particles:
     """Draw particles from the filters of one track.
@@ -79,30 +74,24 @@ def refute(cloud: Particles, expected: Mask, survival: float) -> tuple[Particles
     return Particles(cloud.positions, cloud.velocities, cloud.turn_rates, weights / total), total
 
 
-def resample(cloud: Particles, share: float, rng: np.random.Generator) -> Particles:
-    """Systematic resampling with jitter once too few particles carry the weight.
-
-    Args:
-        cloud: particles.
-        share: effective share of particles below which they are redrawn.
-        rng: source of all draws.
-    """
+def resample(cloud: Particles, p: TrackingParameters, rng: np.random.Generator) -> Particles:
+    """Systematic resampling with jitter once too few particles carry the weight."""
     count = len(cloud.weights)
-    if float(cloud.weights @ cloud.weights) * share * count < 1.0:
+    if float(cloud.weights @ cloud.weights) * p.resample_share * count < 1.0:
         return cloud
     cumulative = np.cumsum(cloud.weights)
     ticks = (np.arange(count) + rng.random()) / count
     chosen = np.minimum(np.searchsorted(cumulative, ticks), count - 1)
     return Particles(
-        cloud.positions[chosen] + POSITION_JITTER * rng.standard_normal((count, 2)),
-        cloud.velocities[chosen] + VELOCITY_JITTER * rng.standard_normal((count, 2)),
+        cloud.positions[chosen] + p.position_jitter * rng.standard_normal((count, 2)),
+        cloud.velocities[chosen] + p.velocity_jitter * rng.standard_normal((count, 2)),
         cloud.turn_rates[chosen],
         np.full(count, 1.0 / count),
     )
 
 
 def scatter(
-    centre: Array, radius: float, velocity: Array, count: int, rng: np.random.Generator
+    centre: Array, radius: float, velocity: Array, p: TrackingParameters, rng: np.random.Generator
 ) -> Particles:
     """Particles wherever a mover could have got to: half on its old line, half anywhere.
 
@@ -110,9 +99,10 @@ def scatter(
         centre: where it was last seen (2,) [m].
         radius: reach [m].
         velocity: with which it was last seen (2,) [m/s].
-        count: number of particles.
+        p: how many places are tried for how many particles, and the width of the line.
         rng: source of all draws.
     """
+    count = p.scatter * p.particles
     half = count // 2
     speed = float(np.hypot(velocity[0], velocity[1]))
     ahead = velocity / speed if speed > 0.0 else np.array([1.0, 0.0])
@@ -122,7 +112,7 @@ def scatter(
     offsets = distance[:, None] * np.stack([np.cos(place), np.sin(place)], axis=1)
     velocities = speed * np.stack([np.cos(way), np.sin(way)], axis=1)
     along = rng.uniform(-radius, radius, half)
-    offsets[:half] = along[:, None] * ahead + POSITION_JITTER * rng.standard_normal((half, 2))
+    offsets[:half] = along[:, None] * ahead + p.position_jitter * rng.standard_normal((half, 2))
     velocities[:half] = np.where(rng.random(half) < 0.5, 1.0, -1.0)[:, None] * velocity
     mixed = rng.permutation(count)
     places, even = centre + offsets[mixed], np.full(count, 1.0 / count)
@@ -145,7 +135,7 @@ def moments(cloud: Particles) -> tuple[Array, Array]:
     return particle_kernel.moments(cloud.positions, cloud.velocities, cloud.weights)
 
 
-def log_density(cloud: Particles, z: Array, variance: Array) -> Array:
+def log_density(cloud: Particles, z: Array, variance: Array, p: TrackingParameters) -> Array:
     """Log density of the cloud, smoothed, at points, up to log(2 pi).
 
     Each particle is as wide as Scott's rule for the cloud's spread says, so that the gaps
@@ -155,22 +145,32 @@ def log_density(cloud: Particles, z: Array, variance: Array) -> Array:
         cloud: n particles.
         z: points (m, 2) [m].
         variance: widening for each point (m,) [m²].
+        p: the least width.
 
     Returns:
         (m,).
     """
-    return particle_kernel.log_density(cloud.positions, cloud.weights, z, variance, POSITION_JITTER)
+    return particle_kernel.log_density(
+        cloud.positions, cloud.weights, z, variance, p.position_jitter
+    )
 
 
-def costs(cloud: Particles, z: Array, variance: Array, lost: tuple[Array, float, float]) -> Array:
+def costs(
+    cloud: Particles,
+    z: Array,
+    variance: Array,
+    lost: tuple[Array, float],
+    p: TrackingParameters,
+) -> Array:
     """Minus twice the log likelihood of sightings, up to log(2 pi) (m,).
 
     Args:
         cloud: n particles.
         z: sightings (m, 2) [m].
         variance: of each (m,) [m²].
-        lost: where it was seen last (2,) [m], how far it may have got [m], and the probability
-            that it is anywhere so far, not where the particles are [1].
+        lost: where it was seen last (2,) [m], and how far it may have got [m].
+        p: how probable it is that it is anywhere so far, not where the particles are.
     """
-    centre, reach, anywhere = lost
-    return particle_kernel.costs(log_density(cloud, z, variance), z, centre, reach, anywhere)
+    centre, reach = lost
+    density = log_density(cloud, z, variance, p)
+    return particle_kernel.costs(density, z, centre, reach, p.anywhere)

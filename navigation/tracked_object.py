@@ -13,12 +13,6 @@ from navigation.motion_modes import STILL, Modes
 
 Array = NDArray[np.float64]
 
-STANDING_SPEED_SIGMA = 0.005
-"""Standard deviation of the velocity of a static track as it is published [m/s]."""
-
-REACH_SIGMAS = 3.0
-"""Standard deviations of a sighting that its worst case allows for [1]."""
-
 
 @dataclass(slots=True)
 class TrackedObject:
@@ -82,7 +76,7 @@ class TrackedObject:
             self.modes.covariances,
             self.best_covariance,
             p.lasting_error**2,
-            STANDING_SPEED_SIGMA**2,
+            p.static_velocity_sigma**2,
         )
 
     def reach(self, time: float, p: TrackingParameters) -> float:
@@ -90,9 +84,13 @@ class TrackedObject:
         (xx, xy), (_, yy) = self.seen_covariance.tolist()
         # The larger half axis of the sighting's ellipse.
         largest = 0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
-        known: float = REACH_SIGMAS * largest**0.5
+        known: float = p.reach_sigmas * largest**0.5
         moving = self.motion is not Motion.STATIC
         return known + moving * p.top_speed * (time - self.last_time)
+
+    def lost_reach(self, time: float, p: TrackingParameters) -> float:
+        """How far from its last sighting it is looked for while lost [m]."""
+        return p.line_width + p.reach_factor * self.speed * (time - self.last_time)
 
     def classify(self, p: TrackingParameters) -> None:
         """Revise the verdict after a detection."""

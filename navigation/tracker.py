@@ -24,19 +24,6 @@ from navigation.visibility import Mask, Viewpoint
 
 Array = NDArray[np.float64]
 
-REFUTED = 0.05
-"""Probability of a cloud given what was not seen, below which it is refuted."""
-
-SCATTER = 4
-"""Places tried per particle of a refuted cloud; it ends if three of four are in view."""
-
-VAGUE_RADIUS = 0.01
-"""Standard deviation above which the radius of what is seen in part is mostly what was taken for
-granted; fusing it again and again would make that certain [m]."""
-
-REACH = 1.2
-"""How much farther than its speed says a lost mover may have got [1]."""
-
 
 class Tracker:
     """Keeps the tracks of all obstacles.
@@ -121,10 +108,8 @@ class Tracker:
         width = 0.5 * (seen.covariances[:, 0, 0] + seen.covariances[:, 1, 1])
         for i, o in enumerate(self._objects):
             if o.particles is not None:
-                reach = p.line_width + REACH * o.speed * (time - o.last_time)
-                cloud = track_particles.costs(
-                    o.particles, seen.positions, width, (o.last_seen, reach, p.anywhere)
-                )
+                lost = o.last_seen, o.lost_reach(time, p)
+                cloud = track_particles.costs(o.particles, seen.positions, width, lost, p)
                 costs[i] = np.minimum(costs[i], cloud)
         density = np.where(self._freed, p.intruder_density, p.birth_density)
         costs += 2.0 * np.log(2.0 * pi * density)
@@ -170,14 +155,15 @@ class Tracker:
 
     def _widen(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
         """Fuse the radius, unless the part that was seen tells next to nothing about it."""
+        p = self._parameters
         part = observation.cut or observation.occluded
-        if part and observation.radius_sigma > VAGUE_RADIUS:
+        if part and observation.radius_sigma > p.vague_radius:
             return
         measured = observation.radius_sigma**2 * inflation
         prior = o.radius_sigma**2
         gain = prior / (prior + measured)
         o.radius += gain * (observation.radius - o.radius)
-        o.radius_sigma = max(((1.0 - gain) * prior) ** 0.5, self._parameters.radius_limit)
+        o.radius_sigma = max(((1.0 - gain) * prior) ** 0.5, p.radius_limit)
 
     def _begin(self, time: float, columns: list[int], seen: Sightings) -> None:
         """Start a tentative track at each sighting that no track explains."""
@@ -258,22 +244,21 @@ class Tracker:
         survival = (1.0 - p.detection_probability) ** (dt / p.refutation_time)
         cloud, left = track_particles.refute(o.particles, expected, survival)
         o.presence *= left
-        o.particles = track_particles.resample(cloud, p.resample_share, self._rng)
+        o.particles = track_particles.resample(cloud, p, self._rng)
         return True
 
     def _respread(self, time: float, seen: Sightings, viewpoint: Viewpoint) -> None:
         """Spread refuted clouds over what is out of view of all they could have reached."""
         p = self._parameters
-        refuted = [o for o in self._objects if o.particles is not None and o.presence < REFUTED]
+        refuted = [o for o in self._objects if o.particles is not None and o.presence < p.refuted]
         # What was not known to move and is not where it was has never been there.
         ended = {o.id for o in refuted if o.motion is Motion.UNKNOWN}
         for o in refuted:
             if o.id in ended:
                 continue
             velocity = o.estimate(p)[0][2:4]
-            reach = p.line_width + REACH * o.speed * (time - o.last_time)
             cloud = track_particles.scatter(
-                o.last_seen, reach, velocity, SCATTER * p.particles, self._rng
+                o.last_seen, o.lost_reach(time, p), velocity, p, self._rng
             )
             places = np.flatnonzero(~self._expected(cloud.positions, seen, viewpoint))
             o.presence = 1.0

@@ -10,6 +10,8 @@ from navigation.motion_modes import Modes
 
 STATE = np.array([1.0, 2.0, 0.1, -0.05, 0.2])
 COVARIANCE = np.diag([1e-4, 4e-4, 1e-4, 1e-4, 1e-4])
+P = TrackingParameters()
+EACH = TrackingParameters(scatter=1)  # one place for each particle
 
 
 def modes(still=0.0):
@@ -88,25 +90,39 @@ def test_refutation_is_bayes_rule():
 def test_resampling_keeps_the_mean_and_only_happens_when_needed(rng):
     positions = rng.standard_normal((500, 2))
     even = Particles(positions, np.zeros((500, 2)), np.zeros(500), np.full(500, 1 / 500))
-    assert track_particles.resample(even, 0.35, rng) is even
+    assert track_particles.resample(even, P, rng) is even
     weights = np.where(positions[:, 0] > 1.0, 1.0, 1e-6)
     skewed = Particles(positions, np.zeros((500, 2)), np.zeros(500), weights / weights.sum())
-    drawn = track_particles.resample(skewed, 0.35, rng)
+    drawn = track_particles.resample(skewed, P, rng)
     assert np.allclose(drawn.weights, 1 / 500)
     before, _ = track_particles.moments(skewed)
     after, _ = track_particles.moments(drawn)
     assert np.allclose(after, before, atol=0.05)
 
 
+def test_copies_of_one_particle_spread_by_the_jitter(rng):
+    p = TrackingParameters(position_jitter=0.2, velocity_jitter=0.05)
+    weights = np.zeros(4000)
+    weights[7] = 1.0
+    places, velocities = rng.standard_normal((2, 4000, 2))
+    drawn = track_particles.resample(
+        Particles(places, velocities, rng.standard_normal(4000), weights), p, rng
+    )
+    assert np.std(drawn.positions - places[7], axis=0) == pytest.approx(0.2, rel=0.1)
+    assert np.std(drawn.velocities - velocities[7], axis=0) == pytest.approx(0.05, rel=0.1)
+    assert np.ptp(drawn.turn_rates) == 0.0
+
+
 def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
     centre, velocity = np.array([1.0, -1.0]), np.array([0.0, 0.1])
-    cloud = track_particles.scatter(centre, 0.5, velocity, 8000, rng)
+    p = TrackingParameters(particles=2000, scatter=4)
+    cloud = track_particles.scatter(centre, 0.5, velocity, p, rng)
     offsets = cloud.positions - centre
-    assert np.hypot(*offsets.T).max() < 0.5 + 5 * track_particles.POSITION_JITTER
+    assert np.hypot(*offsets.T).max() < 0.5 + 5 * P.position_jitter
     assert np.allclose(np.hypot(*cloud.velocities.T), 0.1)
     line = np.abs(cloud.velocities[:, 0]) < 1e-9
     assert line.sum() == 4000
-    assert np.std(offsets[line, 0]) == pytest.approx(track_particles.POSITION_JITTER, rel=0.1)
+    assert np.std(offsets[line, 0]) == pytest.approx(P.position_jitter, rel=0.1)
     assert np.std(offsets[line, 1]) == pytest.approx(0.5 / np.sqrt(3), rel=0.1)
     assert np.mean(np.hypot(*offsets[~line].T) < 0.25) == pytest.approx(0.25, abs=0.03)
 
@@ -115,20 +131,20 @@ def test_log_density_of_one_particle_is_a_gaussian():
     cloud = Particles(np.array([[1.0, 0.0]]), np.zeros((1, 2)), np.zeros(1), np.ones(1))
     z = np.array([[1.0, 0.0], [1.2, 0.1]])
     variance = np.array([0.01, 0.04])
-    wide = variance + track_particles.POSITION_JITTER**2
+    wide = variance + P.position_jitter**2
     expected = -0.5 * np.array([0.0, 0.05]) / wide - np.log(wide)
-    assert np.allclose(track_particles.log_density(cloud, z, variance), expected)
+    assert np.allclose(track_particles.log_density(cloud, z, variance, P), expected)
 
 
 def test_log_density_has_no_holes_between_few_particles(rng):
-    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), 16, rng)
+    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
     z = rng.uniform(-0.5, 0.5, (50, 2))
-    density = np.exp(track_particles.log_density(cloud, z, np.full(50, 1e-4))) / (2 * np.pi)
+    density = np.exp(track_particles.log_density(cloud, z, np.full(50, 1e-4), P)) / (2 * np.pi)
     assert density.min() > 0.02
 
 
 def test_chosen_particles_weigh_the_same(rng):
-    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), 8, rng)
+    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
     few = track_particles.chosen(cloud, np.array([1, 5]))
     assert np.array_equal(few.positions, cloud.positions[[1, 5]])
     assert few.weights.tolist() == [0.5, 0.5]

@@ -73,6 +73,7 @@ def test_each_verdict_publishes_its_own_filter():
     assert static.position.tolist() == [0.9, 2.0]
     assert static.velocity.tolist() == [0.0, 0.0]
     assert static.turn_rate == 0.0
+    assert np.allclose(static.covariance[2:, 2:], P.static_velocity_sigma**2 * np.eye(2))
     assert static.age == pytest.approx(0.5)
     assert np.linalg.eigvalsh(static.covariance)[0] > 0
     assert moving.visible
@@ -82,8 +83,9 @@ def test_each_verdict_publishes_its_own_filter():
 def test_the_worst_case_grows_with_age_unless_it_stands_still():
     for motion, growth in ((Motion.STATIC, 0.0), (Motion.MOVING, P.top_speed)):
         o = make(motion=motion)
-        assert o.track(5.0, P).reach == pytest.approx(3 * 0.01)
-        assert o.track(8.0, P).reach == pytest.approx(3 * 0.01 + 3.0 * growth)
+        known = P.reach_sigmas * 0.01
+        assert o.track(5.0, P).reach == pytest.approx(known)
+        assert o.track(8.0, P).reach == pytest.approx(known + 3.0 * growth)
 
 
 def test_the_worst_case_does_not_depend_on_the_axes_of_the_world():
@@ -93,7 +95,14 @@ def test_the_worst_case_does_not_depend_on_the_axes_of_the_world():
         Q = np.array([[c, -s], [s, c]])
         o = make(seen_covariance=Q @ np.diag([9e-4, 1e-6]) @ Q.T)
         reach.append(o.reach(5.0, P))
-    assert np.allclose(reach, 0.09)
+    assert np.allclose(reach, P.reach_sigmas * 0.03)
+
+
+def test_the_faster_it_was_the_farther_off_it_is_looked_for():
+    for speed in (0.0, 0.03, 0.2):
+        o = make(moving=1.0, velocity=(speed, 0.0))
+        assert o.lost_reach(5.0, P) == P.line_width
+        assert o.lost_reach(9.0, P) == pytest.approx(P.line_width + 4.0 * P.reach_factor * speed)
 
 
 def test_no_number_of_detections_brings_the_lasting_error_down():

@@ -7,7 +7,7 @@ import pytest
 from navigation.belief import Motion
 from navigation.belief_parameters import TrackingParameters
 from navigation.sightings import in_world
-from navigation.tracker import VAGUE_RADIUS, Tracker
+from navigation.tracker import Tracker
 from navigation.visibility import Viewpoint
 
 DT = 0.06
@@ -202,6 +202,24 @@ def test_particles_where_the_camera_looks_in_vain_are_given_up(view, observe):
     assert before.particles.weights.sum() == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_refuted_mover_goes_on_where_enough_of_the_places_tried_are_out_of_view(
+    view, observe, seed
+):
+    def tracks(**changes):
+        """It walks to the border of the view and is lost; then its place is looked at in vain."""
+        stage = Stage(view, observe, seed, TrackingParameters(**changes))
+        stage.watch(3.0, (1.0, 0.3, 0.0, 0.12))
+        stage.look_away(1.0)
+        for _ in range(30):
+            stage.show()
+        return stage.tracks
+
+    assert tracks(scatter=1) == ()
+    assert len(tracks(scatter=20)) == 1
+    assert len(tracks(scatter=1, refuted=1e-12)) == 1
+
+
 def test_a_static_track_ends_when_its_place_is_seen_empty_but_not_when_hidden(stage):
     stage.watch(4.0, (1.2, 0.0, 0.0, 0.0))
     stage.look_away(20.0)
@@ -219,10 +237,10 @@ def test_a_part_changes_the_radius_only_if_it_tells_something_about_it(stage, fl
     stage.watch(2.0, (1.0, 0.0, 0.0, 0.0))
     radius = stage.tracks[0].radius
     for _ in range(20):
-        stage.show((1.0, 0.0), radius=0.02, radius_sigma=1.1 * VAGUE_RADIUS, **{flag: True})
+        stage.show((1.0, 0.0), radius=0.02, radius_sigma=1.1 * P.vague_radius, **{flag: True})
     assert stage.tracks[0].radius == radius
     for _ in range(20):
-        stage.show((1.0, 0.0), radius=0.07, radius_sigma=0.1 * VAGUE_RADIUS, **{flag: True})
+        stage.show((1.0, 0.0), radius=0.07, radius_sigma=0.1 * P.vague_radius, **{flag: True})
     assert stage.tracks[0].radius == pytest.approx(0.07, abs=0.002)
 
 
