@@ -34,6 +34,36 @@ class LocalizationParameters:
 
 
 @dataclass(frozen=True)
+class MappingParameters:
+    """Landmarks that the robot maps itself, where `localization.map` is none."""
+
+    match_distance: Positive = 0.2
+    """Distance up to which a detection, a static track and a landmark are of one thing [m]."""
+    search_distance: Positive = 1.0
+    """Distance from a landmark within which its detection is looked for [m]."""
+
+
+@dataclass(frozen=True)
+class RecognitionParameters:
+    """Finding back by the arrangement of the landmarks that the robot has mapped itself."""
+
+    sigma_limit: Positive = 0.02
+    """Standard deviation of a distance from which on a sighting is of no use [m]."""
+    same_thing: Positive = 0.15
+    """Distance up to which two sightings of one colour are of one thing [m]."""
+    least_sightings: Annotated[int, Ge(2)] = 3
+    """Sightings that must fall on landmarks [1]."""
+    least_share: Annotated[float, Ge(0.0), Le(1.0)] = 0.5
+    """Share of the sightings, or of the landmarks if they are fewer, that must do so [1]."""
+    tolerance: Positive = 0.06
+    """Distance up to which a sighting falls on a landmark [m]."""
+    least_separation: Positive = 0.4
+    """Distance of two sightings without which they tell no heading [m]."""
+    same_pose: Positive = 0.3
+    """Difference up to which two poses are one [m, rad]."""
+
+
+@dataclass(frozen=True)
 class TrackingParameters:
     """Obstacle tracks: filters, association, classification, birth and death."""
 
@@ -178,6 +208,10 @@ class BeliefParameters:
 
     localization: LocalizationParameters = field(default_factory=LocalizationParameters)
     """Robot pose."""
+    mapping: MappingParameters = field(default_factory=MappingParameters)
+    """Landmarks that the robot maps itself."""
+    recognition: RecognitionParameters = field(default_factory=RecognitionParameters)
+    """Finding back by their arrangement."""
     tracking: TrackingParameters = field(default_factory=TrackingParameters)
     """Obstacles."""
     local_map: LocalMapParameters = field(default_factory=LocalMapParameters)

@@ -30,22 +30,19 @@ Array = NDArray[np.float64]
 
 START_VARIANCE = 1e-10
 """Of the pose that defines the frame [m², rad²]."""
-NEAR = 0.2
-"""Distance up to which a detection belongs to a track that is to become a landmark [m]."""
-FAR = 1.0
-"""Distance beyond which no detection is that of a landmark [m]."""
 
 
 class SelfMapping:
     """Pose of the robot from odometry and the static obstacles it has met.
 
     Args:
-        parameters: of localization and tracking.
+        parameters: of the belief.
         pose: x, y, heading at the start (3,) [m, m, rad].
     """
 
     def __init__(self, parameters: BeliefParameters, pose: Array) -> None:
         self._localization = parameters.localization
+        self._mapping = parameters.mapping
         self._tracking = parameters.tracking
         self._x = np.array(pose, float)
         self._P = START_VARIANCE * np.eye(3)
@@ -53,7 +50,9 @@ class SelfMapping:
         self._labels: list[str] = []
         self._seen_at: list[float] = []
         self._previous: tuple[float, Array] | None = None
-        self._recognition = PlaceRecognition(self._localization.recovery_window)
+        self._recognition = PlaceRecognition(
+            parameters.recognition, self._localization.recovery_window
+        )
         self._mapped_at: list[float] = []
         self._missing: dict[int, tuple[float, int]] = {}
         self._lost = False
@@ -136,7 +135,10 @@ class SelfMapping:
             if k in self._ids or not track.visible or self._adopted(k, track):
                 continue
             mine = [
-                o for o in clear if o.label == track.label and self._away(o, track.position) < NEAR
+                o
+                for o in clear
+                if o.label == track.label
+                and self._away(o, track.position) < self._mapping.match_distance
             ]
             if len(mine) == 1:
                 self._map(k, mine[0], frame.time)
@@ -249,8 +251,10 @@ class SelfMapping:
     def _adopted(self, k: int, track: Track) -> bool:
         """Give a landmark without a track to the new track that stands in its place."""
         for i, number in enumerate(self._ids):
+            if number >= 0 or self._labels[i] != track.label:
+                continue
             away = self._x[3 + 2 * i : 5 + 2 * i] - track.position
-            if number < 0 and self._labels[i] == track.label and hypot(*away.tolist()) < NEAR:
+            if hypot(*away.tolist()) < self._mapping.match_distance:
                 self._ids[i] = k
                 return True
         return False
@@ -263,7 +267,10 @@ class SelfMapping:
                 continue
             fits = []
             for i, label in enumerate(self._labels):
-                if label == o.label and self._away(o, self._x[3 + 2 * i : 5 + 2 * i]) < FAR:
+                if label != o.label:
+                    continue
+                away = self._away(o, self._x[3 + 2 * i : 5 + 2 * i])
+                if away < self._mapping.search_distance:
                     y, H = self._residual(i, o)
                     entries = self._entries(i)
                     S = H @ self._P[np.ix_(entries, entries)] @ H.T + o.covariance

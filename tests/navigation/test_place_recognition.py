@@ -4,16 +4,17 @@ import numpy as np
 import pytest
 
 from navigation.angles import wrap
+from navigation.belief_parameters import RecognitionParameters
 from navigation.place_recognition import PlaceRecognition
 
 LABELS = ["red", "green", "red", "blue", "green", "red"]
 PLACES = np.array([(1.5, 0.2), (0.9, 1.3), (-0.4, 1.6), (-1.4, 0.3), (-0.7, -1.2), (0.8, -1.0)])
 
 
-def recognise(observe, frame, pose, indices, *, labels=LABELS, places=PLACES, odometry=(4, 5, 6)):
-    recognition = PlaceRecognition(6.0)
+def recognise(observe, frame, pose, indices, *, labels=LABELS, places=PLACES, **parameters):
+    recognition = PlaceRecognition(RecognitionParameters(**parameters), 6.0)
     seen = frame(
-        1.0, odometry, [observe(pose, PLACES[i].tolist(), label=LABELS[i]) for i in indices]
+        1.0, (4, 5, 6), [observe(pose, PLACES[i].tolist(), label=LABELS[i]) for i in indices]
     )
     recognition.remember(seen.observations, seen)
     return recognition.locate(seen, labels, places)
@@ -39,6 +40,13 @@ def test_what_was_never_mapped_is_not_recognised(observe, frame):
     assert recognise(observe, frame, (0, 0, 0), range(4), places=1.4 * PLACES) is None
 
 
+def test_the_place_may_have_changed_by_as_much_as_is_tolerated(observe, frame):
+    changed = PLACES + 0.04 * np.array([(1, 0), (-1, 0), (0, 1), (0, -1), (1, 0), (0, 1)])
+    for tolerance, known in ((0.06, True), (0.02, False)):
+        found = recognise(observe, frame, (0, 0, 0), range(6), places=changed, tolerance=tolerance)
+        assert (found is not None) == known
+
+
 def test_two_places_alike_are_not_told_apart(observe, frame):
     angle = 2.0
     turn = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
@@ -59,7 +67,7 @@ def test_moved_world_moved_pose(observe, frame):
 
 
 def test_what_was_seen_long_ago_counts_no_more(observe, frame):
-    recognition = PlaceRecognition(6.0)
+    recognition = PlaceRecognition(RecognitionParameters(), 6.0)
     for k, i in enumerate((0, 1, 3)):
         seen = frame(5.0 * k, (0, 0, 0), [observe((0, 0, 0), PLACES[i].tolist(), label=LABELS[i])])
         recognition.remember(seen.observations, seen)

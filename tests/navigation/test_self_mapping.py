@@ -202,6 +202,18 @@ def test_a_black_image_says_nothing(mapped):
     assert not slam.lost
 
 
+@pytest.mark.parametrize(("share", "landmarks"), [(0.9, 1), (1.1, 0)])
+def test_only_what_was_detected_near_its_track_is_mapped(observe, frame, track, share, landmarks):
+    parameters = BeliefParameters()
+    slam = SelfMapping(parameters, np.zeros(3))
+    x, y, _ = POSTS[0]
+    off = share * parameters.mapping.match_distance
+    seen = frame(0.0, (0, 0, 0), [observe((0, 0, 0), (x + off, y))])
+    slam.update(seen)
+    slam.learn(seen, tracks(track, [0]))
+    assert len(slam.landmarks) == landmarks
+
+
 def test_an_old_frame_is_refused(frame):
     slam = SelfMapping(BeliefParameters(), np.zeros(3))
     slam.update(frame(1.0, (0, 0, 0), []))
