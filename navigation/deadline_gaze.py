@@ -26,10 +26,6 @@ from navigation.partial_evaluation import SamplePoints
 
 Array = NDArray[np.float64]
 
-_RAYS = 17
-_RINGS = np.array([0.45, 0.8, 1.2, 1.7])
-"""Where ground votes: directions, and distances [m]."""
-
 
 def deadline_votes(
     scene: GazeScene,
@@ -156,7 +152,7 @@ def map_deadlines(
     """Votes of ground not seen for long; arguments as `deadline_votes`."""
     p, d = parameters.gaze, parameters.gaze.deadline
     reach = p.pan_limit + p.box_share * belief.view.horizontal_fov
-    ground = _ground(reach)
+    ground = _ground(reach, d.map_rings, d.map_rays)
     distance, bearing = ground.distance, ground.bearing
     age = np.minimum(
         d.age_limit, belief.local_map.age_at(points_to_world(belief.pose, ground.points))
@@ -170,6 +166,6 @@ def map_deadlines(
 
 
 @cache
-def _ground(reach: float) -> SamplePoints:
+def _ground(reach: float, rings: tuple[float, ...], rays: int) -> SamplePoints:
     """The ground that votes, as far round as the gaze sees, `reach` [rad]."""
-    return SamplePoints.of(_RINGS, np.linspace(-reach, reach, _RAYS))
+    return SamplePoints.of(np.array(rings), np.linspace(-reach, reach, rays))

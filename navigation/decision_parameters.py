@@ -15,6 +15,7 @@ from navigation.gaze_parameters import (
     GazeParameters,
     NonNegative,
     Positive,
+    Rings,
     Share,
 )
 from navigation.peers.parameters import PlannerParameters
@@ -252,6 +253,10 @@ class ShoulderParameters:
     """Angle of the body to its way for ground right behind [rad]."""
     far_weight: NonNegative = 0.77
     """Weight of the urgency of ground right behind, for which the robot slows down [1]."""
+    rings: Rings = (0.40, 0.65, 0.90, 1.20)
+    """Distances of the ground looked at; a lost mover farther off than all does not count [m]."""
+    rays: Annotated[int, Ge(2)] = 4
+    """Directions of the ground looked at, each side beside and right behind [1]."""
     mover_speed: NonNegative = 1.1
     """Feared speed of what was not seen, share of the robot's [1]."""
     due: Positive = 0.7

@@ -4,11 +4,12 @@ from dataclasses import dataclass, field
 from math import pi
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Gt, Le, Len, Lt
 
 Positive = Annotated[float, Gt(0.0)]
 NonNegative = Annotated[float, Ge(0.0)]
 Share = Annotated[float, Ge(0.0), Le(1.0)]
+Rings = Annotated[tuple[Positive, ...], Len(1, 20)]
 GazeMode = Literal[
     "deadline",
     "urgency",
@@ -83,6 +84,10 @@ class DeadlineParameters:
     """Weight of votes of static obstacles [1]."""
     map_weight: NonNegative = 0.05
     """Weight of votes of the local map [1]."""
+    map_rings: Rings = (0.45, 0.8, 1.2, 1.7)
+    """Distances of the ground that votes [m]."""
+    map_rays: Annotated[int, Ge(2)] = 17
+    """Directions of it, from one end of the gaze's reach to the other [1]."""
     way_weight: NonNegative = 0.2
     """Weight of the vote of the way [1]."""
     gate_weight: NonNegative = 0.8

@@ -18,11 +18,6 @@ from navigation.value import value
 
 Array = NDArray[np.float64]
 
-_RINGS = np.array([0.40, 0.65, 0.90, 1.20])
-"""Distances of the ground asked for [m]."""
-_RAYS = 4
-"""Directions asked for in a sector."""
-
 
 @value
 class Sector:
@@ -74,7 +69,8 @@ class ShoulderCheck:
             p.age_limit,
             p.urgency_limit,
         )
-        self._sectors = sectors(parameters, reach)
+        self._rings = np.array(p.rings)
+        self._sectors = sectors(p, reach)
         self._weight = np.array([s.weight for s in self._sectors])
         self._bearing = np.concatenate([s.bearing for s in self._sectors])
         self._extent = np.array([(s.middle, s.half) for s in self._sectors])
@@ -125,9 +121,9 @@ class ShoulderCheck:
             course: direction of the way in W [rad].
             speed: along it [m/s].
         """
-        points = shoulder_kernel.places(belief.pose, course, _RINGS, self._bearing)
+        points = shoulder_kernel.places(belief.pose, course, self._rings, self._bearing)
         age, count = belief.local_map.age_at(points), len(self._sectors)
-        most = shoulder_kernel.of_ground(age, _RINGS, self._bearing, speed, self._fear, count)
+        most = shoulder_kernel.of_ground(age, self._rings, self._bearing, speed, self._fear, count)
         for track in belief.tracks:
             if track.particles is not None:
                 most = np.maximum(most, self._of_lost(track, belief.pose, course, speed))
@@ -151,7 +147,7 @@ class ShoulderCheck:
         return shoulder_kernel.of_cloud(
             cloud.positions,
             cloud.weights,
-            (track.age, track.radius, float(_RINGS[-1])),
+            (track.age, track.radius, max(self._parameters.rings)),
             pose,
             course,
             self._extent,
@@ -164,7 +160,7 @@ def sectors(parameters: ShoulderParameters, reach: float) -> tuple[Sector, ...]:
     """What is just out of the gaze's `reach` [rad] and what is right behind, on both sides."""
     p = parameters
     return tuple(
-        Sector(side * aside, side * np.linspace(reach + start, reach + aside, _RAYS), weight)
+        Sector(side * aside, side * np.linspace(reach + start, reach + aside, p.rays), weight)
         for side in (1.0, -1.0)
         for start, aside, weight in (
             (0.0, p.near_angle, 1.0),

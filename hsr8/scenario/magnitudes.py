@@ -29,10 +29,12 @@ BOUNDS: dict[Path, tuple[float, float]] = {
     ("navigation", "gaze", "tilt_min"): (-2.0, 2.0),
     ("navigation", "gaze", "tilt_max"): (0.0, 2.0),
     ("navigation", "gaze", "deadline", "exponent"): (0.0, 10.0),
+    ("navigation", "gaze", "deadline", "map_rays"): (2, 360),
     ("navigation", "mover", "samples"): (2, 1000),
     ("navigation", "filter", "headings"): (1, 360),
     ("navigation", "filter", "speeds"): (1, 100),
     ("navigation", "filter", "steps"): (0, 100),
+    ("navigation", "shoulder", "rays"): (2, 360),
     ("navigation", "way_search", "cell"): (0.01, 10.0),
     ("navigation", "way_search", "reach"): (0.01, 20.0),
     ("navigation", "way_search", "around"): (0.01, 20.0),
@@ -64,6 +66,10 @@ def _within(path: Path, value: Any) -> Iterator[Problem]:
     if is_dataclass(value):
         for field in fields(value):
             yield from _within((*path, field.name), getattr(value, field.name))
+        return
+    if isinstance(value, tuple):
+        for k, part in enumerate(value):
+            yield from _within((*path, k), part)
         return
     if not isinstance(value, int | float) or isinstance(value, bool):
         return

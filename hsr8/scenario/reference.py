@@ -81,6 +81,8 @@ def allowed(node: Node) -> str:
     if "prefixItems" in node:
         inner = {allowed(_resolve(item, None)) for item in node["prefixItems"]} - {""}
         return f"{len(node['prefixItems'])} values" + "".join(f", each {i}" for i in sorted(inner))
+    if each := allowed(_resolve(node["items"], None)) if "items" in node else "":
+        return f"{node['minItems']} to {node['maxItems']} values, each {each}"
     return " and ".join(bounds)
 
 

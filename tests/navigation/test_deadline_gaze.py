@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from navigation.deadline_gaze import (
     self_urgency,
 )
 from navigation.decision_parameters import NavigationParameters
+from navigation.gaze_parameters import DeadlineParameters
 from navigation.gaze_scene import gaze_scene
 from navigation.partial_evaluation import SamplePoints
 
@@ -97,6 +100,18 @@ def test_fresh_ground_does_not_vote_and_old_ground_does(belief):
     assert np.all(v.value[v.pan > 0.01] > 0.0)
     never = belief(age=lambda x, y: np.inf)
     assert np.isfinite(map_deadlines(scene, never, 0.0, 0.2, P).value).all()
+
+
+def test_ground_votes_on_its_rings_as_far_round_as_the_gaze_sees(belief):
+    p = replace(
+        P, gaze=replace(P.gaze, deadline=DeadlineParameters(map_rings=(2.0, 0.4), map_rays=5))
+    )
+    b = belief()
+    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), p)
+    v = map_deadlines(scene, b, 0.0, 0.2, p)
+    reach = P.gaze.pan_limit + P.gaze.box_share * b.view.horizontal_fov
+    assert v.pan == pytest.approx(np.tile(np.linspace(-reach, reach, 5), 2))
+    assert scene.camera_height / np.tan(-v.tilt) == pytest.approx(np.repeat([2.0, 0.4], 5))
 
 
 def test_mirror_symmetry(belief, track):

@@ -132,6 +132,17 @@ def test_a_lost_mover_behind_is_turned_for_and_one_in_view_is_not(check, belief,
     assert check.aside(belief([lost]), 0.0, SPEED) == P.near_angle
 
 
+def test_nothing_counts_beyond_the_farthest_ring(belief, track):
+    bearing = REACH + 0.5 * P.near_angle
+    place = (0.6 * cos(bearing), 0.6 * sin(bearing))
+    lost = belief([track(place, (0.1, 0.0), age=3.0, particles=cloud(place))])
+    ground = belief(age=lambda x, y: 9.0 if np.hypot(x, y) > 0.55 else 0.0)
+    for rings, counts in (((0.4, 0.5), False), ((0.7, 0.4), True)):
+        check = ShoulderCheck(ShoulderParameters(rings=rings), REACH, 0.12, SPEED)
+        for b in (lost, ground):
+            assert check.urgency(b, 0.0, SPEED).any() == counts
+
+
 def test_what_is_near_and_may_move_is_left_before_anything_is_looked_at(check, belief, track):
     far, near = (0.0, 0.12 + 0.08 + 1.1 * P.clearance), (0.0, 0.12 + 0.08 + 0.9 * P.clearance)
 

@@ -22,7 +22,7 @@ def test_every_key_is_explained_and_every_measure_has_a_unit():
             text = node.get("description", "")
             # A table that says the same as its key says it once.
             assert text or "$ref" in node, (table["title"], name)
-            numeric = node.get("type") in ("number", "integer")
+            numeric = node.get("items", node).get("type") in ("number", "integer")
             assert not numeric or text.rstrip(".").endswith("]"), (table["title"], name, text)
 
 
