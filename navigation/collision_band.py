@@ -1,4 +1,4 @@
-"""Collision band of a mover and the situations of Yoo & Kim, Fig. 4."""
+"""Collision band of a mover and the collision cases of Yoo & Kim, Fig. 4."""
 
 from enum import StrEnum
 from itertools import pairwise
@@ -7,7 +7,7 @@ from math import hypot, inf, isfinite, sqrt
 from navigation.value import value
 
 
-class Situation(StrEnum):
+class CollisionCase(StrEnum):
     """What a robot on a straight line has before it (letters of Fig. 4).
 
     CROSSING: (a) outside the band, the line crosses it.
@@ -122,7 +122,7 @@ class Encounter:
                 points += [(along - sqrt(reach)) / horizon, (along + sqrt(reach)) / horizon]
         return tuple(points)
 
-    def situation(self, v_max: float) -> Situation | None:
+    def case(self, v_max: float) -> CollisionCase | None:
         """Letter of Fig. 4 for speeds up to `v_max` [m/s]; None: nothing to do about it.
 
         Case (c) of the paper contains slower movers from behind, of which some speeds are
@@ -131,11 +131,11 @@ class Encounter:
         meets_line = abs(self.across) < self.radius
         if self.in_band():
             if meets_line and not free_intervals((self,), v_max, inf):
-                return Situation.DEFINITE
-            return Situation.ESCAPE
+                return CollisionCase.DEFINITE
+            return CollisionCase.ESCAPE
         if not any(isfinite(self.contact_time(v)) for v in self._probes(v_max)):
             return None
-        return Situation.RECEDING if meets_line else Situation.CROSSING
+        return CollisionCase.RECEDING if meets_line else CollisionCase.CROSSING
 
     def _probes(self, v_max: float) -> tuple[float, ...]:
         cuts = _cuts((self,), v_max, inf)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from navigation.angles import wrap
 from navigation.belief import Belief
 from navigation.body_command import body_velocity, idle_velocity
-from navigation.collision_band import Encounter, Situation
+from navigation.collision_band import CollisionCase, Encounter
 from navigation.collision_filter import CollisionFilter, direction_and_speed
 from navigation.confidence_gate import gate_points
 from navigation.decision import MotionDecision, SpeedLimits, Task
@@ -265,7 +265,7 @@ class Planner:
         definite = {
             index
             for index, e in encounters.items()
-            if e.situation(self._limits.forward) is Situation.DEFINITE
+            if e.case(self._limits.forward) is CollisionCase.DEFINITE
         }
         if speed.situation == "path_change":
             definite |= {i for i, e in encounters.items() if e.in_band()}

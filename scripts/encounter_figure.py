@@ -75,7 +75,7 @@ def case(letter: str) -> Case:
         if frame.motion.situation not in situations or not frame.motion.extended_radii:
             continue
         direction, encounter = _encounter(frame, straight=letter == "c")
-        if encounter.situation(v_max) == letter and _telling(letter, frame, encounter):
+        if encounter.case(v_max) == letter and _telling(letter, frame, encounter):
             return Case(letter, title, frame, direction, encounter, ran)
     raise RuntimeError(f"scenario {name} never came to case ({letter})")
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
 from navigation.peers.parameters import DwaParameters
+from navigation.peers.planning_scene import PlanningScene
 from navigation.peers.roll_out import contact_cost, gaps, roll_out
-from navigation.peers.situation import Situation
 
 Array = NDArray[np.float64]
 
@@ -28,9 +28,9 @@ class DynamicWindow:
         self._parameters = parameters
         self._s_robot = s_robot
 
-    def decide(self, situation: Situation) -> Array:
+    def decide(self, scene: PlanningScene) -> Array:
         """Body velocity of least cost (3,) [m/s, m/s, rad/s]."""
-        s, p = situation, self._parameters
+        s, p = scene, self._parameters
         limits = s.envelope.limits
         window = self._window(s)
         steps = max(1, round(p.horizon / limits.footstep))
@@ -54,7 +54,7 @@ class DynamicWindow:
         best: Array = window[int(np.argmin(cost))]
         return best
 
-    def _window(self, s: Situation) -> Array:
+    def _window(self, s: PlanningScene) -> Array:
         """Velocities within reach (n, 3), standing still among them if it is."""
         low, high, change = s.envelope.low(), s.envelope.high(), s.envelope.change()
         low, high = np.maximum(low, s.body - change), np.minimum(high, s.body + change)

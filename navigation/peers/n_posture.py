@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.peers.parameters import NPostureParameters
-from navigation.peers.situation import Situation
+from navigation.peers.planning_scene import PlanningScene
 from navigation.univector import normalized
 
 Array = NDArray[np.float64]
@@ -30,16 +30,16 @@ class NPosture:
         self._parameters = parameters
         self._s_robot = s_robot
 
-    def decide(self, situation: Situation) -> Array:
+    def decide(self, scene: PlanningScene) -> Array:
         """Body velocity along the field (3,) [m/s, m/s, rad/s]."""
-        s = situation.in_effect()
+        s = scene.in_effect()
         if s.speed == 0.0:
             return s.walk(np.zeros(2))
         phi = self._posture(s)
         u_goal = np.array([np.cos(phi), np.sin(phi)])
         return s.walk(s.speed * self._mixed(s, u_goal))
 
-    def _posture(self, s: Situation) -> float:
+    def _posture(self, s: PlanningScene) -> float:
         """Kim's field at the robot [rad]."""
         p = self._parameters
         dx, dy = (s.task.target - s.pose[:2]).tolist()
@@ -50,7 +50,7 @@ class NPosture:
         # More than a right angle off would walk away from the destination.
         return bearing - float(np.clip(turn, -0.5 * np.pi, 0.5 * np.pi))
 
-    def _mixed(self, s: Situation, u_goal: Array) -> Array:
+    def _mixed(self, s: PlanningScene, u_goal: Array) -> Array:
         """Lim's mixture of the field of the nearest obstacle with `u_goal` (2,)."""
         p = self._parameters
         if len(s.obstacles) == 0:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from navigation.peers.half_planes import HalfPlane, orca_plane, solve
 from navigation.peers.parameters import OrcaParameters
-from navigation.peers.situation import Situation
+from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 
@@ -26,9 +26,9 @@ class Orca:
         self._parameters = parameters
         self._s_robot = s_robot
 
-    def decide(self, situation: Situation) -> Array:
+    def decide(self, scene: PlanningScene) -> Array:
         """Body velocity of the linear program (3,) [m/s, m/s, rad/s]."""
-        s = situation.in_effect()
+        s = scene.in_effect()
         limits = s.envelope.limits
         box = self._box(s)
         wanted, own = s.wanted().tolist(), s.velocity().tolist()
@@ -36,7 +36,7 @@ class Orca:
         v_max = hypot(max(limits.forward, limits.backward), limits.lateral)
         return s.walk(np.array(solve(planes, len(box), (wanted[0], wanted[1]), v_max)))
 
-    def _planes(self, s: Situation, own: tuple[float, float]) -> list[HalfPlane]:
+    def _planes(self, s: PlanningScene, own: tuple[float, float]) -> list[HalfPlane]:
         """Half planes of the obstacles near enough to matter, the nearest first."""
         p = self._parameters
         x, y, _ = s.pose.tolist()
@@ -65,7 +65,7 @@ class Orca:
             found.append((gap, plane))
         return [plane for _, plane in sorted(found, key=lambda pair: pair[0])]
 
-    def _box(self, s: Situation) -> list[HalfPlane]:
+    def _box(self, s: PlanningScene) -> list[HalfPlane]:
         """The envelope of the body at its heading."""
         limits = s.envelope.limits
         c, n = cos(float(s.pose[2])), sin(float(s.pose[2]))

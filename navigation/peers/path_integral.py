@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
 from navigation.peers.parameters import MppiParameters
+from navigation.peers.planning_scene import PlanningScene
 from navigation.peers.roll_out import contact_cost, gaps, roll_out
-from navigation.peers.situation import Situation
 
 Array = NDArray[np.float64]
 
@@ -42,9 +42,9 @@ class PathIntegral:
         drive = np.where(lag == 0, 1.0, np.sqrt(1.0 - rho**2))
         self._colour = np.tril(power) * drive
 
-    def decide(self, situation: Situation) -> Array:
+    def decide(self, scene: PlanningScene) -> Array:
         """First footstep of the mean sequence (3,) [m/s, m/s, rad/s]."""
-        s = situation
+        s = scene
         body = self._samples(s)
         cost = self._cost(s, body)
         weight = np.exp(-(cost - cost.min()) / self._parameters.temperature)
@@ -53,7 +53,7 @@ class PathIntegral:
         first: Array = plan[0]
         return first
 
-    def _samples(self, s: Situation) -> Array:
+    def _samples(self, s: PlanningScene) -> Array:
         """Body velocities about the plan (k, t, 3), mirrored in pairs, the plan and a stop."""
         p = self._parameters
         low, high, change = s.envelope.low(), s.envelope.high(), s.envelope.change()
@@ -69,7 +69,7 @@ class PathIntegral:
         body: Array = np.clip(reached, low, high)
         return body
 
-    def _cost(self, s: Situation, body: Array) -> Array:
+    def _cost(self, s: PlanningScene, body: Array) -> Array:
         """Cost of every sequence (k,)."""
         p, limits = self._parameters, s.envelope.limits
         position, heading = roll_out(s.pose, body, limits.footstep)

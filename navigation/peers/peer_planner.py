@@ -13,7 +13,7 @@ from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.decision_parameters import NavigationParameters
 from navigation.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.obstacle_set import ObstacleSet
-from navigation.peers.situation import Envelope, Situation
+from navigation.peers.planning_scene import Envelope, PlanningScene
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ class Avoids(Protocol):
 
     margin: float
 
-    def decide(self, situation: Situation) -> Array:
+    def decide(self, scene: PlanningScene) -> Array:
         """Body velocity for the next footstep (3,) [m/s, m/s, rad/s]."""
 
 
@@ -64,24 +64,24 @@ class PeerPlanner:
             turn = self._parameters.body.lost_turn
             self._body = idle_velocity(not task.done, turn, self._limits)
             return MotionDecision(self._body, heading)
-        situation = self._situation(belief, task)
+        scene = self._scene(belief, task)
         limits = self._envelope
-        self._body = np.clip(self._avoidance.decide(situation), limits.low(), limits.high())
+        self._body = np.clip(self._avoidance.decide(scene), limits.low(), limits.high())
         forward, left, _ = self._body.tolist()
         speed = hypot(forward, left)
-        direction = wrap(heading + atan2(left, forward)) if speed > 1e-9 else situation.course
-        radii = self._parameters.univector.s_robot + situation.radii(self._avoidance.margin)
-        pairs = zip(situation.obstacles.ids.tolist(), radii.tolist(), strict=True)
+        direction = wrap(heading + atan2(left, forward)) if speed > 1e-9 else scene.course
+        radii = self._parameters.univector.s_robot + scene.radii(self._avoidance.margin)
+        pairs = zip(scene.obstacles.ids.tolist(), radii.tolist(), strict=True)
         return MotionDecision(self._body, direction, speed, extended_radii=tuple(pairs))
 
-    def _situation(self, belief: Belief, task: Task) -> Situation:
+    def _scene(self, belief: Belief, task: Task) -> PlanningScene:
         p = self._parameters
         known = [t for t in belief.tracks if t.particles is None or t.age <= p.planner.memory]
         obstacles = ObstacleSet.from_tracks(known)
         course, speed, side = self._way(belief.pose, task)
         dx, dy = (task.target - belief.pose[:2]).tolist()
         near = task.is_goal and hypot(dx, dy) < p.univector.holonomic_distance
-        return Situation(
+        return PlanningScene(
             pose=belief.pose,
             body=self._body,
             obstacles=obstacles,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from navigation.decision_parameters import NavigationParameters
 from navigation.motion_field import FieldScene, MotionField
-from navigation.peers.situation import Situation
+from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 
@@ -28,15 +28,15 @@ class PlainUnivector:
         shape = replace(parameters.univector, d_e=p.d_e, d_b=p.d_b, k_r=p.k_r)
         self._field = MotionField(shape, parameters.mover)
 
-    def decide(self, situation: Situation) -> Array:
+    def decide(self, scene: PlanningScene) -> Array:
         """Body velocity along the field (3,) [m/s, m/s, rad/s]."""
-        s = situation.in_effect()
+        s = scene.in_effect()
         if s.speed == 0.0:
             return s.walk(np.zeros(2))
         n = len(s.obstacles)
         radii = self._s_robot + s.radii(self.margin) + self._eta_vo * s.obstacles.speed
-        scene = FieldScene(s.obstacles, radii, np.zeros(n), s.task.target, s.task.heading, s.side)
-        u_x, u_y = self._field.at(s.pose[:2], float(s.pose[2]), scene, ()).tolist()
+        discs = FieldScene(s.obstacles, radii, np.zeros(n), s.task.target, s.task.heading, s.side)
+        u_x, u_y = self._field.at(s.pose[:2], float(s.pose[2]), discs, ()).tolist()
         if hypot(u_x, u_y) < 1e-9:
             return s.walk(s.wanted())
         angle = atan2(u_y, u_x)

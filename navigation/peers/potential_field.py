@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.peers.parameters import ApfParameters
-from navigation.peers.situation import Situation
+from navigation.peers.planning_scene import PlanningScene
 from navigation.univector import normalized
 
 Array = NDArray[np.float64]
@@ -28,15 +28,15 @@ class PotentialField:
         self._parameters = parameters
         self._s_robot = s_robot
 
-    def decide(self, situation: Situation) -> Array:
+    def decide(self, scene: PlanningScene) -> Array:
         """Body velocity down the potential (3,) [m/s, m/s, rad/s]."""
-        s = situation.in_effect()
+        s = scene.in_effect()
         limits = s.envelope.limits
         total = s.wanted() + limits.forward * self._repulsion(s)
         speed = float(np.hypot(*total))
         return s.walk(total * min(1.0, limits.forward / max(speed, 1e-9)))
 
-    def _repulsion(self, s: Situation) -> Array:
+    def _repulsion(self, s: PlanningScene) -> Array:
         """Sum over the obstacles (2,), as a share of the largest speed."""
         p = self._parameters
         away = s.pose[:2] - s.obstacles.position

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.peers.situation import Situation
+from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 
@@ -31,18 +31,18 @@ def roll_out(pose: Array, body: Array, footstep: float) -> tuple[Array, Array]:
     return position, heading
 
 
-def gaps(position: Array, situation: Situation, radii: Array) -> Array:
+def gaps(position: Array, scene: PlanningScene, radii: Array) -> Array:
     """Gap to the nearest obstacle after every footstep (k, t) [m].
 
     Args:
         position: of k sequences of t footsteps (k, t, 2) [m].
-        situation: with the obstacles, which go on at constant velocity.
+        scene: with the obstacles, which go on at constant velocity.
         radii: distances at which they are touched (n,) [m].
     """
     k, t, _ = position.shape
-    dt, obstacles = situation.envelope.limits.footstep, situation.obstacles
-    limits = situation.envelope.limits
-    offset = obstacles.position - situation.pose[:2]
+    dt, obstacles = scene.envelope.limits.footstep, scene.obstacles
+    limits = scene.envelope.limits
+    offset = obstacles.position - scene.pose[:2]
     reach = t * dt * (obstacles.speed + limits.forward) + radii + _CARE
     near = np.nonzero(np.hypot(offset[:, 0], offset[:, 1]) < reach)[0].tolist()
     least = np.full((k, t), _CARE)

@@ -3,7 +3,7 @@ from math import hypot, inf, isfinite
 import numpy as np
 import pytest
 
-from navigation.collision_band import Encounter, Situation, free_intervals
+from navigation.collision_band import CollisionCase, Encounter, free_intervals
 
 
 def encounters(rng, n):
@@ -95,22 +95,22 @@ def test_free_intervals_agree_with_sampling(horizon):
 
 def test_the_letters_of_figure_4():
     crossing = Encounter(1.0, -1.0, 0.0, 0.15, 0.3)
-    assert crossing.situation(0.2) is Situation.CROSSING
+    assert crossing.case(0.2) is CollisionCase.CROSSING
     head_on = Encounter(1.0, 0.0, -0.1, 0.0, 0.3)
-    assert head_on.situation(0.2) is Situation.DEFINITE
+    assert head_on.case(0.2) is CollisionCase.DEFINITE
     leaving = Encounter(0.5, 0.0, 0.05, 0.0, 0.3)
-    assert leaving.situation(0.2) is Situation.RECEDING
+    assert leaving.case(0.2) is CollisionCase.RECEDING
     from_the_side = Encounter(0.1, -0.6, 0.0, 0.1, 0.3)
-    assert from_the_side.situation(0.2) is Situation.ESCAPE
-    assert Encounter(1.0, 1.0, 0.0, 0.15, 0.3).situation(0.2) is None
+    assert from_the_side.case(0.2) is CollisionCase.ESCAPE
+    assert Encounter(1.0, 1.0, 0.0, 0.15, 0.3).case(0.2) is None
 
 
 def test_a_slower_mover_from_behind_can_be_outrun():
     e = Encounter(-0.6, 0.0, 0.1, 0.0, 0.3)
-    assert e.situation(0.2) is Situation.ESCAPE
+    assert e.case(0.2) is CollisionCase.ESCAPE
     ((low, high),) = free_intervals((e,), 0.2, inf)
     assert (low, high) == pytest.approx((0.1, 0.2))
-    assert e.situation(0.05) is Situation.DEFINITE
+    assert e.case(0.05) is CollisionCase.DEFINITE
 
 
 def test_in_case_b_exactly_the_speeds_below_the_larger_root_collide():

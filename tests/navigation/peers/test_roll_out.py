@@ -3,15 +3,15 @@ import pytest
 
 from navigation.decision import Task
 from navigation.obstacle_set import ObstacleSet
+from navigation.peers.planning_scene import Envelope, PlanningScene
 from navigation.peers.roll_out import contact_cost, gaps, roll_out
-from navigation.peers.situation import Envelope, Situation
 
 DT = 0.34
 
 
-def situation(tracks, limits, pose=(0.0, 0.0, 0.0), body=(0.0, 0.0, 0.0)):
+def scene(tracks, limits, pose=(0.0, 0.0, 0.0), body=(0.0, 0.0, 0.0)):
     obstacles = ObstacleSet.from_tracks(tracks)
-    return Situation(
+    return PlanningScene(
         pose=np.array(pose, float),
         body=np.array(body, float),
         obstacles=obstacles,
@@ -41,7 +41,7 @@ def test_gaps_equal_brute_force(track, limits):
             zip(rng.uniform(-1, 1, (6, 2)), rng.normal(0, 0.1, (6, 2)), strict=True)
         )
     ]
-    s = situation(tracks, limits)
+    s = scene(tracks, limits)
     position = rng.uniform(-1, 1, (5, 8, 2))
     radii = rng.uniform(0.1, 0.3, 6)
     found = gaps(position, s, radii)
@@ -56,7 +56,7 @@ def test_gaps_equal_brute_force(track, limits):
 
 
 def test_no_obstacle_leaves_the_largest_gap(limits):
-    assert np.all(gaps(np.zeros((2, 3, 2)), situation([], limits), np.zeros(0)) == 1.0)
+    assert np.all(gaps(np.zeros((2, 3, 2)), scene([], limits), np.zeros(0)) == 1.0)
 
 
 def test_an_earlier_contact_costs_more():
@@ -68,8 +68,8 @@ def test_an_earlier_contact_costs_more():
     assert cost[3] == pytest.approx(1.01)
 
 
-def test_the_situation_in_effect_is_a_footstep_later(track, limits):
-    s = situation([track((1.0, 0.0), (0.0, 0.1))], limits, (0, 0, np.pi / 2), (0.1, 0.0, 0.2))
+def test_the_scene_in_effect_is_a_footstep_later(track, limits):
+    s = scene([track((1.0, 0.0), (0.0, 0.1))], limits, (0, 0, np.pi / 2), (0.1, 0.0, 0.2))
     later = s.in_effect()
     assert later.pose == pytest.approx([0.0, 0.034, np.pi / 2 + 0.068])
     assert later.obstacles.position[0] == pytest.approx([1.0, 0.034])
@@ -77,7 +77,7 @@ def test_the_situation_in_effect_is_a_footstep_later(track, limits):
 
 
 def test_walking_faces_the_motion_or_what_it_is_told(limits):
-    s = situation([], limits)
+    s = scene([], limits)
     aside = np.array([0.0, 0.1])
     assert s.walk(aside) == pytest.approx([0.0, limits.lateral, limits.turn])
     assert s.walk(np.zeros(2)) == pytest.approx(0.0)

@@ -42,8 +42,8 @@ class Envelope:
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
-    """One decision to be made.
+class PlanningScene:
+    """What one decision is made from.
 
     Attributes:
         pose: of the robot in W (3,) [m, m, rad].
@@ -94,8 +94,8 @@ class Situation:
         share: Array = np.minimum(1.0, np.hypot(x, y) / np.maximum(gap, 1e-3))
         return share
 
-    def in_effect(self) -> "Situation":
-        """The situation one footstep later, when the command has become motion."""
+    def in_effect(self) -> "PlanningScene":
+        """The scene one footstep later, when the command has become motion."""
         dt = self.envelope.limits.footstep
         moved = self.pose + dt * np.array([*self.velocity().tolist(), float(self.body[2])])
         carried = self.obstacles.position + dt * self.obstacles.velocity
