@@ -22,7 +22,7 @@ from study_page import seeds_of
 from tyro.conf import Positional, UseAppendAction
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.robot_builder import build_estimator
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
@@ -31,7 +31,7 @@ from hsr8.world.generator import draw_layout
 
 
 @dataclass
-class Watcher:
+class Watcher(Listener):
     """Listener that keeps what reached the belief, with the truth at each capture."""
 
     moments: list[Moment] = field(default_factory=list)
@@ -48,12 +48,6 @@ class Watcher:
         if record.frame is not None:
             frame = record.frame.measured
             self.moments.append(Moment(frame, *self._truth[round(1e3 * frame.time)]))
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Nothing."""
-
-    def close(self, exit_reason: str) -> None:
-        """Nothing."""
 
 
 def watch(scenario: Scenario, seed: int) -> list[Moment]:

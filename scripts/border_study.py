@@ -17,7 +17,7 @@ import numpy as np
 from study_page import add_seeds
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 
 ASIDE = radians(95.0)  # bearing from which an obstacle is looked at over the shoulder
@@ -27,7 +27,7 @@ MATCH = 0.2  # a detection so near to an obstacle is of it [m]
 
 
 @dataclass
-class Tally:
+class Tally(Listener):
     """Listener that counts what was there and what of it was detected, by distance and offset."""
 
     simulation: Simulation
@@ -60,12 +60,6 @@ class Tally:
                 key = near[0], edges[-1]
                 self.there[key] += 1
                 self.seen[key] += any(hypot(u - x, v - y) < MATCH for u, v in found)
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Events do not matter here."""
-
-    def close(self, exit_reason: str) -> None:
-        """Nothing is left open."""
 
 
 def main() -> None:

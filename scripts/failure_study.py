@@ -20,7 +20,7 @@ from study_page import STAND_INS, add_seeds, command_line
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
 from hsr8.recorder.frame_summary import from_line, to_line
-from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.render.png import write_png
 from hsr8.render.top_down import TopDown
 from hsr8.scenario.loader import load
@@ -66,7 +66,7 @@ class Failure:
     what: str
 
 
-class Watch:
+class Watch(Listener):
     """Listener that keeps the last seconds and stops the run at its first contact or fall."""
 
     def __init__(self, simulation: Simulation) -> None:
@@ -102,12 +102,6 @@ class Watch:
             np.concatenate([truth.obstacle_positions, self.beacons]),
             np.concatenate([truth.obstacle_velocities, still]),
         )
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Records say it all."""
-
-    def close(self, exit_reason: str) -> None:
-        """Nothing is left open."""
 
 
 def cause_of(watch: Watch, end: Truth) -> tuple[str, str]:

@@ -27,7 +27,7 @@ from study_page import add_seeds, environment
 from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.scenario.world import ROBOT_RADIUS
 
@@ -91,7 +91,7 @@ LADDERS = {
 }
 
 
-class Watch:
+class Watch(Listener):
     """Listener that counts what went wrong."""
 
     def __init__(self) -> None:
@@ -114,9 +114,6 @@ class Watch:
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Count it."""
         self.events[kind] += 1
-
-    def close(self, exit_reason: str) -> None:
-        """Nothing is left open."""
 
 
 def run(settings: list[str], seed: int) -> tuple[str, Watch]:

@@ -21,7 +21,7 @@ from tyro.conf import Positional, UseAppendAction
 
 from hsr8 import robot_builder
 from hsr8.loop import Simulation
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
@@ -75,7 +75,7 @@ class Carried:
 
 
 @dataclass
-class Watcher:
+class Watcher(Listener):
     """Listener that notes when the robot noticed each kidnap, and when it was found again."""
 
     carried: list[Carried]
@@ -104,12 +104,6 @@ class Watcher:
             self.found.setdefault(kidnap, age)
         elif kidnap in self.noticed and e @ np.linalg.solve(belief.pose_covariance, e) > WRONG:
             self.wrong += 1
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Nothing."""
-
-    def close(self, exit_reason: str) -> None:
-        """Nothing."""
 
 
 def main(

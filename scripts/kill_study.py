@@ -26,7 +26,7 @@ from hsr8.evaluation.sweep.definition import Definition
 from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
 from hsr8.recorder.manifest import Manifest
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import open_run
 from hsr8.recorder.tape import read_tape
@@ -37,7 +37,7 @@ CHECKPOINT = 2  # simulated time between two [s]
 CLOCK = struct.Struct("<d")
 
 
-class Watch:
+class Watch(Listener):
     """Listener that leaves the simulated time where a kill does not reach it."""
 
     def __init__(self, path: Path) -> None:
@@ -47,12 +47,6 @@ class Watch:
     def on_record(self, record: TickRecord) -> None:
         """Note its time."""
         self._memory[:] = CLOCK.pack(record.time)
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Events are no matter."""
-
-    def close(self, exit_reason: str) -> None:
-        """The run has ended."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
 from hsr8.recorder.manifest import Manifest
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.walking_table import WalkingTableWriter
@@ -37,7 +37,7 @@ REST, BESIDE, WHOLE = "the rest of the loop", "threads beside it", "whole loop"
 SECOND = 1.0  # the floor has its turn after so much simulated time [s]
 
 
-class Floor:
+class Floor(Listener):
     """Listener that steps and renders the bare model for as long as the loop has run."""
 
     def __init__(self, simulation: Simulation) -> None:
@@ -70,9 +70,6 @@ class Floor:
         """One image."""
         self._renderer.update_scene(self._data, camera=HEAD_CAMERA)
         self._renderer.render()
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Nothing."""
 
     def close(self, exit_reason: str) -> None:
         """Free the OpenGL context."""

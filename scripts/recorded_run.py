@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass
-class RecordedRun:
+class RecordedRun(Listener):
     """Listener that keeps what the figures show.
 
     Attributes:
@@ -43,12 +43,6 @@ class RecordedRun:
         self.contact.append(bool(truth.contacts))
         if record.frame is not None:
             self.frames.append(record.frame)
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Nothing depends on events."""
-
-    def close(self, exit_reason: str) -> None:
-        """Nothing is left open."""
 
     def at(self, time: float) -> int:
         """Number of the last record not after `time` [s]."""

@@ -21,13 +21,13 @@ from vision_score import Study
 from vision_truth import Array, Thing, sights
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.world.assembly import HEAD_CAMERA
 from vision.camera import PinholeCamera
 
 
-class Referee:
+class Referee(Listener):
     """Listens to a run and compares every frame with the truth.
 
     Args:
@@ -104,9 +104,6 @@ class Referee:
             kind = "obstacle" if obstacle else "beacon"
             found.append(Thing(kind, label, forward, left, radius, height, geoms))
         return found
-
-    def on_event(self, at: float, kind: str, text: str) -> None:
-        """Events do not matter here."""
 
     def close(self, exit_reason: str) -> None:
         """Free the renderer."""

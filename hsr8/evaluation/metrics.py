@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsr8.evaluation.track_metrics import TrackMetrics
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.block import Block
-from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.world.episodes import Episodes
 from hsr8.world.falls import Falls
 from hsr8.world.layout import Layout
@@ -30,7 +30,7 @@ STILL = 0.02  # the robot stands below this speed [m/s]
 STILL_WINDOW = 1.0  # its speed is measured over this time, longer than a step [s]
 
 
-class Metrics:
+class Metrics(Listener):
     """Listener that computes the results of a run.
 
     Args:
@@ -87,9 +87,6 @@ class Metrics:
         """Take one record."""
         if self._waiting.add(record):
             self._work_off()
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Events follow from the records."""
 
     def close(self, exit_reason: str) -> None:
         """Stop the clock."""

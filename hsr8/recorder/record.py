@@ -90,13 +90,19 @@ class TickRecord:
 
 
 class Listener(Protocol):
-    """Somebody who watches a run; watching never changes it."""
+    """Somebody who watches a run; watching never changes it.
+
+    What a class derived from it leaves out does nothing.
+    """
 
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
+        return
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Take one event, for example ``via_point``, ``collision``, ``fall``."""
+        return
 
     def close(self, exit_reason: str) -> None:
         """The run has ended, for whatever reason."""
+        return

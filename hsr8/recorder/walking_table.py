@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.recorder.block import Block
 from hsr8.recorder.headed_file import HeadedWriter, read_headed
-from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.world.index import ModelIndex
 from walking.admission import Limit
 from walking.joints import JOINT_NAMES
@@ -93,7 +93,7 @@ class WalkingTable:
         return {limit: rows for limit, rows in found.items() if rows.any()}
 
 
-class WalkingTableWriter:
+class WalkingTableWriter(Listener):
     """Listener that writes the table of a run.
 
     Args:
@@ -119,9 +119,6 @@ class WalkingTableWriter:
         """Append one row."""
         if self._waiting.add(record):
             self.flush()
-
-    def on_event(self, time: float, kind: str, text: str) -> None:
-        """Events have a file of their own."""
 
     def flush(self) -> None:
         """Hand everything to the operating system."""

@@ -3,6 +3,7 @@ import pytest
 
 from hsr8.decisions import Looks, Moves
 from hsr8.loop import Simulation
+from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load
 from navigation.decision import GazeDecision, MotionDecision
 
@@ -40,13 +41,7 @@ def test_tick_by_tick_is_the_same_run():
 
 
 def test_a_run_left_early_closes_its_listeners(fake):
-    class Closes:
-        def on_record(self, record):
-            pass
-
-        def on_event(self, time, kind, text):
-            pass
-
+    class Closes(Listener):
         def close(self, exit_reason):
             self.reason = exit_reason
 

@@ -1,21 +1,16 @@
 import numpy as np
 
 from hsr8.loop import Simulation
+from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load
 
 SEED = 3  # two obstacles stand behind the robot at 1.1 and 1.3 m
 
 
-class Last:
+class Last(Listener):
     def on_record(self, record):
         if record.frame is not None:
             self.frame = record.frame
-
-    def on_event(self, time, kind, text):
-        pass
-
-    def close(self, exit_reason):
-        pass
 
 
 def test_an_all_round_camera_knows_what_stands_behind_without_looking():

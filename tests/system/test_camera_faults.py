@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from hsr8.loop import Simulation
+from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load
 from vision.colour_file import save_table
 from vision.colour_learning import learn
@@ -133,16 +134,10 @@ def test_a_table_learnt_from_rendered_images_sees_as_well_as_the_declared_one(tm
     for setting in ([], [f"vision.colour_table={tmp_path / 'colours.npz'}"]):
         seen = []
 
-        class Counter:
+        class Counter(Listener):
             def on_record(self, record, seen=seen):
                 if record.frame is not None:
                     seen.append(sorted(d.label for d in record.frame.detections))
-
-            def on_event(self, *event):
-                pass
-
-            def close(self, reason):
-                pass
 
         scenario = load("course", ["duration=0.6", 'robot.body="kinematic"', *setting])
         Simulation(scenario, 3, [Counter()]).run()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.loop import Simulation
+from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load
 
 
@@ -64,15 +65,12 @@ def test_a_tour_completes(simulate):
 
 
 def test_an_interrupted_run_ends_at_once_and_closes_its_listeners(simulate):
-    class Stops:
+    class Stops(Listener):
         reason = None
 
         def on_record(self, record):
             if record.time >= 0.5:
                 simulation.interrupt()
-
-        def on_event(self, time, kind, text):
-            pass
 
         def close(self, exit_reason):
             self.reason = exit_reason
@@ -92,13 +90,7 @@ def test_a_scripted_walk_goes_where_it_is_told(simulate):
 
 
 def test_every_listener_is_closed_though_one_fails():
-    class Fails:
-        def on_record(self, record):
-            pass
-
-        def on_event(self, time, kind, text):
-            pass
-
+    class Fails(Listener):
         def close(self, exit_reason):
             raise OSError("disk full")
 

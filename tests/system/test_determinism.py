@@ -5,6 +5,7 @@ import pytest
 from hsr8.loop import Simulation
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.log_reader import Log
+from hsr8.recorder.record import Listener
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.scenario.loader import load
 
@@ -16,7 +17,7 @@ def final_hash(seed, settings, duration, listeners=()):
     return Simulation(scenario, seed, listeners).run().state_hash
 
 
-class Meddler:
+class Meddler(Listener):
     """A listener that does what it can to what it is given."""
 
     def on_record(self, record):
@@ -25,12 +26,6 @@ class Meddler:
         record.truth.obstacle_positions[:] = 0.0
         if record.frame is not None:
             record.frame.belief.pose.copy()
-
-    def on_event(self, time, kind, text):
-        pass
-
-    def close(self, exit_reason):
-        pass
 
 
 def test_same_seed_same_end_whoever_listens():
