@@ -256,7 +256,7 @@ class ShoulderParameters:
     rings: Rings = (0.40, 0.65, 0.90, 1.20)
     """Distances of the ground looked at; a lost mover farther off than all does not count [m]."""
     rays: Annotated[int, Ge(2)] = 4
-    """Directions of the ground looked at, each side beside and right behind [1]."""
+    """Directions of it on either side, as many beside as right behind [1]."""
     mover_speed: NonNegative = 1.1
     """Feared speed of what was not seen, share of the robot's [1]."""
     due: Positive = 0.7

@@ -1,7 +1,9 @@
 """Do the tests notice a wrong equation: small mistakes made on purpose, one at a time.
 
-    python scripts/mutation_study.py --each 40 --write
+    python scripts/mutation_study.py --each 40
     python scripts/mutation_study.py --modules navigation/univector --each 1000
+
+It prints rows of the table in docs/results/tests.md, which says of each survivor what it means.
 
 Each mutant is one changed operator, comparison, number, sign, condition or function name of one
 module. It runs against the module's own tests in a forked process; it is killed if any of them
@@ -26,10 +28,8 @@ from types import ModuleType
 
 import pytest
 from hypothesis import Phase, settings
-from study_page import RESULTS, command_line, environment
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = RESULTS / "mutation.md"
 TESTS = {  # where they are not those of the same name
     "walking/zmp_layout_kernel": ("walking/test_zmp_kernel",),
     "walking/swing_kernel": ("walking/test_swing_kernel", "walking/test_swing_reaction"),
@@ -234,7 +234,6 @@ def study(module: str, each: int, seed: int) -> tuple[int, int, list[Mutant]]:
     for mutant in sorted(tried, key=lambda m: m.line):
         if not fails(tests, Planted(module.replace("/", "."), mutant), patience):
             survived.append(mutant)
-            print(f"{module}:{mutant.line}: {mutant.before} -> {mutant.after}", flush=True)
     return len(every), len(tried), survived
 
 
@@ -243,7 +242,6 @@ def main() -> None:
     parser.add_argument("--modules", nargs="+", default=MODULES)
     parser.add_argument("--each", type=int, default=40, help="mutants tried per module at most")
     parser.add_argument("--seed", type=int, default=0, help="of the choice of mutants")
-    parser.add_argument("--write", action="store_true", help="write mutation.md")
     options = parser.parse_args()
     settings.register_profile(
         PROFILE,
@@ -255,28 +253,12 @@ def main() -> None:
     settings.load_profile(PROFILE)
     for heavy in ("scipy.linalg", "scipy.optimize", "filterpy.kalman", "pinocchio"):
         importlib.import_module(heavy)  # once, not in every child
-    table = ["| module | mutants | tried | killed | share |", "|---|---|---|---|---|"]
-    listed = ["", "## Survivors", ""]
-    totals = [0, 0, 0]
+    print("| module | mutants | sample | killed | what survived |\n|---|---|---|---|---|")
     for module in options.modules:
         every, tried, survived = study(module, options.each, options.seed)
-        killed = tried - len(survived)
-        table.append(f"| `{module}` | {every} | {tried} | {killed} | {killed / tried:.0%} |")
-        print(table[-1], flush=True)
-        listed += [f"* `{module}:{m.line}`: `{m.before}` → `{m.after}`" for m in survived]
-        totals = [a + b for a, b in zip(totals, (every, tried, killed), strict=True)]
-    table.append(f"| all | {totals[0]} | {totals[1]} | {totals[2]} | {totals[2] / totals[1]:.0%} |")
-    if options.write:
-        head = [
-            "# Mistakes made on purpose, and the tests that notice them",
-            "",
-            f"    {command_line()}",
-            "",
-            f"{environment(('pytest', 'hypothesis'))}; choice of mutants: seed {options.seed}. "
-            "Each ran against the tests of its own module only, not those of the whole system.",
-            "",
-        ]
-        PAGE.write_text("\n".join([*head, *table, *listed, ""]))
+        told = "; ".join(f"line {m.line}: `{m.before}` → `{m.after}`" for m in survived)
+        cells = (f"`{module}`", every, tried, tried - len(survived), told.replace("|", "\\|"))
+        print("| " + " | ".join(map(str, cells)) + " |", flush=True)
 
 
 if __name__ == "__main__":
