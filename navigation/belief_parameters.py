@@ -5,8 +5,7 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
 
-Positive = Annotated[float, Gt(0.0)]
-NonNegative = Annotated[float, Ge(0.0)]
+from navigation.gaze_parameters import NonNegative, Positive, Share
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ class RecognitionParameters:
     """Distance up to which two sightings of one colour are of one thing [m]."""
     least_sightings: Annotated[int, Ge(2)] = 3
     """Sightings that must fall on landmarks [1]."""
-    least_share: Annotated[float, Ge(0.0), Le(1.0)] = 0.5
+    least_share: Share = 0.5
     """Share of the sightings, or of the landmarks if they are fewer, that must do so [1]."""
     tolerance: Positive = 0.06
     """Distance up to which a sighting falls on a landmark [m]."""
@@ -80,8 +79,7 @@ class TrackingParameters:
     top_speed: Positive = 0.2
     """Speed that no obstacle exceeds [m/s]."""
     reach_sigmas: NonNegative = 3.0
-    """Standard deviations of its last sighting by which an obstacle may be farther away at worst
-    [1]."""
+    """Standard deviations of its last sighting by which an obstacle may be farther off [1]."""
     reversal_rate: NonNegative = 1.0 / 12.0
     """Rate at which a mover turns back [1/s]."""
     start_rate: Positive = 0.01
@@ -153,8 +151,8 @@ class TrackingParameters:
     refuted: Annotated[float, Gt(0.0), Lt(1.0)] = 0.05
     """Probability of having seen nothing, given the particles, below which they are refuted [1]."""
     scatter: Annotated[int, Ge(1)] = 4
-    """Places tried then per particle: with fewer of them out of view than particles, the track
-    ends [1]."""
+    """Places tried then per particle [1].
+    With fewer of them out of view than particles, the track ends."""
     forget_time: Positive = 25.0
     """Time unseen after which a track that may move is dropped [s]."""
     tentative_time: Positive = 12.0
@@ -174,8 +172,8 @@ class TrackingParameters:
     radius_limit: Positive = 0.005
     """Least standard deviation of a track's radius [m]."""
     vague_radius: Positive = 0.01
-    """Standard deviation above which the radius of what is seen in part is not fused: it is mostly
-    what was taken for granted, and fusing it again and again would make that certain [m]."""
+    """Standard deviation above which the radius of what is seen in part is not fused [m].
+    It is mostly what was taken for granted then, and fusing it often would make that certain."""
     pose_sigma_limit: Positive = 0.10
     """Largest pose uncertainty carried into the tracks, for they matter relatively [m]."""
 
