@@ -151,8 +151,7 @@ class TrackingParameters:
     refuted: Annotated[float, Gt(0.0), Lt(1.0)] = 0.05
     """Probability of having seen nothing, given the particles, below which they are refuted [1]."""
     scatter: Annotated[int, Ge(1)] = 4
-    """Places tried then per particle [1].
-    With fewer of them out of view than particles, the track ends."""
+    """Places tried then per particle; with fewer out of view than particles the track ends [1]."""
     forget_time: Positive = 25.0
     """Time unseen after which a track that may move is dropped [s]."""
     tentative_time: Positive = 12.0
@@ -171,9 +170,9 @@ class TrackingParameters:
     """Share of the sum of radii below which two tracks of a colour are one obstacle [1]."""
     radius_limit: Positive = 0.005
     """Least standard deviation of a track's radius [m]."""
+    # Beyond it is mostly what was taken for granted: fusing it often would make that certain.
     vague_radius: Positive = 0.01
-    """Standard deviation above which the radius of what is seen in part is not fused [m].
-    It is mostly what was taken for granted then, and fusing it often would make that certain."""
+    """Standard deviation above which the radius of what is seen in part is not fused [m]."""
     pose_sigma_limit: Positive = 0.10
     """Largest pose uncertainty carried into the tracks, for they matter relatively [m]."""
 
