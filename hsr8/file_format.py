@@ -1,8 +1,8 @@
 """Numbers of file formats: which one a file has, and which one this version of hsr8 reads.
 
-A binary file begins with a magic word, a name of seven letters and the digit of its format; a run
-folder has its number in the manifest. A number is raised whenever older files can no longer be
-read, so that they are refused by it and not by what happens to be missing in them.
+A binary file begins with a magic word, a name of seven letters and its format, a digit of base
+36; a run folder has its number in the manifest. A number is raised whenever older files can no
+longer be read, so that they are refused by it and not by what happens to be missing in them.
 """
 
 from pathlib import Path
@@ -26,9 +26,9 @@ def check_magic(content: bytes, magic: bytes, path: Path | str, file: str) -> No
     if content.startswith(magic):
         return
     found = content[len(magic) - 1 : len(magic)].decode("ascii", "replace")
-    if not (content.startswith(magic[:-1]) and found.isdigit()):
+    if not (content.startswith(magic[:-1]) and found.isalnum() and found.isascii()):
         raise UsageError(f"{path} is no {file} of this version of hsr8")
-    check_number(int(found), int(magic[-1:]), path, file)
+    check_number(int(found, 36), int(magic[-1:], 36), path, file)
 
 
 def check_number(found: int, known: int, path: Path | str, file: str) -> None:

@@ -12,11 +12,9 @@ from navigation.gaze_map import Votes
 
 Array = NDArray[np.float64]
 
-_ROWS = 4
-
 
 def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Array:
-    """Points asked for, three columns before a robot that moves in `direction` (12, 2) [m].
+    """Points asked for, three columns before a robot that moves in `direction` (3 rows, 2) [m].
 
     Args:
         pose: of the robot (3,) [m, m, rad].
@@ -24,16 +22,16 @@ def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Ar
         parameters: extent of the ground.
     """
     p = parameters
-    along, across = _ground(p.near, p.far, p.half_width)
+    along, across = _ground(p.near, p.far, p.half_width, p.rows)
     c, s = cos(direction), sin(direction)
     points: Array = pose[:2] + np.stack([c * along - s * across, s * along + c * across], axis=1)
     return points
 
 
 @cache
-def _ground(near: float, far: float, half_width: float) -> tuple[Array, Array]:
-    """The points along and across the motion, from the robot (12,), (12,) [m]."""
-    along, across = np.meshgrid(np.linspace(near, far, _ROWS), (-half_width, 0.0, half_width))
+def _ground(near: float, far: float, half_width: float, rows: int) -> tuple[Array, Array]:
+    """The points along and across the motion, from the robot (3 rows,), (3 rows,) [m]."""
+    along, across = np.meshgrid(np.linspace(near, far, rows), (-half_width, 0.0, half_width))
     return along.ravel(), across.ravel()
 
 

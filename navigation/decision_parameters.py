@@ -158,6 +158,8 @@ class GateParameters:
     """Farthest ground asked for [m]."""
     half_width: NonNegative = 0.10
     """Half width of the ground asked for [m]."""
+    rows: Annotated[int, Ge(2)] = 4
+    """Rows of points from the nearest to the farthest [1]."""
     speed: NonNegative = 0.03
     """Largest speed towards unseen ground [m/s]."""
 

@@ -9,10 +9,6 @@ from vision.outline import Outline, Rim, Side
 from vision.parameters import VisionParameters
 from vision.value import value
 
-SEAM_SHARE = 0.6  # share of the upper colour's width that must rest on the lower colour
-SIDE_TOLERANCE = 4.0  # how far the sides of the two colours may differ [standard deviations]
-RADIUS_SIGMA = 0.0005  # a beacon's radius is known this well [m]
-
 
 @value
 class Post:
@@ -51,14 +47,18 @@ def find_posts(
             if i == j or not _rests_on(blobs[i], blobs[j]):
                 continue
             seam = bottom.against(blobs[j].label)
-            if not seam.slope.size or seam.slope.size < SEAM_SHARE * bottom.slope.size:
+            if not seam.slope.size or seam.slope.size < parameters.beacon_seam * bottom.slope.size:
                 continue
-            sides = _common_sides(outlines[i], outlines[j])
+            sides = _common_sides(outlines[i], outlines[j], parameters.beacon_sides)
             if sides is None:
                 continue
             rims = _rims(seam, outlines[i].top, outlines[j].bottom, camera_height, parameters)
             candidate = Candidate(
-                *sides, rims, parameters.beacon_height, parameters.beacon_radius, RADIUS_SIGMA
+                *sides,
+                rims,
+                parameters.beacon_height,
+                parameters.beacon_radius,
+                parameters.beacon_radius_sigma,
             )
             posts.append(Post(i, j, candidate))
     return posts
@@ -70,23 +70,29 @@ def _rests_on(upper: Blob, lower: Blob) -> bool:
     return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
-def _common_sides(upper: Outline, lower: Outline) -> tuple[Side, Side] | None:
-    """Left and right side of the whole post, None if the colours do not share them."""
-    left = _merge(upper.left, lower.left)
-    right = _merge(upper.right, lower.right)
+def _common_sides(upper: Outline, lower: Outline, tolerance: float) -> tuple[Side, Side] | None:
+    """Left and right side of the whole post, None if the colours do not share them.
+
+    Args:
+        upper: outline of the upper colour.
+        lower: that of the lower one.
+        tolerance: largest difference of their sides [standard deviations].
+    """
+    left = _merge(upper.left, lower.left, tolerance)
+    right = _merge(upper.right, lower.right, tolerance)
     if left is None or right is None or not (left.trusted or right.trusted):
         return None
     return left, right
 
 
-def _merge(a: Side, b: Side) -> Side | None:
-    """One side seen in both colours."""
+def _merge(a: Side, b: Side, tolerance: float) -> Side | None:
+    """One side seen in both colours, None if they differ by more [standard deviations]."""
     hidden = a.hidden or b.hidden
     low, high = min(a.low, b.low), max(a.high, b.high)
     if not (a.trusted and b.trusted):
         best = a if a.trusted else b
         return replace(best, hidden=hidden)
-    if abs(a.azimuth - b.azimuth) > SIDE_TOLERANCE * (a.sigma + b.sigma) / 2.0:
+    if abs(a.azimuth - b.azimuth) > tolerance * (a.sigma + b.sigma) / 2.0:
         return None
     # The longer part averages more pixels.
     wa, wb = a.high - a.low + 1e-3, b.high - b.low + 1e-3

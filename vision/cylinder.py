@@ -22,8 +22,6 @@ from vision.view import View
 
 Array = NDArray[np.float64]
 
-SHARED = 0.85  # axes nearer than this share of the radii's sum: the same place
-
 
 @value
 class RimCue:
@@ -81,12 +79,18 @@ class Cylinder:
     astray: float
 
 
-def interpenetrate(a: Cylinder, b: Cylinder) -> bool:
-    """Whether two cylinders take up the same place, so that one of them is not real."""
+def interpenetrate(a: Cylinder, b: Cylinder, shared: float) -> bool:
+    """Whether two cylinders take up the same place, so that one of them is not real.
+
+    Args:
+        a: one cylinder.
+        b: another.
+        shared: axes nearer than this share of the sum of the radii are in the same place.
+    """
     gap2 = (
         a.distance**2 + b.distance**2 - 2.0 * a.distance * b.distance * cos(a.azimuth - b.azimuth)
     )
-    return gap2 < (SHARED * (a.radius + b.radius)) ** 2
+    return gap2 < (shared * (a.radius + b.radius)) ** 2
 
 
 def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array, Array]:

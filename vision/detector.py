@@ -31,11 +31,6 @@ from vision.split import split
 from vision.value import value
 from vision.view import View
 
-COVERED = 0.1  # share of a rim next to another colour that makes a blob occluded
-ASTRAY = 0.2  # share of rim points off one cylinder's rim that shows another one
-DOUBT = 4.0  # the covariance of what fits badly grows at least so many times
-BEACON_MISFIT = 5.0  # beacons may misfit so many times more than obstacles
-
 
 @value
 class _Sighting:
@@ -132,7 +127,9 @@ class Detector:
                 pieces = self._split(sighting, view)
                 parts += pieces
                 if not pieces:
-                    found.append(self._detection(*_doubted(sighting, cylinder), view))
+                    found.append(
+                        self._detection(*_doubted(sighting, cylinder, self._parameters.doubt), view)
+                    )
         for sighting, cylinder in self._real(parts, self._locate(parts, view)):
             found.append(self._detection(sighting, cylinder, view))
         return tuple(
@@ -166,7 +163,9 @@ class Detector:
                     (blob,),
                     outline,
                     Candidate(left, right, tuple(rims), head, *self._radius),
-                    outline.bottom.covered > COVERED or left.hidden or right.hidden,
+                    outline.bottom.covered > self._parameters.covered
+                    or left.hidden
+                    or right.hidden,
                 )
             )
         return sightings
@@ -182,7 +181,7 @@ class Detector:
                 (blobs[post.upper], blobs[post.lower]),
                 outlines[post.lower],
                 post.candidate,
-                outlines[post.lower].bottom.covered > COVERED
+                outlines[post.lower].bottom.covered > self._parameters.covered
                 or post.candidate.left.hidden
                 or post.candidate.right.hidden,
             )
@@ -206,10 +205,10 @@ class Detector:
 
     def _explains(self, sighting: _Sighting, cylinder: Cylinder) -> bool:
         """Whether one cylinder explains what was seen."""
-        limit = self._parameters.max_misfit
+        p = self._parameters
         if sighting.kind == "beacon":
-            return cylinder.misfit < BEACON_MISFIT * limit
-        return cylinder.astray <= ASTRAY and cylinder.misfit <= limit
+            return cylinder.misfit < p.beacon_misfit * p.max_misfit
+        return cylinder.astray <= p.astray and cylinder.misfit <= p.max_misfit
 
     def _real(
         self, parts: Sequence[_Sighting], cylinders: Sequence[Cylinder]
@@ -219,19 +218,20 @@ class Detector:
             (pair for pair in zip(parts, cylinders, strict=True) if self._plausible(pair[1])),
             key=lambda pair: (-_edges_seen(pair[0].candidate), pair[1].misfit),
         )
+        shared = self._parameters.split.shared
         real: list[tuple[_Sighting, Cylinder]] = []
         for sighting, cylinder in ranked:
-            if not any(interpenetrate(cylinder, other) for _, other in real):
+            if not any(interpenetrate(cylinder, other, shared) for _, other in real):
                 real.append((sighting, cylinder))
         return real
 
     def _plausible(self, cylinder: Cylinder) -> bool:
         """Whether a part of a blob is like one obstacle."""
-        parameters = self._parameters
-        slack = 0.3 * (parameters.max_radius - parameters.min_radius)
+        p = self._parameters
+        slack = p.split.slack * (p.max_radius - p.min_radius)
         return (
-            cylinder.misfit < 2.0 * parameters.max_misfit
-            and parameters.min_radius - slack < cylinder.radius < parameters.max_radius + slack
+            cylinder.misfit < p.split.extra_misfit * p.max_misfit
+            and p.min_radius - slack < cylinder.radius < p.max_radius + slack
         )
 
     def _locate(self, sightings: Sequence[_Sighting], view: View) -> list[Cylinder]:
@@ -279,9 +279,15 @@ def _around(blobs: tuple[Blob, ...]) -> tuple[int, int, int, int]:
     return min(lefts), min(tops), max(rights), max(bottoms)
 
 
-def _doubted(sighting: _Sighting, cylinder: Cylinder) -> tuple[_Sighting, Cylinder]:
-    """A cylinder that does not explain its edges: taken for occluded, believed less."""
-    factor = max(DOUBT, 0.5 * cylinder.misfit)
+def _doubted(sighting: _Sighting, cylinder: Cylinder, least: float) -> tuple[_Sighting, Cylinder]:
+    """A cylinder that does not explain its edges: taken for occluded, believed less.
+
+    Args:
+        sighting: of it.
+        cylinder: as located.
+        least: growth of its covariance.
+    """
+    factor = max(least, 0.5 * cylinder.misfit)
     return (
         replace(sighting, occluded=True),
         replace(cylinder, covariance=factor * cylinder.covariance),

@@ -25,10 +25,6 @@ from vision.view import View
 Array = NDArray[np.float64]
 Labels = NDArray[np.uint8]
 
-EXTRA_RADIUS = 0.04  # a cylinder may seem thicker or thinner by so much when matched [m]
-SIDE_SIGMA = 1.0  # standard deviation of an end of a piece [column]
-SIDE_MATCH = 2.5  # columns by which the sides of matching pieces may differ
-
 
 @value
 class _Piece:
@@ -96,7 +92,7 @@ def split(
         upper,
         view=view,
         pixel=grid.pixel,
-        tolerance=SIDE_MATCH * grid.azimuth_step,
+        tolerance=parameters.split.side_match * grid.azimuth_step,
         parameters=parameters,
     )
     feet = [low for low, high in groups if low is not None and high is None]
@@ -166,7 +162,9 @@ def _match(
             shorter = min(low.left - low.right, high.left - high.right)
             if common < 0.5 * shorter:
                 continue
-            slack = EXTRA_RADIUS + pixel * (low.run**2 / view.height + high.run**2 / fall)
+            slack = parameters.split.extra_radius + pixel * (
+                low.run**2 / view.height + high.run**2 / fall
+            )
             radius = 0.5 * (high.run - low.run)
             if not parameters.min_radius - slack < radius < parameters.max_radius + slack:
                 continue
@@ -250,7 +248,7 @@ def _part(
     sides = [
         Side(
             azimuth=sum(true) / len(true) if true else outermost,
-            sigma=SIDE_SIGMA * grid.azimuth_step,
+            sigma=parameters.split.side_sigma * grid.azimuth_step,
             count=1.0,
             low=span[0],
             high=span[1],
@@ -263,7 +261,7 @@ def _part(
         )
     ]
     rims = []
-    sigma = SIDE_SIGMA * grid.pixel
+    sigma = parameters.split.side_sigma * grid.pixel
     if low is not None:
         rims.append(RimCue(_rim(low, sigma), 0.0, near=True))
     if high is not None:

@@ -15,9 +15,6 @@ from navigation.peers.roll_out import contact_cost, gaps, roll_out
 
 Array = NDArray[np.float64]
 
-_FORWARD, _LEFT, _TURN = 7, 5, 9
-"""Samples of each velocity."""
-
 
 class DynamicWindow:
     """The best of all body velocities that the next footstep can reach."""
@@ -40,7 +37,7 @@ class DynamicWindow:
         # A carrot on the way: the destination itself would be overrun in the horizon.
         carrot = s.pose[:2] + horizon * s.wanted()
         off = position[:, -1] - carrot
-        gap = gaps(position, s, self._s_robot + s.radii(p.margin))
+        gap = gaps(position, s, self._s_robot + s.radii(p.margin), p.clearance)
         facing = s.course if s.facing is None else s.facing
         turn = window[:, 2]
         stopping = 0.5 * turn * np.abs(turn) / s.envelope.turn_change * limits.footstep
@@ -60,7 +57,7 @@ class DynamicWindow:
         low, high = np.maximum(low, s.body - change), np.minimum(high, s.body + change)
         axes = [
             np.linspace(a, b, n)
-            for a, b, n in zip(low, high, (_FORWARD, _LEFT, _TURN), strict=True)
+            for a, b, n in zip(low, high, self._parameters.samples, strict=True)
         ]
         axes = [np.sort(np.append(axis, np.clip(0.0, axis[0], axis[-1]))) for axis in axes]
         grid = np.meshgrid(*axes, indexing="ij")

@@ -10,6 +10,7 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from navigation.gaze_parameters import NonNegative, Positive
 
+Samples = Annotated[int, Ge(2), Le(101)]
 Method = Literal["univector", "univector-plain", "n-posture", "apf", "orca", "dwa", "mppi"]
 
 
@@ -55,6 +56,8 @@ class ApfParameters:
     """Distance kept from the bodies of obstacles [m]."""
     influence: Positive = 0.784
     """Gap within which an obstacle repels [m]."""
+    least_gap: Positive = 0.02
+    """Gap below which the repulsion does not grow any more [m]."""
     gain: Positive = 0.153
     """Repulsion, as a share of the largest speed [m]."""
     reaction: NonNegative = 0.489
@@ -83,6 +86,8 @@ class DwaParameters:
 
     margin: NonNegative = 0.0483
     """Distance kept from the bodies of obstacles [m]."""
+    samples: tuple[Samples, Samples, Samples] = (7, 5, 9)
+    """Velocities tried forward, to the left and turning; standing still besides [1]."""
     horizon: Positive = 1.88
     """Time a velocity is kept for when it is judged [s]."""
     heading_weight: NonNegative = 0.227

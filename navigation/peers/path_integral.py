@@ -81,7 +81,7 @@ class PathIntegral:
         left = np.abs(wrap_array(facing - heading))
         if s.facing is None:
             left = left * np.minimum(1.0, distance / 0.2)
-        gap = gaps(position, s, self._s_robot + s.radii(p.margin))
+        gap = gaps(position, s, self._s_robot + s.radii(p.margin), p.clearance)
         cost: Array = (
             distance.mean(axis=1) / walked
             + p.heading_weight * left.mean(axis=1) / np.pi

@@ -7,9 +7,6 @@ from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 
-_CARE = 1.0
-"""Gaps are told up to here [m]."""
-
 
 def roll_out(pose: Array, body: Array, footstep: float) -> tuple[Array, Array]:
     """Walk with body velocities, each for one footstep.
@@ -31,21 +28,22 @@ def roll_out(pose: Array, body: Array, footstep: float) -> tuple[Array, Array]:
     return position, heading
 
 
-def gaps(position: Array, scene: PlanningScene, radii: Array) -> Array:
+def gaps(position: Array, scene: PlanningScene, radii: Array, most: float) -> Array:
     """Gap to the nearest obstacle after every footstep (k, t) [m].
 
     Args:
         position: of k sequences of t footsteps (k, t, 2) [m].
         scene: with the obstacles, which go on at constant velocity.
         radii: distances at which they are touched (n,) [m].
+        most: gap that is told where it is larger [m].
     """
     k, t, _ = position.shape
     dt, obstacles = scene.envelope.limits.footstep, scene.obstacles
     limits = scene.envelope.limits
     offset = obstacles.position - scene.pose[:2]
-    reach = t * dt * (obstacles.speed + limits.forward) + radii + _CARE
+    reach = t * dt * (obstacles.speed + limits.forward) + radii + most
     near = np.nonzero(np.hypot(offset[:, 0], offset[:, 1]) < reach)[0].tolist()
-    least = np.full((k, t), _CARE)
+    least = np.full((k, t), most)
     when = dt * np.arange(1, t + 1)
     for index in near:
         x, y = obstacles.position[index].tolist()

@@ -130,10 +130,13 @@ def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
     (here,) = locate(
         [Candidate(outline.left, outline.right, (foot_of(outline),), 0.30, 0.1, 0.01)], view, *NOISE
     )
-    assert interpenetrate(here, here)
-    for step in (0.1, 0.4):
+    assert interpenetrate(here, here, 0.85)
+    for step in (0.01, 0.1, 0.4):
         there = replace(here, distance=here.distance + step)
-        assert interpenetrate(here, there) is interpenetrate(there, here) is (step < 0.15)
+        for shared in (0.85, 0.3):
+            near = step < shared * 2.0 * here.radius
+            assert interpenetrate(here, there, shared) is near
+            assert interpenetrate(there, here, shared) is near
 
 
 def test_nothing_is_located_from_nothing() -> None:
