@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from navigation.confidence_gate import gate_points, gate_vote
 from navigation.decision_parameters import GateParameters, NavigationParameters
+from navigation.visibility import Viewpoint
 
 P = GateParameters()
 
@@ -17,6 +20,13 @@ def test_the_points_lie_ahead_of_the_motion_in_any_frame():
     r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
     there = gate_points(np.array([*shift, 3.0]), a, P)
     assert there == pytest.approx(here @ r.T + shift)
+
+
+def test_a_look_20_deg_down_shows_all_the_ground_asked_for(view):
+    pose = np.array([1.0, -0.5, 0.7])
+    eye = Viewpoint.of(view(tilt=-np.radians(20.0)), pose, 3.0)
+    assert eye.contains(gate_points(pose, pose[2], P)).all()
+    assert not eye.contains(gate_points(pose, pose[2], replace(P, near=0.25))).all()
 
 
 @pytest.mark.parametrize("way", [-2.5, -0.4, 0.0, 1.0])
