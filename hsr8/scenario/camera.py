@@ -41,6 +41,9 @@ class Camera(Section):
     """Time between two images, a multiple of the control tick of 5 ms [ms]."""
     latency_ms: DelayMs = 0
     """Time from the capture of an image to its arrival, a multiple of 5 ms [ms]."""
+    shutter_ms: Annotated[float, Interval(ge=0.0, le=100.0)] = 0.0
+    """Time for which an image is exposed, at most the period: what the camera turns meanwhile
+    smears rendered images, 0 leaves them sharp [ms]."""
     shadows: bool = False
     """Whether things cast shadows in rendered images, which then take twice as long."""
     noise: CameraNoise = CameraNoise()
@@ -64,5 +67,14 @@ class Camera(Section):
             raise ValueError(
                 f"lens = {self.lens!r} has a vertical_fov_deg of {expected:g}, not "
                 f"{self.vertical_fov_deg:g}; set lens = 'custom' to choose it freely"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _exposed_within_a_period(self) -> "Camera":
+        if self.shutter_ms > self.period_ms:
+            raise ValueError(
+                f"shutter_ms = {self.shutter_ms:g} is longer than period_ms = {self.period_ms}: "
+                "an image is exposed before the next one is taken"
             )
         return self

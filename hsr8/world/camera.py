@@ -1,9 +1,12 @@
 """The head camera: images rendered from the model's own camera, without a display."""
 
+from functools import partial
+from math import radians
 from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
@@ -12,10 +15,15 @@ from hsr8.world.camera_faults import CameraFaults
 from hsr8.world.exposure import Exposure
 from hsr8.world.frustum import Frustum
 from hsr8.world.image_noise import ImageNoise
+from hsr8.world.motion_blur import MotionBlur
 from hsr8.world.offscreen import Offscreen
+from vision.camera import PinholeCamera
 
 if TYPE_CHECKING:
     from hsr8.world.body import Body
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
 
 THINGS = ("obstacle_", "mover_", "beacon_")  # names of what the robot looks for begin so
 NOT_DRAWN = 5  # a group of geoms that MuJoCo does not draw
@@ -45,6 +53,11 @@ class RenderedCamera:
         self._settings = settings
         self.noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
         self._offscreen = Offscreen(model, HEAD_CAMERA, settings.width, settings.height)
+        self._blur: MotionBlur | None = None
+        if settings.shutter_ms > 0.0:
+            fov = radians(settings.vertical_fov_deg)
+            optics = PinholeCamera.from_vertical_fov(settings.width, settings.height, fov)
+            self._blur = MotionBlur(optics, 1e-3 * settings.shutter_ms)
         self._latest: Exposure | None = None
         self._lights = _Lights(model)
         self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)
@@ -73,7 +86,10 @@ class RenderedCamera:
         self._group[away] = NOT_DRAWN
         self._offscreen.begin(body.data)
         self._group[:] = self._usual_group
-        self._latest = Exposure(lambda: noise.spoil(self._offscreen.read(), ghosts))
+        read = self._offscreen.read
+        if self._blur is not None:
+            read = partial(self._blurred, self._blur, turning(body.model, body.data))
+        self._latest = Exposure(lambda: noise.spoil(read(), ghosts))
         return self._latest
 
     def settle(self) -> None:
@@ -85,6 +101,18 @@ class RenderedCamera:
     def close(self) -> None:
         """Free the OpenGL context."""
         self._offscreen.close()
+
+    def _blurred(self, blur: MotionBlur, rate: Array) -> Image:
+        return blur.smear(self._offscreen.read(), rate)
+
+
+def turning(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
+    """Angular velocity of the head camera in its frame C, right, down and ahead (3,) [rad/s]."""
+    mujoco.mj_comVel(model, data)
+    velocity = np.zeros(6)
+    camera = model.camera(HEAD_CAMERA).id
+    mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_CAMERA, camera, velocity, 1)
+    return velocity[:3] * (1.0, -1.0, -1.0)  # MuJoCo's camera looks along -z with y up
 
 
 class _Lights:

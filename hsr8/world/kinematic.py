@@ -108,6 +108,8 @@ class KinematicBody:
         self._plant()
         after, velocity = qpos[root : root + 7], self.data.qvel[dof : dof + 3]
         felt(before, after, CONTROL_PERIOD, velocity, self._gyro, self._force)
+        self.data.qvel[dof + 3 : dof + 6] = self._gyro
+        self.data.qvel[self._index.joint_dof] = self._rates
         if self._tick % WATCH_TICKS == 0:
             self._around.move(self.data, self.time)
             mujoco.mj_kinematics(self.model, self.data)

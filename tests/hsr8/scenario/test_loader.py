@@ -84,6 +84,7 @@ mode = "deadlin"
         (COURSE + "[vision]\nmin_radius = 0.2", "must be below max_radius = 0.12"),
         (COURSE + "[belief.local_map]\ncell = 1e-9", "more than 1000 cells"),
         (COURSE + '[camera]\nlens = "wide"\nvertical_fov_deg = 60', "lens = 'custom'"),
+        (COURSE + "[camera]\nshutter_ms = 80", "is longer than period_ms = 60"),
         (
             'mission = {kind = "tour"}\n[criteria]\ngoal_reached = true',
             'criteria.goal_reached: a mission of kind "tour" has no goal',
