@@ -77,6 +77,7 @@ class Robot:
         fov: horizontal and vertical field of view of the head camera [rad].
         vision: detector; unused when the frames carry detections.
         pose: how well the body knows the pose of the camera.
+        shutter: time for which an image is exposed [s].
         belief: estimator.
         decisions: where to go, how to move, where to look.
         script: commands that walking obeys in place of the planner's, new in any tick.
@@ -89,6 +90,7 @@ class Robot:
         fov: tuple[float, float],
         vision: Sees,
         pose: PoseParameters,
+        shutter: float,
         belief: Believes,
         decisions: Decisions,
         script: Commands | None = None,
@@ -97,6 +99,7 @@ class Robot:
         self._fov = fov
         self._vision = vision
         self._pose = pose
+        self._shutter = shutter
         self._belief = belief
         self._decisions = decisions
         self._script = script
@@ -140,7 +143,8 @@ class Robot:
             detections = sensed.detections
         else:
             assert image is not None
-            detections = self._vision.detect(image, camera_pose(then.camera, self._pose))
+            pose = camera_pose(then.camera, self._pose, self._shutter)
+            detections = self._vision.detect(image, pose)
         measured = self._frame(sensed.captured, then, detections)
         estimate = self._belief.update(measured)
         state = self.walking_state() if sensed.time > sensed.captured else then
@@ -220,8 +224,8 @@ def _odometry(state: WalkingState) -> np.ndarray:
     return np.array([odometry.x, odometry.y, odometry.yaw])
 
 
-def camera_pose(head: HeadCameraPose, sigma: PoseParameters) -> CameraPose:
-    """The head camera's pose with its uncertainty, as vision wants it."""
+def camera_pose(head: HeadCameraPose, sigma: PoseParameters, shutter: float) -> CameraPose:
+    """The head camera's pose with its uncertainty, as vision wants it; `shutter` in [s]."""
     return CameraPose(
         rotation=head.rotation,
         position=head.position,
@@ -229,4 +233,6 @@ def camera_pose(head: HeadCameraPose, sigma: PoseParameters) -> CameraPose:
         roll_sigma=sigma.roll_sigma,
         yaw_sigma=sigma.yaw_sigma,
         height_sigma=sigma.height_sigma,
+        pan_smear=shutter * abs(head.pan_rate),
+        tilt_smear=shutter * abs(head.tilt_rate),
     )

@@ -59,6 +59,7 @@ def build_robot(
         fov=field_of_view(scenario, camera),
         vision=Detector(camera, scenario.vision, arms()),
         pose=scenario.vision.pose,
+        shutter=1e-3 * scenario.camera.shutter_ms,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
         decisions=build_decisions(scenario, layout, seed, script, planner=planner, gaze=gaze),
         script=script,

@@ -22,6 +22,8 @@ class CameraPose:
         roll_sigma: standard deviation of the roll of the camera [rad].
         yaw_sigma: standard deviation of the yaw of the camera [rad].
         height_sigma: standard deviation of its height [m].
+        pan_smear: how far the camera panned while the image was exposed [rad].
+        tilt_smear: how far it tilted [rad].
     """
 
     rotation: Array
@@ -30,6 +32,8 @@ class CameraPose:
     roll_sigma: float = 0.0
     yaw_sigma: float = 0.0
     height_sigma: float = 0.0
+    pan_smear: float = 0.0
+    tilt_smear: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

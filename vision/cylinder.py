@@ -5,8 +5,8 @@ them. Both sides give azimuth +- asin(radius / distance). Every rim gives slopes
 (rim height - camera height) / (horizontal distance of the rim), with the near or the
 far part of the rim at distance * cos(phi) -+ sqrt(radius^2 - (distance * sin(phi))^2)
 in the direction phi off the axis. All are fused by Gauss-Newton with the full
-covariance of the measurements: pixels, independent, and the pose of the camera, which
-shifts all edges together.
+covariance of the measurements: pixels and what smears an edge, independent, and the pose
+of the camera, which shifts all edges together.
 """
 
 from collections.abc import Sequence
@@ -168,6 +168,9 @@ def locate(
                 pose.roll_sigma**2,
                 pose.yaw_sigma**2,
                 pose.height_sigma**2,
+                # An edge lies anywhere within what it is smeared over.
+                pose.pan_smear**2 / 12.0,
+                pose.tilt_smear**2 / 12.0,
             ]
         ),
         np.array([roundness_sigma, edge_correlation, stray]),

@@ -246,11 +246,12 @@ def _covariance(
     rims: Array,
     mean_sigma: Array,
     pose_variance: Array,
+    smear: Array,
     roundness: float,
     h: float,
     span_sigma: float,
 ) -> None:
-    """Fill the covariance of the measurements (7, 7): pixels, roundness and camera pose."""
+    """Fill the covariance of the measurements (7, 7): pixels, smear, roundness, camera pose."""
     theta, d, r = x[0], x[1], x[2]
     s, c = sin(theta), cos(theta)
     R[:] = 0.0
@@ -259,7 +260,7 @@ def _covariance(
         level = max(0.5 * (sides[j, 3] + sides[j, 4]), STEEPEST)
         G[j, 0], G[j, 1], G[j, 2] = -level * s, -level * c, 1.0
         sigma = hypot(side_sigma[j], roundness * r / d) if trusted[j] else HIDDEN_WIDTH / d
-        R[j, j] = sigma * sigma
+        R[j, j] = sigma * sigma + smear[0]
     for j in range(MAX_RIMS):
         k = SIDES + j
         R[k, k] = NO_INFORMATION * NO_INFORMATION
@@ -269,7 +270,7 @@ def _covariance(
         lift = 1.0 + slope * slope
         G[k, 0], G[k, 1], G[k, 3] = -lift * c, lift * s, -1.0 / d
         sigma = hypot(mean_sigma[j], slope * roundness * r / d)
-        R[k, k] = sigma * sigma
+        R[k, k] = sigma * sigma + lift * lift * smear[1]
     R[PRIOR, PRIOR] = known[1] * known[1]
     R[SPAN, SPAN] = span_sigma * span_sigma if span_sigma > 0.0 else 1.0
     for i in range(PRIOR):
@@ -373,7 +374,8 @@ def locate(
         points: first point of each rim, and their number (m + 1,).
         azimuth: of the points of the rims [rad].
         slope: of the points of the rims [1].
-        pose: height of the camera [m]; variances of its tilt, roll, yaw [rad²], height [m²].
+        pose: height of the camera [m]; variances of its tilt, roll, yaw [rad²], height [m²]; and
+            of an edge within what pan and tilt smear it over [rad²] (7,).
         options: roundness, edge correlation and stray as for `vision.cylinder.locate` (3,).
 
     Returns:
@@ -440,7 +442,8 @@ def locate(
                 known[k],
                 rim,
                 mean_sigma,
-                pose[1:],
+                pose[1:5],
+                pose[5:],
                 roundness,
                 h,
                 span_sigma,

@@ -49,7 +49,8 @@ def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) 
     position = R_RB @ p_BC
     position[2] += -(1.0 - load) * body.feet[0].z - load * body.feet[1].z
     pan, tilt = sensors.joint_position[HEAD].tolist()
-    return HeadCameraPose(rotation=R_RB @ R_BC, position=position, pan=pan, tilt=tilt)
+    pan_rate, tilt_rate = sensors.joint_velocity[HEAD].tolist()
+    return HeadCameraPose(R_RB @ R_BC, position, pan, tilt, pan_rate, tilt_rate)
 
 
 def plan_seen(

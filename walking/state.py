@@ -81,12 +81,16 @@ class HeadCameraPose:
         position: p_RC (3,) [m]; its z is the height above the floor.
         pan: measured pan of the head [rad].
         tilt: measured tilt of the head joint [rad].
+        pan_rate: measured speed of the pan [rad/s].
+        tilt_rate: measured speed of the tilt [rad/s].
     """
 
     rotation: Array
     position: Array
     pan: float
     tilt: float
+    pan_rate: float = 0.0
+    tilt_rate: float = 0.0
 
 
 @value

@@ -85,7 +85,10 @@ def test_one_side_is_enough_to_find_the_axis() -> None:
     assert outline.right.azimuth == pytest.approx(radians(5.0) - asin(0.09 / 1.2), abs=0.004)
 
 
-@pytest.mark.parametrize("error", ["tilt_sigma", "roll_sigma", "yaw_sigma", "height_sigma"])
+@pytest.mark.parametrize(
+    "error",
+    ["tilt_sigma", "roll_sigma", "yaw_sigma", "height_sigma", "pan_smear", "tilt_smear"],
+)
 def test_every_error_of_the_pose_makes_the_place_less_certain(error: str) -> None:
     gaze = pose(pan=radians(30.0), tilt=-0.3)
     outline = outline_of(at(1.5, 15.0, "red"), gaze)

@@ -16,7 +16,8 @@ from vision.cylinder_kernel import (
 
 HEIGHT = 0.47
 OPTIONS = np.array([0.008, 0.02, 4.0])
-POSE = np.array([HEIGHT, 8e-7, 6e-7, 2.5e-7, 9e-8])
+POSE = np.array([HEIGHT, 8e-7, 6e-7, 2.5e-7, 9e-8, 0.0, 0.0])
+SMEARED = np.array([*POSE[:5], 4e-5, 1e-5])
 
 
 def rim_run(x, azimuth, sign):
@@ -36,7 +37,7 @@ def rows_of(x, candidate):
     return np.array([theta + asin(r / d), theta - asin(r / d), *rims, r])
 
 
-def reference(candidate, x):
+def reference(candidate, x, pose):
     """Gauss-Newton with numerical derivatives and a full inverse: what the kernel computes."""
     sides, (prior, prior_sigma, top) = candidate["sides"], candidate["known"]
     rims, measured, mean_sigma = [], [], []
@@ -65,16 +66,18 @@ def reference(candidate, x):
         for side, sigma, good in zip(sides, side_sigma, trusted, strict=True):
             level = max(0.5 * (side[3] + side[4]), -3.0)
             G.append((-level * s, -level * c, 1.0, 0.0))
-            noise.append(hypot(sigma, OPTIONS[0] * r / d) if good else HIDDEN_WIDTH / d)
+            own = hypot(sigma, OPTIONS[0] * r / d) if good else HIDDEN_WIDTH / d
+            noise.append(hypot(own, sqrt(pose[5])))
         for (height, *_), sigma in zip(rims, mean_sigma, strict=True):
             slope = (height - HEIGHT) / d
             lift = 1.0 + slope * slope
             G.append((-lift * c, lift * s, 0.0, -1.0 / d))
-            noise.append(hypot(sigma, slope * OPTIONS[0] * r / d))
+            own = hypot(sigma, slope * OPTIONS[0] * r / d)
+            noise.append(hypot(own, lift * sqrt(pose[6])))
         G.append((0.0, 0.0, 0.0, 0.0))
         noise.append(prior_sigma)
         G = np.array(G)
-        W = np.linalg.inv(G @ np.diag(POSE[1:]) @ G.T + np.diag(np.square(noise)))
+        W = np.linalg.inv(G @ np.diag(pose[1:5]) @ G.T + np.diag(np.square(noise)))
         P = np.linalg.inv(H.T @ W @ H)
         x = x + P @ H.T @ W @ residual
     return x, P, residual @ W @ residual
@@ -103,7 +106,7 @@ def candidates(seed, n, share=0.7):
     return made
 
 
-def packed(made):
+def packed(made, pose=POSE):
     rims = [rim for candidate in made for rim in candidate["rims"]]
     return (
         np.array([[tuple(map(float, s)) for s in c["sides"]] for c in made]),
@@ -113,7 +116,7 @@ def packed(made):
         np.cumsum([0, *(len(rim[3]) for rim in rims)]),
         np.concatenate([rim[3] for rim in rims]),
         np.concatenate([rim[4] for rim in rims]),
-        POSE,
+        pose,
         OPTIONS,
     )
 
@@ -125,9 +128,10 @@ def test_compiled_and_plain_agree(seed):
         np.testing.assert_allclose(compiled, plain, rtol=1e-9, atol=1e-15)
 
 
-def test_steps_are_those_of_least_squares_with_the_whole_covariance():
+@pytest.mark.parametrize("pose", [POSE, SMEARED])
+def test_steps_are_those_of_least_squares_with_the_whole_covariance(pose):
     made = candidates(5, 40, share=1.0)
-    results, covariances = locate(*packed(made))
+    results, covariances = locate(*packed(made, pose))
     assert results[:, 3].max() < NO_INFORMATION
     plain = locate.py_func.__globals__
     told, start = plain["_rim_distance"].py_func, plain["_guess"].py_func
@@ -135,7 +139,7 @@ def test_steps_are_those_of_least_squares_with_the_whole_covariance():
         sides, known, rims, _, points, _, slope, *_ = packed([candidate])
         x = np.empty(3)
         start(x, sides[0], known[0], told(rims, points, slope, HEIGHT, known[0, 0]))
-        x, P, misfit = reference(candidate, x)
+        x, P, misfit = reference(candidate, x, pose)
         np.testing.assert_allclose(result[:3], x, rtol=1e-5)
         np.testing.assert_allclose(covariance, P, rtol=1e-3, atol=1e-3 * np.abs(P).max())
         assert result[3] == pytest.approx(misfit, rel=1e-3, abs=1e-6)
