@@ -179,6 +179,15 @@ def test_head_camera_takes_the_measured_tilt(robot, ideal_body):
     np.testing.assert_allclose(camera.rotation[:, 2], [np.cos(0.1), 0.0, -np.sin(0.1)], atol=1e-9)
 
 
+def test_head_camera_tells_how_fast_the_encoders_say_the_head_turns(robot, ideal_body):
+    engine = WalkingEngine(robot, WalkingParameters())
+    velocity = np.zeros(26)
+    velocity[HEAD] = 3.0, -0.5
+    engine.step(replace(ideal_body.sense(), joint_velocity=velocity), VelocityCommand(), AHEAD)
+    camera = engine.state().camera
+    assert (camera.pan_rate, camera.tilt_rate) == pytest.approx((3.0, -0.5))
+
+
 def test_planned_footsteps_are_given_in_the_odometry_frame(robot, ideal_body):
     engine, _ = run(robot, ideal_body, always(0.2, 0.0, 0.0), 4.0)
     state = engine.state()

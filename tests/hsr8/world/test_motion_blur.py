@@ -1,8 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hsr8.world.motion_blur import MotionBlur
+from tests.vision.scene import at, paint, pose, true_polar
 from vision.camera import PinholeCamera
+from vision.detector import Detector
+from vision.parameters import VisionParameters
 
 CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
 SHUTTER = 0.01
@@ -70,3 +75,18 @@ def test_an_image_twice_as_long_exposed_is_smeared_twice_as_far():
         return np.count_nonzero((row > 2) & (row < 238))
 
     assert spread(0.02) == pytest.approx(2 * spread(0.01), abs=2)
+
+
+@pytest.mark.parametrize("rate", [3.0, 6.0])
+def test_vision_is_as_far_off_in_smeared_images_as_it_says(rate):
+    rng = np.random.default_rng(4)
+    detector, told, untold = Detector(CAMERA, VisionParameters()), [], []
+    for _ in range(40):
+        thing = at(rng.uniform(0.7, 2.5), rng.uniform(-20.0, 20.0), "red", rng.uniform(0.06, 0.11))
+        gaze = pose(tilt=-0.35)
+        image = blur(paint([thing], gaze), *(gaze.rotation.T @ (0.0, 0.0, rate)))
+        for errors, smear in ((told, rate * SHUTTER), (untold, 0.0)):
+            (found,) = detector.detect(image, replace(gaze, pan_smear=smear))
+            error = np.array([found.distance, found.bearing]) - true_polar(thing)
+            errors.append(error @ np.linalg.solve(found.covariance, error) / 2.0)
+    assert 0.1 < np.mean(told) < 1.5 < np.mean(untold)
