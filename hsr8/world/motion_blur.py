@@ -1,7 +1,5 @@
 """What the turning of a camera makes of an image while it is exposed."""
 
-from math import ceil
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +44,7 @@ class MotionBlur:
         ends = [
             cv2.perspectiveTransform(self._corners, self._warp(s * turned)) for s in (-0.5, 0.5)
         ]
-        looks = max(1, ceil(float(np.abs(ends[1] - ends[0]).max())))  # one a pixel
+        looks = 1 + round(0.5 * float(np.abs(ends[1] - ends[0]).max()))  # one every two pixels
         if looks == 1:
             return image
         size, total = image.shape[1::-1], np.zeros(image.shape, np.float32)
