@@ -5,6 +5,7 @@ import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -183,11 +184,15 @@ def rows_of(column: pa.Array) -> list[Any]:
     while pa.types.is_fixed_size_list(values.type):
         shape.append(values.type.list_size)
         values = values.flatten()
+    ends = np.cumsum(column.value_lengths().fill_null(0).to_numpy(zero_copy_only=False))
+    if pa.types.is_list(values.type):
+        instances = rows_of(values)
+        starts = [0, *ends.tolist()]
+        return [instances[start:end] for start, end in pairwise(starts)]
     if pa.types.is_nested(values.type):
         return [[np.array(instance) for instance in row or ()] for row in column.to_pylist()]
     flat = values.to_numpy(zero_copy_only=False).reshape(-1, *shape)
-    lengths = column.value_lengths().fill_null(0).to_numpy(zero_copy_only=False)
-    return np.split(flat, np.cumsum(lengths)[:-1])
+    return np.split(flat, ends[:-1])
 
 
 def _only(entity: str, components: tuple[str, ...]) -> str:
