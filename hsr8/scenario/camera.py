@@ -42,8 +42,7 @@ class Camera(Section):
     latency_ms: DelayMs = 0
     """Time from the capture of an image to its arrival, a multiple of 5 ms [ms]."""
     shutter_ms: Annotated[float, Interval(ge=0.0, le=100.0)] = 0.0
-    """Time for which an image is exposed, at most the period: what the camera turns meanwhile
-    smears rendered images, 0 leaves them sharp [ms]."""
+    """Exposure of rendered images, at most the period; turning smears them, 0 is sharp [ms]."""
     shadows: bool = False
     """Whether things cast shadows in rendered images, which then take twice as long."""
     noise: CameraNoise = CameraNoise()
