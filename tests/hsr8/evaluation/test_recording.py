@@ -31,5 +31,8 @@ def recorded(path):
 
 @pytest.mark.usefixtures("uncollected")
 def test_a_run_that_is_over_is_gone_without_a_collection(tmp_path):
-    recorded(tmp_path / "first")  # kernels compiled on the way hold what they were called with
-    assert recorded(tmp_path / "second")() is None
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.mkdir()
+    second.mkdir()
+    recorded(first)  # kernels that are compiled on the way hold on to the run they began in
+    assert recorded(second)() is None
