@@ -1,5 +1,6 @@
 """Runs from Python: a scenario, a seed, and perhaps a planner or a gaze of one's own."""
 
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from hsr8.loop import Simulation
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
-from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run_folder import SCENARIO, RunFolder
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.toml_writer import toml_value
@@ -54,7 +55,9 @@ def run(
     recording = Recording(simulation, listeners)
     if out is not None:
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)
-        command = ("hsr8.run",) if planner or gaze else ("hsr8", "run", loaded.name)
+        source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
+        words = ("hsr8", "run", str(source), "--seed", str(loaded.seed), *_options(settings))
+        command = ("hsr8.run",) if planner or gaze else tuple(map(shlex.quote, words))
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
         recording.into(path, manifest, log=level)
     return recording.run()
@@ -67,6 +70,12 @@ def _level(log: bool | str) -> LogLevel | None:
     if log not in tuple(LogLevel):
         raise UsageError(f"log={log!r}: give True, False or one of {', '.join(LogLevel)}")
     return LogLevel(log)
+
+
+def _options(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
+    """Settings as options of the command line."""
+    words = _words(settings)
+    return ("--set", *words) if words else ()
 
 
 def _words(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:

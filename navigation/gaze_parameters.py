@@ -179,7 +179,7 @@ class GazeParameters:
     candidates: Literal["obstacles", "beacons"] = "beacons"
     """Who votes for self-localization: obstacles and beacons, or beacons alone."""
     switch_ratio: Annotated[float, Ge(1.0)] = 1.1
-    """Gain in the gaze map that moves the gaze [1]."""
+    """Gain in the gaze map that moves the gaze; mode deadline has its own [1]."""
     pan_limit: Positive = pi / 2.0
     """Largest pan to either side [rad]."""
     tilt_min: Annotated[float, Lt(0.0)] = -pi / 3.0

@@ -1,3 +1,6 @@
+import json
+import shlex
+
 import pytest
 
 import hsr8
@@ -22,6 +25,21 @@ def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
     assert run.metrics()["state_hash"] == result.metrics["state_hash"]
     again = hsr8.run(run.scenario_file)
     assert again.metrics["state_hash"] == result.metrics["state_hash"]
+
+
+def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
+    def repeated(name, *scenario, **options):
+        result = hsr8.run(*scenario, out=tmp_path / name, log=False, **options)
+        head, verb, source, _, seed, *settings = shlex.split(
+            str(open_run(tmp_path / name).manifest["command"])
+        )
+        assert (head, verb) == ("hsr8", "run")
+        again = hsr8.run(source, seed=int(seed), settings=settings[1:])
+        return again.metrics["state_hash"] == result.metrics["state_hash"]
+
+    assert repeated("name", "quick", seed=3, settings=STAND_INS)
+    loaded = hsr8.load("quick", [f"{key}={json.dumps(v)}" for key, v in STAND_INS.items()])
+    assert repeated("loaded", loaded, seed=4)
 
 
 def test_the_log_holds_as_much_as_it_is_told_to(tmp_path):
