@@ -34,6 +34,7 @@ BOUNDS: dict[Path, tuple[float, float]] = {
     ("navigation", "filter", "headings"): (1, 360),
     ("navigation", "filter", "speeds"): (1, 100),
     ("navigation", "filter", "steps"): (0, 100),
+    ("navigation", "planner", "dwa", "horizon"): (0.01, 50.0),
     ("navigation", "shoulder", "rays"): (2, 360),
     ("navigation", "way_search", "cell"): (0.01, 10.0),
     ("navigation", "way_search", "reach"): (0.01, 20.0),

@@ -85,6 +85,7 @@ mode = "deadlin"
         (COURSE + "[belief.local_map]\ncell = 1e-9", "more than 1000 cells"),
         (COURSE + '[camera]\nlens = "wide"\nvertical_fov_deg = 60', "lens = 'custom'"),
         (COURSE + "[camera]\nshutter_ms = 80", "is longer than period_ms = 60"),
+        (COURSE + "[navigation.planner.dwa]\nhorizon = 1e6", "must be from 0.01 to 50"),
         (
             'mission = {kind = "tour"}\n[criteria]\ngoal_reached = true',
             'criteria.goal_reached: a mission of kind "tour" has no goal',
