@@ -5,6 +5,8 @@ from math import pi
 import numpy as np
 
 from hsr8.decisions import Decisions, Goes, Looks, Moves
+from hsr8.errors import UsageError
+from hsr8.own_decisions import OwnGaze, OwnPlanner
 from hsr8.robot import Robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
@@ -103,22 +105,37 @@ def build_decisions(
 
     With a `script`, it is obeyed; `seed` is for a planner that draws samples. A `planner` or a
     `gaze` takes the place of the scenario's.
+
+    Raises:
+        UsageError: the `planner` or the `gaze` is none, or a `planner` is given with a `script`.
     """
     navigation, limits = scenario.navigation, scenario.speed_limits()
     beacons = known_beacons(scenario, layout)
     mission: Goes
+    moves: Moves
+    looks: Looks
     if script is not None:
-        mission, planner = ScriptedMission(), ScriptedPlanner(script)
+        if planner is not None:
+            raise UsageError(
+                f"scenario {scenario.name!r}: a mission of kind 'walk' obeys the section command "
+                "and asks no planner; give one to a mission of another kind"
+            )
+        mission, moves = ScriptedMission(), ScriptedPlanner(script)
     else:
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
-        planner = planner or build_planner(navigation, limits, named_rng(seed, "planner"))
+        if planner is None:
+            moves = build_planner(navigation, limits, named_rng(seed, "planner"))
+        else:
+            moves = OwnPlanner(planner)
     if gaze is None:
         fov = field_of_view(scenario, head_camera(scenario))
-        gaze = GazePlanner(navigation, limits, beacons, *fov)
+        looks = GazePlanner(navigation, limits, beacons, *fov)
+    else:
+        looks = OwnGaze(gaze)
     return Decisions(
         mission=mission,
-        planner=planner,
-        gaze=gaze,
+        planner=moves,
+        gaze=looks,
         landmarks=LandmarkObstacles(
             beacons, scenario.vision.beacon_radius, scenario.navigation.landmarks
         ),
