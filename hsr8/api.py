@@ -3,7 +3,7 @@
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, SupportsIndex
 
 from hsr8.decisions import Looks, Moves
 from hsr8.errors import UsageError
@@ -13,15 +13,14 @@ from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
 from hsr8.recorder.run_folder import SCENARIO, RunFolder
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import as_words, load
 from hsr8.scenario.schema import Scenario
-from hsr8.scenario.toml_writer import toml_value
 
 
 def run(
     scenario: str | Path | Scenario,
     *,
-    seed: int | None = None,
+    seed: SupportsIndex | None = None,
     settings: Sequence[str] | Mapping[str, Any] = (),
     out: str | Path | None = None,
     log: bool | str = True,
@@ -47,10 +46,10 @@ def run(
         UsageError: the run folder cannot be made, or there is no such level of `log`.
     """
     level = _level(log)
-    loaded = scenario if isinstance(scenario, Scenario) else load(str(scenario), _words(settings))
+    loaded = scenario if isinstance(scenario, Scenario) else load(str(scenario), settings)
     if isinstance(scenario, Scenario) and settings:
         raise TypeError("settings go with a scenario's name or file, not with a loaded one")
-    loaded = loaded if seed is None else loaded.model_copy(update={"seed": seed})
+    loaded = loaded if seed is None else loaded.with_seed(seed)
     simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze)
     recording = Recording(simulation, listeners)
     if out is not None:
@@ -74,12 +73,5 @@ def _level(log: bool | str) -> LogLevel | None:
 
 def _options(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
     """Settings as options of the command line."""
-    words = _words(settings)
+    words = as_words(settings)
     return ("--set", *words) if words else ()
-
-
-def _words(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
-    """Settings as the command line has them."""
-    if not isinstance(settings, Mapping):
-        return tuple(settings)
-    return tuple(f"{key}={toml_value(value)}" for key, value in settings.items())

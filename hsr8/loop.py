@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Self, SupportsIndex
 
 import cv2
 
@@ -92,7 +92,7 @@ class Simulation:
         tick: control ticks made so far.
 
     Raises:
-        ScenarioError: the world cannot be drawn as asked.
+        ScenarioError: the seed is none, or the world cannot be drawn as asked.
         ModelError: a model of robot or field is missing or damaged.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
@@ -100,22 +100,22 @@ class Simulation:
     def __init__(
         self,
         scenario: Scenario,
-        seed: int,
+        seed: SupportsIndex,
         listeners: Sequence[Listener] = (),
         *,
         planner: Moves | None = None,
         gaze: Looks | None = None,
     ) -> None:
         self.scenario = scenario
-        self.seed = seed
+        self.seed = scenario.with_seed(seed).seed
         self.listeners = list(listeners)
         self.tape: TapeWriter | None = None
         self.each_second: Callable[[Simulation], None] | None = None
-        self.layout = draw_layout(scenario, seed)
+        self.layout = draw_layout(scenario, self.seed)
         self.model = build_model(scenario, self.layout)
         self.exit_reason: str | None = None
         self.tick = 0
-        self._body = build_body(scenario, seed, self.layout, self.model)
+        self._body = build_body(scenario, self.seed, self.layout, self.model)
         self._robot = self._built(planner, gaze)
         self._watch = EventWatch(scenario.fault)
         self._sensor_faults = SensorFaults(scenario.fault)
@@ -125,7 +125,7 @@ class Simulation:
         self._open = False
         self._rendered: RenderedCamera | None = None
         self._analytic: AnalyticCamera | None = None
-        self._camera_rng = named_rng(seed, "camera")
+        self._camera_rng = named_rng(self.seed, "camera")
         camera = scenario.camera
         if camera.source != "egl":
             self._analytic = AnalyticCamera(
@@ -135,16 +135,16 @@ class Simulation:
                 scenario.camera,
                 self._camera_faults,
             )
-        self._feed = CameraFeed(camera, named_rng(seed, "camera_feed"), self._camera_faults)
+        self._feed = CameraFeed(camera, named_rng(self.seed, "camera_feed"), self._camera_faults)
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)
         self._ticks = round(scenario.duration / CONTROL_PERIOD) + 1
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
 
     def _built(self, planner: Moves | None, gaze: Looks | None) -> Robot:
-        scenario, seed = self.scenario, self.seed
+        scenario = self.scenario
         try:
-            return build_robot(scenario, self.layout, seed, planner=planner, gaze=gaze)
+            return build_robot(scenario, self.layout, self.seed, planner=planner, gaze=gaze)
         except (ValueError, ArithmeticError, MemoryError) as error:
             raise ScenarioError(
                 f"scenario {scenario.name!r}: the robot does not work with the parameters in "

@@ -16,7 +16,7 @@ from hsr8.scenario.presets import expand_presets
 from hsr8.scenario.problem import Problem, problems_of
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.toml_lines import Path, locate, nearest
-from hsr8.scenario.toml_writer import write_toml
+from hsr8.scenario.toml_writer import toml_value, write_toml
 from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
@@ -33,7 +33,7 @@ def built_in_names() -> list[str]:
 
 def load(
     name_or_path: str,
-    overrides: Sequence[str] = (),
+    overrides: Sequence[str] | Mapping[str, Any] = (),
     seed: int | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Scenario:
@@ -41,7 +41,8 @@ def load(
 
     Args:
         name_or_path: name of a built-in scenario, or a TOML file.
-        overrides: ``key=value`` with dots in the key and a TOML value; text needs no quotes.
+        overrides: ``key=value`` with dots in the key and a TOML value, of which text needs no
+            quotes; or values by key with dots.
         seed: replaces the seed of the file.
         options: tables given by options of the command line, by the option's name; the
             overrides go over them.
@@ -54,11 +55,30 @@ def load(
     draft = _read(file, ())
     for option, table in (options or {}).items():
         draft.add(dict(table), option)
-    for override in overrides:
+    for override in as_words(overrides):
         draft.add(_parse_override(override, draft.data), f"--set {override}")
     if seed is not None:
         draft.add({"seed": seed}, "--seed")
     return draft.finish(name_or_path)
+
+
+def as_words(overrides: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
+    """Overrides as the command line has them.
+
+    Raises:
+        ScenarioError: a value has no TOML form.
+    """
+    if isinstance(overrides, str):  # a sequence of texts, too
+        return (overrides,)
+    if not isinstance(overrides, Mapping):
+        return tuple(overrides)
+    words = []
+    for key, value in overrides.items():
+        try:
+            words.append(f"{key}={toml_value(value)}")
+        except TypeError as error:
+            raise ScenarioError(f"setting {key} = {value!r}: there is {error}") from None
+    return tuple(words)
 
 
 def loads(text: str, name: str = "scenario") -> Scenario:

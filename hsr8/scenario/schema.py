@@ -1,11 +1,13 @@
 """The scenario: everything that determines a run but its seed."""
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from operator import index
+from typing import Annotated, Literal, Self, SupportsIndex
 
 from annotated_types import Interval, Len
 from pydantic import Field
 
+from hsr8.errors import ScenarioError
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.command import Command
 from hsr8.scenario.disturbance import Disturbance
@@ -20,6 +22,8 @@ from navigation.decision import SpeedLimits
 from navigation.decision_parameters import NavigationParameters
 from vision.parameters import VisionParameters
 from walking.parameters import WalkingParameters
+
+LARGEST_SEED = 2**63 - 1  # integers of TOML have 64 bits
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,7 @@ class Scenario(Section):
     """Name that run folders carry; the file's own if left out."""
     description: Annotated[str, Len(0, 2000)] = ""
     """One or two sentences about it."""
-    seed: Annotated[int, Interval(ge=0, le=2**63 - 1)] = 0
+    seed: Annotated[int, Interval(ge=0, le=LARGEST_SEED)] = 0
     """Draws the world and every noise [1]."""
     duration: Annotated[float, Interval(gt=0.0, le=7200.0)] = 240.0
     """Simulated time after which the run ends [s]."""
@@ -91,6 +95,23 @@ class Scenario(Section):
     """What passes."""
     recorder: Recorder = Recorder()
     """What is published and kept."""
+
+    def with_seed(self, seed: SupportsIndex) -> Self:
+        """The same with another seed.
+
+        Raises:
+            ScenarioError: it is none.
+        """
+        try:
+            number = int(index(seed))
+        except TypeError:
+            number = -1
+        if not 0 <= number <= LARGEST_SEED:
+            raise ScenarioError(
+                f"seed={seed!r}: must be a whole number from 0 to {LARGEST_SEED:_}, that draws "
+                "the world and every noise"
+            )
+        return self.model_copy(update={"seed": number})
 
     def speed_limits(self) -> SpeedLimits:
         """Speed envelope navigation plans with; a command lasts for one footstep."""

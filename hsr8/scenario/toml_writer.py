@@ -50,6 +50,8 @@ def toml_value(value: Any) -> str:
     Raises:
         TypeError: it has no TOML form.
     """
+    if hasattr(value, "tolist"):  # a number or an array of NumPy
+        value = value.tolist()
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,6 +1,7 @@
 import json
 import shlex
 
+import numpy as np
 import pytest
 
 import hsr8
@@ -40,6 +41,14 @@ def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
     assert repeated("name", "quick", seed=3, settings=STAND_INS)
     loaded = hsr8.load("quick", [f"{key}={json.dumps(v)}" for key, v in STAND_INS.items()])
     assert repeated("loaded", loaded, seed=4)
+
+
+def test_seeds_may_come_from_numpy(tmp_path):
+    drawn = np.random.default_rng(0).integers(100, size=1)[0]
+    result = hsr8.run("quick", seed=drawn, settings=STAND_INS, out=tmp_path, log=False)
+    assert open_run(result.folder).seed == drawn
+    with pytest.raises(ScenarioError, match="whole number"):
+        hsr8.run("quick", seed=-1)
 
 
 def test_the_log_holds_as_much_as_it_is_told_to(tmp_path):

@@ -2,6 +2,7 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -245,6 +246,15 @@ def test_overrides_change_single_keys():
     assert scenario.command.stretch[1].vx == 0.05
     assert scenario.command.stretch[1].duration == before.command.stretch[1].duration
     assert scenario.command.stretch[0] == before.command.stretch[0]
+
+
+def test_overrides_are_words_one_word_or_a_table():
+    wanted = load("course", ["world.n_moving=3", "world.size=[4.0, 6.0]"])
+    assert load("course", {"world.n_moving": 3, "world.size": (4.0, 6.0)}) == wanted
+    assert load("course", {"world.n_moving": np.int64(3), "world.size": np.array([4, 6])}) == wanted
+    assert load("course", "world.n_moving=3") == load("course", ["world.n_moving=3"])
+    with pytest.raises(ScenarioError, match=r"world\.n_moving = None"):
+        load("course", {"world.n_moving": None})
 
 
 def test_later_overrides_win():

@@ -1,16 +1,23 @@
 from dataclasses import FrozenInstanceError, dataclass, field
 from typing import Annotated, Literal
 
+import numpy as np
 import pytest
 from annotated_types import Gt
+from hypothesis import given
+from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load
+from hsr8.scenario.schema import LARGEST_SEED
 from hsr8.scenario.section import Section
 from navigation.belief_parameters import BeliefParameters
 from navigation.decision_parameters import NavigationParameters
 from vision.parameters import VisionParameters
 from walking.parameters import WalkingParameters
+
+QUICK = load("quick")
 
 
 @dataclass(frozen=True)
@@ -82,6 +89,20 @@ def test_a_command_lasts_for_one_footstep():
     limits = scenario.speed_limits()
     assert limits.footstep == 0.4
     assert limits.forward == 0.15
+
+
+@given(seed=st.integers(0, LARGEST_SEED))
+def test_any_whole_number_is_a_seed(seed):
+    for given_ in (seed, np.int64(seed)):
+        found = QUICK.with_seed(given_).seed
+        assert found == seed
+        assert type(found) is int
+
+
+@pytest.mark.parametrize("seed", [-1, LARGEST_SEED + 1, 1.0, "1", np.float64(1.0)])
+def test_what_is_no_seed_is_refused(seed):
+    with pytest.raises(ScenarioError, match=r"seed=.*whole number"):
+        QUICK.with_seed(seed)
 
 
 def test_a_scenario_does_not_change():

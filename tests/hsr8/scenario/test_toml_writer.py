@@ -1,5 +1,6 @@
 import tomllib
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -26,6 +27,13 @@ tables = st.recursive(
 @given(tables)
 def test_what_is_written_is_read_back(table):
     assert tomllib.loads(write_toml(table)) == table
+
+
+@given(st.lists(st.floats(allow_nan=False), min_size=1, max_size=3), st.integers(0, 2**31))
+def test_numbers_of_numpy_are_written_as_numbers(values, number):
+    given_ = {"array": np.array(values), "entries": list(np.array(values)), "n": np.int64(number)}
+    read = tomllib.loads(write_toml(given_))
+    assert read == {"array": values, "entries": values, "n": number}
 
 
 def test_what_toml_cannot_say_is_an_error():
