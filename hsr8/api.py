@@ -10,7 +10,7 @@ from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.manifest import OWN, Manifest
 from hsr8.recorder.record import Listener
 from hsr8.recorder.run_folder import SCENARIO, RunFolder
 from hsr8.scenario.loader import as_words, load
@@ -56,10 +56,21 @@ def run(
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)
         source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
         words = ("hsr8", "run", str(source), "--seed", str(loaded.seed), *_options(settings))
-        command = ("hsr8.run",) if planner or gaze else tuple(map(shlex.quote, words))
+        command = _own(planner, gaze) or tuple(map(shlex.quote, words))
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
         recording.into(path, manifest, log=level)
     return recording.run()
+
+
+def _own(planner: Moves | None, gaze: Looks | None) -> tuple[str, ...]:
+    """The words of the call that names planner and gaze of one's own; none if there are none."""
+    given = {"planner": planner, "gaze": gaze}
+    names = [
+        f"{key}={type(own).__module__}.{type(own).__qualname__}"
+        for key, own in given.items()
+        if own is not None
+    ]
+    return (f"{OWN}{', '.join(names)})",) if names else ()
 
 
 def _level(log: bool | str) -> LogLevel | None:

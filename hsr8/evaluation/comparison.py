@@ -17,6 +17,7 @@ from hsr8.evaluation.sweep.folder import DEFINITION, SweepFolder
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Row
 from hsr8.evaluation.sweep.table import flat
 from hsr8.recorder import run_folder
+from hsr8.recorder.manifest import OWN
 from hsr8.recorder.run_reader import open_run
 from hsr8.suggestion import suggestion
 
@@ -89,7 +90,7 @@ class Comparison:
         a, b: the two.
         seeds: that both have.
         settings: keys of the scenario that differ, with both values as JSON.
-        versions: that differ.
+        versions: that differ, and decisions of one's own.
         results: one per metric that both have.
     """
 
@@ -126,7 +127,7 @@ def open_side(path: Path) -> Side:
         tomllib.loads(scenario)
         definition = Definition(
             name=str(run.manifest["scenario"]),
-            again=(),
+            again=(str(run.manifest["command"]),),
             hsr8=str(run.manifest["hsr8"]),
             code="",
             processor=str(run.manifest["machine"]).split(" ")[-1],
@@ -170,7 +171,16 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
     versions = version_differences(a.definition, b.definition)
     if not (a.definition.code and b.definition.code):  # a run folder does not know
         versions.pop("code", None)
+    own = _own(a), _own(b)
+    if own[0] != own[1]:
+        versions["decisions"] = own
     return Comparison(a, b, seeds, settings, versions, tuple(d for d in found if d is not None))
+
+
+def _own(side: Side) -> str:
+    """The call that names a planner or a gaze of one's own; ``-`` for the scenario's."""
+    command = " ".join(side.definition.again)
+    return command if command.startswith(OWN) else "-"
 
 
 def _compared(metric: str, a: Side, b: Side, seeds: Sequence[int]) -> Difference | None:

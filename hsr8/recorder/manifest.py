@@ -25,6 +25,7 @@ LIBRARIES = (
 )
 FORMAT = 2  # of run folders; those without a number are of format 1
 RUNNING = "running"
+OWN = "hsr8.run("  # begins the command of a run with a planner or a gaze of one's own
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +35,7 @@ class Manifest:
     Attributes:
         scenario: name of the scenario.
         seed: of the run.
-        command: command line that repeats it.
+        command: command line that repeats it; the call, from `OWN` on, of a run that none can.
         exit_reason: how it ended; ``running`` until then, and for ever after a kill; ``failed``
             where its records could not be written, ``error`` after a mistake of ours.
         started: wall-clock time, ISO 8601.

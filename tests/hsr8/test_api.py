@@ -7,8 +7,19 @@ import pytest
 import hsr8
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.recorder.run_reader import open_run
+from navigation.decision import GazeDecision, MotionDecision
 
 STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 1.0}
+
+
+class Idle:
+    """Stands and looks ahead."""
+
+    def plan(self, belief, task):
+        return MotionDecision(np.zeros(3))
+
+    def choose(self, belief, task, motion):
+        return GazeDecision(0.0, 0.0)
 
 
 def test_nothing_is_written_unless_it_is_told_where(tmp_path, monkeypatch):
@@ -41,6 +52,12 @@ def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
     assert repeated("name", "quick", seed=3, settings=STAND_INS)
     loaded = hsr8.load("quick", [f"{key}={json.dumps(v)}" for key, v in STAND_INS.items()])
     assert repeated("loaded", loaded, seed=4)
+
+
+def test_the_folder_names_a_planner_and_a_gaze_of_ones_own(tmp_path):
+    result = hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Idle(), gaze=Idle())
+    called = f"hsr8.run(planner={__name__}.Idle, gaze={__name__}.Idle)"
+    assert open_run(result.folder).manifest["command"] == called
 
 
 def test_seeds_may_come_from_numpy(tmp_path):

@@ -29,9 +29,9 @@ class Definition:
 
     Attributes:
         name: of the scenario.
-        again: words of the command line of one run, without its seed.
+        again: words of the command line of one run, without its seed; of a run folder with it.
         hsr8: version.
-        code: digest of the program's files.
+        code: digest of the program's files; empty where that is not known.
         processor: architecture; results are the same on one only.
         libraries: version by name.
         scenario: the resolved scenario as TOML; its seed means nothing.
@@ -88,7 +88,8 @@ class Definition:
         """Versions, for the foot of a page."""
         names = ("mujoco", "numpy", "scipy", "pin")
         told = ", ".join(f"{name} {self.libraries.get(name, '?')}" for name in names)
-        return f"hsr8 {self.hsr8} (code {self.code}), {told}; {self.processor}"
+        code = f" (code {self.code})" if self.code else ""  # a run folder does not know
+        return f"hsr8 {self.hsr8}{code}, {told}; {self.processor}"
 
 
 def differences(one: Definition, other: Definition) -> dict[str, tuple[str, str]]:

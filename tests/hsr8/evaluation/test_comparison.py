@@ -1,13 +1,16 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import hsr8
 from hsr8.errors import UsageError
 from hsr8.evaluation.comparison import Side, compare, open_side
 from hsr8.evaluation.comparison_page import page, to_json
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.folder import SweepFolder
+from navigation.decision import MotionDecision
 
 SCENARIO = """
 name = "here"
@@ -19,6 +22,16 @@ n_static = 3
 kind = "course"
 """
 DEFINITION = Definition("here", ("hsr8", "run", "here"), "1", "abc", "x86_64", {}, SCENARIO)
+
+
+STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 0.5}
+
+
+class Still:
+    """Stands."""
+
+    def plan(self, belief, task):
+        return MotionDecision(np.zeros(3))
 
 
 def _row(seed, success=True, time=50.0, **more):
@@ -86,6 +99,21 @@ def test_what_differs_between_the_two_is_told():
     assert "| `camera.period_ms` | 60 | 80 |" in text
     assert "| `hsr8` | 1 | 2 |" in text
     assert to_json(comparison)["settings"]["world.brightness"] == ["1.0", "0.5"]
+
+
+def test_a_planner_of_ones_own_is_a_difference(tmp_path):
+    for name, planner in (("theirs", None), ("mine", Still())):
+        hsr8.run(
+            "quick", seed=3, settings=STAND_INS, out=tmp_path / name, log=False, planner=planner
+        )
+    theirs, mine = open_side(tmp_path / "theirs"), open_side(tmp_path / "mine")
+    call = f"hsr8.run(planner={__name__}.Still)"
+    assert compare(theirs, mine).versions == {"decisions": ("-", call)}
+    assert (
+        compare(_side([_row(1)]), _side([_row(1)], again=(call,))).versions["decisions"][1] == call
+    )
+    assert compare(mine, mine).versions == compare(theirs, theirs).versions == {}
+    assert "(code" not in page(compare(theirs, mine), "hsr8 compare a b")
 
 
 def test_a_key_that_is_new_is_no_difference():
