@@ -9,6 +9,7 @@ from hsr8.world.assembly import Optics, assemble
 from hsr8.world.body import Body
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.layout import Layout
+from hsr8.world.models import reading_models
 from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
 from hsr8.world.pushes import schedule
 
@@ -23,7 +24,11 @@ def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
 
 
 def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjModel) -> Body:
-    """The robot's body in `model`; `seed` draws its noise and what disturbs it."""
+    """The robot's body in `model`; `seed` draws its noise and what disturbs it.
+
+    Raises:
+        ModelError: the model's physics step does not go with the control period.
+    """
     noise, rng = scenario.sensors, named_rng(seed, "body")
     if scenario.robot.body == "kinematic":
         return KinematicBody(model, layout, noise, rng)
@@ -34,4 +39,5 @@ def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjMo
         named_rng(seed, "push"),
         scenario.fault,
     )
-    return PhysicsBody(model, layout, noise, rng, pushes=pushes, faults=scenario.fault)
+    with reading_models():
+        return PhysicsBody(model, layout, noise, rng, pushes=pushes, faults=scenario.fault)

@@ -30,6 +30,21 @@ def test_a_model_that_will_not_do_is_one_line(tmp_path, monkeypatch, capsys, fil
     assert told in line
 
 
+def test_a_physics_step_that_will_not_do_is_one_line(tmp_path, monkeypatch, capsys):
+    folder = tmp_path / "models"
+    shutil.copytree(models.models_dir(), folder)
+    file = folder / "hsr8" / "hsr8.xml"
+    text = file.read_text(encoding="utf-8")
+    assert 'timestep="0.0025"' in text
+    file.write_text(text.replace('timestep="0.0025"', 'timestep="0.004"'), encoding="utf-8")
+    monkeypatch.setattr(models, "PACKAGE", tmp_path / "hsr8")
+    full = ["--camera", "analytic", "--quiet", "--no-log", "--duration", "0.1"]
+    assert entry(["run", "quick", *full, "--out", str(tmp_path / "runs")]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert str(folder) in line
+    assert "no multiple of the physics step 0.004 s" in line
+
+
 def test_models_that_are_nowhere_are_one_line(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(models, "PACKAGE", tmp_path / "hsr8")
     assert entry(["run", "quick", *LIGHT, "--out", str(tmp_path / "runs")]) == 2
