@@ -239,7 +239,12 @@ class Simulation:
         return hashlib.sha256(self._body.state_bytes() + self._believed()).hexdigest()
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything that changes in a run, between two control ticks; see `hsr8.snapshot`."""
+        """Everything that changes in a run, between two control ticks.
+
+        These are the run's own objects, which change with the next tick: `hsr8.snapshot.encode`
+        keeps them as they are, for a simulation of the same scenario and seed. A planner or a
+        gaze of one's own cannot be read back.
+        """
         if self._rendered is not None:
             self._rendered.settle()
         return {name: getattr(self, name) for name in CHANGING} | {
