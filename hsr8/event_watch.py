@@ -28,7 +28,7 @@ class EventWatch:
     """
 
     def __init__(self, faults: Sequence[Fault] = ()) -> None:
-        told = [(f.start, f"{f.text()}: begins") for f in faults]
+        told = [(f.begin, f"{f.text()}: begins") for f in faults]
         told += [(f.end, f"{f.text()}: ends") for f in faults if f.end is not None]
         self._faults = sorted(told, key=lambda line: line[0])
         self._pushes = 0

@@ -74,9 +74,16 @@ class _Fault(Section):
         return first <= tick and (self.duration is None or tick < first + ticks(self.duration))
 
     @property
+    def begin(self) -> float:
+        """When its first tick is [s]."""
+        return ticks(self.start) * CONTROL_PERIOD_MS / 1000.0
+
+    @property
     def end(self) -> float | None:
         """When it is over; None if it lasts to the end of the run [s]."""
-        return None if self.duration is None else self.start + self.duration
+        if self.duration is None:
+            return None
+        return (ticks(self.start) + ticks(self.duration)) * CONTROL_PERIOD_MS / 1000.0
 
     def text(self) -> str:
         """The fault in words: its kind and what is not left at its default."""

@@ -143,7 +143,7 @@ def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:
             mover = obstacles[first + fault.mover]
             assert mover.motion is not None
             end = inf if fault.end is None else fault.end
-            law = Appearing(mover.motion, fault.start, end)
+            law = Appearing(mover.motion, fault.begin, end)
             obstacles[first + fault.mover] = replace(mover, position=law.position(0.0), motion=law)
     bumps = tuple(fault for fault in faults if isinstance(fault, Bump))
     return replace(layout, obstacles=tuple(obstacles), bumps=bumps) if faults else layout

@@ -1,6 +1,8 @@
 from typing import get_args
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.fault import CameraBlack, Fault, Joint, ServoWeak
@@ -54,6 +56,17 @@ def test_a_fault_acts_from_its_first_tick_to_its_last():
             *(False, True, True, False)
         ]
     assert CameraBlack(kind="camera-black", start=1.0).acts(10**6)
+
+
+@given(start=st.floats(0.0, 100.0), duration=st.floats(0.005, 100.0))
+def test_it_is_told_to_begin_and_to_end_at_the_ticks_at_which_it_does(start, duration):
+    fault = CameraBlack(kind="camera-black", start=start, duration=duration)
+    first, over = round(fault.begin / 0.005), round(fault.end / 0.005)
+    assert abs(fault.begin - start) < 0.00251
+    assert (fault.begin, fault.end) == (round(0.005 * first, 3), round(0.005 * over, 3))
+    assert not fault.acts(first - 1)
+    assert all(fault.acts(tick) for tick in (first, over - 1))
+    assert not fault.acts(over)
 
 
 def test_all_kinds_are_one_vocabulary():
