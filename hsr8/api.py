@@ -43,7 +43,9 @@ def run(
     Raises:
         ScenarioError: the scenario or a setting is wrong, or its world cannot be drawn.
         RenderingUnavailable: the camera needs OpenGL and there is none.
-        UsageError: the run folder cannot be made, or there is no such level of `log`.
+        UsageError: the run folder cannot be made, there is no such level of `log`, or `planner`
+            or `gaze` answers with what is no decision.
+        KeyboardInterrupt: Ctrl-C; the run folder is complete up to then.
     """
     level = _level(log)
     loaded = scenario if isinstance(scenario, Scenario) else load(str(scenario), settings)
@@ -59,7 +61,10 @@ def run(
         command = _own(planner, gaze) or tuple(map(shlex.quote, words))
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
         recording.into(path, manifest, log=level)
-    return recording.run()
+    result = recording.run()
+    if result.exit_reason == "interrupted":
+        raise KeyboardInterrupt  # a loop over runs is to end, too
+    return result
 
 
 def _own(planner: Moves | None, gaze: Looks | None) -> tuple[str, ...]:

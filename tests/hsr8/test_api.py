@@ -68,6 +68,20 @@ def test_seeds_may_come_from_numpy(tmp_path):
         hsr8.run("quick", seed=-1)
 
 
+def test_ctrl_c_ends_the_loop_around_a_run_and_leaves_its_folder(tmp_path):
+    class Stops(Idle):
+        def plan(self, belief, task):
+            if belief.time > 0.3:
+                raise KeyboardInterrupt
+            return super().plan(belief, task)
+
+    with pytest.raises(KeyboardInterrupt):
+        hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Stops(), log=False)
+    run = open_run(tmp_path)
+    assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"
+    assert 0.3 < run.trajectory().time[-1] < 1.0
+
+
 def test_the_log_holds_as_much_as_it_is_told_to(tmp_path):
     found = {}
     for level in ("minimal", "full"):
