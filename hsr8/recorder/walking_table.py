@@ -74,10 +74,21 @@ class WalkingTable:
         return len(self.time)
 
     def __getitem__(self, name: str) -> Array:
+        """One column (n,).
+
+        Raises:
+            KeyError: there is no such column.
+        """
+        if name not in self.columns:
+            raise KeyError(f"there is no column {name!r}, but {', '.join(self.columns)}")
         return self.columns[name]
 
     def points(self, name: str) -> Array:
-        """Both coordinates of a point (n, 2) [m]."""
+        """Both coordinates of a point (n, 2) [m], for example of ``zmp`` or ``left``.
+
+        Raises:
+            KeyError: there is no such point.
+        """
         return np.column_stack([self[f"{name}_x"], self[f"{name}_y"]])
 
     def window(self, start: float, stop: float) -> "WalkingTable":

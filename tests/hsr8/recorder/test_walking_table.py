@@ -42,6 +42,13 @@ def test_what_was_recorded_is_read_back(written):
     assert table.torque_limit["l_knee"] == 6.0
 
 
+def test_a_column_that_there_is_not_is_told_with_those_there_are(written):
+    table = read_walking_table(written[0])
+    for ask in (lambda: table["zmp"], lambda: table.points("zpm")):
+        with pytest.raises(KeyError, match=r"no column 'z.*zmp_x, zmp_y"):
+            ask()
+
+
 def test_a_cut_file_loses_its_last_row(written):
     path, records = written
     path.write_bytes(path.read_bytes()[:-5])
