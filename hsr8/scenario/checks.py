@@ -77,10 +77,18 @@ def _local_map(scenario: Scenario) -> Iterator[Problem]:
 
 def _mission(scenario: Scenario) -> Iterator[Problem]:
     mission, criteria = scenario.mission, scenario.criteria
-    has_goal = isinstance(mission, Course) or (isinstance(mission, Points) and not mission.endless)
-    if criteria.goal_reached and not has_goal:
+    before_goal: int | None = None  # via points; none where there is no goal
+    if isinstance(mission, Course):
+        before_goal = mission.via_points
+    elif isinstance(mission, Points) and not mission.endless:
+        before_goal = len(mission.points) - 1
+    if criteria.goal_reached and before_goal is None:
+        which = "an endless mission" if isinstance(mission, Points) else "a mission"
+        yield Problem(("criteria", "goal_reached"), f'{which} of kind "{mission.kind}" has no goal')
+    if before_goal is not None and criteria.min_via_points > before_goal:
         yield Problem(
-            ("criteria", "goal_reached"), f'a mission of kind "{mission.kind}" has no goal'
+            ("criteria", "min_via_points"),
+            f"{criteria.min_via_points} are more than before the goal, {before_goal}",
         )
     if criteria.min_via_points and isinstance(mission, Walk):
         yield Problem(("criteria", "min_via_points"), 'a mission of kind "walk" has no via points')

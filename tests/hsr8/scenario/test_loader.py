@@ -92,6 +92,17 @@ mode = "deadlin"
             'criteria.goal_reached: a mission of kind "tour" has no goal',
         ),
         (
+            'mission = {kind = "points", points = [[0, 0], [1, 1]], endless = true}\n'
+            "[criteria]\ngoal_reached = true",
+            'criteria.goal_reached: an endless mission of kind "points" has no goal',
+        ),
+        (
+            'mission = {kind = "points", points = [[0, 0], [1, 1]]}\n'
+            "[criteria]\nmin_via_points = 2",
+            "criteria.min_via_points: 2 are more than before the goal, 1",
+        ),
+        (COURSE + "[criteria]\nmin_via_points = 5", "5 are more than before the goal, 4"),
+        (
             COURSE
             + "[robot.start]\nposition = [0.0, 0.0]\n"
             + "[[world.obstacle]]\nposition = [0.1, 0.0]",
