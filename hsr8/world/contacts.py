@@ -1,10 +1,12 @@
 """Contacts of the robot with obstacles and beacons, of its feet with the floor, from the truth."""
 
+from math import inf
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.world.clearance_kernel import nearest
+from hsr8.world.clearance_kernel import least_gaps
 from hsr8.world.index import ModelIndex
 from hsr8.world.layout import Layout
 from hsr8.world.truth import Contact
@@ -12,7 +14,7 @@ from hsr8.world.truth import Contact
 Array = NDArray[np.float64]
 
 CLOSING_SPEED = 0.02  # the robot closes a gap when it moves into it faster than this [m/s]
-NEAR = 0.5  # clearance is computed exactly below this distance between centres [m]
+FAR = 100.0  # no clearance is larger [m]
 
 
 class ContactWatch:
@@ -44,7 +46,6 @@ class ContactWatch:
         self._robot_geoms: list[int] = index.robot_geoms.tolist()
         self._obstacle_of: list[int] = index.obstacle_of_geom.tolist()
         self._spheres = model.geom_rbound[index.robot_geoms].copy()
-        self._bounds = np.zeros(len(self._spheres))
         self._sizes = model.geom_size[self._axes, 0].copy()
 
     def watch(self, data: mujoco.MjData) -> None:
@@ -81,31 +82,31 @@ class ContactWatch:
         self._seen.clear()
         return contacts
 
-    def clearance(self, data: mujoco.MjData, robot: Array) -> float:
+    def clearance(self, data: mujoco.MjData) -> float:
         """Distance [m] from the body to the nearest obstacle or beacon; infinite without any."""
-        index, bounds = self._index, self._bounds
-        if not self._parts:
-            return float("inf")
-        gap, number = nearest(
-            data.geom_xpos,
-            robot,
-            self._axes,
-            self._sizes,
-            index.robot_geoms,
-            self._spheres,
-            bounds,
-        )
-        if gap > NEAR:
-            return gap
-        model, parts, fromto = self._model, self._parts[number], self._fromto
-        least = NEAR
-        # No gap is less than its bound: most geoms need no closer look.
-        for bound, geom in sorted(zip(bounds.tolist(), self._robot_geoms, strict=True)):
-            if bound >= least:
+        geoms = self._index.robot_geoms
+        if not self._parts or not len(geoms):
+            return inf
+        bounds = least_gaps(data.geom_xpos, self._axes, self._sizes, geoms, self._spheres).ravel()
+        least = self._distance(data, int(bounds.argmin()), FAR)
+        # No gap is less than its bound: few pairs need a closer look.
+        near = np.flatnonzero(bounds < least)
+        for pair in near[np.argsort(bounds[near])].tolist():
+            if bounds[pair] >= least:
                 break
-            for part in parts:
-                gap = mujoco.mj_geomDistance(model, data, geom, part, NEAR, fromto)
-                least = min(least, gap)
+            least = min(least, self._distance(data, pair, max(least, 0.0)))
+        return least
+
+    def _distance(self, data: mujoco.MjData, pair: int, limit: float) -> float:
+        """Distance of an obstacle from a geom of the robot, `limit` at most [m].
+
+        A pair counts through the obstacles, and for each through the robot's geoms.
+        """
+        number, geom = divmod(pair, len(self._robot_geoms))
+        own, least = self._robot_geoms[geom], limit
+        for part in self._parts[number]:
+            gap = mujoco.mj_geomDistance(self._model, data, own, part, limit, self._fromto)
+            least = min(least, gap)
         return least
 
     def feet(self, data: mujoco.MjData) -> tuple[Array, Array]:

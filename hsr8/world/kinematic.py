@@ -138,7 +138,7 @@ class KinematicBody:
             obstacle_positions=self._around.positions(self.time),
             obstacle_velocities=self._around.velocities(self.time),
             contacts=self._around.watch.take(),
-            clearance=self._around.watch.clearance(data, robot),
+            clearance=self._around.watch.clearance(data),
             joint_torque=np.zeros(len(self._joints)),
             foot_force=self._loads[self._carrying],
             zmp=SHARES[self._carrying] @ feet,

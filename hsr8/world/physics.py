@@ -162,7 +162,7 @@ class PhysicsBody:
             obstacle_positions=self._around.placed(data),
             obstacle_velocities=self._around.velocities(self.time),
             contacts=self._around.watch.take(),
-            clearance=self._around.watch.clearance(data, robot),
+            clearance=self._around.watch.clearance(data),
             joint_torque=data.actuator_force[index.actuators],
             foot_force=load,
             zmp=pressure,

@@ -69,16 +69,15 @@ def test_clearance_falls_as_the_obstacle_nears_and_is_that_of_the_body(placed):
     found = []
     for x in (2.0, 0.8, 0.5, 0.4):
         watch, data, _ = placed(Obstacle((x, 0.0), 0.10, 0.40, "red"))
-        found.append(watch.clearance(data, np.zeros(3)))
+        found.append(watch.clearance(data))
     assert found == sorted(found, reverse=True)
-    assert found[0] == pytest.approx(1.9)  # far off, of the axis alone
-    assert found[2] - found[3] == pytest.approx(0.1, abs=1e-3)
+    assert -np.diff(found) == pytest.approx([1.2, 0.3, 0.1], abs=1e-3)
     assert found[3] < 0.3  # the body is wider than its axis
 
 
 def test_without_obstacles_and_beacons_there_is_room_without_end(placed):
     watch, data, _ = placed(beacons=())
-    assert watch.clearance(data, np.zeros(3)) == np.inf
+    assert watch.clearance(data) == np.inf
 
 
 @pytest.mark.parametrize("number", range(6))
@@ -92,7 +91,7 @@ def test_a_beacon_is_touched_as_what_stands_and_has_a_name(placed, number):
     assert {(c.obstacle, c.name) for c in contacts} == {(2 + number, f"beacon {beacon.name}")}
     assert not any(c.moving for c in contacts)
     assert all(c.closing for c in contacts)
-    assert watch.clearance(data, np.array([x - 0.1, y, 0.0])) < 0.0
+    assert watch.clearance(data) < 0.0
 
 
 @pytest.mark.parametrize("lifted", [0.0, 0.4])
@@ -107,7 +106,7 @@ def test_clearance_from_a_beacon_is_that_from_the_nearer_half(placed, lifted):
         )
         for half in index.beacon_geoms[0].tolist()
     )
-    assert watch.clearance(data, np.array([x - 0.3, y, 0.0])) == min(lower, upper)
+    assert watch.clearance(data) == min(lower, upper)
     assert (upper < lower) == (lifted > 0.0)
 
 
@@ -130,13 +129,20 @@ def test_a_robot_that_stands_carries_its_weight_on_both_feet_and_on_no_obstacle(
     assert watch.take() == ()
 
 
-def test_clearance_is_the_least_distance_of_any_geom_of_the_robot(placed):
-    for turn in np.linspace(0.0, 6.0, 7):
-        x, y = 0.3 * np.cos(turn), 0.3 * np.sin(turn)
-        watch, data, model = placed(Obstacle((x, y), 0.08, 0.25, "red"))
-        index = ModelIndex.of(model, 1, 0)
-        nearest = min(
-            mujoco.mj_geomDistance(model, data, geom, index.obstacle_geoms[0], 0.5, np.zeros(6))
-            for geom in index.robot_geoms.tolist()
-        )
-        assert watch.clearance(data, np.zeros(3)) == nearest
+@pytest.mark.parametrize("seed", range(8))
+def test_clearance_is_the_least_distance_of_any_geom_from_any_obstacle(placed, seed):
+    """Arms reach out farther than the chest: what is nearest to the middle may be farther off."""
+    rng = np.random.default_rng(seed)
+    turns, away = rng.uniform(0.0, 6.3, 4), rng.uniform(0.3, 0.34, 4) + 0.3 * (seed % 2)
+    obstacles = [
+        Obstacle((r * np.cos(turn), r * np.sin(turn)), 0.08, 0.30, "red")
+        for turn, r in zip(turns, away, strict=True)
+    ]
+    watch, data, model = placed(*obstacles, beacons=())
+    index = ModelIndex.of(model, 4, 0)
+    distances = [
+        mujoco.mj_geomDistance(model, data, geom, other, 1.0, np.zeros(6))
+        for geom in index.robot_geoms.tolist()
+        for other in index.obstacle_geoms.tolist()
+    ]
+    assert watch.clearance(data) == pytest.approx(min(distances), abs=1e-6)
