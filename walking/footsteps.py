@@ -178,9 +178,9 @@ class FootstepPlanner:
         return forward / (2.0 * time), left / (2.0 * time), turn / (2.0 * time)
 
     def _timing(self, time: float) -> Timing:
-        """A footstep of a duration [s], in whole ticks."""
-        ticks = round(time / CONTROL_PERIOD)
-        double = max(1, round(self._gait.double_support * ticks))
+        """A footstep of a duration [s], in whole ticks: one of either support at least."""
+        ticks = max(2, round(time / CONTROL_PERIOD))
+        double = min(ticks - 1, max(1, round(self._gait.double_support * ticks)))
         return Timing(double, ticks - double, self._gait.lift)
 
     def _make(self, velocity: Velocity, time: float) -> Strides:

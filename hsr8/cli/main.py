@@ -6,7 +6,9 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import reduce
+from io import TextIOWrapper
 from operator import or_
 from typing import Annotated, Any, TextIO
 
@@ -66,6 +68,8 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         3 diverged or internal error, 130 interrupted.
     """
     atexit.register(gc.freeze)  # an ending process has nothing to look for
+    if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="backslashreplace")  # as standard error: names are any bytes
     try:
         code = _answer(list(sys.argv[1:] if arguments is None else arguments))
         for stream in (sys.stdout, sys.stderr):
@@ -75,7 +79,8 @@ def entry(arguments: Sequence[str] | None = None) -> int:
             _drop_unread(stream)
         if isinstance(error, BrokenPipeError):
             return READER_LEFT
-        print(f"hsr8: cannot write to standard output: {error.strerror}", file=sys.stderr)
+        with suppress(OSError):  # it may be standard error that takes no more
+            print(f"hsr8: cannot write to standard output: {error.strerror}", file=sys.stderr)
         return Hsr8Error.exit_code
     return code
 

@@ -19,6 +19,7 @@ from hsr8.recorder.record import Listener
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import TapeWriter
+from hsr8.recorder.threads import require_threads
 from hsr8.recorder.walking_table import WalkingTableWriter
 from hsr8.recorder.writing import FAILED
 from hsr8.scenario.loader import dump
@@ -115,6 +116,7 @@ class Recording:
             simulation.tape = tape
             writers: list[Listener] = [folder, table]
             if log is not None:
+                require_threads(path)
                 # Loaded where it is needed: runs without a log begin a third of a second sooner.
                 from hsr8.recorder.rerun_log import RerunLog  # noqa: PLC0415
 

@@ -9,8 +9,11 @@ from typing import Any
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replace the contents of `path`; a crash leaves the old or the new file, never a mix."""
-    write_bytes(path, text.encode("utf-8"))
+    """Replace the contents of `path`; a crash leaves the old or the new file, never a mix.
+
+    A traceback may name a file whose name is no UTF-8; it is escaped.
+    """
+    write_bytes(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def write_bytes(path: Path, content: bytes) -> None:
@@ -49,8 +52,12 @@ def overwrite_json(path: Path, value: Mapping[str, Any]) -> None:
 
 
 def dumps(value: Any, indent: int | None = None) -> str:
-    """JSON that every reader takes: numbers that are not finite become null."""
-    return json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False)
+    """JSON that every reader takes: numbers that are not finite become null.
+
+    Of a file's name, bytes that are no UTF-8 become escapes, which are read back as they were.
+    """
+    text = json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False)
+    return text.encode("utf-8", errors="backslashreplace").decode("utf-8")
 
 
 def _finite(value: Any) -> Any:

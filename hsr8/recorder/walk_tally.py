@@ -47,8 +47,7 @@ class WalkTally:
         limits = walking.limits
         if limits:
             self.altered += 1
-            for limit in limits:
-                self.by_limit[limit] += 1
+            self.by_limit.update(dict.fromkeys(limits, 1))  # several parts may tell of the same
         depth = walking.zmp_depth
         self.least_depth = min(self.least_depth, depth)
         self.outside += depth < -ROUNDING

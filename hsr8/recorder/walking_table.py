@@ -177,9 +177,13 @@ def read_walking_table(path: Path) -> WalkingTable:
         )
     row = _row_type(len(names))
     table = np.frombuffer(content, dtype=row, count=len(content) // row.itemsize)
-    values = table["values"].astype(np.float64)
+    time, values = table["time"].astype(np.float64), table["values"].astype(np.float64)
+    known = np.isin(values[:, names.index("phase")], range(len(PHASES)))
+    whole = known & np.isfinite(time) & ~np.isinf(values).any(axis=1)
+    if not whole.all():
+        raise UsageError(f"{path} is damaged in row {int(np.argmin(whole))}")
     return WalkingTable(
-        time=table["time"].astype(np.float64),
+        time=time,
         columns={name: values[:, k] for k, name in enumerate(names)},
         sole=(centre, half_length, half_width),
         torque_limit=limits,

@@ -151,3 +151,12 @@ def test_a_turn_that_must_keep_the_feet_apart_is_no_turn_on_the_spot():
 def test_a_slow_walk_keeps_the_usual_time():
     for velocity in ((0.2, 0.0, 0.0), (-0.1, 0.08, 0.0), (0.2, 0.0, 0.8)):
         assert PLANNER.cadence(velocity).duration == pytest.approx(GAIT.footstep_time)
+
+
+@pytest.mark.parametrize("time", [1e-9, 0.008, 0.34])
+@pytest.mark.parametrize("share", [1e-9, 0.5, 1.0 - 1e-9])
+def test_the_shortest_footstep_has_a_tick_of_either_support(time, share):
+    gait = GaitParameters(footstep_time=time, shortest_time=time, double_support=share)
+    timing = FootstepPlanner(gait, LIMITS, SOLE).cadence((0.1, 0.0, 0.0))
+    assert timing.double >= 1
+    assert timing.single >= 1

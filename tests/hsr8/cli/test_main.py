@@ -1,7 +1,9 @@
 import importlib
 import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -152,6 +154,27 @@ def test_nobody_reads_anything(arguments):
     ) as process:
         process.stdout.close()
         assert process.wait(60) == 141
+
+
+def test_a_full_disk_under_standard_error_is_no_failed_criterion():
+    if not Path("/dev/full").exists():
+        pytest.skip("no /dev/full")
+    with open("/dev/full", "w") as full:
+        words = [sys.executable, "-m", "hsr8", "info", "nowhere"]
+        assert subprocess.run(words, stderr=full, check=False).returncode == 3
+
+
+def test_a_name_of_any_bytes_is_printed_in_a_strict_locale(tmp_path):
+    scenario = os.fsencode(tmp_path) + b"/a\xff.toml"
+    Path(os.fsdecode(scenario)).write_text('extends = "walk"\n')
+    done = subprocess.run(
+        [sys.executable, "-m", "hsr8", "check", scenario],
+        env=os.environ | {"PYTHONIOENCODING": "utf-8:strict"},
+        capture_output=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert rb"a\udcff.toml" in done.stdout
 
 
 def test_the_module_can_be_run():

@@ -1,4 +1,5 @@
 import json
+import os
 
 import pytest
 
@@ -8,6 +9,19 @@ from hsr8.recorder import atomic
 def test_what_is_not_finite_becomes_null_at_any_depth():
     value = {"a": float("nan"), "b": [1.0, float("inf")], "c": {"d": (float("-inf"), 2)}}
     assert json.loads(atomic.dumps(value)) == {"a": None, "b": [1.0, None], "c": {"d": [None, 2]}}
+
+
+def test_any_file_name_comes_back(tmp_path):
+    name = os.fsdecode(b"a\xffb\xc3\xbc")
+    atomic.write_json(tmp_path / "x.json", {"command": name})
+    text = (tmp_path / "x.json").read_text(encoding="utf-8")
+    assert json.loads(text) == {"command": name}
+    assert "ü" in text
+
+
+def test_a_text_that_names_any_file_is_written(tmp_path):
+    atomic.write_text(tmp_path / "crash.txt", os.fsdecode(b"no file a\xffb"))
+    assert (tmp_path / "crash.txt").read_bytes() == rb"no file a\udcffb"
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path):

@@ -9,6 +9,7 @@ from hsr8.recorder.walking_table import (
     COLUMNS,
     OdometryToWorld,
     WalkingTableWriter,
+    _row_type,
     read_walking_table,
 )
 from hsr8.world.index import ModelIndex
@@ -53,6 +54,25 @@ def test_a_cut_file_loses_its_last_row(written):
     path, records = written
     path.write_bytes(path.read_bytes()[:-5])
     assert len(read_walking_table(path)) == len(records) - 1
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [("time", np.nan), ("roll", np.inf), ("phase", np.nan), ("phase", 99.0), ("limits", -np.inf)],
+)
+def test_a_row_that_no_run_writes_is_told(written, column, value):
+    path, records = written
+    rows = _row_type(len(COLUMNS))
+    content = path.read_bytes()
+    start = len(content) - len(records) * rows.itemsize
+    table = np.frombuffer(content[start:], rows).copy()
+    if column == "time":
+        table["time"][7] = value
+    else:
+        table["values"][7, COLUMNS.index(column)] = value
+    path.write_bytes(content[:start] + table.tobytes())
+    with pytest.raises(UsageError, match="is damaged in row 7"):
+        read_walking_table(path)
 
 
 def test_a_window_holds_both_ends(written):
