@@ -229,8 +229,19 @@ def _tell(options: Sweep, out: Path, summaries: dict[str, Summary], go_on: str) 
                 table.add_row(label, text)
             console.print(table)
         console.print(f"report      {out / REPORT}", soft_wrap=True, markup=False)
+    if told := _not_run(list(summaries.values())):
+        print(f"hsr8: {told}; why: {out / REPORT}", file=sys.stderr)
     if go_on:
         print(f"hsr8: interrupted; go on with: {go_on}", file=sys.stderr)
+
+
+def _not_run(summaries: Sequence[Summary]) -> str:
+    """How many runs came to no end that counts, in words; nothing if there are none."""
+    kinds = ("crashed", "diverged", "refused")
+    counts = [(sum(getattr(s, kind) for s in summaries), kind) for kind in kinds]
+    found = [f"{count} {kind}" for count, kind in counts if count]
+    runs = sum(s.runs + s.refused for s in summaries)
+    return f"of {runs} runs {', '.join(found)}" if found else ""
 
 
 def _exit_code(summaries: Sequence[Summary]) -> int:

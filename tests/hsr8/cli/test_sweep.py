@@ -115,6 +115,24 @@ def test_exit_codes(instant, told, code):
     assert entry([*FAST, "--seeds", "0:2"]) == code
 
 
+@pytest.mark.parametrize(
+    ("told", "said"),
+    [
+        ({}, ""),
+        ({1: "failed"}, ""),
+        ({1: "refused"}, "hsr8: of 3 runs 1 refused; why: sweeps/quick/report.md\n"),
+        (
+            {0: "crashed", 1: "diverged", 2: "crashed"},
+            "hsr8: of 3 runs 2 crashed, 1 diverged; why: sweeps/quick/report.md\n",
+        ),
+    ],
+)
+def test_runs_without_a_result_are_told_to_the_quiet_too(instant, capsys, told, said):
+    instant(told)
+    entry([*FAST, "--seeds", "0:3"])
+    assert capsys.readouterr().err == said
+
+
 def test_a_crashed_run_is_run_again_by_the_next_sweep(instant):
     instant({1: "crashed"})
     entry([*FAST, "--seeds", "0:3"])
