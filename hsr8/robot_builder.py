@@ -7,6 +7,7 @@ import numpy as np
 from hsr8.decisions import Decisions, Goes, Looks, Moves
 from hsr8.errors import UsageError
 from hsr8.own_decisions import OwnGaze, OwnPlanner
+from hsr8.own_file import made_from
 from hsr8.robot import Robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
@@ -107,9 +108,14 @@ def build_decisions(
     `gaze` takes the place of the scenario's.
 
     Raises:
-        UsageError: the `planner` or the `gaze` is none, or a `planner` is given with a `script`.
+        UsageError: the `planner` or the `gaze`, given or named by the scenario, is none, or there
+            is one with a `script`.
     """
-    navigation, limits = scenario.navigation, scenario.speed_limits()
+    own, navigation, limits = scenario.own, scenario.navigation, scenario.speed_limits()
+    if planner is None and own.planner:
+        planner = made_from(own.planner)
+    if gaze is None and own.gaze:
+        gaze = made_from(own.gaze)
     beacons = known_beacons(scenario, layout)
     mission: Goes
     moves: Moves

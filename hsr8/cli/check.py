@@ -12,6 +12,7 @@ from hsr8.cli.cost import estimate
 from hsr8.cli.options import Check
 from hsr8.cli.picture import require_png
 from hsr8.errors import UsageError
+from hsr8.own_file import require_own
 from hsr8.render.png import write_png
 from hsr8.scenario.command import Command
 from hsr8.scenario.disturbance import RandomPushes
@@ -35,6 +36,7 @@ def main(options: Check) -> int:
         UsageError: the picture cannot be written.
     """
     scenario = load(options.scenario, settings(options), options.seed)
+    require_own(scenario.own)
     if options.picture is not None:
         require_png("--picture", options.picture)
     world = draw_world(scenario, scenario.seed)

@@ -7,6 +7,7 @@ from hsr8.cli.command_line import checkpoint_period, log_level, option_tables, r
 from hsr8.cli.cost import estimate
 from hsr8.cli.loading import loading
 from hsr8.cli.options import Run
+from hsr8.errors import UsageError
 from hsr8.recorder import atomic
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
@@ -20,7 +21,7 @@ def main(options: Run) -> int:
         UsageError: the scenario, a setting or the output folder will not do.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
-    checkpoint_period(options)
+    period = checkpoint_period(options)
     if options.resume:
         with loading():
             from hsr8.cli.recorded_run import resume  # noqa: PLC0415  takes seconds
@@ -29,6 +30,8 @@ def main(options: Run) -> int:
     scenario = load(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
+    if period and (scenario.own.planner or scenario.own.gaze):
+        raise UsageError("--checkpoint: nobody knows how to save a planner or a gaze of one's own")
     command = run_command(options, scenario.seed)
     if options.dry_run:
         _tell_cost(options, scenario, command)

@@ -29,6 +29,7 @@ from hsr8.evaluation.sweep.report import headline, write_comparison_of_values, w
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.gl import require_gl
+from hsr8.own_file import digests, require_own
 from hsr8.recorder import atomic
 from hsr8.scenario.loader import dump, load
 from hsr8.scenario.schema import Scenario
@@ -58,6 +59,8 @@ def main(options: Sweep) -> int:
     scenarios = {name: _scenario(options, more) for name, more in variants.items()}
     if kind == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
         require_gl()
+    for scenario in scenarios.values():
+        require_own(scenario.own)
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
     if options.dry_run:
         runs = len(pending(seeds, (), shard))
@@ -79,6 +82,7 @@ def main(options: Sweep) -> int:
                 common,
                 name=scenario.name,
                 again=run_words(options, variants[name]),
+                libraries=common.libraries | digests(scenario.own),
                 scenario=dump(scenario),
             )
             folder = SweepFolder.open(out / name, definition)

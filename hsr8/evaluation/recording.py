@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Check, judge
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
+from hsr8.own_file import digests
 from hsr8.recorder import run_folder
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import Manifest
@@ -106,7 +107,10 @@ class Recording:
         simulation, scenario = self._simulation, self._simulation.scenario
         before = None if self._checkpoint is None else self._checkpoint.frame
         movers = len(simulation.layout.movers)
-        folder = RunFolder(path, manifest, dump(scenario), movers, before)
+        libraries = manifest.libraries | digests(scenario.own)
+        folder = RunFolder(
+            path, replace(manifest, libraries=libraries), dump(scenario), movers, before
+        )
         self._folder = folder
         with self._failure_noted():
             table = WalkingTableWriter(

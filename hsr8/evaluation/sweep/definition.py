@@ -106,7 +106,8 @@ def version_differences(one: Definition, other: Definition) -> dict[str, tuple[s
         {"hsr8": d.hsr8, "code": d.code, "processor": d.processor, **d.libraries}
         for d in (one, other)
     ]
-    both = {key: (tables[0].get(key, "-"), tables[1].get(key, "-")) for key in tables[0]}
+    keys = tables[0] | tables[1]
+    both = {key: (tables[0].get(key, "-"), tables[1].get(key, "-")) for key in keys}
     return {key: pair for key, pair in both.items() if pair[0] != pair[1]}
 
 

@@ -1,0 +1,98 @@
+"""Planners and gazes in files of one's own, named as ``FILE.py:CLASS``."""
+
+import hashlib
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from traceback import extract_tb
+from types import ModuleType
+from typing import Any
+
+from hsr8.errors import UsageError
+from hsr8.scenario.own import Own
+
+
+def made_from(reference: str) -> Any:
+    """A new object of the class that ``FILE.py:CLASS`` names, made without arguments.
+
+    The file is run once in a process, as by ``import``; what lies beside it can be imported.
+
+    Raises:
+        UsageError: there is no such file or class, or it cannot be run or made.
+    """
+    path, _, name = reference.rpartition(":")
+    file = Path(path).resolve()
+    module = _module(reference, file)
+    made = getattr(module, name, None)
+    if not isinstance(made, type):
+        classes = [n for n, v in vars(module).items() if _is_class_of(v, module)]
+        raise UsageError(f"{reference}: {path} has no class {name}, but {_listed(classes)}")
+    try:
+        return made()
+    except Exception as error:
+        raise UsageError(f"{reference}: {name}() fails: {_told(error, file)}") from error
+
+
+def require_own(own: Own) -> None:
+    """See to it that what a scenario names can be made.
+
+    Raises:
+        UsageError: it cannot.
+    """
+    for reference in (own.planner, own.gaze):
+        if reference:
+            made_from(reference)
+
+
+def digests(own: Own) -> dict[str, str]:
+    """First digits of the SHA-256 of each file that a scenario names, by reference."""
+    return {
+        reference: hashlib.sha256(_content(reference)).hexdigest()[:12]
+        for reference in (own.planner, own.gaze)
+        if reference
+    }
+
+
+def _content(reference: str) -> bytes:
+    file = reference.rpartition(":")[0]
+    try:
+        return Path(file).read_bytes()
+    except OSError as error:
+        raise UsageError(f"{reference}: cannot read {file}: {error.strerror}") from error
+
+
+def _module(reference: str, file: Path) -> ModuleType:
+    """The file as a module, run if this process has not run it."""
+    name = f"own {file}"  # no name that an import could mean
+    if name in sys.modules:
+        return sys.modules[name]
+    _content(reference)
+    spec = spec_from_file_location(name, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    beside = str(file.parent)
+    if beside not in sys.path:
+        sys.path.append(beside)
+    sys.modules[name] = module  # dataclasses look for their module there
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:
+        del sys.modules[name]
+        raise UsageError(f"{reference}: {file.name} cannot be run: {_told(error, file)}") from error
+    return module
+
+
+def _is_class_of(value: object, module: ModuleType) -> bool:
+    return isinstance(value, type) and value.__module__ == module.__name__
+
+
+def _listed(classes: list[str]) -> str:
+    return ", ".join(classes) if classes else "none at all"
+
+
+def _told(error: BaseException, file: Path) -> str:
+    """An exception in a line, with the line of `file` that it comes from."""
+    lines = [f.lineno for f in extract_tb(error.__traceback__) if f.filename == str(file)]
+    where = f" (line {lines[-1]})" if lines else ""
+    return f"{type(error).__name__}: {' '.join(str(error).split())}{where}"

@@ -1,0 +1,163 @@
+"""Planners and gazes named in a scenario as FILE.py:CLASS."""
+
+import json
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import hsr8
+from hsr8.cli.main import entry
+from hsr8.errors import UsageError
+from hsr8.own_file import digests, made_from, require_own
+from hsr8.scenario.own import Own
+
+FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
+SETTINGS = ("robot.body=kinematic", "camera.source=analytic", "duration=3.0")
+SOURCE = """
+from dataclasses import dataclass
+
+import numpy as np
+
+from beside import SPEED
+from navigation.decision import GazeDecision, MotionDecision
+
+
+@dataclass
+class Ahead:
+    steps: int = 0
+
+    def plan(self, belief, task):
+        self.steps += 1
+        return MotionDecision(np.array([SPEED, 0.0, 0.0]))
+
+
+class Down:
+    def choose(self, belief, task, motion):
+        return GazeDecision(0.0, -0.5)
+
+
+class Silent:
+    pass
+
+
+class Breaks:
+    def __init__(self):
+        raise RuntimeError("no\\nway")
+
+
+nothing = 3
+"""
+LINE = SOURCE.split("\n").index('        raise RuntimeError("no\\nway")') + 1
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Working directory with a file of planners and gazes, and one beside it."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    tmp_path.joinpath("beside.py").write_text("SPEED = 0.05\n")
+    tmp_path.joinpath("mine.py").write_text(SOURCE)
+    yield tmp_path
+    sys.modules.pop("beside", None)
+
+
+def test_every_object_is_new_and_the_file_is_run_once(folder):
+    first, second = made_from("mine.py:Ahead"), made_from("mine.py:Ahead")
+    assert first is not second
+    assert type(first) is type(second)
+    assert type(made_from(f"{folder}/mine.py:Ahead")) is type(first)
+
+
+@pytest.mark.parametrize(
+    ("reference", "said"),
+    [
+        ("none.py:Ahead", "cannot read none.py: No such file"),
+        ("mine.py:Behind", "mine.py has no class Behind, but Ahead, Down, Silent, Breaks"),
+        ("mine.py:nothing", "mine.py has no class nothing, but"),
+        ("mine.py:Breaks", rf"Breaks\(\) fails: RuntimeError: no way \(line {LINE}\)"),
+        ("wrong.py:Ahead", r"wrong.py cannot be run: NameError: .* \(line 2\)"),
+        ("leaves.py:Ahead", "leaves.py cannot be run: SystemExit: 1"),
+        ("text.py:Ahead", "text.py cannot be run: SyntaxError"),
+        ("empty.py:Ahead", "empty.py has no class Ahead, but none at all"),
+    ],
+)
+def test_what_cannot_be_made_is_told_in_a_line(folder, reference, said):
+    folder.joinpath("wrong.py").write_text("x = 1\ny = z\n")
+    folder.joinpath("leaves.py").write_text("raise SystemExit(1)\n")
+    folder.joinpath("text.py").write_text("two words\n")
+    folder.joinpath("empty.py").write_text("")
+    for _ in range(2):  # a file that failed is not taken for one that was run
+        with pytest.raises(UsageError, match=f"^{reference}: {said}") as told:
+            require_own(Own(gaze=reference))
+        assert "\n" not in str(told.value)
+
+
+@given(other=st.binary(min_size=1, max_size=20))
+def test_digests_tell_files_apart(tmp_path_factory, other):
+    file = tmp_path_factory.mktemp("own") / "mine.py"
+    file.write_bytes(b"")
+    own = Own(planner=f"{file}:A", gaze=f"{file}:B")
+    before = digests(own)
+    file.write_bytes(other)
+    after = digests(own)
+    assert set(before) == set(after) == {own.planner, own.gaze}
+    assert all(before[name] != after[name] for name in before)
+    assert digests(Own()) == {}
+
+
+def test_a_named_planner_and_gaze_decide_as_given_ones_do(folder):
+    named = {"own.planner": "mine.py:Ahead", "own.gaze": "mine.py:Down"}
+    fast = dict(setting.split("=") for setting in SETTINGS) | {"duration": 3.0}
+    given_ = hsr8.run(
+        "quick",
+        settings=fast,
+        planner=made_from("mine.py:Ahead"),
+        gaze=made_from("mine.py:Down"),
+    )
+    usual = hsr8.run("quick", settings=fast)
+    found = hsr8.run("quick", settings=fast | named)
+    assert found.metrics["state_hash"] == given_.metrics["state_hash"]
+    assert found.metrics["state_hash"] != usual.metrics["state_hash"]
+
+
+def test_a_class_without_the_method_is_refused(folder):
+    with pytest.raises(UsageError, match="Silent has no method plan"):
+        hsr8.run("quick", settings=[*SETTINGS, "own.planner=mine.py:Silent"])
+
+
+def test_a_run_names_the_file_s_digest_and_is_computed_again(folder, capsys):
+    own = ("--set", "own.planner=mine.py:Ahead", "own.gaze=mine.py:Down", "duration=3.0")
+    assert entry(["run", "quick", *FAST, *own, "--no-log", "--out", "runs"]) == 1
+    (manifest,) = folder.glob("runs/quick/*/manifest.json")
+    told = json.loads(manifest.read_text())["libraries"]
+    assert digests(Own(planner="mine.py:Ahead")).items() <= told.items()
+    assert entry(["check", "replay", "runs"]) == 0
+
+
+def test_a_sweep_refuses_to_go_on_with_another_file(folder, capsys):
+    sweep = ["sweep", "quick", *FAST, "--seeds", "0:1", "--out", "s"]
+    own = ["--set", "own.planner=mine.py:Ahead", "duration=0.3"]
+    assert entry([*sweep, *own]) == 1
+    folder.joinpath("mine.py").write_text(SOURCE + "\n")
+    assert entry([*sweep, *own]) == 2
+    assert "mine.py:Ahead: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [("check",), ("sweep", "--seeds", "0:1"), ("run",)])
+def test_commands_refuse_what_cannot_be_made(folder, capsys, command):
+    word, *more = command
+    assert entry([word, "quick", *more, "--set", "own.planner=mine.py:Behind"]) == 2
+    assert "has no class Behind" in capsys.readouterr().err
+
+
+def test_a_run_with_own_decisions_has_no_checkpoints(folder, capsys):
+    own = ("--set", "own.gaze=mine.py:Down")
+    assert entry(["run", "quick", *FAST, *own, "--checkpoint", "1"]) == 2
+    assert "--checkpoint" in capsys.readouterr().err
+
+
+def test_a_walk_asks_no_planner(folder):
+    with pytest.raises(hsr8.errors.ScenarioError, match="asks no planner"):
+        hsr8.load("walk", ["own.planner=mine.py:Ahead"])
