@@ -47,7 +47,8 @@ class WalkTally:
         limits = walking.limits
         if limits:
             self.altered += 1
-            self.by_limit.update(dict.fromkeys(limits, 1))  # several parts may tell of the same
+            for limit in dict.fromkeys(limits):  # several parts may tell of the same
+                self.by_limit[limit] += 1
         depth = walking.zmp_depth
         self.least_depth = min(self.least_depth, depth)
         self.outside += depth < -ROUNDING
