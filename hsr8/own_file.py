@@ -29,7 +29,7 @@ def made_from(reference: str) -> Any:
         raise UsageError(f"{reference}: {path} has no class {name}, but {_listed(classes)}")
     try:
         return made()
-    except Exception as error:
+    except Exception as error:  # it is somebody else's code
         raise UsageError(f"{reference}: {name}() fails: {_told(error, file)}") from error
 
 
