@@ -25,8 +25,10 @@ def made_from(reference: str) -> Any:
     module = _module(reference, file)
     made = getattr(module, name, None)
     if not isinstance(made, type):
-        classes = [n for n, v in vars(module).items() if _is_class_of(v, module)]
-        raise UsageError(f"{reference}: {path} has no class {name}, but {_listed(classes)}")
+        classes = [v for v in vars(module).values() if isinstance(v, type)]
+        there = [c.__name__ for c in classes if c.__module__ == module.__name__]
+        listed = ", ".join(there) or "none at all"
+        raise UsageError(f"{reference}: {path} has no class {name}, but {listed}")
     try:
         return made()
     except Exception as error:  # it is somebody else's code
@@ -39,18 +41,17 @@ def require_own(own: Own) -> None:
     Raises:
         UsageError: it cannot.
     """
-    for reference in (own.planner, own.gaze):
-        if reference:
-            made_from(reference)
+    for reference in own.named:
+        made_from(reference)
 
 
 def digests(own: Own) -> dict[str, str]:
-    """First digits of the SHA-256 of each file that a scenario names, by reference."""
-    return {
-        reference: hashlib.sha256(_content(reference)).hexdigest()[:12]
-        for reference in (own.planner, own.gaze)
-        if reference
-    }
+    """First digits of the SHA-256 of each file that a scenario names, by reference.
+
+    Raises:
+        UsageError: one cannot be read.
+    """
+    return {name: hashlib.sha256(_content(name)).hexdigest()[:12] for name in own.named}
 
 
 def _content(reference: str) -> bytes:
@@ -66,7 +67,7 @@ def _module(reference: str, file: Path) -> ModuleType:
     name = f"own {file}"  # no name that an import could mean
     if name in sys.modules:
         return sys.modules[name]
-    _content(reference)
+    _content(reference)  # a file that is not there is told as such
     spec = spec_from_file_location(name, file)
     assert spec is not None
     assert spec.loader is not None
@@ -81,14 +82,6 @@ def _module(reference: str, file: Path) -> ModuleType:
         del sys.modules[name]
         raise UsageError(f"{reference}: {file.name} cannot be run: {_told(error, file)}") from error
     return module
-
-
-def _is_class_of(value: object, module: ModuleType) -> bool:
-    return isinstance(value, type) and value.__module__ == module.__name__
-
-
-def _listed(classes: list[str]) -> str:
-    return ", ".join(classes) if classes else "none at all"
 
 
 def _told(error: BaseException, file: Path) -> str:

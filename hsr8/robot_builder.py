@@ -108,8 +108,8 @@ def build_decisions(
     `gaze` takes the place of the scenario's.
 
     Raises:
-        UsageError: the `planner` or the `gaze`, given or named by the scenario, is none, or there
-            is one with a `script`.
+        UsageError: a `planner` or a `gaze`, given or named by the scenario, is none, or there is
+            a planner beside a `script`.
     """
     own, navigation, limits = scenario.own, scenario.navigation, scenario.speed_limits()
     if planner is None and own.planner:

@@ -33,7 +33,7 @@ def main(options: Check) -> int:
 
     Raises:
         ScenarioError: the scenario is wrong or its world cannot be drawn.
-        UsageError: the picture cannot be written.
+        UsageError: a planner or a gaze that it names cannot be made, or the picture not written.
     """
     scenario = load(options.scenario, settings(options), options.seed)
     require_own(scenario.own)

@@ -30,7 +30,7 @@ def main(options: Run) -> int:
     scenario = load(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
-    if period and (scenario.own.planner or scenario.own.gaze):
+    if period and scenario.own.named:
         raise UsageError("--checkpoint: nobody knows how to save a planner or a gaze of one's own")
     command = run_command(options, scenario.seed)
     if options.dry_run:

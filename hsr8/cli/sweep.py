@@ -46,7 +46,8 @@ def main(options: Sweep) -> int:
     """Run what has no result yet, write the results, and tell them.
 
     Raises:
-        UsageError: the scenario, the seeds, the folder or the executor will not do.
+        UsageError: the scenario, a planner or a gaze that it names, the seeds, the folder or the
+            executor will not do.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
     seeds = parse_seeds(options.seeds)

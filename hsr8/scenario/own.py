@@ -16,3 +16,8 @@ class Own(Section):
     """FILE.py:CLASS with a method plan, in place of `navigation.planner`; none if empty."""
     gaze: Reference = ""
     """FILE.py:CLASS with a method choose, in place of `navigation.gaze`; none if empty."""
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """What is named, planner first."""
+        return tuple(reference for reference in (self.planner, self.gaze) if reference)
