@@ -233,6 +233,9 @@ class Simulation:
             self.exit_reason = "diverged"
             self._tell(Event(self._body.time, "diverged", str(error)))
             raise
+        except Exception as error:
+            error.add_note(f"at {self._body.time:.3f} s of simulated time")
+            raise
 
     def state_hash(self) -> str:
         """SHA-256 of the world's state and the robot's belief."""

@@ -6,10 +6,14 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hsr8.errors import UsageError
-from hsr8.scenario.own import Own
+
+if TYPE_CHECKING:  # the command line imports this module for its errors alone
+    from hsr8.scenario.own import Own
+
+PREFIX = "own "  # of modules' names: none that an import could mean
 
 
 def made_from(reference: str) -> Any:
@@ -35,7 +39,7 @@ def made_from(reference: str) -> Any:
         raise UsageError(f"{reference}: {name}() fails: {_told(error, file)}") from error
 
 
-def require_own(own: Own) -> None:
+def require_own(own: "Own") -> None:
     """See to it that what a scenario names can be made.
 
     Raises:
@@ -45,13 +49,20 @@ def require_own(own: Own) -> None:
         made_from(reference)
 
 
-def digests(own: Own) -> dict[str, str]:
+def digests(own: "Own") -> dict[str, str]:
     """First digits of the SHA-256 of each file that a scenario names, by reference.
 
     Raises:
         UsageError: one cannot be read.
     """
     return {name: hashlib.sha256(_content(name)).hexdigest()[:12] for name in own.named}
+
+
+def line_of(error: BaseException) -> str | None:
+    """File and line of one's own that `error` comes from; None if it comes from elsewhere."""
+    own = {str(name).removeprefix(PREFIX) for name in sys.modules if name.startswith(PREFIX)}
+    lines = [f for f in extract_tb(error.__traceback__) if f.filename in own]
+    return f"{lines[-1].filename}, line {lines[-1].lineno}" if lines else None
 
 
 def _content(reference: str) -> bytes:
@@ -64,7 +75,7 @@ def _content(reference: str) -> bytes:
 
 def _module(reference: str, file: Path) -> ModuleType:
     """The file as a module, run if this process has not run it."""
-    name = f"own {file}"  # no name that an import could mean
+    name = f"{PREFIX}{file}"
     if name in sys.modules:
         return sys.modules[name]
     _content(reference)  # a file that is not there is told as such

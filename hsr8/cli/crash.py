@@ -1,4 +1,4 @@
-"""Our own mistakes: people get one line, the traceback goes into a file."""
+"""What nobody expected to fail: people get one line, the traceback goes into a file."""
 
 import tempfile
 import traceback
@@ -6,7 +6,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from hsr8.errors import Hsr8Error
+from hsr8.errors import Hsr8Error, UsageError
+from hsr8.own_file import line_of
 from hsr8.recorder import atomic
 
 FILE = "crash.txt"
@@ -18,7 +19,10 @@ class InternalError(Hsr8Error):
 
 
 class CrashReport:
-    """Turns unexpected exceptions into `InternalError` and keeps their traceback.
+    """Turns unexpected exceptions into errors that people understand; keeps their traceback.
+
+    Those from a planner or a gaze of one's own become a `UsageError`, all others an
+    `InternalError`.
 
     Args:
         folder: where ``crash.txt`` goes; a new temporary folder by default.
@@ -36,19 +40,23 @@ class CrashReport:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if not isinstance(error, Exception) or isinstance(error, EXPECTED):
+        if not isinstance(error, Exception | SystemExit) or isinstance(error, EXPECTED):
             return
         if isinstance(error.__cause__, KeyboardInterrupt):
             # Ctrl-C during the import of a compiled module arrives as an ImportError.
             raise KeyboardInterrupt from error
-        what = str(error).strip().splitlines()
-        raise InternalError(
-            f"internal error, {type(error).__name__}: {what[0] if what else 'no message'}"
-            f"\n  traceback: {self._keep(''.join(traceback.format_exception(error)))}"
-        ) from error
+        own = line_of(error)
+        if own is not None:
+            raise UsageError(f"{own}: {self._told(error)}") from error
+        if isinstance(error, Exception):
+            raise InternalError(f"internal error, {self._told(error)}") from error
 
-    def _keep(self, trace: str) -> str:
+    def _told(self, error: BaseException) -> str:
+        return f"{_what(error)}\n  traceback: {self._keep(error)}"
+
+    def _keep(self, error: BaseException) -> str:
         """Where the traceback is; a run folder on a full disk does not take it."""
+        trace = "".join(traceback.format_exception(error))
         try:
             if self._folder is not None:
                 return _write(self._folder, trace)
@@ -56,8 +64,15 @@ class CrashReport:
             pass
         try:
             return _write(Path(tempfile.mkdtemp(prefix="hsr8-")), trace)
-        except OSError as error:
-            return f"cannot be written: {error}"
+        except OSError as failure:
+            return f"cannot be written: {failure}"
+
+
+def _what(error: BaseException) -> str:
+    """Its kind, its first line, and when it happened in a run."""
+    first, *_ = [*str(error).strip().splitlines(), "no message"]
+    when = getattr(error, "__notes__", [])
+    return ", ".join([f"{type(error).__name__}: {first}", *when])
 
 
 def _write(folder: Path, trace: str) -> str:

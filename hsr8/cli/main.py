@@ -68,6 +68,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         3 diverged or internal error, 130 interrupted.
     """
     atexit.register(gc.freeze)  # an ending process has nothing to look for
+    sys.stdout, sys.stderr = _or_nowhere(sys.stdout), _or_nowhere(sys.stderr)
     if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
         sys.stdout.reconfigure(errors="backslashreplace")  # as standard error: names are any bytes
     try:
@@ -98,7 +99,8 @@ def _answer(given: list[str]) -> int:
                 module = importlib.import_module(MODULES[type(command)])
             code: int = module.main(command)
     except Hsr8Error as error:
-        print(f"hsr8: {error}", file=sys.stderr)
+        when = getattr(error, "__notes__", [])
+        print(", ".join([f"hsr8: {error}", *when]), file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
         print("hsr8: interrupted", file=sys.stderr)
@@ -165,6 +167,11 @@ def parse(arguments: Sequence[str]) -> options.Command:
         config=(tyro.conf.FlagCreatePairsOff,),
     )
     return command
+
+
+def _or_nowhere(stream: TextIO | None) -> TextIO:
+    """Where to write; Python has no stream at all for one that is closed from the beginning."""
+    return open(os.devnull, "w", encoding="utf-8") if stream is None else stream
 
 
 def _drop_unread(stream: TextIO) -> None:

@@ -1,6 +1,7 @@
 """Planners and gazes named in a scenario as FILE.py:CLASS."""
 
 import json
+import re
 import sys
 
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 import hsr8
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
-from hsr8.own_file import digests, made_from, require_own
+from hsr8.own_file import digests, line_of, made_from, require_own
 from hsr8.scenario.own import Own
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
@@ -42,6 +43,24 @@ class Silent:
     pass
 
 
+class Trips(Ahead):
+    error = ZeroDivisionError("too near")
+
+    def plan(self, belief, task):
+        if belief.time > 0.5:
+            raise self.error
+        return super().plan(belief, task)
+
+
+class Leaves(Trips):
+    error = SystemExit("enough")
+
+
+class Wanders(Trips):
+    def plan(self, belief, task):
+        return super().plan(belief, task) if belief.time < 0.5 else None
+
+
 class Breaks:
     def __init__(self):
         raise RuntimeError("no\\nway")
@@ -49,6 +68,7 @@ class Breaks:
 
 nothing = 3
 """
+ERRING = SOURCE.split("\n").index("            raise self.error") + 1
 LINE = SOURCE.split("\n").index('        raise RuntimeError("no\\nway")') + 1
 
 
@@ -74,7 +94,7 @@ def test_every_object_is_new_and_the_file_is_run_once(folder):
     ("reference", "said"),
     [
         ("none.py:Ahead", "cannot read none.py: No such file"),
-        ("mine.py:Behind", "mine.py has no class Behind, but Ahead, Down, Silent, Breaks"),
+        ("mine.py:Behind", "mine.py has no class Behind, but Ahead, Down, Silent, Trips"),
         ("mine.py:nothing", "mine.py has no class nothing, but"),
         ("mine.py:Breaks", rf"Breaks\(\) fails: RuntimeError: no way \(line {LINE}\)"),
         ("wrong.py:Ahead", r"wrong.py cannot be run: NameError: .* \(line 2\)"),
@@ -161,3 +181,49 @@ def test_a_run_with_own_decisions_has_no_checkpoints(folder, capsys):
 def test_a_walk_asks_no_planner(folder):
     with pytest.raises(hsr8.errors.ScenarioError, match="asks no planner"):
         hsr8.load("walk", ["own.planner=mine.py:Ahead"])
+
+
+@pytest.mark.parametrize(
+    ("name", "told"), [("Trips", "ZeroDivisionError: too near"), ("Leaves", "SystemExit: enough")]
+)
+def test_a_planner_that_fails_is_no_mistake_of_ours(folder, capsys, name, told):
+    own = ("--set", f"own.planner=mine.py:{name}", "duration=3.0")
+    assert entry(["run", "quick", *FAST, *own, "--out", "runs"]) == 2
+    said = capsys.readouterr().err
+    assert f"{folder / 'mine.py'}, line {ERRING}: {told}" in said
+    assert "internal" not in said
+    (manifest,) = folder.glob("runs/quick/*/manifest.json")
+    assert json.loads(manifest.read_text())["exit_reason"] == "error"
+    assert told in (manifest.parent / "crash.txt").read_text()
+    assert entry(["info", "runs"]) == 0
+
+
+def test_when_it_failed_is_told(folder, capsys):
+    for name in ("Trips", "Wanders"):
+        own = ("--set", f"own.planner=mine.py:{name}")
+        assert entry(["run", "quick", *FAST, *own, "--no-log", "--out", "runs"]) == 2
+        when = re.search(r", at (\S+) s of simulated time$", capsys.readouterr().err, re.MULTILINE)
+        assert 0.5 <= float(when[1]) < 1.5
+
+
+def test_a_planner_that_fails_reaches_python_as_it_is(folder):
+    with pytest.raises(ZeroDivisionError, match=r"^too near\n") as error:
+        hsr8.run("quick", settings=[*SETTINGS, "own.planner=mine.py:Trips"])
+    assert error.value.args == ("too near",)
+
+
+@pytest.mark.parametrize("name", ["Trips", "Wanders"])
+def test_in_a_sweep_it_is_a_run_that_failed(folder, capsys, name):
+    own = ("--set", f"own.planner=mine.py:{name}", "duration=3.0")
+    assert entry(["sweep", "quick", *FAST, "--seeds", "0:2", "--out", "s", *own]) == 3
+    rows = [json.loads(line) for line in (folder / "s" / "runs.jsonl").read_text().splitlines()]
+    assert {row["seed"] for row in rows} == {0, 1}
+    assert {row["outcome"] for row in rows} == {"crashed"}
+    assert "0 of 2" in (folder / "s" / "report.md").read_text()
+
+
+def test_errors_from_elsewhere_have_no_line_of_one_s_own(folder):
+    made_from("mine.py:Ahead")
+    with pytest.raises(ValueError, match="Expecting") as error:
+        json.loads("{")
+    assert line_of(error.value) is None

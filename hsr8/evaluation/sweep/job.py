@@ -90,6 +90,8 @@ def run_job(job: Job, start: Start = start, worker: str = "") -> Row:
     }
     assert process.returncode is not None, "it has ended"
     row |= _result(process.returncode, printed, said, job.timeout if hung else None)
+    if row["outcome"] == REFUSED and made is not None:
+        row["outcome"] = CRASHED  # it began to walk, and a planner or a gaze of one's own erred
     if made is not None and not _kept(job.keep, row["outcome"]):
         shutil.rmtree(made, ignore_errors=True)
         row["run"] = None

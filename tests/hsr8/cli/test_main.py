@@ -200,3 +200,14 @@ def test_nothing_is_looked_through_when_it_ends():
     told = [line for line in done.stderr.splitlines() if "objects in each generation" in line]
     assert told
     assert all(sum(map(int, line.split(":")[-1].split())) < 1000 for line in told)
+
+
+@pytest.mark.parametrize(
+    ("words", "closed", "code"),
+    [("--help", ">&-", 0), ("list", ">&-", 0), ("list --json", ">&- 2>&-", 0), ("no", "2>&-", 2)],
+)
+def test_streams_that_are_closed_from_the_beginning(words, closed, code):
+    line = f"exec {sys.executable} -m hsr8 {words} {closed}"
+    done = subprocess.run(["sh", "-c", line], capture_output=True, text=True, check=False)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
