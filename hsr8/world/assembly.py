@@ -15,6 +15,7 @@ import numpy as np
 
 from hsr8.scenario.fault import Bump
 from hsr8.world.layout import Beacon, Layout, Obstacle
+from hsr8.world.model_check import require_sound
 from hsr8.world.models import models_dir, reading_models
 from vision.colour import COLOUR_CLASSES
 
@@ -91,7 +92,9 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
         _add_beacon(spec, beacon, quality)
     for i, bump in enumerate(layout.bumps):
         _add_bump(spec, f"bump_{i:02d}", bump)
-    return spec.compile()
+    model = spec.compile()
+    require_sound(model)
+    return model
 
 
 def _part(find: Callable[[str], Any], name: str) -> Any:

@@ -14,6 +14,13 @@ LIGHT = ["--body", "kinematic", "--camera", "analytic", "--quiet", "--no-log", "
         ("hsr8/hsr8.xml", 'name="l_knee"', 'name="left_knee"', "'l_knee'"),
         ("hsr8/hsr8.xml", 'key name="walk_ready"', 'key name="ready"', "'walk_ready'"),
         ("hsr8/hsr8.xml", "</mujoco>", "", "XML"),
+        ("hsr8/hsr8.xml", 'mass="0.08"', 'mass="-0.08"', "mass and inertia of moving bodies"),
+        ("hsr8/hsr8.xml", 'mass="1.24"', 'mass="nan"', "body_mass is not finite"),
+        ("hsr8/hsr8.xml", 'range="-2.2 0.05"', 'range="0.05 -2.2"', "range must rise"),
+        ("hsr8/hsr8.xml", 'forcerange="-6 6"', 'forcerange="6 -6"', "forcerange must rise"),
+        ("hsr8/hsr8.xml", 'armature="0.005"', 'armature="-0.005"', "armature must not be negative"),
+        ("hsr8/hsr8.xml", 'kp="120"', 'kp="-120"', "kp must be positive"),
+        ("hsr8/hsr8.xml", 'damping="0.1"', 'damping="inf"', "not finite"),
         ("field/vision.xml", 'name="floor"', 'name="ground"', "'floor'"),
     ],
 )
