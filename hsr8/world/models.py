@@ -33,7 +33,6 @@ def reading_models() -> Iterator[None]:
     """
     try:
         yield
-    except (ValueError, KeyError, SyntaxError, RuntimeError) as error:
-        # The last two are MuJoCo's word for what is no XML, Pinocchio's for what is no number.
+    except (ValueError, KeyError, SyntaxError) as error:  # the last one of what is no XML
         reason = " ".join(str(error.args[0]).split())
         raise ModelError(f"the models in {models_dir()} will not do: {reason}") from error
