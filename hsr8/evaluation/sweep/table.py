@@ -36,6 +36,11 @@ def _column(values: list[Any]) -> list[Any]:
     kinds = {type(value) for value in values if value is not None}
     if kinds == {int, float}:
         return [None if value is None else float(value) for value in values]
-    if len(kinds) > 1:
-        return [None if value is None else str(value) for value in values]
+    if kinds == {str} or len(kinds) > 1:
+        return [None if value is None else _text(value) for value in values]
     return values
+
+
+def _text(value: Any) -> str:
+    """As text; of a file's name, bytes that are no UTF-8 become escapes."""
+    return str(value).encode("utf-8", errors="backslashreplace").decode("utf-8")

@@ -30,6 +30,7 @@ def test_any_mixture_of_values_has_a_table(rows, tmp_path_factory):
         ([1, 0.5, None], [1.0, 0.5, None]),
         ([True, None], [True, None]),
         ([1, "a"], ["1", "a"]),
+        (["a", "b\udcff"], ["a", r"b\udcff"]),
     ],
 )
 def test_a_column_has_one_type(tmp_path, values, back):
