@@ -9,6 +9,7 @@ import io
 import pickle
 import struct
 from collections.abc import Mapping
+from enum import Enum
 from types import FunctionType
 from typing import Any
 
@@ -104,7 +105,7 @@ def decode(content: bytes, anchors: Mapping[str, Any], name: str) -> dict[str, A
 
 
 class _Writer(pickle.Pickler):
-    """Leaves out what is made anew."""
+    """Leaves out what is made anew, and names members of enumerations by their values."""
 
     def persistent_id(self, obj: Any) -> str | None:
         if isinstance(obj, mujoco.MjModel):
@@ -112,6 +113,11 @@ class _Writer(pickle.Pickler):
         if isinstance(obj, RobotModel):
             return "robot model"
         return None
+
+    def reducer_override(self, obj: Any) -> Any:
+        if isinstance(obj, Enum):  # before Python 3.11.4 they asked for `getattr`
+            return type(obj), (obj.value,)
+        return NotImplemented
 
 
 class _Reader(pickle.Unpickler):

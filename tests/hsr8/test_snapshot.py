@@ -2,6 +2,7 @@ import io
 import os
 import pickle
 import struct
+from enum import Enum
 from hashlib import sha256
 
 import numpy as np
@@ -13,6 +14,9 @@ from hsr8.errors import UsageError
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
 from hsr8.snapshot import MAGIC, decode, encode
+from navigation.belief import Motion
+from walking.get_up import Outcome
+from walking.state import Phase
 
 ANCHORS = {"model": None, "robot model": None}
 
@@ -27,6 +31,17 @@ def test_shared_things_stay_shared():
     back = decode(encode({"a": rng, "b": [rng]}), ANCHORS, "x")
     assert back["a"] is back["b"][0]
     assert back["a"].random() == np.random.default_rng(3).random()
+
+
+def test_enumerations_need_no_names_but_their_own(monkeypatch):
+    """As Python 3.11.2, which Debian has, would otherwise write them."""
+
+    def by_name(self, _protocol):
+        return getattr, (type(self), self.name)
+
+    monkeypatch.setattr(Enum, "__reduce_ex__", by_name)
+    members = [Motion.MOVING, Phase.DOUBLE_SUPPORT, Outcome.UP]
+    assert decode(encode({"a": members}), ANCHORS, "x")["a"] == members
 
 
 @pytest.mark.parametrize("tick", [1, 77, 260])
