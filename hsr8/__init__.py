@@ -13,6 +13,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from hsr8 import arithmetic as arithmetic  # chosen as it is imported, before NumPy is
 from hsr8.gl import choose_backend
 from hsr8.kernel_cache import choose_kernel_cache
 from hsr8.version import VERSION

@@ -4,14 +4,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import hypot
 
-import numpy as np
-from numpy.typing import NDArray
-
 from hsr8.evaluation.track_metrics import owners
 from navigation.angles import wrap
 from navigation.belief import Belief, Motion, Track
 from navigation.observation import Frame
 from navigation.visibility import Viewpoint
+
+import numpy as np
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

@@ -15,12 +15,6 @@ from pathlib import Path
 from time import process_time
 from typing import Annotated
 
-import numpy as np
-import tyro
-from belief_score import Moment, Score, Thing
-from study_page import seeds_of
-from tyro.conf import Positional, UseAppendAction
-
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.robot_builder import build_estimator
@@ -28,6 +22,12 @@ from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
+
+import numpy as np
+import tyro
+from belief_score import Moment, Score, Thing
+from study_page import seeds_of
+from tyro.conf import Positional, UseAppendAction
 
 
 @dataclass

@@ -3,11 +3,11 @@
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from navigation.angles import wrap
 from navigation.observation import CameraView, Observation
+
+import numpy as np
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Kind = Literal["obstacle", "beacon"]

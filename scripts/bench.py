@@ -14,14 +14,14 @@ import argparse
 import json
 from collections.abc import Iterable
 
-from loop_bench import Bench
-from study_page import RESULTS, command_line, environment
-
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder import atomic
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
+
+from loop_bench import Bench
+from study_page import RESULTS, command_line, environment
 
 PAGE, BASELINE = RESULTS / "loop-time.md", RESULTS / "loop-ratios.json"
 PACKAGES = ("hsr8", "mujoco", "numba", "numpy", "rerun-sdk")

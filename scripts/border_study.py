@@ -13,12 +13,12 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import atan2, hypot, radians, tan
 
-import numpy as np
-from study_page import add_seeds
-
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
+
+import numpy as np
+from study_page import add_seeds
 
 ASIDE = radians(95.0)  # bearing from which an obstacle is looked at over the shoulder
 DISTANCES = (0.4, 0.8, 1.5)  # ends of the classes of distance [m]

@@ -10,16 +10,16 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
-from study_page import options_of, write_page
-from walking_body import ROBOT, Body, Plant
-from walking_trial import SAMPLE, parameters_of
-
 from walking.admission import Limit
 from walking.command import CommandState, HeadTarget
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
 from walking.robot_model import RobotModel
+
+import numpy as np
+from study_page import options_of, write_page
+from walking_body import ROBOT, Body, Plant
+from walking_trial import SAMPLE, parameters_of
 
 PAGE = "command-states.md"
 GENERATORS = ("dcm", "robust")

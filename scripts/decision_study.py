@@ -16,12 +16,6 @@ from pathlib import Path
 from time import perf_counter, process_time
 from typing import Annotated, Literal
 
-import numpy as np
-import tyro
-from belief_world import CAMERA_HEIGHT, HFOV, VFOV, Camera, view
-from decision_world import TICK, Walker, World, perfect_belief
-from numpy.typing import NDArray
-
 from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
@@ -34,6 +28,12 @@ from navigation.gaze import GazePlanner
 from navigation.mission import Mission
 from navigation.observation import Frame
 from navigation.peers.choice import build_planner
+
+import numpy as np
+import tyro
+from belief_world import CAMERA_HEIGHT, HFOV, VFOV, Camera, view
+from decision_world import TICK, Walker, World, perfect_belief
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

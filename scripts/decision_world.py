@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-import numpy as np
-from belief_world import view
-from numpy.typing import NDArray
-
 from hsr8.world.layout import Layout
 from navigation.belief import Belief, Motion, Track
 from navigation.decision import SpeedLimits
+
+import numpy as np
+from belief_world import view
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

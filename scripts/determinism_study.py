@@ -17,8 +17,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from study_page import command_line, seeds_of
-
 from hsr8.evaluation.difference import motion, results
 from hsr8.evaluation.replay import replay
 from hsr8.evaluation.sweep.definition import Definition
@@ -27,6 +25,8 @@ from hsr8.recorder.run_reader import Run, open_run
 from hsr8.recorder.tape import read_tape
 from hsr8.scenario.loader import dump, load
 from hsr8.world.physics import CONTROL_PERIOD
+
+from study_page import command_line, seeds_of
 
 STAND_INS = ("--body", "kinematic", "--camera", "analytic")
 AFTER_VIDEO = """

@@ -3,6 +3,11 @@
 from dataclasses import dataclass
 from math import atan2, cos, hypot, inf, isfinite, sin
 
+from hsr8.recorder.record import FrameRecord
+from hsr8.render.walk_panels import INK
+from navigation.collision_band import Encounter, free_intervals
+from navigation.virtual_obstacle import foot_velocity, path_point
+
 import numpy as np
 from figure_style import (
     GOAL,
@@ -23,11 +28,6 @@ from matplotlib.patches import Patch, Polygon, Rectangle
 from numpy.typing import NDArray
 from recorded_run import RecordedRun, run
 from study_page import STAND_INS
-
-from hsr8.recorder.record import FrameRecord
-from hsr8.render.walk_panels import INK
-from navigation.collision_band import Encounter, free_intervals
-from navigation.virtual_obstacle import foot_velocity, path_point
 
 Array = NDArray[np.float64]
 

@@ -14,9 +14,9 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 
-from study_page import RESULTS, command_line
-
 from hsr8.evaluation.sweep.folder import SweepFolder
+
+from study_page import RESULTS, command_line
 
 PAGE = RESULTS / "executors.md"
 EXTRAS = {"dask": "distributed", "ray": "ray"}

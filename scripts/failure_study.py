@@ -13,10 +13,6 @@ from dataclasses import dataclass
 from math import degrees, hypot, pi
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-from study_page import STAND_INS, add_seeds, command_line
-
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
 from hsr8.recorder.frame_summary import from_line, to_line
@@ -27,6 +23,10 @@ from hsr8.scenario.loader import load
 from hsr8.world.truth import Contact, Truth
 from navigation.angles import wrap
 from navigation.belief import Motion, Track
+
+import numpy as np
+from numpy.typing import NDArray
+from study_page import STAND_INS, add_seeds, command_line
 
 Array = NDArray[np.float64]
 

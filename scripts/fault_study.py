@@ -21,15 +21,15 @@ from functools import cache
 from math import hypot
 from pathlib import Path
 
-import numpy as np
-from study_page import add_seeds, environment
-
 from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.scenario.world import ROBOT_RADIUS
+
+import numpy as np
+from study_page import add_seeds, environment
 
 START = 2.0  # of a fault, in the walk [s]
 DURATION = 30.0  # the goal is reached in 12 to 18 s as a rule [s]

@@ -3,11 +3,6 @@
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-import numpy as np
-from figure_style import GOAL, MOVER, ROBOT, STILL, disc, figure, square, styled
-from matplotlib.figure import Figure
-from numpy.typing import NDArray
-
 from navigation.avoid_obstacle import avoid_obstacle
 from navigation.belief import Motion, Track
 from navigation.decision_parameters import NavigationParameters
@@ -16,6 +11,11 @@ from navigation.motion_field import FieldScene, MotionField
 from navigation.move_to_goal import muf
 from navigation.obstacle_set import ObstacleSet
 from navigation.univector import normalized
+
+import numpy as np
+from figure_style import GOAL, MOVER, ROBOT, STILL, disc, figure, square, styled
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

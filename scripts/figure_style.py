@@ -4,6 +4,9 @@ from collections.abc import Sequence
 from math import cos, pi, sin, tan
 from typing import Any
 
+from hsr8.render.walk_figure import STYLE as WALK_STYLE
+from hsr8.render.walk_panels import BLUE, GREEN, ORANGE, PURPLE, VERMILION
+
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -11,9 +14,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
-
-from hsr8.render.walk_figure import STYLE as WALK_STYLE
-from hsr8.render.walk_panels import BLUE, GREEN, ORANGE, PURPLE, VERMILION
 
 Array = NDArray[np.float64]
 

@@ -19,8 +19,6 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from bad_input import keys, model_changed, mutated, near, value, values_changed, written
-
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.evaluation import checkpoint
@@ -33,6 +31,8 @@ from hsr8.world import models
 from vision.colour import COLOUR_CLASSES, ColourTable
 from vision.colour_file import load_table, save_table
 from vision.errors import VisionError
+
+from bad_input import keys, model_changed, mutated, near, value, values_changed, written
 
 TICKS = 100  # of a run that is begun
 FIRST = 20  # of one with a damaged model

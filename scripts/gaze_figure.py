@@ -7,14 +7,6 @@ import argparse
 from math import cos, sin
 from pathlib import Path
 
-import numpy as np
-from belief_world import HFOV, VFOV, view
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Rectangle, Wedge
-from numpy.typing import NDArray
-
 from navigation.belief import Belief, Motion, Particles, Track
 from navigation.deadline_gaze import deadline_votes
 from navigation.decision import SpeedLimits, Task
@@ -22,6 +14,14 @@ from navigation.decision_parameters import NavigationParameters
 from navigation.gaze import GazePlanner
 from navigation.gaze_scene import gaze_scene
 from navigation.partial_evaluation import SamplePoints
+
+import numpy as np
+from belief_world import HFOV, VFOV, view
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Rectangle, Wedge
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

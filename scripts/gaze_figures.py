@@ -3,6 +3,14 @@
 from dataclasses import dataclass
 from math import cos, degrees, sin
 
+from hsr8.recorder.record import FrameRecord
+from hsr8.render.walk_panels import INK
+from navigation.decision_parameters import NavigationParameters
+from navigation.extended_radius import extended_radius
+from navigation.gaze_scene import GazeScene, gaze_scene
+from navigation.landmark import points_to_world
+from navigation.partial_evaluation import SamplePoints
+
 import numpy as np
 from figure_style import (
     CONFIDENT,
@@ -23,14 +31,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 from recorded_run import RecordedRun, run
-
-from hsr8.recorder.record import FrameRecord
-from hsr8.render.walk_panels import INK
-from navigation.decision_parameters import NavigationParameters
-from navigation.extended_radius import extended_radius
-from navigation.gaze_scene import GazeScene, gaze_scene
-from navigation.landmark import points_to_world
-from navigation.partial_evaluation import SamplePoints
 
 Array = NDArray[np.float64]
 

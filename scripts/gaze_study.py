@@ -12,13 +12,13 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from hsr8.evaluation.wilson import wilson
+from hsr8.scenario.loader import load
+
 import numpy as np
 from decision_study import Run
 from scipy.stats import binomtest
 from study_page import add_seeds, command_line, environment
-
-from hsr8.evaluation.wilson import wilson
-from hsr8.scenario.loader import load
 
 SWEEP = (
     "navigation.gaze.mode=sweep navigation.gaze.sweep_period={} navigation.gaze.sweep_amplitude={}"

@@ -14,11 +14,6 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-import mujoco
-import numpy as np
-from study_page import RESULTS, add_seeds, command_line, environment
-from walking_body import ROBOT, Body, Plant
-
 from walking.command import HeadTarget, VelocityCommand
 from walking.get_up import GetUp, Outcome
 from walking.get_up_motion import MOTIONS, Motions
@@ -27,6 +22,11 @@ from walking.lying import lying_on, up_in_trunk
 from walking.parameters import CONTROL_PERIOD, GetUpParameters, WalkingParameters
 from walking.robot_model import RobotModel
 from walking.walker import Walker
+
+import mujoco
+import numpy as np
+from study_page import RESULTS, add_seeds, command_line, environment
+from walking_body import ROBOT, Body, Plant
 
 RESULT = RESULTS / "getup.md"
 LEAD = (2.0, 3.0)  # of walking before the push [s]

@@ -14,11 +14,6 @@ from math import cos, degrees, hypot, pi, sin
 from pathlib import Path
 from unittest.mock import patch
 
-import numpy as np
-import tyro
-from study_page import seeds_of
-from tyro.conf import Positional, UseAppendAction
-
 from hsr8 import robot_builder
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
@@ -29,6 +24,11 @@ from navigation.angles import wrap
 from navigation.belief import Belief
 from navigation.estimator import Estimator
 from navigation.observation import Frame
+
+import numpy as np
+import tyro
+from study_page import seeds_of
+from tyro.conf import Positional, UseAppendAction
 
 FOUND = 0.10  # position error of a robot that knows where it is [m]
 FOUND_TURN = 0.09  # and its heading error [rad]

@@ -17,8 +17,6 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
-from study_page import STAND_INS, command_line
-
 from hsr8.cli.main import entry
 from hsr8.evaluation import checkpoint
 from hsr8.evaluation.recording import Recording, renderer_of
@@ -32,6 +30,8 @@ from hsr8.recorder.run_reader import open_run
 from hsr8.recorder.tape import read_tape
 from hsr8.scenario.loader import dump, load
 from hsr8.world.physics import CONTROL_PERIOD
+
+from study_page import STAND_INS, command_line
 
 CHECKPOINT = 2  # simulated time between two [s]
 CLOCK = struct.Struct("<d")

@@ -10,11 +10,6 @@ from pathlib import Path
 
 os.environ.setdefault("MUJOCO_GL", "egl")
 
-import cv2
-import mujoco
-import numpy as np
-from numpy.typing import NDArray
-
 from hsr8.cli.colours import MASK, mask_colours
 from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
@@ -22,6 +17,11 @@ from hsr8.world.assembly import HEAD_CAMERA, Optics, assemble
 from hsr8.world.camera import RenderedCamera
 from hsr8.world.generator import draw_layout
 from hsr8.world.kinematic import KinematicBody
+
+import cv2
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 Image = NDArray[np.uint8]
 

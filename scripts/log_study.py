@@ -11,15 +11,15 @@ import tempfile
 from pathlib import Path
 from time import process_time
 
-from stopwatch import Stopwatch
-from study_page import RESULTS, command_line, environment
-
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.rerun_log import RerunLog
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
+
+from stopwatch import Stopwatch
+from study_page import RESULTS, command_line, environment
 
 PAGE = RESULTS / "log.md"
 SHARE, SIZE = 0.10, 15.0  # what the standard level may take: of the time, and [MB/min]

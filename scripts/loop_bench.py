@@ -12,9 +12,6 @@ import hsr8  # noqa: F401  before MuJoCo: it chooses the OpenGL to draw with
 import tempfile
 from pathlib import Path
 
-import mujoco
-from stopwatch import Stopwatch
-
 from hsr8.evaluation.metrics import Metrics
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
@@ -31,6 +28,9 @@ from hsr8.world.camera import RenderedCamera
 from hsr8.world.image_noise import ImageNoise
 from hsr8.world.offscreen import Offscreen
 from hsr8.world.physics import CONTROL_PERIOD
+
+import mujoco
+from stopwatch import Stopwatch
 
 FLOOR = ("floor: physics", "floor: images")
 REST, BESIDE, WHOLE = "the rest of the loop", "threads beside it", "whole loop"

@@ -10,13 +10,13 @@ reaches one beacon at most. Every turn rate is given the same worlds and places.
 import argparse
 from math import atan2, hypot, inf, pi
 
+from hsr8.scenario.loader import load
+from navigation.angles import wrap
+
 import numpy as np
 from decision_study import Run
 from decision_world import TICK
 from study_page import add_seeds
-
-from hsr8.scenario.loader import load
-from navigation.angles import wrap
 
 CARRIED, LIMIT = 5.0, 40.0  # times [s]
 PLACE = 2.25  # of the corners the robot is put in [m]

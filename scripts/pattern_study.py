@@ -15,10 +15,6 @@ from dataclasses import dataclass, field
 from math import cos, hypot, sin
 from pathlib import Path
 
-import numpy as np
-from scipy.spatial import ConvexHull
-from study_page import RESULTS, add_seeds, command_line, environment
-
 from walking.command import Command, CommandState, VelocityCommand
 from walking.footsteps import FootstepPlanner
 from walking.gait import Gait
@@ -32,6 +28,10 @@ from walking.steering import Steering
 from walking.stride import STILL
 from walking.support import SupportRegion, support_region
 from walking.transition import Transition
+
+import numpy as np
+from scipy.spatial import ConvexHull
+from study_page import RESULTS, add_seeds, command_line, environment
 
 ROBOT = Path(__file__).resolve().parents[1] / "models" / "hsr8" / "hsr8.xml"
 PAGE = RESULTS / "pattern.md"

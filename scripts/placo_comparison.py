@@ -17,13 +17,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from pattern_study import OUTSIDE, Walker
-from study_page import add_seeds
-
 from walking.command import VelocityCommand
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.robot_model import Sole
+
+import numpy as np
+from pattern_study import OUTSIDE, Walker
+from study_page import add_seeds
 
 try:
     import placo

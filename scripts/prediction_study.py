@@ -13,14 +13,14 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-from study_page import STAND_INS, add_seeds, environment
-
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
 from navigation.belief import Belief, Motion, Track
 from navigation.bend import mean_velocity
+
+import numpy as np
+from numpy.typing import NDArray
+from study_page import STAND_INS, add_seeds, environment
 
 Array = NDArray[np.float64]
 

@@ -12,16 +12,16 @@ import argparse
 import copy
 from math import sqrt
 
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.robot_model import RobotModel
+
 import mujoco
 import numpy as np
 from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import parameters_of
-
-from walking.command import HeadTarget, VelocityCommand
-from walking.engine import WalkingEngine
-from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.robot_model import RobotModel
 
 DIRECTIONS = ("forward", "fl", "left", "bl", "back", "br", "right", "fr")
 PHASES = 16

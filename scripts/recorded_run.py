@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from hsr8.loop import Simulation
 from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
+
+import numpy as np
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

@@ -13,15 +13,15 @@ longer walks, which would leave the field of bumps. Tune on seeds 0-99, report o
 import argparse
 from math import radians
 
+from walking.engine import WalkingEngine
+from walking.parameters import WalkingParameters
+from walking.robot_model import RobotModel
+
 import numpy as np
 from scipy.stats import chi2
 from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import Trace, parameters_of, random_script, walk
-
-from walking.engine import WalkingEngine
-from walking.parameters import WalkingParameters
-from walking.robot_model import RobotModel
 
 ERRORS = {
     "none": Plant(),

@@ -16,13 +16,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-import mujoco
-import numpy as np
-import tyro
-from walk_study import mean_velocity
-from walking_body import ROBOT, Body, Plant
-from walking_trial import Script, Trace, random_script, steady_script, walk
-
 from hsr8.world.scaled_model import scale_robot
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
@@ -32,6 +25,13 @@ from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.robot_model import READY, RobotModel
 from walking.similarity import carried, parameters_for
 from walking.yardsticks import HSR_VIII
+
+import mujoco
+import numpy as np
+import tyro
+from walk_study import mean_velocity
+from walking_body import ROBOT, Body, Plant
+from walking_trial import Script, Trace, random_script, steady_script, walk
 
 STEADY = {
     "forward": VelocityCommand(0.25, 0.0, 0.0),

@@ -6,6 +6,22 @@ from math import atan2, cos, hypot, sin
 from pathlib import Path
 from typing import Any
 
+from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.recorder.measurements import read_measurements
+from hsr8.recorder.run_folder import MEASUREMENTS
+from hsr8.recorder.run_reader import Run, open_run
+from hsr8.recorder.trajectory import Trajectory, rows_at
+from hsr8.recorder.walking_table import WalkingTable
+from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
+from hsr8.scenario.loader import load
+from hsr8.scenario.schema import Scenario
+from hsr8.world.generator import draw_layout
+from hsr8.world.layout import Layout
+from navigation.belief import Motion, Track
+from navigation.extended_radius import extended_radius
+from navigation.obstacle_set import ObstacleSet
+from navigation.partial_evaluation import psi_obstacle
+
 import numpy as np
 from figure_style import (
     GOAL,
@@ -28,22 +44,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 from numpy.typing import NDArray
-
-from hsr8.recorder.frame_summary import FrameSummary
-from hsr8.recorder.measurements import read_measurements
-from hsr8.recorder.run_folder import MEASUREMENTS
-from hsr8.recorder.run_reader import Run, open_run
-from hsr8.recorder.trajectory import Trajectory, rows_at
-from hsr8.recorder.walking_table import WalkingTable
-from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
-from hsr8.scenario.loader import load
-from hsr8.scenario.schema import Scenario
-from hsr8.world.generator import draw_layout
-from hsr8.world.layout import Layout
-from navigation.belief import Motion, Track
-from navigation.extended_radius import extended_radius
-from navigation.obstacle_set import ObstacleSet
-from navigation.partial_evaluation import psi_obstacle
 
 Array = NDArray[np.float64]
 

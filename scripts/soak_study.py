@@ -16,15 +16,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import thread_time
 
-import mujoco
-import numpy as np
-from study_page import RESULTS, STAND_INS, add_seeds, command_line, environment
-
 from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.loop import TICKS_A_SECOND, Simulation
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.run_folder import RunFolder
 from hsr8.scenario.loader import load
+
+import mujoco
+import numpy as np
+from study_page import RESULTS, STAND_INS, add_seeds, command_line, environment
 
 MB = 1024.0 * 1024.0
 PAGE_SIZE = os.sysconf("SC_PAGE_SIZE")

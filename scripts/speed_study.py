@@ -12,12 +12,6 @@ import argparse
 from dataclasses import dataclass, field
 from itertools import pairwise, product
 
-import mujoco
-import numpy as np
-from study_page import add_seeds
-from walking_body import ROBOT, Body, Plant
-from walking_trial import Script, parameters_of, random_script, steady_script
-
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.joints import LEFT_LEG, LEG_JOINTS, RIGHT_LEG
@@ -25,6 +19,12 @@ from walking.odometry import increment
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.robot_model import RobotModel
 from walking.state import Odometry
+
+import mujoco
+import numpy as np
+from study_page import add_seeds
+from walking_body import ROBOT, Body, Plant
+from walking_trial import Script, parameters_of, random_script, steady_script
 
 SETTLED = 3.0  # time after which a walk is measured [s]
 BEYOND = 1e-3  # set-point beyond the range of a joint that counts [rad]

@@ -15,17 +15,17 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
-from command_study import EVERY, random_states
-from study_page import options_of, write_page
-from walking_body import ROBOT, Body, Plant
-from walking_trial import BOX, parameters_of, random_script
-
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
 from walking.rehearsal import rehearse
 from walking.robot_model import RobotModel
+
+import numpy as np
+from command_study import EVERY, random_states
+from study_page import options_of, write_page
+from walking_body import ROBOT, Body, Plant
+from walking_trial import BOX, parameters_of, random_script
 
 PAGE = "walking-tick.md"
 GENERATORS = ("dcm", "robust")

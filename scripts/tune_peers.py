@@ -18,17 +18,17 @@ from pathlib import Path
 from time import process_time
 from typing import Any
 
-import numpy as np
-import tyro
-from decision_study import Run
-from decision_world import TICK, perfect_belief
-from numpy.typing import NDArray
-
 from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from navigation.angles import wrap
 from navigation.belief import Belief
+
+import numpy as np
+import tyro
+from decision_study import Run
+from decision_world import TICK, perfect_belief
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

@@ -8,16 +8,16 @@ Sensor noise and leg collisions on. Tune on seeds 0-99, report on seeds from 100
 import argparse
 from dataclasses import replace
 
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.parameters import CONTROL_PERIOD, ArmParameters, WalkingParameters
+from walking.robot_model import RobotModel
+
 import numpy as np
 from speed_study import SETTLED, zmp_error
 from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import random_script, steady_script
-
-from walking.command import HeadTarget, VelocityCommand
-from walking.engine import WalkingEngine
-from walking.parameters import CONTROL_PERIOD, ArmParameters, WalkingParameters
-from walking.robot_model import RobotModel
 
 WALKS = {"0.2 m/s": (0.2, 0.0, 0.0), "0.4 m/s": (0.4, 0.0, 0.0), "0.1 m/s left": (0.0, 0.1, 0.0)}
 COLUMNS = (

@@ -4,11 +4,11 @@ import itertools
 from dataclasses import dataclass, field
 from math import atan2, cos, degrees, sin, sqrt
 
+from vision.detection import Detection
+
 import numpy as np
 from numpy.typing import NDArray
 from vision_truth import Sight
-
-from vision.detection import Detection
 
 Array = NDArray[np.float64]
 

@@ -16,18 +16,18 @@ from pathlib import Path
 
 os.environ.setdefault("MUJOCO_GL", "egl")
 
+from vision.camera import CameraPose, PinholeCamera
+from vision.colour import COLOUR_CLASSES
+from vision.detection import Detection
+from vision.detector import Detector
+from vision.parameters import VisionParameters
+
 import cv2
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 from vision_score import Study
 from vision_truth import Array, Thing, rotation_of, sights
-
-from vision.camera import CameraPose, PinholeCamera
-from vision.colour import COLOUR_CLASSES
-from vision.detection import Detection
-from vision.detector import Detector
-from vision.parameters import VisionParameters
 
 WIDTH, HEIGHT, FOV = 320, 240, radians(70.0)
 CAMERA_HEIGHT = 0.47

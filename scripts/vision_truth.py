@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
 
+from vision.camera import PinholeCamera
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-
-from vision.camera import PinholeCamera
 
 Array = NDArray[np.float64]
 

@@ -11,14 +11,14 @@ import argparse
 import cProfile
 import pstats
 
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.robot_model import RobotModel
+
 import numpy as np
 from study_page import add_seeds
 from walking_body import ROBOT, Body, Plant
 from walking_trial import SAMPLE_TIME, Trace, parameters_of, random_script, steady_script, walk
-
-from walking.command import HeadTarget, VelocityCommand
-from walking.engine import WalkingEngine
-from walking.robot_model import RobotModel
 
 
 def in_heading(rows: np.ndarray) -> np.ndarray:

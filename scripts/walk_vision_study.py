@@ -14,17 +14,17 @@ from math import atan2, hypot
 
 os.environ.setdefault("MUJOCO_GL", "egl")
 
-import mujoco
-import numpy as np
-from study_page import add_seeds
-from vision_score import Study
-from vision_truth import Array, Thing, sights
-
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.world.assembly import HEAD_CAMERA
 from vision.camera import PinholeCamera
+
+import mujoco
+import numpy as np
+from study_page import add_seeds
+from vision_score import Study
+from vision_truth import Array, Thing, sights
 
 
 class Referee(Listener):

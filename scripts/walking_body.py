@@ -4,12 +4,12 @@ from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
 
-import mujoco
-import numpy as np
-
 from walking.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
+
+import mujoco
+import numpy as np
 
 ROBOT = Path(__file__).resolve().parents[1] / "models" / "hsr8" / "hsr8.xml"
 FALLEN_SHARE = 0.64  # of the height of the ready robot's hips

@@ -5,12 +5,12 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
-from walking_body import Body
-
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
+
+import numpy as np
+from walking_body import Body
 
 SAMPLE = 4  # ticks between two rows of a trace
 SAMPLE_TIME = SAMPLE * CONTROL_PERIOD

@@ -9,9 +9,6 @@ pace, blind. A world that it crosses without a contact asks nothing of navigatio
 import argparse
 from time import perf_counter
 
-import numpy as np
-from study_page import RESULTS, add_seeds, command_line, environment
-
 from hsr8.render.png import write_png
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
@@ -21,6 +18,9 @@ from hsr8.world.encounter import NominalWalk
 from hsr8.world.generator import draw_world
 from hsr8.world.layout import Layout
 from hsr8.world.plan_view import PlanView
+
+import numpy as np
+from study_page import RESULTS, add_seeds, command_line, environment
 
 PICTURED = "course crowd dense fast conflict behind corridor crossing blind-corner"
 FAMILIES = f"{PICTURED} paper quick"

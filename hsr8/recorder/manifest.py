@@ -8,6 +8,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from hsr8 import arithmetic
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic
 from hsr8.version import VERSION
@@ -43,7 +44,7 @@ class Manifest:
         hsr8: version.
         python: version.
         machine: operating system and processor.
-        libraries: version by name.
+        libraries: version by name, and the arithmetic in force.
         format: number of the run folder's.
     """
 
@@ -106,8 +107,8 @@ def other_versions(manifest: Mapping[str, Any]) -> list[tuple[str, str, str]]:
 
 
 def versions() -> dict[str, str]:
-    """Installed version of every library that shapes a result."""
-    found = {}
+    """Installed version of every library that shapes a result, and how they calculate."""
+    found = {"arithmetic": arithmetic.IN_FORCE}
     for name in LIBRARIES:
         try:
             found[name] = metadata.version(name)

@@ -89,7 +89,8 @@ class Definition:
         names = ("mujoco", "numpy", "scipy", "pin")
         told = ", ".join(f"{name} {self.libraries.get(name, '?')}" for name in names)
         code = f" (code {self.code})" if self.code else ""  # a run folder does not know
-        return f"hsr8 {self.hsr8}{code}, {told}; {self.processor}"
+        processor = f"{self.processor}, arithmetic {self.libraries.get('arithmetic', 'native')}"
+        return f"hsr8 {self.hsr8}{code}, {told}; {processor}"
 
 
 def differences(one: Definition, other: Definition) -> dict[str, tuple[str, str]]:
