@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 Parts = tuple[Array, Array, Array]
 
 STILL, ON, BACK = 0, 1, 2
@@ -332,6 +333,26 @@ def update(
 
 
 @njit(cache=True)
+def places(weights: Array, states: Array, standing: Mask) -> Array:
+    """Where obstacles are under their verdicts (n, 2) [m].
+
+    Args:
+        weights: (n, 3).
+        states: (n, 3, 5).
+        standing: which of them stand still (n,).
+    """
+    where = np.empty((len(weights), 2))
+    for k in range(len(weights)):
+        on, back = weights[k, ON], weights[k, BACK]
+        for a in range(2):
+            if standing[k]:
+                where[k, a] = states[k, STILL, a]
+            else:
+                where[k, a] = (on * states[k, ON, a] + back * states[k, BACK, a]) / (on + back)
+    return where
+
+
+@njit(cache=True)
 def mean(weights: Array, states: Array) -> Array:
     """Mean (5,) of one obstacle, given that it moves; weights (3,), states (3, 5)."""
     moving = weights[ON] + weights[BACK]
@@ -364,21 +385,45 @@ def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, A
 
 
 @njit(cache=True)
-def standing(
-    states: Array, covariances: Array, best: Array, lasting: float, speed_variance: float
-) -> tuple[Array, Array]:
-    """Mean (5,) and covariance (5, 5) of one obstacle that stands still.
+def estimates(
+    weights: Array,
+    states: Array,
+    covariances: Array,
+    standing: Mask,
+    best: Array,
+    lasting: float,
+    speed_variance: float,
+) -> tuple[Array, Array, Array, Array]:
+    """What is believed of obstacles under their verdicts.
 
     Args:
-        states: (3, 5).
-        covariances: (3, 5, 5).
-        best: covariance of the most precise detection (2, 2) [m²].
+        weights: (n, 3).
+        states: (n, 3, 5).
+        covariances: (n, 3, 5, 5).
+        standing: which of them stand still (n,).
+        best: covariance of the most precise detection of each (n, 2, 2) [m²].
         lasting: share of that variance which no number of detections brings down [1].
-        speed_variance: of each component of the velocity [m²/s²].
+        speed_variance: of each component of the velocity of what stands [m²/s²].
+
+    Returns:
+        Positions (n, 2), velocities (n, 2), covariances of both (n, 4, 4) and turn rates (n,).
     """
-    average, covariance = states[STILL].copy(), covariances[STILL].copy()
-    for a in range(2):
-        for b in range(2):
-            covariance[a, b] += lasting * best[a, b]
-        covariance[2 + a, 2 + a] = speed_variance
-    return average, covariance
+    n = len(weights)
+    place, velocity, turn = np.empty((n, 2)), np.empty((n, 2)), np.empty(n)
+    covariance = np.empty((n, 4, 4))
+    for k in range(n):
+        if standing[k]:
+            average, spread = states[k, STILL], covariances[k, STILL].copy()
+            for a in range(2):
+                for b in range(2):
+                    spread[a, b] += lasting * best[k, a, b]
+                spread[2 + a, 2 + a] = speed_variance
+        else:
+            average, spread = moments(weights[k], states[k], covariances[k])
+        for a in range(2):
+            place[k, a], velocity[k, a] = average[a], average[2 + a]
+        for a in range(4):
+            for b in range(4):
+                covariance[k, a, b] = spread[a, b]
+        turn[k] = average[4]
+    return place, velocity, covariance, turn

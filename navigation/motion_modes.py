@@ -7,7 +7,8 @@ turn rate reversed. ON and BACK are each other's reversal, so after one the othe
 without any switch. All tracks are stacked: n obstacles, 3 modes.
 """
 
-from math import exp
+from collections.abc import Sequence
+from math import exp, hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from navigation import mode_kernel
 from navigation.belief_parameters import TrackingParameters
-from navigation.mode_kernel import BACK, ON, SIZE, STILL, Rows
+from navigation.mode_kernel import BACK, ON, SIZE, STILL, Mask, Rows
 
 Array = NDArray[np.float64]
 
@@ -43,6 +44,20 @@ class Modes(NamedTuple):
         """Probability that the obstacle moves ()."""
         probability: Array = 1.0 - self.weights[..., STILL]
         return probability
+
+    def at(self, rows: int | Mask) -> "Modes":
+        """Filters of one obstacle, or of those for which a mask (n,) holds."""
+        return Modes(self.weights[rows], self.states[rows], self.covariances[rows])
+
+    def followed_by(self, others: "Sequence[Modes]") -> "Modes":
+        """These filters of n obstacles, then those of single ones."""
+        parts = zip(self, zip(*others, strict=True), strict=True)
+        return Modes(*(np.concatenate([these, np.array(part)]) for these, part in parts))
+
+
+def none() -> Modes:
+    """Filters of no obstacle at all."""
+    return Modes(np.zeros((0, 3)), np.zeros((0, 3, SIZE)), np.zeros((0, 3, SIZE, SIZE)))
 
 
 def begun(z: Array, R: Array, moving: float, p: TrackingParameters) -> Modes:
@@ -129,9 +144,40 @@ def update(modes: Modes, rows: Rows, z: Array, R: Array, limit: float) -> None:
     mode_kernel.update(*modes, rows, z, R, limit, FLOOR)
 
 
+def places(modes: Modes, standing: Mask) -> Array:
+    """Where obstacles are (n, 2) [m]; `standing` says which of them stand still (n,)."""
+    return mode_kernel.places(modes.weights, modes.states, standing)
+
+
+def estimates(
+    modes: Modes, standing: Mask, best: Array, p: TrackingParameters
+) -> tuple[Array, Array, Array, list[float]]:
+    """What is believed of obstacles.
+
+    Args:
+        modes: their filters.
+        standing: which of them stand still (n,).
+        best: covariance of the most precise detection of each (n, 2, 2) [m²].
+        p: doubt about what stands.
+
+    Returns:
+        Positions (n, 2) [m], velocities (n, 2) [m/s], covariances of both (n, 4, 4) and turn
+        rates (n,) [rad/s].
+    """
+    *moments, turn_rates = mode_kernel.estimates(
+        *modes, standing, best, p.lasting_error**2, p.static_velocity_sigma**2
+    )
+    return *moments, turn_rates.tolist()
+
+
 def mean(modes: Modes) -> Array:
     """Mean (5,) of one obstacle, given that it moves."""
     return mode_kernel.mean(modes.weights, modes.states)
+
+
+def speed(modes: Modes) -> float:
+    """Speed of one obstacle, given that it moves [m/s]."""
+    return hypot(*mean(modes)[2:4].tolist())
 
 
 def moments(modes: Modes) -> tuple[Array, Array]:

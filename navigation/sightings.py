@@ -43,7 +43,7 @@ class Sightings:
         slope = self.by_radius[index]
         surplus = sigma * sigma - float(self.radius_sigmas[index]) ** 2
         moved = self.positions[index] + (radius - float(self.radii[index])) * slope
-        return moved, self.covariances[index] + surplus * np.outer(slope, slope)
+        return moved, self.covariances[index] + surplus * (slope[:, None] * slope)
 
 
 def in_world(

@@ -6,26 +6,27 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation import mode_kernel, motion_modes, track_particles
+from navigation import motion_modes, track_particles
 from navigation.belief import Motion, Particles, Track
 from navigation.belief_parameters import TrackingParameters
-from navigation.motion_modes import STILL, Modes
+from navigation.motion_modes import Modes
 
 Array = NDArray[np.float64]
+Estimate = tuple[Array, Array, Array, float]
+"""Position (2,) [m], velocity (2,) [m/s], covariance of both (4, 4), turn rate [rad/s]."""
 
 
 @dataclass(slots=True)
 class TrackedObject:
-    """Filters and history of one obstacle.
+    """History of one obstacle; its filters are a row of the tracker's.
 
     Attributes:
         id: number, unique in a run.
         label: colour class.
-        modes: filters of standing still, going on and having turned back.
         radius, radius_sigma: [m].
         first_time, last_time: first and latest detection [s].
         last_seen: where the latest detection put it (2,) [m].
-        seen_covariance: of that (2, 2) [m²].
+        known_reach: radius of the disc about it that surely contained its axis then [m].
         best_covariance: of the most precise detection (2, 2) [m²].
         motion: verdict.
         hits: number of detections.
@@ -37,13 +38,12 @@ class TrackedObject:
 
     id: int
     label: str
-    modes: Modes
     radius: float
     radius_sigma: float
     first_time: float
     last_time: float
     last_seen: Array
-    seen_covariance: Array
+    known_reach: float
     best_covariance: Array
     motion: Motion = Motion.UNKNOWN
     hits: int = 1
@@ -52,56 +52,30 @@ class TrackedObject:
     particles: Particles | None = None
     presence: float = 1.0
 
-    @property
-    def position(self) -> Array:
-        """Best position in W (2,) [m]."""
-        if self.particles is not None:
-            mean: Array = self.particles.weights @ self.particles.positions
-            return mean
-        if self.motion is Motion.STATIC:
-            return self.modes.states[STILL, :2]
-        return motion_modes.mean(self.modes)[:2]
-
-    @property
-    def speed(self) -> float:
-        """Speed if it moves [m/s]."""
-        return hypot(*motion_modes.mean(self.modes)[2:4].tolist())
-
-    def estimate(self, p: TrackingParameters) -> tuple[Array, Array]:
-        """Mean (5,) and covariance (5, 5) of x, y, vx, vy, turn rate under the verdict."""
-        if self.motion is not Motion.STATIC:
-            return motion_modes.moments(self.modes)
-        return mode_kernel.standing(
-            self.modes.states,
-            self.modes.covariances,
-            self.best_covariance,
-            p.lasting_error**2,
-            p.static_velocity_sigma**2,
-        )
-
     def reach(self, time: float, p: TrackingParameters) -> float:
         """Radius of the disc about its last sighting that it cannot have left [m]."""
-        (xx, xy), (_, yy) = self.seen_covariance.tolist()
-        # The larger half axis of the sighting's ellipse.
-        largest = 0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
-        known: float = p.reach_sigmas * largest**0.5
         moving = self.motion is not Motion.STATIC
-        return known + moving * p.top_speed * (time - self.last_time)
+        return self.known_reach + moving * p.top_speed * (time - self.last_time)
 
-    def lost_reach(self, time: float, p: TrackingParameters) -> float:
-        """How far from its last sighting it is looked for while lost [m]."""
-        return p.line_width + p.reach_factor * self.speed * (time - self.last_time)
+    def lost_reach(self, time: float, modes: Modes, p: TrackingParameters) -> float:
+        """How far from its last sighting it is looked for while lost, by its filters [m]."""
+        speed = motion_modes.speed(modes)
+        return p.line_width + p.reach_factor * speed * (time - self.last_time)
 
-    def classify(self, p: TrackingParameters) -> None:
-        """Revise the verdict after a detection."""
-        moving = float(self.modes.moving)
+    def classify(self, modes: Modes, p: TrackingParameters) -> None:
+        """Revise the verdict after a detection, by its filters."""
+        moving = float(modes.moving)
         if self.motion is Motion.STATIC:
             if moving > p.doubted:
                 self.motion = Motion.UNKNOWN
         elif self.motion is Motion.MOVING:
             if moving < p.stopped:
                 self.motion = Motion.STATIC
-        elif moving > p.recognised and self.hits >= p.moving_hits and self.speed > p.moving_speed:
+        elif (
+            moving > p.recognised
+            and self.hits >= p.moving_hits
+            and motion_modes.speed(modes) > p.moving_speed
+        ):
             self.motion = Motion.MOVING
         elif (
             moving < p.standing
@@ -110,28 +84,36 @@ class TrackedObject:
         ):
             self.motion = Motion.STATIC
 
-    def track(self, time: float, p: TrackingParameters) -> Track:
-        """Publish a copy as of `time` [s]."""
+    def track(self, time: float, p: TrackingParameters, estimate: Estimate) -> Track:
+        """Publish it as of `time` [s]: `estimate`, or what its particles say if it is lost."""
+        position, velocity, covariance, turn_rate = estimate
         if self.particles is not None:
             mean, covariance = track_particles.moments(self.particles)
+            position, velocity = mean[:2], mean[2:4]
             turn_rate = float(self.particles.weights @ self.particles.turn_rates)
-        else:
-            mean, covariance = self.estimate(p)
-            turn_rate = float(mean[4])
         return Track(
-            id=self.id,
-            label=self.label,
-            position=mean[:2],
-            velocity=mean[2:4],
-            covariance=covariance[:4, :4],
-            radius=self.radius,
-            radius_sigma=self.radius_sigma,
-            motion=self.motion,
-            hits=self.hits,
-            age=time - self.last_time,
-            last_seen=self.last_seen.copy(),
-            visible=self.last_time == time,
-            particles=self.particles,
-            reach=self.reach(time, p),
-            turn_rate=turn_rate,
+            self.id,
+            self.label,
+            position,
+            velocity,
+            covariance,
+            self.radius,
+            self.radius_sigma,
+            self.motion,
+            self.hits,
+            time - self.last_time,
+            self.last_seen.copy(),
+            self.last_time == time,
+            self.particles,
+            self.reach(time, p),
+            turn_rate,
         )
+
+
+def reach_of(covariance: Array, p: TrackingParameters) -> float:
+    """Radius of the disc about a sighting of `covariance` (2, 2) that surely contains its axis."""
+    (xx, xy), (_, yy) = covariance.tolist()
+    # The larger half axis of the sighting's ellipse.
+    largest = 0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
+    reach: float = p.reach_sigmas * largest**0.5
+    return reach

@@ -6,7 +6,8 @@ of sight becomes a cloud of particles. Nothing but colour tells two obstacles ap
 identity is decided by position alone.
 """
 
-from math import inf, pi
+from itertools import compress
+from math import hypot, inf, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +17,9 @@ from navigation.association import assign, overlapping
 from navigation.belief import Motion, Track
 from navigation.belief_parameters import TrackingParameters
 from navigation.correlated_noise import variance_inflation
-from navigation.motion_modes import Modes
 from navigation.observation import Observation
 from navigation.sightings import Sightings
-from navigation.tracked_object import TrackedObject
+from navigation.tracked_object import TrackedObject, reach_of
 from navigation.visibility import Mask, Viewpoint
 
 Array = NDArray[np.float64]
@@ -37,7 +37,10 @@ class Tracker:
         self._parameters = parameters
         self._rng = rng
         self._objects: list[TrackedObject] = []
-        self._stack: tuple[list[int], Modes] | None = None  # whose filters, and these
+        # Of every object its row: its filters, its verdict, and where it is.
+        self._modes = motion_modes.none()
+        self._standing: Mask = np.zeros(0, np.bool_)
+        self._places = np.zeros((0, 2))
         self._time: float | None = None
         self._freed: Mask = np.zeros(0, np.bool_)
         self._next_id = 1
@@ -58,43 +61,33 @@ class Tracker:
         dt = 0.0 if self._time is None else time - self._time
         self._time = time
         if self._objects:
-            modes = self._predict(dt)
-            pairs = assign(self._costs(time, seen, modes))
-            self._correct(time, pairs, seen, modes)
+            self._predict(dt)
+            pairs = assign(self._costs(time, seen))
+            self._correct(time, pairs, seen)
+            self._locate()
         else:
             pairs = []
         taken = {column for _, column in pairs}
         self._begin(time, [j for j in range(len(seen.radii)) if j not in taken], seen)
         self._doubt(time, dt, seen, viewpoint)
         self._merge(time)
-        p = self._parameters
-        return tuple(o.track(time, p) for o in self._objects if o.hits >= p.birth_hits)
+        return self._published(time)
 
     def clear(self) -> None:
         """Forget all tracks, for instance because the robot was carried away."""
         self._objects.clear()
+        self._modes = motion_modes.none()
+        self._locate()
 
-    def _predict(self, dt: float) -> Modes:
-        """Carry everything on by `dt` [s]; the filters of all obstacles, each one's its rows."""
+    def _predict(self, dt: float) -> None:
+        """Carry everything on by `dt` [s]."""
         p = self._parameters
-        ids = [o.id for o in self._objects]
-        modes = motion_modes.predict(self._stacked(ids), dt, p)
-        self._stack = ids, modes
-        for o, *parts in zip(self._objects, *modes, strict=True):
-            o.modes = Modes(*parts)
+        self._modes = motion_modes.predict(self._modes, dt, p)
+        for o in self._objects:
             if o.particles is not None:
                 o.particles = track_particles.advance(o.particles, dt, p, self._rng)
-        return modes
 
-    def _stacked(self, ids: list[int]) -> Modes:
-        """The filters of all obstacles, one after the other."""
-        if self._stack is not None and self._stack[0] == ids:
-            return self._stack[1]
-        # For arrays as small as these np.array is several times faster than np.stack.
-        parts = zip(*(o.modes for o in self._objects), strict=True)
-        return Modes(*(np.array(part) for part in parts))
-
-    def _costs(self, time: float, seen: Sightings, modes: Modes) -> Array:
+    def _costs(self, time: float, seen: Sightings) -> Array:
         """Cost of every track with every sighting against the sighting being new (n, m).
 
         A lost track is also a cloud of particles, and with a small probability anywhere
@@ -104,11 +97,11 @@ class Tracker:
         n, m = len(self._objects), len(seen.radii)
         if m == 0:
             return np.empty((n, 0))
-        costs = motion_modes.costs(modes, seen.positions, seen.covariances, p.gate)
+        costs = motion_modes.costs(self._modes, seen.positions, seen.covariances, p.gate)
         width = 0.5 * (seen.covariances[:, 0, 0] + seen.covariances[:, 1, 1])
         for i, o in enumerate(self._objects):
             if o.particles is not None:
-                lost = o.last_seen, o.lost_reach(time, p)
+                lost = o.last_seen, o.lost_reach(time, self._modes.at(i), p)
                 cloud = track_particles.costs(o.particles, seen.positions, width, lost, p)
                 costs[i] = np.minimum(costs[i], cloud)
         density = np.where(self._freed, p.intruder_density, p.birth_density)
@@ -118,17 +111,15 @@ class Tracker:
                 costs[i, j] = inf
         return costs
 
-    def _correct(
-        self, time: float, pairs: list[tuple[int, int]], seen: Sightings, modes: Modes
-    ) -> None:
+    def _correct(self, time: float, pairs: list[tuple[int, int]], seen: Sightings) -> None:
         """Update the filters, verdict and radius of the tracks that were detected."""
         if not pairs:
             return
-        p = self._parameters
+        p, modes = self._parameters, self._modes
         rows, columns = np.array(pairs).T.copy()
-        objects = [self._objects[row] for row in rows.tolist()]
+        objects = [self._objects[row] for row, _ in pairs]
         z, raw = seen.positions[columns], seen.covariances[columns]
-        for i, (o, column) in enumerate(zip(objects, columns.tolist(), strict=True)):
+        for i, (o, (_, column)) in enumerate(zip(objects, pairs, strict=True)):
             if o.radius_sigma < seen.radius_sigmas[column]:
                 z[i], raw[i] = seen.of_radius(column, o.radius, o.radius_sigma)
         inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o in objects]
@@ -136,22 +127,23 @@ class Tracker:
         surprise = motion_modes.surprise(modes, rows, z, raw)
         for i in np.flatnonzero(surprise > p.gate).tolist():
             # Nothing explains where it is: what was known of its motion is void.
-            k, moving = rows[i], max(float(objects[i].modes.moving), 0.5)
-            begun = motion_modes.begun(z[i], raw[i], moving, p)
-            modes.weights[k], modes.states[k], modes.covariances[k] = begun
+            known = modes.at(pairs[i][0])
+            begun = motion_modes.begun(z[i], raw[i], max(float(known.moving), 0.5), p)
+            for part, anew in zip(known, begun, strict=True):
+                part[:] = anew
         motion_modes.update(modes, rows, z, R, p.evidence)
-        for i, (o, column) in enumerate(zip(objects, columns.tolist(), strict=True)):
+        for i, (o, (row, column)) in enumerate(zip(objects, pairs, strict=True)):
             self._widen(o, seen.observations[column], inflation[i])
             o.hits += 1
             o.misses = 0
             o.expected_for = 0.0
             o.last_time = time
-            o.last_seen, o.seen_covariance = z[i].copy(), raw[i].copy()
+            o.last_seen, o.known_reach = z[i], reach_of(raw[i], p)
             if _trace(raw[i]) < _trace(o.best_covariance):
-                o.best_covariance = o.seen_covariance
+                o.best_covariance = raw[i]
             o.particles = None
             o.presence = 1.0
-            o.classify(p)
+            o.classify(modes.at(row), p)
 
     def _widen(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
         """Fuse the radius, unless the part that was seen tells next to nothing about it."""
@@ -167,7 +159,10 @@ class Tracker:
 
     def _begin(self, time: float, columns: list[int], seen: Sightings) -> None:
         """Start a tentative track at each sighting that no track explains."""
+        if not columns:
+            return
         p = self._parameters
+        places, begun = list(self._places), []
         for j in columns:
             z, R, observation = seen.positions[j], seen.covariances[j], seen.observations[j]
             if observation.distance > p.birth_range:
@@ -176,8 +171,8 @@ class Tracker:
             if any(
                 o.label == observation.label
                 and o.last_time == time
-                and float(np.hypot(*(o.position - z))) < reach + p.overlap * o.radius
-                for o in self._objects
+                and hypot(*(place - z).tolist()) < reach + p.overlap * o.radius
+                for o, place in zip(self._objects, places, strict=True)
             ):
                 continue
             moving = p.intruder_moving if self._freed[j] else p.birth_moving
@@ -185,47 +180,51 @@ class Tracker:
                 TrackedObject(
                     id=self._next_id,
                     label=observation.label,
-                    modes=motion_modes.begun(z, R, moving, p),
                     radius=observation.radius,
                     radius_sigma=max(observation.radius_sigma, p.radius_limit),
                     first_time=time,
                     last_time=time,
-                    last_seen=z.copy(),
-                    seen_covariance=R.copy(),
-                    best_covariance=R.copy(),
+                    last_seen=z,
+                    known_reach=reach_of(R, p),
+                    best_covariance=R,
                 )
             )
             self._next_id += 1
+            places.append(z)
+            begun.append(motion_modes.begun(z, R, moving, p))
+        if begun:
+            self._modes = self._modes.followed_by(begun)
+            self._locate()
 
     def _doubt(self, time: float, dt: float, seen: Sightings, viewpoint: Viewpoint) -> None:
         """Count what should have been seen but was not, lose movers, end tracks."""
-        unseen = [o for o in self._objects if o.last_time < time]
-        if not unseen:
+        objects = self._objects
+        if all(o.last_time == time for o in objects):
             return
-        clouds = [
-            o.position[None] if o.particles is None else o.particles.positions for o in unseen
-        ]
-        expected = self._expected(np.concatenate(clouds), seen, viewpoint)
-        start = 0
+        clouds = [o.particles.positions for o in objects if o.particles is not None]
+        expected = self._expected(np.concatenate([self._places, *clouds]), seen, viewpoint)
+        start = len(objects)
         ended = set()
-        for o, points in zip(unseen, clouds, strict=True):
-            mask = expected[start : start + len(points)]
-            start += len(points)
-            if not self._survives(o, time, dt, mask):
+        for row, o in enumerate(objects):
+            mask = expected[row : row + 1]
+            if o.particles is not None:
+                mask = expected[start : start + len(o.particles.weights)]
+                start += len(mask)
+            if o.last_time < time and not self._survives(row, time, dt, mask):
                 ended.add(o.id)
-        self._objects = [o for o in self._objects if o.id not in ended]
+        self._end(ended)
         self._respread(time, seen, viewpoint)
 
     def _expected(self, points: Array, seen: Sightings, viewpoint: Viewpoint) -> Mask:
         p = self._parameters
-        standing = [o for o in self._objects if o.motion is Motion.STATIC]
-        centres = np.concatenate([seen.positions, *(o.position[None] for o in standing)])
-        radii = np.concatenate([seen.radii, [o.radius for o in standing]])
+        standing = [o.radius for o in compress(self._objects, self._standing)]
+        centres = np.concatenate([seen.positions, self._places[self._standing]])
+        radii = np.concatenate([seen.radii, standing])
         return viewpoint.expects(points, centres, radii, margin=p.view_margin, slack=p.hiding_slack)
 
-    def _survives(self, o: TrackedObject, time: float, dt: float, expected: Mask) -> bool:
+    def _survives(self, row: int, time: float, dt: float, expected: Mask) -> bool:
         """Hold a frame without detection against a track; False ends it."""
-        p = self._parameters
+        p, o = self._parameters, self._objects[row]
         age = time - o.last_time
         if o.hits < p.birth_hits:
             return age <= p.birth_time
@@ -239,7 +238,7 @@ class Tracker:
             return False
         if o.particles is None:
             if age > p.lost_time:
-                o.particles = track_particles.spawn(o.modes, p.particles, self._rng)
+                o.particles = track_particles.spawn(self._modes.at(row), p.particles, self._rng)
             return True
         survival = (1.0 - p.detection_probability) ** (dt / p.refutation_time)
         cloud, left = track_particles.refute(o.particles, expected, survival)
@@ -250,44 +249,67 @@ class Tracker:
     def _respread(self, time: float, seen: Sightings, viewpoint: Viewpoint) -> None:
         """Spread refuted clouds over what is out of view of all they could have reached."""
         p = self._parameters
-        refuted = [o for o in self._objects if o.particles is not None and o.presence < p.refuted]
-        # What was not known to move and is not where it was has never been there.
-        ended = {o.id for o in refuted if o.motion is Motion.UNKNOWN}
-        for o in refuted:
-            if o.id in ended:
+        ended = set()
+        for row, o in enumerate(self._objects):
+            if o.particles is None or o.presence >= p.refuted:
                 continue
-            velocity = o.estimate(p)[0][2:4]
-            cloud = track_particles.scatter(
-                o.last_seen, o.lost_reach(time, p), velocity, p, self._rng
-            )
+            if o.motion is Motion.UNKNOWN:
+                # What was not known to move and is not where it was has never been there.
+                ended.add(o.id)
+                continue
+            modes = self._modes.at(row)
+            velocity, reach = motion_modes.moments(modes)[0][2:4], o.lost_reach(time, modes, p)
+            cloud = track_particles.scatter(o.last_seen, reach, velocity, p, self._rng)
             places = np.flatnonzero(~self._expected(cloud.positions, seen, viewpoint))
             o.presence = 1.0
             if len(places) < p.particles:
                 ended.add(o.id)
             else:
                 o.particles = track_particles.chosen(cloud, places[: p.particles])
-        self._objects = [o for o in self._objects if o.id not in ended]
+        self._end(ended)
 
     def _merge(self, time: float) -> None:
         """End one of two tracks of a colour that stand where only one obstacle fits."""
         p = self._parameters
-        objects = [o for o in self._objects if o.particles is None]
-        if len(objects) < 2:
-            return
-        places = np.array([o.position for o in objects])
-        reach = p.overlap * np.array([o.radius for o in objects])
-        close = overlapping(places, reach)
+        reach = p.overlap * np.array([o.radius for o in self._objects], float)
         ended: set[int] = set()
-        for i, j in close.tolist():
-            a, b = objects[i], objects[j]
+        for i, j in overlapping(self._places, reach).tolist():
+            a, b = self._objects[i], self._objects[j]
+            if a.particles is not None or b.particles is not None:
+                continue
             if a.label != b.label or ended & {a.id, b.id}:
                 continue
             if a.last_time == time and b.last_time == time:
                 continue
             worse = min(a, b, key=lambda o: (o.hits >= p.birth_hits, o.last_time, o.hits))
             ended.add(worse.id)
-        if ended:
-            self._objects = [o for o in self._objects if o.id not in ended]
+        self._end(ended)
+
+    def _end(self, ended: set[int]) -> None:
+        """Drop the objects with these ids."""
+        if not ended:
+            return
+        kept = np.array([o.id not in ended for o in self._objects])
+        self._objects = list(compress(self._objects, kept))
+        self._modes = self._modes.at(kept)
+        self._standing, self._places = self._standing[kept], self._places[kept]
+
+    def _locate(self) -> None:
+        """Work out where the objects are, or would be were they not lost."""
+        static = Motion.STATIC
+        self._standing = np.array([o.motion is static for o in self._objects], np.bool_)
+        self._places = motion_modes.places(self._modes, self._standing)
+
+    def _published(self, time: float) -> tuple[Track, ...]:
+        """The tracks as of `time` [s], without what may be a false blob."""
+        p = self._parameters
+        best = np.array([o.best_covariance for o in self._objects], float).reshape(-1, 2, 2)
+        estimates = motion_modes.estimates(self._modes, self._standing, best, p)
+        return tuple(
+            o.track(time, p, estimate)
+            for o, estimate in zip(self._objects, zip(*estimates, strict=True), strict=True)
+            if o.hits >= p.birth_hits
+        )
 
 
 def _trace(covariance: Array) -> float:

@@ -229,3 +229,15 @@ def test_only_what_was_seen_is_corrected():
     motion_modes.update(seen, np.array([0]), z, R[None], P.evidence)
     for parts, before, after in zip(both, one(), seen, strict=True):
         assert np.array_equal(parts, np.concatenate([before, after]))
+
+
+def test_obstacles_join_the_rows_and_leave_them():
+    first, second = (motion_modes.begun(np.array([x, 0.0]), R, 0.4, P) for x in (1.0, 2.0))
+    both = motion_modes.none().followed_by([first]).followed_by([second])
+    for row, one_ in enumerate((first, second)):
+        for found, wanted in zip(both.at(row), one_, strict=True):
+            assert np.array_equal(found, wanted)
+    for found, wanted in zip(both.at(np.array([False, True])), second, strict=True):
+        assert np.array_equal(found, wanted[None])
+    both.at(0).states[:] = 0.0
+    assert not both.states[0].any()
