@@ -14,24 +14,19 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 
-def assign(costs: Array) -> list[tuple[int, int]]:
+def assign(costs: Array) -> tuple[Indices, Indices]:
     """Pair rows with columns at least total cost, leaving out whatever costs more than 0.
 
     Args:
         costs: cost of every pair against leaving both alone (n, m); infinite forbids.
 
     Returns:
-        (row, column) of the pairs, by row.
+        Rows (k,) and columns (k,) of the pairs, by row.
     """
-    if costs.size == 0:
-        return []
     gain = np.minimum(costs, 0.0)
     rows, columns = linear_sum_assignment(gain)
-    return [
-        (row, column)
-        for row, column in zip(rows.tolist(), columns.tolist(), strict=True)
-        if gain[row, column] < 0.0
-    ]
+    worth = gain[rows, columns] < 0.0
+    return rows[worth], columns[worth]
 
 
 @njit(cache=True)

@@ -14,7 +14,9 @@ def advance(
     positions: Array,
     velocities: Array,
     turn_rates: Array,
+    bends: Array,
     draws: Array,
+    wander: tuple[float, float],
     probability: float,
     dt: float,
 ) -> tuple[Array, Array, Array]:
@@ -24,7 +26,9 @@ def advance(
         positions: (n, 2) [m].
         velocities: (n, 2) [m/s].
         turn_rates: of the velocities (n,) [rad/s].
+        bends: standard normal (n,).
         draws: uniform in [0, 1) (n,).
+        wander: share of a turn rate that is left after dt [1], and what a bend adds [rad/s].
         probability: of turning back on its path [1].
         dt: [s].
 
@@ -35,7 +39,8 @@ def advance(
     rates = np.empty_like(turn_rates)
     for i in range(len(draws)):
         sign = -1.0 if draws[i] < probability else 1.0
-        u, v, rate = sign * velocities[i, 0], sign * velocities[i, 1], sign * turn_rates[i]
+        u, v = sign * velocities[i, 0], sign * velocities[i, 1]
+        rate = sign * (wander[0] * turn_rates[i] + wander[1] * bends[i])
         angle = rate * dt
         # Over a time so short the mean velocity is that of its middle.
         c, s = cos(0.5 * angle), sin(0.5 * angle)
@@ -77,6 +82,9 @@ def log_density(
 ) -> Array:
     """Log density of a smoothed cloud at points (m,), up to log(2 pi).
 
+    Each particle is as wide as Scott's rule for the cloud's spread says, so that the gaps
+    between a few particles far apart are no holes.
+
     Args:
         positions: (n, 2) [m].
         weights: sum to one (n,).
@@ -104,16 +112,29 @@ def log_density(
 
 
 @njit(cache=True)
-def costs(logarithm: Array, z: Array, centre: Array, reach: float, anywhere: float) -> Array:
+def costs(
+    positions: Array,
+    weights: Array,
+    z: Array,
+    variance: Array,
+    jitter: float,
+    centre: Array,
+    reach: float,
+    anywhere: float,
+) -> Array:
     """Minus twice the log likelihood of points, up to log(2 pi) (m,).
 
     Args:
-        logarithm: log density of the cloud at the points (m,).
-        z: points (m, 2) [m].
+        positions: as for `log_density`, like all up to `jitter`.
+        weights: of the particles.
+        z: points.
+        variance: widening for each point.
+        jitter: least width of a particle.
         centre: where the mover was seen last (2,) [m].
         reach: how far it may have got [m].
         anywhere: probability that it is anywhere in reach, not where the cloud is [1].
     """
+    logarithm = log_density(positions, weights, z, variance, jitter)
     cost = np.empty(len(z))
     for k in range(len(z)):
         dx, dy = z[k, 0] - centre[0], z[k, 1] - centre[1]

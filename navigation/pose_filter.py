@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 # Every so many entries an angle.
 STATE = 3
 MEASUREMENT = 2
+ONE = np.eye(3)
 
 
 def _root(covariance: Array) -> Array:
@@ -101,7 +102,7 @@ class PoseFilter(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has n
         heading = float(self.x[2])
         c, s = cos(heading), sin(heading)
         to_world = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        self.Q = to_world @ covariance @ to_world.T + drift * np.eye(3)
+        self.Q = to_world @ covariance @ to_world.T + drift * ONE
         self.predict(UT=_state, increment=increment)
         self._tidy()
 

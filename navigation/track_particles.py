@@ -46,9 +46,10 @@ def advance(
     parts = particle_kernel.advance(
         cloud.positions,
         cloud.velocities,
-        keep * cloud.turn_rates
-        + (1.0 - keep * keep) ** 0.5 * p.turn_sigma * rng.standard_normal(count),
+        cloud.turn_rates,
+        rng.standard_normal(count),
         rng.random(count),
+        (keep, (1.0 - keep * keep) ** 0.5 * p.turn_sigma),
         1.0 - exp(-p.reversal_rate * dt),
         dt,
     )
@@ -135,26 +136,6 @@ def moments(cloud: Particles) -> tuple[Array, Array]:
     return particle_kernel.moments(cloud.positions, cloud.velocities, cloud.weights)
 
 
-def log_density(cloud: Particles, z: Array, variance: Array, p: TrackingParameters) -> Array:
-    """Log density of the cloud, smoothed, at points, up to log(2 pi).
-
-    Each particle is as wide as Scott's rule for the cloud's spread says, so that the gaps
-    between a few particles far apart are no holes.
-
-    Args:
-        cloud: n particles.
-        z: points (m, 2) [m].
-        variance: widening for each point (m,) [m²].
-        p: the least width.
-
-    Returns:
-        (m,).
-    """
-    return particle_kernel.log_density(
-        cloud.positions, cloud.weights, z, variance, p.position_jitter
-    )
-
-
 def costs(
     cloud: Particles,
     z: Array,
@@ -171,6 +152,6 @@ def costs(
         lost: where it was seen last (2,) [m], and how far it may have got [m].
         p: how probable it is that it is anywhere so far, not where the particles are.
     """
-    centre, reach = lost
-    density = log_density(cloud, z, variance, p)
-    return particle_kernel.costs(density, z, centre, reach, p.anywhere)
+    return particle_kernel.costs(
+        cloud.positions, cloud.weights, z, variance, p.position_jitter, *lost, p.anywhere
+    )

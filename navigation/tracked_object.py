@@ -27,7 +27,6 @@ class TrackedObject:
         first_time, last_time: first and latest detection [s].
         last_seen: where the latest detection put it (2,) [m].
         known_reach: radius of the disc about it that surely contained its axis then [m].
-        best_covariance: of the most precise detection (2, 2) [m²].
         motion: verdict.
         hits: number of detections.
         misses: detections that failed in a row although expected.
@@ -44,7 +43,6 @@ class TrackedObject:
     last_time: float
     last_seen: Array
     known_reach: float
-    best_covariance: Array
     motion: Motion = Motion.UNKNOWN
     hits: int = 1
     misses: int = 0

@@ -7,13 +7,13 @@ identity is decided by position alone.
 """
 
 from itertools import compress
-from math import hypot, inf, pi
+from math import hypot, inf, log, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation import motion_modes, track_particles
-from navigation.association import assign, overlapping
+from navigation.association import Indices, assign, overlapping
 from navigation.belief import Motion, Track
 from navigation.belief_parameters import TrackingParameters
 from navigation.correlated_noise import variance_inflation
@@ -36,9 +36,14 @@ class Tracker:
     def __init__(self, parameters: TrackingParameters, rng: np.random.Generator) -> None:
         self._parameters = parameters
         self._rng = rng
+        # What it costs to take a sighting for new: anywhere, and where the floor was empty.
+        self._beginning = 2.0 * log(2.0 * pi * parameters.birth_density)
+        self._intruding = 2.0 * log(2.0 * pi * parameters.intruder_density)
         self._objects: list[TrackedObject] = []
-        # Of every object its row: its filters, its verdict, and where it is.
+        # Of every object its row: its filters, the covariance of its most precise detection,
+        # its verdict, and where it is.
         self._modes = motion_modes.none()
+        self._best = np.zeros((0, 2, 2))
         self._standing: Mask = np.zeros(0, np.bool_)
         self._places = np.zeros((0, 2))
         self._time: float | None = None
@@ -60,15 +65,14 @@ class Tracker:
         self._freed = freed
         dt = 0.0 if self._time is None else time - self._time
         self._time = time
+        unexplained = set(range(len(seen.radii)))
         if self._objects:
             self._predict(dt)
-            pairs = assign(self._costs(time, seen))
-            self._correct(time, pairs, seen)
+            rows, columns = assign(self._costs(time, seen))
+            self._correct(time, rows, columns, seen)
             self._locate()
-        else:
-            pairs = []
-        taken = {column for _, column in pairs}
-        self._begin(time, [j for j in range(len(seen.radii)) if j not in taken], seen)
+            unexplained -= set(columns.tolist())
+        self._begin(time, sorted(unexplained), seen)
         self._doubt(time, dt, seen, viewpoint)
         self._merge(time)
         return self._published(time)
@@ -77,6 +81,7 @@ class Tracker:
         """Forget all tracks, for instance because the robot was carried away."""
         self._objects.clear()
         self._modes = motion_modes.none()
+        self._best = np.zeros((0, 2, 2))
         self._locate()
 
     def _predict(self, dt: float) -> None:
@@ -104,19 +109,18 @@ class Tracker:
                 lost = o.last_seen, o.lost_reach(time, self._modes.at(i), p)
                 cloud = track_particles.costs(o.particles, seen.positions, width, lost, p)
                 costs[i] = np.minimum(costs[i], cloud)
-        density = np.where(self._freed, p.intruder_density, p.birth_density)
-        costs += 2.0 * np.log(2.0 * pi * density)
+        costs += np.where(self._freed, self._intruding, self._beginning)
         for i, j in np.argwhere(costs < 0.0).tolist():
             if self._objects[i].label != seen.observations[j].label:
                 costs[i, j] = inf
         return costs
 
-    def _correct(self, time: float, pairs: list[tuple[int, int]], seen: Sightings) -> None:
+    def _correct(self, time: float, rows: Indices, columns: Indices, seen: Sightings) -> None:
         """Update the filters, verdict and radius of the tracks that were detected."""
-        if not pairs:
+        if len(rows) == 0:
             return
         p, modes = self._parameters, self._modes
-        rows, columns = np.array(pairs).T.copy()
+        pairs = list(zip(rows.tolist(), columns.tolist(), strict=True))
         objects = [self._objects[row] for row, _ in pairs]
         z, raw = seen.positions[columns], seen.covariances[columns]
         for i, (o, (_, column)) in enumerate(zip(objects, pairs, strict=True)):
@@ -139,8 +143,8 @@ class Tracker:
             o.expected_for = 0.0
             o.last_time = time
             o.last_seen, o.known_reach = z[i], reach_of(raw[i], p)
-            if _trace(raw[i]) < _trace(o.best_covariance):
-                o.best_covariance = raw[i]
+            if _trace(raw[i]) < _trace(self._best[row]):
+                self._best[row] = raw[i]
             o.particles = None
             o.presence = 1.0
             o.classify(modes.at(row), p)
@@ -162,7 +166,7 @@ class Tracker:
         if not columns:
             return
         p = self._parameters
-        places, begun = list(self._places), []
+        places, begun, noise = list(self._places), [], []
         for j in columns:
             z, R, observation = seen.positions[j], seen.covariances[j], seen.observations[j]
             if observation.distance > p.birth_range:
@@ -186,14 +190,15 @@ class Tracker:
                     last_time=time,
                     last_seen=z,
                     known_reach=reach_of(R, p),
-                    best_covariance=R,
                 )
             )
             self._next_id += 1
             places.append(z)
             begun.append(motion_modes.begun(z, R, moving, p))
+            noise.append(R)
         if begun:
             self._modes = self._modes.followed_by(begun)
+            self._best = np.concatenate([self._best, np.array(noise)])
             self._locate()
 
     def _doubt(self, time: float, dt: float, seen: Sightings, viewpoint: Viewpoint) -> None:
@@ -291,7 +296,7 @@ class Tracker:
             return
         kept = np.array([o.id not in ended for o in self._objects])
         self._objects = list(compress(self._objects, kept))
-        self._modes = self._modes.at(kept)
+        self._modes, self._best = self._modes.at(kept), self._best[kept]
         self._standing, self._places = self._standing[kept], self._places[kept]
 
     def _locate(self) -> None:
@@ -303,8 +308,7 @@ class Tracker:
     def _published(self, time: float) -> tuple[Track, ...]:
         """The tracks as of `time` [s], without what may be a false blob."""
         p = self._parameters
-        best = np.array([o.best_covariance for o in self._objects], float).reshape(-1, 2, 2)
-        estimates = motion_modes.estimates(self._modes, self._standing, best, p)
+        estimates = motion_modes.estimates(self._modes, self._standing, self._best, p)
         return tuple(
             o.track(time, p, estimate)
             for o, estimate in zip(self._objects, zip(*estimates, strict=True), strict=True)

@@ -17,11 +17,13 @@ def cloud():
 
 def test_compiled_and_plain_agree(cloud):
     positions, velocities, weights, z, variance = cloud
+    rates = weights - 0.06
+    bends, draws, wander = velocities[:, 0].copy(), weights, (0.9, 0.1)
     for function, arguments in (
-        (kernel.advance, (positions, velocities, weights - 0.06, weights, 0.05, 0.1)),
+        (kernel.advance, (positions, velocities, rates, bends, draws, wander, 0.05, 0.1)),
         (kernel.moments, (positions, velocities, weights)),
         (kernel.log_density, (positions, weights, z, variance, 0.03)),
-        (kernel.costs, (variance, z, positions[0], 0.4, 0.2)),
+        (kernel.costs, (positions, weights, z, variance, 0.03, positions[0], 0.4, 0.2)),
     ):
         found, plain = function(*arguments), function.py_func(*arguments)
         for a, b in zip(found, plain, strict=True):
@@ -31,8 +33,10 @@ def test_compiled_and_plain_agree(cloud):
 def test_only_what_is_drawn_turns_back(cloud):
     positions, velocities, *_ = cloud
     draws = np.linspace(0, 1, 16, endpoint=False)
-    rates = np.zeros(16)
-    moved, turned, _ = kernel.advance(positions, velocities, rates, draws, 0.25, 0.5)
+    straight = np.zeros(16)
+    moved, turned, _ = kernel.advance(
+        positions, velocities, straight, straight, draws, (1.0, 0.0), 0.25, 0.5
+    )
     sign = np.where(draws < 0.25, -1.0, 1.0)[:, None]
     assert turned == pytest.approx(sign * velocities)
     assert moved == pytest.approx(positions + 0.5 * sign * velocities)
@@ -41,13 +45,20 @@ def test_only_what_is_drawn_turns_back(cloud):
 def test_what_turns_back_walks_the_same_bend_back(cloud):
     positions, velocities, weights, *_ = cloud
     rates, never, always = 20.0 * (weights - 0.06), np.ones(16), np.zeros(16)
-    there = kernel.advance(positions, velocities, rates, never, 0.5, 0.1)
+    there = kernel.advance(positions, velocities, rates, never, never, (1.0, 0.0), 0.5, 0.1)
     assert np.hypot(*there[1].T) == pytest.approx(np.hypot(*velocities.T))
     assert np.array_equal(there[2], rates)
-    back = kernel.advance(*there, always, 0.5, 0.1)
+    back = kernel.advance(*there, never, always, (1.0, 0.0), 0.5, 0.1)
     assert back[0] == pytest.approx(positions)
     assert back[1] == pytest.approx(-velocities)
     assert back[2] == pytest.approx(-rates)
+
+
+def test_turn_rates_are_forgotten_and_come_in_anew(cloud):
+    positions, velocities, weights, *_ = cloud
+    rates, bends, never = weights - 0.06, velocities[:, 0].copy(), np.ones(16)
+    _, _, after = kernel.advance(positions, velocities, rates, bends, never, (0.9, 0.1), 0.5, 0.1)
+    assert after == pytest.approx(0.9 * rates + 0.1 * bends)
 
 
 def test_the_moments_are_those_of_weighted_samples(cloud):
@@ -71,9 +82,11 @@ def test_the_density_is_a_sum_of_gaussians(cloud):
 
 
 def test_a_lost_mover_may_be_anywhere_in_reach(cloud):
-    *_, z, variance = cloud
+    positions, _, weights, z, variance = cloud
     reach, anywhere = 0.4, 0.2
+    density = np.exp(kernel.log_density(positions, weights, z, variance, 0.03))
     flat = anywhere * 2.0 / reach**2 * (np.hypot(*(z - z[0]).T) < reach)
-    wanted = -2.0 * np.log((1.0 - anywhere) * np.exp(variance) + flat + 1e-30)
-    assert kernel.costs(variance, z, z[0], reach, anywhere) == pytest.approx(wanted)
+    wanted = -2.0 * np.log((1.0 - anywhere) * density + flat + 1e-30)
+    found = kernel.costs(positions, weights, z, variance, 0.03, z[0], reach, anywhere)
+    assert found == pytest.approx(wanted)
     assert 1 < np.count_nonzero(flat) < 5

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation import track_particles
+from navigation import particle_kernel, track_particles
 from navigation.belief import Particles
 from navigation.belief_parameters import TrackingParameters
 from navigation.motion_modes import Modes
@@ -127,19 +127,24 @@ def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
     assert np.mean(np.hypot(*offsets[~line].T) < 0.25) == pytest.approx(0.25, abs=0.03)
 
 
+def log_density(cloud, z, variance):
+    jitter = P.position_jitter
+    return particle_kernel.log_density(cloud.positions, cloud.weights, z, variance, jitter)
+
+
 def test_log_density_of_one_particle_is_a_gaussian():
     cloud = Particles(np.array([[1.0, 0.0]]), np.zeros((1, 2)), np.zeros(1), np.ones(1))
     z = np.array([[1.0, 0.0], [1.2, 0.1]])
     variance = np.array([0.01, 0.04])
     wide = variance + P.position_jitter**2
     expected = -0.5 * np.array([0.0, 0.05]) / wide - np.log(wide)
-    assert np.allclose(track_particles.log_density(cloud, z, variance, P), expected)
+    assert np.allclose(log_density(cloud, z, variance), expected)
 
 
 def test_log_density_has_no_holes_between_few_particles(rng):
     cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
     z = rng.uniform(-0.5, 0.5, (50, 2))
-    density = np.exp(track_particles.log_density(cloud, z, np.full(50, 1e-4), P)) / (2 * np.pi)
+    density = np.exp(log_density(cloud, z, np.full(50, 1e-4))) / (2 * np.pi)
     assert density.min() > 0.02
 
 

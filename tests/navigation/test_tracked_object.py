@@ -7,6 +7,7 @@ from navigation.motion_modes import Modes, estimates
 from navigation.tracked_object import TrackedObject, reach_of
 
 P = TrackingParameters()
+SHARP = 1e-4 * np.eye(2)
 
 
 def filters(moving=0.5, velocity=(0.03, 0.0)):
@@ -27,17 +28,16 @@ def make(**changes):
         "last_time": 5.0,
         "last_seen": np.array([1.0, 2.0]),
         "known_reach": reach_of(np.eye(2) * 1e-4, P),
-        "best_covariance": np.eye(2) * 1e-4,
         "hits": 50,
     }
     return TrackedObject(**(values | changes))
 
 
-def published(o, time, modes=None):
+def published(o, time, modes=None, best=SHARP):
     """The track that becomes of it and of what its filters say."""
     rows = Modes(*(part[None] for part in modes or filters()))
-    standing, best = np.array([o.motion is Motion.STATIC]), o.best_covariance[None]
-    return o.track(time, P, tuple(part[0] for part in estimates(rows, standing, best, P)))
+    standing = np.array([o.motion is Motion.STATIC])
+    return o.track(time, P, tuple(part[0] for part in estimates(rows, standing, best[None], P)))
 
 
 @pytest.mark.parametrize(
@@ -117,9 +117,9 @@ def test_the_faster_it_was_the_farther_off_it_is_looked_for():
 
 def test_no_number_of_detections_brings_the_lasting_error_down():
     best = np.diag([4e-4, 1e-4])
-    o = make(motion=Motion.STATIC, best_covariance=best)
+    o = make(motion=Motion.STATIC)
     filtered = filters().covariances[0, :2, :2]
-    told = published(o, 5.0).covariance[:2, :2]
+    told = published(o, 5.0, best=best).covariance[:2, :2]
     assert np.allclose(told - filtered, P.lasting_error**2 * best)
 
 
