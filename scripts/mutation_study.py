@@ -31,7 +31,6 @@ from hypothesis import Phase, settings
 
 ROOT = Path(__file__).resolve().parents[1]
 TESTS = {  # where they are not those of the same name
-    "walking/zmp_layout_kernel": ("walking/test_zmp_kernel",),
     "walking/swing_kernel": ("walking/test_swing_kernel", "walking/test_swing_reaction"),
     "walking/foothold_kernel": ("walking/test_foothold_kernel", "walking/test_zmp_reference"),
     "walking/estimation_kernel": tuple(
@@ -59,7 +58,6 @@ MODULES = (
     "walking/lipm",
     "walking/zmp_reference",
     "walking/zmp_kernel",
-    "walking/zmp_layout_kernel",
     "walking/foot_placement",
     "walking/foothold_kernel",
     "walking/swing_kernel",

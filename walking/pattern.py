@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from walking import zmp_layout_kernel
+from walking import zmp_kernel
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.preview import preview_gains
@@ -22,7 +22,7 @@ def dcm_reference(lipm: Lipm, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
     Beyond the last ramp the ZMP stays and the DCM rests on it; a reference s seconds ahead
     weighs ω e^{-ωs}, which is preview control in the limit of free jerk.
     """
-    return zmp_layout_kernel.dcm(table_of(ramps), lipm.omega * CONTROL_PERIOD)
+    return zmp_kernel.dcm(table_of(ramps), lipm.omega * CONTROL_PERIOD)
 
 
 @dataclass(slots=True)

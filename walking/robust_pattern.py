@@ -23,7 +23,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from walking import zmp_kernel, zmp_layout_kernel
+from walking import zmp_kernel
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern import DcmTracker, PendulumState, dcm_reference
@@ -156,16 +156,16 @@ class RobustGenerator:
         if plan is not None:
             growth = self._lipm.ramp(self._age).growth
             dual = plan.dual[0] / growth, plan.dual[1] / growth
-        cells, starts, weights, dcm, knots = zmp_layout_kernel.lay_out(
+        feasible, dual, evaluations, knots = zmp_kernel.plan(
             table,
             (state.x, state.y, state.vx / w, state.vy / w, state.zmp_x, state.zmp_y),
             sole,
             self._wh,
             self._rate,
+            dual,
         )
-        feasible, lx, ly, evaluations = zmp_kernel.fit(cells, starts, weights, dcm, dual, knots)
         self.evaluations += evaluations
-        return ZmpPlan(knots, table, (lx, ly)) if feasible else None
+        return ZmpPlan(knots, table, dual) if feasible else None
 
 
 def _supports(ramps: Array) -> list[tuple[float, list[float]]]:

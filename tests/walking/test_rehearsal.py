@@ -13,7 +13,6 @@ from walking import (
     swing_foot_kernel,
     swing_kernel,
     zmp_kernel,
-    zmp_layout_kernel,
 )
 from walking.parameters import WalkingParameters
 from walking.rehearsal import rehearse
@@ -22,8 +21,7 @@ from walking.rehearsal import rehearse
 @pytest.mark.parametrize(
     ("module", "name"),
     [
-        (zmp_layout_kernel, "lay_out"),
-        (zmp_kernel, "fit"),
+        (zmp_kernel, "plan"),
         (zmp_kernel, "follow"),
         (foothold_kernel, "onwards"),
         (foothold_kernel, "swings"),

@@ -8,13 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from walking import zmp_kernel, zmp_layout_kernel
+from walking import zmp_kernel
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD
 from walking.ramps import ZmpRamp, table_of
 from walking.state import Footstep
-from walking.zmp_kernel import place, solve
-from walking.zmp_layout_kernel import CELL, limit, sides
+from walking.zmp_kernel import CELL, limit, place, sides, solve
 
 NOMINAL = (0.005, -0.003)
 BOUNDS = (-0.04, 0.04, -0.02, 0.02)
@@ -181,7 +180,7 @@ def test_a_zmp_outside_its_cell_counts_as_on_its_edge():
 def test_a_cell_of_two_feet_has_two_edges_each_in_one_sole(x, y, yaw, other_yaw):
     ramp, cell, sole = np.zeros(13), np.zeros(CELL), (0.01, 0.05, 0.03)
     ramp[5:13] = 0.0, 0.0, yaw, 1.0, x, y, other_yaw, 0.0
-    zmp_layout_kernel._between(ramp, 0.0, sole, cell)
+    zmp_kernel._between(ramp, 0.0, sole, cell)
     for v, foot in ((cell[10], ramp[5:8]), (cell[11], ramp[9:12])):
         c, s = np.cos(foot[2]), np.sin(foot[2])
         for u in cell[8:10]:
@@ -234,17 +233,11 @@ def problem(seed):
     ramps = reference(rng, double=double, steps=steps)
     table = table_of(ramps)
     wh = LIPM.omega * CONTROL_PERIOD
-    x, y = zmp_layout_kernel.dcm(table, wh)
+    x, y = zmp_kernel.dcm(table, wh)
     off = rng.uniform(-0.006, 0.006, 4)
     zmp = (ramps[0].ax + 0.1 * off[0], ramps[0].ay + 0.1 * off[1])
     pendulum = (x - 0.02 + off[0], y + 0.01 + off[1], 0.02 + off[2], -0.01 + off[3], *zmp)
     return ramps, (table, pendulum, SOLE, wh, RATE, START)
-
-
-def plan(*arguments, lay_out=zmp_layout_kernel.lay_out, fit=zmp_kernel.fit):
-    """Whether the program has a solution, λ, evaluations, and the knots."""
-    *program, knots = lay_out(*arguments[:-1])
-    return (*fit(*program, arguments[-1], knots), knots)
 
 
 def moved(dcm, before, after, ticks):
@@ -257,7 +250,7 @@ def moved(dcm, before, after, ticks):
 @given(st.integers(0, 10**6))
 def test_along_the_knots_the_pendulum_comes_to_the_reference(seed):
     ramps, arguments = problem(seed)
-    solved, _, _, _, knots = plan(*arguments)
+    solved, _, _, knots = zmp_kernel.plan(*arguments)
     if not solved:
         return
     x, y, vx, vy, *zmp = arguments[1]
@@ -267,18 +260,18 @@ def test_along_the_knots_the_pendulum_comes_to_the_reference(seed):
         ticks += knot[0]
     while ramps and ticks > 0:
         ticks -= ramps.pop(0).ticks
-    goal = zmp_layout_kernel.dcm(table_of(ramps), LIPM.omega * CONTROL_PERIOD) if ramps else now
+    goal = zmp_kernel.dcm(table_of(ramps), LIPM.omega * CONTROL_PERIOD) if ramps else now
     np.testing.assert_allclose(dcm, goal, atol=1e-6)  # a walk of a second multiplies by 1000
 
 
 def test_most_of_those_programs_have_a_solution():
-    assert sum(plan(*problem(seed)[1])[0] for seed in range(100)) > 50
+    assert sum(zmp_kernel.plan(*problem(seed)[1])[0] for seed in range(100)) > 50
 
 
 @given(st.integers(0, 10**6))
 def test_knots_of_single_support_lie_in_their_sole(seed):
     ramps, arguments = problem(seed)
-    solved, _, _, _, knots = plan(*arguments)
+    solved, _, _, knots = zmp_kernel.plan(*arguments)
     ends = np.cumsum([ramp.ticks for ramp in ramps])
     for time, (x, y) in zip(np.cumsum(knots[:, 0]), knots[:, 1:], strict=True):
         index = int(np.searchsorted(ends, time))
@@ -295,13 +288,10 @@ def test_knots_of_single_support_lie_in_their_sole(seed):
 @given(st.integers(0, 10**6))
 def test_compiled_it_is_what_it_says(plainly, seed):
     arguments = problem(seed)[1]
-    *numbers, knots = plan(*arguments)
-    *plain, points = plan(
-        *arguments,
-        lay_out=lambda *a: plainly(zmp_layout_kernel, "lay_out", *a),
-        fit=lambda *a: plainly(zmp_kernel, "fit", *a),
-    )
-    assert numbers == pytest.approx(plain, rel=1e-9, abs=1e-9)
+    solved, dual, evaluations, knots = zmp_kernel.plan(*arguments)
+    *plain, points = plainly(zmp_kernel, "plan", *arguments)
+    assert [solved, evaluations] == [plain[0], plain[2]]
+    assert dual == pytest.approx(plain[1], rel=1e-9, abs=1e-9)
     np.testing.assert_allclose(knots, points, atol=1e-12)
 
 
