@@ -1,4 +1,4 @@
-"""What follows from the footholds to come, compiled: ZMP reference and swings.
+"""The footholds to come and the ZMP reference that follows from them, compiled.
 
 A foothold is x, y [m], yaw [rad], and 1 if it is a left one, 0 if not.
 """
@@ -23,7 +23,7 @@ Chain = tuple[Placements, Placements, tuple[float, float], int]
 """Strides; those of stepping in place; distance along x and y [m] and angle [rad] at which a
 foothold is one of standing; most footholds to come."""
 
-RAMP, SWING = 13, 10  # numbers of a ramp, see `Ramps`, and of a swing, see `Swings`
+RAMP = 13  # numbers of a ramp, see `Ramps`
 
 
 @njit(cache=True)
@@ -125,47 +125,6 @@ def ramps(
 
 
 @njit(cache=True)
-def swings(
-    support: Foothold,
-    origin: Foothold,
-    landing: Foothold,
-    steps: Array,
-    now: tuple[int, float, bool],
-    later: tuple[int, int, float],
-    spot: Spot,
-) -> Array:
-    """Swings under way and to come.
-
-    Args:
-        support: the foot that carries in this footstep.
-        origin: where the other foot swings from.
-        landing: where it is about to land.
-        steps: footholds to come, that of this footstep the first (n, 4).
-        now: begin in ticks from now and lift [m] of this footstep's swing, and whether there is
-            one.
-        later: begin in ticks from now of the swing after that, ticks from one to the next, lift
-            [m].
-        spot: of the ZMP under a foot.
-
-    Returns:
-        the swings, see `Swings` (m, 10).
-    """
-    table = np.empty((steps.shape[0], SWING))
-    row = 0
-    if now[2]:
-        _swing(table[row], now[0], now[1], origin, landing, _under(support, spot))
-        row += 1
-    begin = later[0]
-    for k in range(1, steps.shape[0]):
-        step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
-        _swing(table[row], begin, later[2], support, step, _under(landing, spot))
-        support, landing = landing, step
-        begin += later[1]
-        row += 1
-    return table[:row]
-
-
-@njit(cache=True)
 def _landing(support: Foothold, strides: Placements) -> Foothold:
     """Next foothold of the foot that is not `support`."""
     x, y, turned = strides[0] if support[3] > 0.0 else strides[1]
@@ -201,18 +160,3 @@ def _ramp(
     row[0], row[1], row[2], row[3], row[4] = ticks, ax, ay, bx, by
     row[5], row[6], row[7], row[8] = one
     row[9], row[10], row[11], row[12] = two
-
-
-@njit(cache=True)
-def _swing(
-    row: Array,
-    begin: int,
-    lift: float,
-    origin: Foothold,
-    landing: Foothold,
-    zmp: tuple[float, float],
-) -> None:
-    row[0], row[1] = begin, lift
-    for k in range(3):
-        row[2 + k], row[5 + k] = origin[k], landing[k]
-    row[8], row[9] = zmp

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from walking import foothold_kernel, swing_foot_kernel
+from walking import swing_foot_kernel
 from walking.footstep_clock import Clock, SwingWindow, WeightShift
 from walking.footsteps import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -12,7 +12,7 @@ from walking.state import Footstep, Phase, foothold
 from walking.stride import STILL, Strides, Timing
 from walking.swing import least_ticks, moved, resting, stand
 from walking.swing_foot_kernel import HEIGHT
-from walking.swing_reaction import Swings
+from walking.swing_reaction import NO_SWINGS, Swings
 from walking.zmp_reference import ZmpReference
 
 Array = NDArray[np.float64]
@@ -266,10 +266,10 @@ class Gait:
         )
         return ramps
 
-    def swings(self) -> Swings | None:
+    def swings(self) -> Swings:
         """Swings under way and to come, none while the robot stands."""
         if not self.stepping or not len(self._future):
-            return None
+            return NO_SWINGS
         single, timing = self._single, self.timing
         begin = single.first - self._elapsed
         ticks = single.last - single.first
@@ -278,18 +278,23 @@ class Gait:
             ticks = round(ticks / (1.0 - single.origin))
             begin = -round(self.swing_phase * ticks)
         usual = self._usual
-        later = self.ticks_left + timing.double + usual.first
-        table = foothold_kernel.swings(
-            self.footholds[self.support].row,
-            self.footholds[self.swing].row,
-            self.landing.row,
+        each = usual.last - usual.first
+        return Swings(
+            (
+                self.footholds[self.support].row,
+                self.footholds[self.swing].row,
+                self.landing.row,
+            ),
             self._future,
             (begin, self._lift, not self.held),
-            (later, timing.double + timing.single, timing.lift),
+            (
+                self.ticks_left + timing.double + usual.first,
+                timing.double + timing.single,
+                timing.lift,
+            ),
             self._reference.spot,
+            (each if self.held else ticks, each),
         )
-        each = usual.last - usual.first
-        return Swings(table, each if self.held else ticks, each)
 
     def footsteps(self) -> Array:
         """Planned footholds in the plan frame, support foot first (n, 4); see `Footstep.row`."""

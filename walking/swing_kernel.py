@@ -8,6 +8,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
+Vector = tuple[float, float, float]
+Foothold = tuple[float, float, float, float]
+"""x, y [m], yaw [rad], and 1 if it is a left one, 0 if not."""
+
+Feet = tuple[Foothold, Foothold, Foothold]
+"""The foot that carries in this footstep; where the other foot swings from; where it is about to
+land."""
+
+Spot = tuple[float, float]
+"""Where the ZMP is meant to be under a foot: forward and inward of its origin [m]."""
+
+SWING = 10  # numbers of a swing
 
 
 @njit(cache=True)
@@ -46,19 +58,25 @@ def profile(ticks: int, ramp: tuple[float, float, float], period: float) -> Arra
 
 @njit(cache=True)
 def react(
-    swings: Array,
-    now: Array,
-    later: Array,
-    reaction: tuple[float, float, float],
+    feet: Feet,
+    steps: Array,
+    now: tuple[int, float, bool],
+    later: tuple[int, int, float],
+    spot: Spot,
+    profiles: tuple[Array, Array],
+    reaction: Vector,
     state: Array,
     clock: Point,
 ) -> tuple[Point, Point]:
     """One tick of the pelvis.
 
     Args:
-        swings: the next one first, see `Swings` (n, 10).
-        now: profile of the first (ticks + 1, 6).
-        later: profile of the others (ticks + 1, 6).
+        feet: see `swings`.
+        steps: see `swings`.
+        now: see `swings`.
+        later: see `swings`.
+        spot: see `swings`.
+        profiles: of the first swing, and of the others (ticks + 1, 6).
         reaction: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg.
         state: offset of the pelvis x, y, and ξ x, y, brought up to date (4,) [m].
         clock: ω [1/s], control period [s].
@@ -66,13 +84,15 @@ def react(
     Returns:
         offset x, y [m], and its acceleration x, y [m/s²].
     """
+    table = swings(feet, steps, now, later, spot)
     w, period = clock
     x = y = now_x = now_y = 0.0
-    for k in range(swings.shape[0]):
-        swing = swings[k]
-        moment = later[0]
+    for k in range(table.shape[0]):
+        swing = table[k]
+        moment = profiles[1][0]
         if k == 0:
-            moment = now[min(now.shape[0] - 1, max(0, -int(swing[0])))]
+            first = profiles[0]
+            moment = first[min(first.shape[0] - 1, max(0, -int(swing[0])))]
         dx, dy = _moved(swing, reaction, moment[0], moment[1], moment[2])
         decay = exp(-w * period * swing[0]) if swing[0] > 0.0 else 1.0
         x -= decay * dx
@@ -87,8 +107,48 @@ def react(
 
 
 @njit(cache=True)
+def swings(
+    feet: Feet,
+    steps: Array,
+    now: tuple[int, float, bool],
+    later: tuple[int, int, float],
+    spot: Spot,
+) -> Array:
+    """Swings under way and to come.
+
+    Args:
+        feet: see `Feet`.
+        steps: footholds to come, that of this footstep the first (n, 4).
+        now: begin in ticks from now and lift [m] of this footstep's swing, and whether there is
+            one.
+        later: begin in ticks from now of the swing after that, ticks from one to the next, lift
+            [m].
+        spot: of the ZMP under a foot.
+
+    Returns:
+        a row for each, the next one first: control ticks until the foot lifts, negative while it
+        is in the air | height at mid-swing [m] | x, y [m], yaw [rad] of where the foot comes from
+        | the same of where it goes to | ZMP of the support foot, x, y [m] (m, 10).
+    """
+    support, origin, landing = feet
+    table = np.empty((steps.shape[0], SWING))
+    row = 0
+    if now[2]:
+        _swing(table[row], now[0], now[1], origin, landing, _under(support, spot))
+        row += 1
+    begin = later[0]
+    for k in range(1, steps.shape[0]):
+        step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
+        _swing(table[row], begin, later[2], support, step, _under(landing, spot))
+        support, landing = landing, step
+        begin += later[1]
+        row += 1
+    return table[:row]
+
+
+@njit(cache=True)
 def _moved(
-    swing: Array, reaction: tuple[float, float, float], forward: float, up: float, both: float
+    swing: Array, reaction: Vector, forward: float, up: float, both: float
 ) -> tuple[float, float]:
     """Move of the ZMP, `both` being the move upwards weighted by the way made [m]."""
     thrust, weight, knee = reaction[0], reaction[1] * swing[1], reaction[2] * swing[1] * up
@@ -98,3 +158,27 @@ def _moved(
         weight * (up * (swing[2] - swing[8]) + both * dx) - thrust * forward * dx - knee * cos(yaw),
         weight * (up * (swing[3] - swing[9]) + both * dy) - thrust * forward * dy - knee * sin(yaw),
     )
+
+
+@njit(cache=True)
+def _under(foot: Foothold, spot: Spot) -> tuple[float, float]:
+    """ZMP under a foot that carries alone [m]."""
+    forward = spot[0]
+    inward = -spot[1] if foot[3] > 0.0 else spot[1]
+    c, s = cos(foot[2]), sin(foot[2])
+    return foot[0] + c * forward - s * inward, foot[1] + s * forward + c * inward
+
+
+@njit(cache=True)
+def _swing(
+    row: Array,
+    begin: int,
+    lift: float,
+    origin: Foothold,
+    landing: Foothold,
+    zmp: tuple[float, float],
+) -> None:
+    row[0], row[1] = begin, lift
+    for k in range(3):
+        row[2 + k], row[5 + k] = origin[k], landing[k]
+    row[8], row[9] = zmp

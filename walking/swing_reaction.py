@@ -28,12 +28,11 @@ from walking.leg_kinematics import FootPose, leg_angles
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.robot_model import RobotModel
+from walking.swing_kernel import Feet, Spot
 from walking.value import value
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
-NO_SWINGS = np.empty((0, 10))
-RESTING = np.zeros((1, 6))
 SMALL = 1e-4  # of a foot's move in finite differences [m]
 
 
@@ -97,16 +96,28 @@ class Swings:
     """The swings of a plan, the next one first; only that one may be under way.
 
     Attributes:
-        table: of each: control ticks until the foot lifts, negative while it is in the air |
-            height at mid-swing [m] | x, y [m], yaw [rad] of where the foot comes from |
-            the same of where it goes to | ZMP of the support foot, x, y [m] (n, 10).
-        first: control ticks from lift to landing of the first [1].
-        later: the same of all others [1].
+        feet: the support foot, and where the other one comes from and goes to, see
+            `swing_kernel.Feet`.
+        steps: footholds to come, see `swing_kernel.swings` (n, 4).
+        now: see `swing_kernel.swings`.
+        later: see `swing_kernel.swings`.
+        spot: see `swing_kernel.Spot`.
+        ticks: from lift to landing, of the first and of all others [1].
     """
 
-    table: Array
-    first: int
-    later: int
+    feet: Feet
+    steps: Array
+    now: tuple[int, float, bool]
+    later: tuple[int, int, float]
+    spot: Spot
+    ticks: tuple[int, int]
+
+
+ORIGIN = (0.0, 0.0, 0.0, 0.0)
+NO_SWINGS = Swings(
+    (ORIGIN, ORIGIN, ORIGIN), np.empty((0, 4)), (0, 0.0, False), (0, 0, 0.0), (0.0, 0.0), (0, 0)
+)
+"""While the robot stands."""
 
 
 class SwingCompensation:
@@ -125,19 +136,24 @@ class SwingCompensation:
         self._lipm = lipm
         self._w = (lipm.omega, CONTROL_PERIOD)
         self._reaction = (reaction.thrust, reaction.weight, reaction.knee)
-        self._profiles: dict[int, Array] = {}
+        self._profiles: dict[int, Array] = {0: np.zeros((1, 6))}
         self._state = np.zeros(4)
         self.offset: Point = (0.0, 0.0)
         self.acceleration: Point = (0.0, 0.0)
 
-    def advance(self, swings: Swings | None) -> None:
-        """One tick along a plan; none while the robot stands."""
-        table, now, later = NO_SWINGS, RESTING, RESTING
-        if swings is not None:
-            table = swings.table
-            now, later = self._profile(swings.first), self._profile(swings.later)
+    def advance(self, swings: Swings) -> None:
+        """One tick along a plan."""
+        first, others = swings.ticks
         self.offset, self.acceleration = swing_kernel.react(
-            table, now, later, self._reaction, self._state, self._w
+            swings.feet,
+            swings.steps,
+            swings.now,
+            swings.later,
+            swings.spot,
+            (self._profile(first), self._profile(others)),
+            self._reaction,
+            self._state,
+            self._w,
         )
 
     def _profile(self, ticks: int) -> Array:

@@ -1,4 +1,4 @@
-"""Footholds chained and made a reference and swings, against the same in plain Python."""
+"""Footholds chained and made a reference, against the same in plain Python."""
 
 from itertools import pairwise
 
@@ -69,37 +69,3 @@ def test_compiled_they_are_what_they_say(plainly, seed, ends):
     both = foothold_kernel.onwards(swing.row, support.row, *chain, (0.1, 0.2), *asked[4:6])
     np.testing.assert_array_equal(both[0], steps)
     np.testing.assert_array_equal(both[1], found)
-    feet = support.row, swing.row, landing.row
-    asked = (*feet, steps, (-3, 0.02, seed % 2 == 0), (40, 68, 0.025), SPOT)
-    found = foothold_kernel.swings(*asked)
-    np.testing.assert_array_equal(found, plainly(foothold_kernel, "swings", *asked))
-
-
-def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
-    _, support, landing, strides = draw(4)
-    steps, _ = foothold_kernel.sequence(*arguments(support, landing, strides, True))
-    origin = Footstep(landing.left, 0.3, 0.2, 0.1)
-    table = foothold_kernel.swings(
-        support.row,
-        origin.row,
-        landing.row,
-        steps,
-        (-3, 0.02, True),
-        (40, 68, 0.025),
-        SPOT,
-    )
-    assert table[:, 0].tolist() == [-3.0, 40.0, 108.0, 176.0]
-    assert table[:, 1].tolist() == [0.02, 0.025, 0.025, 0.025]
-    feet = np.array([origin.row, support.row, *steps])
-    np.testing.assert_array_equal(table[:, 2:5], feet[:4, :3])
-    np.testing.assert_array_equal(table[:, 5:8], feet[2:, :3])
-    held = foothold_kernel.swings(
-        support.row,
-        origin.row,
-        landing.row,
-        steps,
-        (-3, 0.02, False),
-        (40, 68, 0.025),
-        SPOT,
-    )
-    np.testing.assert_array_equal(held, table[1:])

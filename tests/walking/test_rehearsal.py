@@ -24,7 +24,6 @@ from walking.rehearsal import rehearse
         (zmp_kernel, "plan"),
         (zmp_kernel, "follow"),
         (foothold_kernel, "onwards"),
-        (foothold_kernel, "swings"),
         (swing_kernel, "react"),
         (swing_foot_kernel, "advance"),
         (support_kernel, "clip"),

@@ -9,31 +9,30 @@ from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.lipm import Lipm
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.state import Footstep
-from walking.swing_reaction import LegReaction, SwingCompensation, Swings, leg_reaction
+from walking.swing_reaction import NO_SWINGS, LegReaction, SwingCompensation, Swings, leg_reaction
 
 LIPM = Lipm(0.19)
 REACTION = LegReaction(thrust=7e-4, weight=0.012, knee=3e-4)
 STEP, TICKS = 60, 44  # control ticks of a footstep and of its swing
 
 
-def foot(side, x, y, yaw=0.0):
-    return Footstep(side > 0, x, y, yaw)
-
-
 def swings(k, stride, *, side=1.0, steps=6):
     """Swings seen from tick `k` of a walk that goes on for ever."""
-    first, planned = k // STEP, []
-    for n in range(first, first + steps):
+    first = k // STEP
+    begin = first * STEP + STEP - TICKS - k
+
+    def foothold(n):
         flank = side * (-1.0) ** n
-        begin = n * STEP + STEP - TICKS - k
-        if begin + TICKS < 0:
-            continue
-        origin = foot(flank, (n - 1) * stride, 0.042 * flank)
-        landing = foot(flank, (n + 1) * stride, 0.042 * flank)
-        zmp = (n * stride + 0.01, -0.042 * flank)
-        planned.append([begin, 0.025, *origin.row[:3], *landing.row[:3], *zmp])
-    return Swings(np.array(planned), TICKS, TICKS)
+        return (n * stride, -0.042 * flank, 0.0, 1.0 if flank < 0.0 else 0.0)
+
+    return Swings(
+        (foothold(first), foothold(first - 1), foothold(first + 1)),
+        np.array([foothold(n + 1) for n in range(first, first + steps)]),
+        (begin, 0.025, True),
+        (begin + STEP, STEP, 0.025),
+        (0.01, 0.0),
+        (TICKS, TICKS),
+    )
 
 
 def track(stride, count=600, **options):
@@ -47,19 +46,21 @@ def track(stride, count=600, **options):
 
 def reaction_of(k, stride):
     """Move of the ZMP by the swing under way at tick `k`, by the formula."""
-    swing = swings(k, stride).table[0]
-    u = -swing[0] / TICKS
+    planned = swings(k, stride)
+    (zx, zy, *_), origin, landing = planned.feet
+    begin, lift, _ = planned.now
+    u = -begin / TICKS
     if not 0.0 <= u <= 1.0:
         return np.zeros(2)
     T = TICKS * CONTROL_PERIOD
     moved = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])
-    height = 0.025 * np.polynomial.Polynomial([0, 4, -4]) ** 3
-    a, b = swing[2:4], swing[5:7]
+    height = lift * np.polynomial.Polynomial([0, 4, -4]) ** 3
+    a, b, zmp = np.array(origin[:2]), np.array(landing[:2]), np.array([zx + 0.01, zy])
     place = a + (b - a) * moved(u)
     up = height.deriv(2)(u) / T**2
     return (
         -REACTION.thrust * (b - a) * moved.deriv(2)(u) / T**2
-        + REACTION.weight * up * (place - swing[8:])
+        + REACTION.weight * up * (place - zmp)
         - REACTION.knee * up * np.array([1.0, 0.0])
     )
 
@@ -84,12 +85,17 @@ def test_the_acceleration_is_that_of_the_offset():
 def turned(planned, angle):
     """The same swings of a walk in another direction."""
     turn = np.exp(1j * angle)
-    table = planned.table.copy()
-    for x in (2, 5, 8):
-        place = turn * (table[:, x] + 1j * table[:, x + 1])
-        table[:, x], table[:, x + 1] = place.real, place.imag
-    table[:, [4, 7]] += angle
-    return Swings(table, planned.first, planned.later)
+
+    def foothold(row):
+        x, y, yaw, left = row
+        place = turn * complex(x, y)
+        return (place.real, place.imag, yaw + angle, left)
+
+    return replace(
+        planned,
+        feet=tuple(map(foothold, planned.feet)),
+        steps=np.array([foothold(row) for row in planned.steps.tolist()]),
+    )
 
 
 def test_a_walk_in_another_direction_has_its_offsets_turned():
@@ -116,7 +122,7 @@ def test_standing_the_pelvis_comes_back():
     for k in range(200):
         compensation.advance(swings(k, 0.07))
     for _ in range(400):
-        compensation.advance(None)
+        compensation.advance(NO_SWINGS)
     assert np.abs(compensation.offset).max() < 1e-6
 
 
