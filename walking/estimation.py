@@ -48,14 +48,9 @@ class Estimation:
         self._error[4] = -1.0
         sole, gains = robot.sole, steady_gains(omega, parameters)
         light = LIGHT_LOAD * robot.mass * GRAVITY
-        self._body = (
-            parameters.tilt_gain,
-            light,
-            sole.centre,
-            sole.half_length,
-            sole.half_width,
-        )
-        self._gains = (gains.position, gains.velocity, omega)
+        body = parameters.tilt_gain, light, sole.centre, sole.half_length, sole.half_width
+        self._body = np.array(body)
+        self._gains = np.array([gains.position, gains.velocity, omega])
         self.seen = np.zeros(FOUND)
         self.tilt: Point | None = None
         self.dcm_error: Point = (0.0, 0.0)
@@ -81,12 +76,10 @@ class Estimation:
         """A tick in which there is no plan: only the body is seen, and its tilt filtered."""
         robot = self._robot
         self.tilt = estimation_kernel.observe(
-            (
-                sensors.joint_position,
-                sensors.foot_force,
-                sensors.orientation,
-                sensors.gyro,
-            ),
+            sensors.joint_position,
+            sensors.foot_force,
+            sensors.orientation,
+            sensors.gyro,
             robot.com(sensors.joint_position),
             self._filter,
             robot.leg_rows,
@@ -109,14 +102,14 @@ class Estimation:
         """
         robot, odometry = self._robot, self._odometry
         tilt, self.dcm_error, self.pressure_error, self.pose = estimation_kernel.estimate(
-            (
-                sensors.joint_position,
-                sensors.foot_force,
-                sensors.orientation,
-                sensors.gyro,
-            ),
+            sensors.joint_position,
+            sensors.foot_force,
+            sensors.orientation,
+            sensors.gyro,
             robot.com(sensors.joint_position),
-            (self._filter, odometry.state, self._error),
+            self._filter,
+            odometry.state,
+            self._error,
             robot.leg_rows,
             self._body,
             odometry.growth,

@@ -9,6 +9,8 @@ What is remembered from tick to tick is kept in arrays, booleans as 0 or 1:
                     carry, and how far apart they were when they began to, x, y [m] |
                     xx, xy, xw, yy, yw, ww of the error's covariance;
     error (5,)      x, y [m], vx, vy [m/s] | weight on the right foot [1], -1 before the first.
+
+Numbers that stay are arrays as well: a tuple is taken apart at every call.
 """
 
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
@@ -21,18 +23,6 @@ from walking.leg_kernel import Angles, Leg, Point, Pose, Vector
 
 Array = NDArray[np.float64]
 
-Reading = tuple[Array, Array, Array, Array]
-"""Joint angles (26,) [rad]; load on front left, front right, back left and back right of either
-sole (2, 4) [N]; attitude of the IMU, quaternion w-x-y-z (4,); angular velocity (3,) [rad/s]."""
-
-Body = tuple[float, float, float, float, float]
-"""Share of the IMU's attitude in the tilt per tick [1]; load of a foot that is none [N]; middle of
-a sole ahead of the ankle, half of its length and width [m]."""
-
-Growth = tuple[float, float, float, float]
-"""Variance of what goes unseen in a tick, forward, to the left [m²], and turning [rad²]; share of
-the feet's sliding against each other that is the foot's that counts [1]."""
-
 Plan = tuple[float, float, float, float, float, float, float, float, float, float, float]
 """Pelvis x, y [m], heading [rad]; mass centre in the base frame x, y; ZMP x, y; by how much the
 ankles moved it x, y [m]; turn rate [rad/s]; weight on the right foot [1]."""
@@ -43,13 +33,18 @@ FOUND, LOAD = 24, 10  # numbers found in a tick; the first foot's load among the
 
 @njit(cache=True)
 def estimate(
-    reading: Reading,
+    joints: Array,
+    pads: Array,
+    orientation: Array,
+    gyro: Array,
     com: Array,
-    states: tuple[Array, Array, Array],
-    legs: tuple[Leg, Leg],
-    body: Body,
-    growth: Growth,
-    gains: Vector,
+    tilt: Array,
+    odometry: Array,
+    error: Array,
+    legs: Array,
+    body: Array,
+    growth: Array,
+    gains: Array,
     feet: Array,
     plan: Plan,
     stepping: bool,
@@ -59,13 +54,18 @@ def estimate(
     """One tick: `observe`, odometry, and what the body does against the plan.
 
     Args:
-        reading: of the sensors.
-        com: mass centre for the measured joints in the base frame (3,) [m].
-        states: tilt, odometry and error, brought up to date.
-        legs: left and right.
+        joints: see `observe`.
+        pads: see `observe`.
+        orientation: see `observe`.
+        gyro: see `observe`.
+        com: see `observe`.
+        tilt: brought up to date.
+        odometry: brought up to date.
+        error: brought up to date.
+        legs: see `observe`.
         body: see `observe`.
-        growth: of the odometry's error.
-        gains: of the error's position [1] and velocity [1/s]; ω [1/s].
+        growth: see `reckon`.
+        gains: see `filter_error`.
         feet: their references, see `walking.swing_foot_kernel` (2, 10).
         plan: of the tick before.
         stepping: whether the feet leave the floor.
@@ -76,8 +76,7 @@ def estimate(
         roll and pitch [rad]; error of the DCM in the plan frame [m]; of the centre of pressure,
         forward and left, none in the air [m]; pose by odometry [m, m, rad].
     """
-    tilt, odometry, error = states
-    inclined = observe(reading, com, tilt, legs, body, period, found)
+    inclined = observe(joints, pads, orientation, gyro, com, tilt, legs, body, period, found)
     left, right = (found[6], found[7]), (found[11], found[12])
     reckon(odometry, found[2], (left, right), found[19], stepping, growth)
     yaw, weight = plan[2], plan[10]
@@ -107,22 +106,29 @@ def estimate(
 
 @njit(cache=True)
 def observe(
-    reading: Reading,
+    joints: Array,
+    pads: Array,
+    orientation: Array,
+    gyro: Array,
     com: Array,
     tilt: Array,
-    legs: tuple[Leg, Leg],
-    body: Body,
+    legs: Array,
+    body: Array,
     period: float,
     found: Array,
 ) -> Point:
     """The body as the sensors have it, in the level frame of the trunk's heading.
 
     Args:
-        reading: of the sensors.
+        joints: their angles (26,) [rad].
+        pads: load on front left, front right, back left and back right of either sole (2, 4) [N].
+        orientation: attitude of the IMU, quaternion w-x-y-z (4,).
+        gyro: angular velocity (3,) [rad/s].
         com: mass centre for the measured joints in the base frame (3,) [m].
         tilt: brought up to date.
-        legs: left and right.
-        body: numbers of the body.
+        legs: left and right, see `Leg` (2, 6).
+        body: share of the IMU's attitude in the tilt per tick [1]; load of a foot that is none
+            [N]; middle of a sole ahead of the ankle, half of its length and width [m] (5,).
         period: of control [s].
         found: set to roll, pitch, heading [rad] | angular velocity (3,) [rad/s] | of either foot
             x, y, z [m], yaw [rad], load [N] | mass centre (3,) [m] | share of the load on the right
@@ -132,7 +138,6 @@ def observe(
     Returns:
         roll and pitch [rad].
     """
-    joints, pads, orientation, gyro = reading
     quaternion = (orientation[0], orientation[1], orientation[2], orientation[3])
     roll, pitch, heading = roll_pitch_yaw(quaternion)
     follow_tilt(tilt, roll, pitch, gyro, body[0], period)
@@ -140,9 +145,10 @@ def observe(
     found[3], found[4], found[5] = gyro[0], gyro[1], gyro[2]
     inclined = (tilt[1], tilt[2])
     for side in range(2):
-        own = joints[6 * side : 6 * side + 6]
+        leg, own = legs[side], joints[6 * side : 6 * side + 6]
+        build = (leg[0], leg[1], leg[2], leg[3], leg[4], leg[5])
         angles = (own[0], own[1], own[2], own[3], own[4], own[5])
-        x, y, z, _, _, yaw = foot_pose(legs[side], angles)
+        x, y, z, _, _, yaw = foot_pose(build, angles)
         force, ahead, aside = load_of(pads[side], (body[2], body[3], body[4]))
         row = 6 + 5 * side
         found[row], found[row + 1], found[row + 2] = level((x, y, z), inclined)
@@ -233,7 +239,7 @@ def reckon(
     feet: tuple[Point, Point],
     load: float,
     stepping: bool,
-    growth: Growth,
+    growth: Array,
 ) -> None:
     """One tick of dead reckoning, see `LegOdometry`.
 
@@ -243,7 +249,9 @@ def reckon(
         feet: horizontal position of the left and right foot in the robot frame [m].
         load: share of the weight on the right foot [1].
         stepping: whether the feet leave the floor.
-        growth: of the error.
+        growth: variance of what goes unseen in a tick, forward, to the left [m²], and turning
+            [rad²]; share of the feet's sliding against each other that is the foot's that counts
+            [1] (4,).
     """
     if odometry[3] != 0.0:
         odometry[2] += (heading - odometry[4] + pi) % (2.0 * pi) - pi
@@ -311,7 +319,7 @@ def _watch_slip(odometry: Array, x: float, y: float, load: float, share: float) 
 
 @njit(cache=True)
 def filter_error(
-    error: Array, measured: Point, zmp_shift: Point, slip: Point, gains: Vector, period: float
+    error: Array, measured: Point, zmp_shift: Point, slip: Point, gains: Array, period: float
 ) -> None:
     """Steady Kalman filter of e'' = ω² (e - d) + noise, e measured.
 
@@ -321,10 +329,10 @@ def filter_error(
         zmp_shift: d, by how much the ankles moved the ZMP [m].
         slip: velocity that a foot turning on the floor gives the body unseen by the encoders
             [m/s].
-        gains: of position [1] and velocity [1/s]; ω [1/s].
+        gains: of position [1] and velocity [1/s]; ω [1/s] (3,).
         period: of control [s].
     """
-    kp, kv, w = gains
+    kp, kv, w = gains[0], gains[1], gains[2]
     for axis in range(2):
         now, rate = error[axis], error[axis + 2]
         change = w * w * (now - zmp_shift[axis])

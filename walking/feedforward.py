@@ -26,13 +26,13 @@ class FeedForward:
         self._height = height
         share = np.full(robot.damping.size, parameters.upper_velocity_gain)
         share[LEFT_LEG] = share[RIGHT_LEG] = parameters.velocity_gain
-        self._servos = (
-            parameters.load_gain / robot.stiffness,
-            share * robot.damping / robot.stiffness,
+        self._servos = np.array(
+            [parameters.load_gain / robot.stiffness, share * robot.damping / robot.stiffness]
         )
         pitch, roll = robot.stiffness[4:6].tolist()
-        self._ankles = (robot.mass * GRAVITY, pitch, roll, parameters.gyro_gain)
-        self._law = (parameters.inertia_gain, parameters.inertia_limit, CONTROL_PERIOD)
+        self._ankles = np.array([robot.mass * GRAVITY, pitch, roll, parameters.gyro_gain])
+        law = parameters.inertia_gain, parameters.inertia_limit, CONTROL_PERIOD
+        self._law = np.array(law)
         self._started = False
         self._position = np.zeros(robot.damping.size)
         self._velocity = np.zeros(robot.damping.size)
@@ -68,13 +68,14 @@ class FeedForward:
             position,
             self._position,
             self._velocity,
-            robot.motion,
-            robot.indices,
+            *robot.motion,
+            *robot.indices,
             pelvis,
             acceleration,
             self._law,
         )
-        return leg_kernel.offsets(
+        found = np.empty(position.size)
+        leg_kernel.offsets(
             robot.forces(),
             robot.indices[1],
             position,
@@ -87,4 +88,6 @@ class FeedForward:
             robot.leg_rows,
             balance,
             self._ankles,
+            found,
         )
+        return found

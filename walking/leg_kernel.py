@@ -26,8 +26,7 @@ Balance = tuple[Point, Point, Array]
 """Directions of the left and of the right foot [rad]; by how much the ankles are to move the ZMP,
 in the plan frame [m]; angular velocity of the trunk (3,) [rad/s]."""
 
-Ankles = tuple[float, float, float, float]
-"""Weight of the robot [N]; stiffness of pitch and of roll [N m/rad]; damping by the gyro [s]."""
+# Numbers that stay are rows of arrays: a tuple is taken apart at every call.
 
 STILL_TILT = 1e-6  # tilt of a foot that counts as none [rad]
 
@@ -117,9 +116,9 @@ def pose(
     com: Point,
     head: Point,
     tilt: Point,
-    law: tuple[float, float, float, float, float],
-    build: Vector,
-    legs: tuple[Leg, Leg],
+    law: Array,
+    build: Array,
+    legs: Array,
 ) -> Vector:
     """Set the joints of legs and head, and swing the arms.
 
@@ -135,10 +134,10 @@ def pose(
         head: pan and tilt [rad].
         tilt: measured roll and pitch of the trunk [rad].
         law: share of the tilt taken out of the foot [1], tilt that is ignored [rad], pull and
-            decay per tick [1], height of the base above the floor [m].
+            decay per tick [1], height of the base above the floor [m] (5,).
         build: mass centre ahead of the base [m]; shoulder pitch per distance between the feet
-            [rad/m] and its limit [rad].
-        legs: left and right.
+            [rad/m] and its limit [rad] (3,).
+        legs: left and right, see `Leg` (2, 6).
 
     Returns:
         the pelvis: x, y [m], heading [rad] in the plan frame.
@@ -184,12 +183,12 @@ def _pose_legs(
     which: tuple[int, int],
     pelvis: Vector,
     tilt: Point,
-    law: tuple[float, float, float, float, float],
-    legs: tuple[Leg, Leg],
+    law: Array,
+    legs: Array,
 ) -> float:
     """Set the joints of the legs; how far the left foot is ahead of the right one [m]."""
     c, s = cos(pelvis[2]), sin(pelvis[2])
-    gain, zone, pull, decay, base = law
+    gain, zone, pull, decay, base = law[0], law[1], law[2], law[3], law[4]
     support = feet[which[0]]
     for index in range(2):
         own = tilts[index]
@@ -217,7 +216,7 @@ def _pose_legs(
             -(cf * pitch - sf * roll),
             turned,
         )
-        angles, _ = leg_angles(legs[index], target)
+        angles, _ = leg_angles(_leg(legs, index), target)
         for joint in range(6):
             position[6 * index + joint] = angles[joint]
     apart: float = c * (feet[0][0] - feet[1][0]) + s * (feet[0][1] - feet[1][1])
@@ -229,11 +228,14 @@ def rates(
     position: Array,
     before: Array,
     velocity: Array,
-    motion: tuple[Array, Array, Array],
-    where: tuple[Indices, Indices],
+    q: Array,
+    v: Array,
+    a: Array,
+    in_q: Indices,
+    in_v: Indices,
     pelvis: Vector,
     base: Point,
-    law: Vector,
+    law: Array,
 ) -> None:
     """Bring rates of the joints up to date and tell the robot's model of the motion.
 
@@ -241,15 +243,17 @@ def rates(
         position: joint angles (26,) [rad].
         before: those of the last tick, to be those of this one (26,) [rad].
         velocity: their rates, of the last tick, then of this one (26,) [rad/s].
-        motion: position, velocity and acceleration of the model, set.
-        where: of the joints, in its position and in its velocity (26,).
+        q: position of the model, set.
+        v: its velocity, set.
+        a: its acceleration, set.
+        in_q: of the joints in its position (26,).
+        in_v: of the joints in its velocity (26,).
         pelvis: x, y [m], heading [rad] in the plan frame.
         base: acceleration of the base in the plan frame [m/s²].
         law: share of the joints' acceleration that is told [1], its limit [rad/s²], period of
-            control [s].
+            control [s] (3,).
     """
-    gain, limit, period = law
-    q, v, a = motion
+    gain, limit, period = law[0], law[1], law[2]
     c, s = cos(pelvis[2]), sin(pelvis[2])
     a[0], a[1] = c * base[0] + s * base[1], c * base[1] - s * base[0]
     for joint in range(position.size):
@@ -257,9 +261,9 @@ def rates(
         change = gain * (now - velocity[joint]) / period
         velocity[joint] = now
         before[joint] = position[joint]
-        q[where[0][joint]] = position[joint]
-        v[where[1][joint]] = now
-        a[where[1][joint]] = min(limit, max(-limit, change))
+        q[in_q[joint]] = position[joint]
+        v[in_v[joint]] = now
+        a[in_v[joint]] = min(limit, max(-limit, change))
 
 
 @njit(cache=True)
@@ -268,15 +272,16 @@ def offsets(
     where: Indices,
     position: Array,
     velocity: Array,
-    servos: tuple[Array, Array],
+    servos: Array,
     pelvis: Vector,
     spots: tuple[Point, Point],
     right_load: float,
     base: float,
-    legs: tuple[Leg, Leg],
+    legs: Array,
     balance: Balance,
-    ankles: Ankles,
-) -> Array:
+    ankles: Array,
+    found: Array,
+) -> None:
     """Set-point offsets that make up for load and lag of the servos.
 
     Args:
@@ -285,19 +290,16 @@ def offsets(
         where: of the joints in these (26,).
         position: joint angles (26,) [rad].
         velocity: their rates (26,) [rad/s].
-        servos: compliance [rad/(N m)] and velocity lag [s] (26,).
+        servos: compliance [rad/(N m)] and velocity lag [s] (2, 26).
         pelvis: x, y [m], heading [rad] in the plan frame.
         spots: where the ZMP is meant to be under either foot, in the plan frame [m].
         right_load: share of the weight on the right foot [1].
         base: its height above the floor [m].
-        legs: left and right.
+        legs: left and right, see `Leg` (2, 6).
         balance: what the ankles are to do besides.
-        ankles: their numbers.
-
-    Returns:
-        the offsets (26,) [rad].
+        ankles: see `ankle`.
+        found: the offsets, set (26,) [rad].
     """
-    found = np.empty(position.size)
     for joint in range(position.size):
         found[joint] = forces[where[joint]]
     fx, fy, fz, nx, ny = forces[0], forces[1], forces[2], forces[3], forces[4]
@@ -315,10 +317,10 @@ def offsets(
             x, y = (rx, ry) if index else (lx, ly)
             point = (x + dx, y + dy, -base)
             force = (load * fx, load * fy, load * fz)
-            added = support_torques(legs[index], angles, point, force)
+            added = support_torques(_leg(legs, index), angles, point, force)
             for joint in range(6):
                 found[6 * index + joint] += added[joint]
-    compliance, lag = servos
+    compliance, lag = servos[0], servos[1]
     for joint in range(position.size):
         found[joint] = found[joint] * compliance[joint] + velocity[joint] * lag[joint]
     for index in range(2):
@@ -327,17 +329,33 @@ def offsets(
             pitch, roll = ankle(balance, index, load, ankles)
             found[6 * index + 4] += pitch
             found[6 * index + 5] += roll
-    return found
 
 
 @njit(cache=True)
-def ankle(balance: Balance, index: int, load: float, ankles: Ankles) -> Point:
-    """Set-points of pitch and roll that move the ZMP of a foot carrying a share `load` [rad]."""
+def ankle(balance: Balance, index: int, load: float, ankles: Array) -> Point:
+    """Set-points of pitch and roll that move the ZMP of a foot.
+
+    Args:
+        balance: what the ankles are to do.
+        index: of the foot.
+        load: share of the weight on it [1].
+        ankles: weight of the robot [N]; stiffness of pitch and of roll [N m/rad]; damping by the
+            gyro [s] (4,).
+
+    Returns:
+        both [rad].
+    """
     yaw, (dx, dy), gyro = balance[0][index], balance[1], balance[2]
     c, s = cos(yaw), sin(yaw)
     x, y = c * dx + s * dy, c * dy - s * dx
     weight, damping = ankles[0] * load, ankles[3] * load
     return weight / ankles[1] * x + damping * gyro[1], -weight / ankles[2] * y + damping * gyro[0]
+
+
+@njit(cache=True)
+def _leg(legs: Array, index: int) -> Leg:
+    leg = legs[index]
+    return leg[0], leg[1], leg[2], leg[3], leg[4], leg[5]
 
 
 @njit(cache=True)

@@ -65,16 +65,18 @@ class LegOdometry:
 
     Attributes:
         state: as `walking.estimation_kernel` has it; `estimation_kernel.reckon` is a tick (20,).
-        growth: what goes unseen in a tick, see `estimation_kernel.Growth`.
+        growth: what goes unseen in a tick, see `estimation_kernel.reckon` (4,).
     """
 
     def __init__(self, parameters: OdometryParameters) -> None:
         self.state = np.zeros(20)
-        self.growth = (
-            parameters.forward_noise**2 * CONTROL_PERIOD,
-            parameters.left_noise**2 * CONTROL_PERIOD,
-            parameters.yaw_drift**2 * CONTROL_PERIOD,
-            parameters.slip_share,
+        self.growth = np.array(
+            [
+                parameters.forward_noise**2 * CONTROL_PERIOD,
+                parameters.left_noise**2 * CONTROL_PERIOD,
+                parameters.yaw_drift**2 * CONTROL_PERIOD,
+                parameters.slip_share,
+            ]
         )
 
     def interrupt(self, displacement: float, turn: float) -> None:

@@ -25,17 +25,19 @@ class Posture:
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
         arms, ahead = parameters.arms, float(robot.com(robot.ready)[0])
-        self._build = (ahead, arms.swing, arms.limit)
+        self._build = np.array([ahead, arms.swing, arms.limit])
+        self._ahead = ahead
         self._ready = robot.ready
         self._legs = robot.leg_rows
         p = parameters.stabilizer
         height = parameters.pattern.pelvis_height - robot.legs[0].hip_z
-        self._law = (p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, height)
+        law = p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, height
+        self._law = np.array(law)
         self._tilt = np.zeros((2, 2))
 
     def pelvis(self, gait: Gait, com: Point) -> Vector:
         """Pelvis x, y [m] and heading [rad] that put its constant offset point on the pendulum."""
-        return leg_kernel.pelvis_of(gait.feet, com, self._build[0])
+        return leg_kernel.pelvis_of(gait.feet, com, self._ahead)
 
     def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Vector]:
         """Joint angles (26,) [rad], and the pelvis that goes with them, x, y [m], heading [rad].

@@ -55,7 +55,7 @@ class RobotModel:
     Attributes:
         mass: total mass [kg].
         legs: dimensions of the left and of the right leg.
-        leg_rows: the same as compiled code has it.
+        leg_rows: the same as compiled code has it (2, 6).
         sole: rectangle of either sole.
         ready: joint angles of the ready posture (26,) [rad].
         motion: position, velocity and acceleration of the level base and the joints as Pinocchio
@@ -87,7 +87,7 @@ class RobotModel:
         self._head = np.array(places), camera.rotation @ R_HC
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
-        self.leg_rows = (self.legs[0].row, self.legs[1].row)
+        self.leg_rows = np.array([leg.row for leg in self.legs])
         self.sole, right = self._sole("l"), self._sole("r")
         if self.sole != right:
             raise ValueError(f"the soles of the robot model differ: {self.sole} and {right}")

@@ -15,10 +15,10 @@ from walking.steady_gains import steady_gains
 PARAMETERS = EstimatorParameters()
 LIPM = Lipm(0.19)
 GAINS = steady_gains(LIPM.omega, PARAMETERS)
-FILTER = (GAINS.position, GAINS.velocity, LIPM.omega)
-LEGS = ((0.0, 0.037, -0.02, 0.1, 0.1, 0.03), (0.0, -0.037, -0.02, 0.1, 0.1, 0.03))
-BODY = (0.01, 4.0, 0.01, 0.05, 0.03)
-GROWTH = (1e-7, 1e-7, 1e-9, 0.5)
+FILTER = np.array([GAINS.position, GAINS.velocity, LIPM.omega])
+LEGS = np.array([[0.0, 0.037, -0.02, 0.1, 0.1, 0.03], [0.0, -0.037, -0.02, 0.1, 0.1, 0.03]])
+BODY = np.array([0.01, 4.0, 0.01, 0.05, 0.03])
+GROWTH = np.array([1e-7, 1e-7, 1e-9, 0.5])
 SEEDS = st.integers(0, 10**6)
 
 
@@ -64,8 +64,8 @@ def test_compiled_it_is_what_it_says(plainly, seed):
             plan = (*rng.uniform(-0.05, 0.05, 10).tolist(), rng.uniform())
             com, states = rng.normal(0.0, 0.05, 3), (tilt, odometry, error)
             stepping = bool(rng.integers(2))
-            rest = (states, LEGS, BODY, GROWTH, FILTER, feet, plan, stepping, CONTROL_PERIOD)
-            told = call(reading, com, *rest, found)
+            rest = (*states, LEGS, BODY, GROWTH, FILTER, feet, plan, stepping, CONTROL_PERIOD)
+            told = call(*reading, com, *rest, found)
             rows += [*found, *odometry, *error, *(v for part in told for v in part)]
         outcomes.append(rows)
     np.testing.assert_allclose(*outcomes, rtol=1e-10, atol=1e-12)

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from walking import leg_kernel
 from walking.parameters import CONTROL_PERIOD
 
-LEGS = ((0.0, 0.037, -0.02, 0.1, 0.1, 0.03), (0.0, -0.037, -0.02, 0.1, 0.1, 0.03))
-LAW = (0.7, 0.019, 0.3, 0.85, 0.22)
+LEGS = np.array([[0.0, 0.037, -0.02, 0.1, 0.1, 0.03], [0.0, -0.037, -0.02, 0.1, 0.1, 0.03]])
+LAW = np.array([0.7, 0.019, 0.3, 0.85, 0.22])
+ANKLES = np.array([54.0, 20.0, 25.0, 0.1])
 SEEDS = st.integers(0, 10**6)
 
 
@@ -32,7 +33,7 @@ def test_compiled_the_posture_is_what_it_says(plainly, seed):
     outcomes = []
     for call in (leg_kernel.pose, lambda *a: plainly(leg_kernel, "pose", *a)):
         position, own = np.zeros(26), tilts.copy()
-        build = (0.004, 2.0, 0.35)
+        build = np.array([0.004, 2.0, 0.35])
         pelvis = call(position, own, feet, which, com, head, tilt, LAW, build, LEGS)
         outcomes.append([*position, *own.ravel(), *pelvis])
     np.testing.assert_allclose(*outcomes, rtol=0.0, atol=1e-12)
@@ -45,8 +46,9 @@ def test_rates_are_quotients_of_differences():
     motion = np.zeros(33), np.zeros(32), np.zeros(32)
     where = rng.permutation(26) + 7, rng.permutation(26) + 6
     for now in angles[1:]:
-        law = (0.5, 1000.0, CONTROL_PERIOD)
-        leg_kernel.rates(now, before, velocity, motion, where, (1.0, 2.0, 0.0), (0.3, -0.2), law)
+        law = np.array([0.5, 1000.0, CONTROL_PERIOD])
+        rest = (*motion, *where, (1.0, 2.0, 0.0), (0.3, -0.2), law)
+        leg_kernel.rates(now, before, velocity, *rest)
     np.testing.assert_allclose(velocity, (angles[2] - angles[1]) / CONTROL_PERIOD)
     np.testing.assert_array_equal(before, angles[2])
     q, v, a = motion
@@ -66,14 +68,14 @@ def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
     where = rng.permutation(26) + 6
     forces = np.array([1.0, 2.0, 54.0, 0.3, -0.2, 0.1, *rng.normal(0.0, 1.0, 26)])
     position, velocity = rng.uniform(-0.5, 0.5, 26), rng.normal(0.0, 1.0, 26)
-    servos = (rng.uniform(0.01, 0.1, 26), rng.uniform(0.0, 0.1, 26))
+    servos = np.array([rng.uniform(0.01, 0.1, 26), rng.uniform(0.0, 0.1, 26)])
     soles = ((0.01, 0.04), (0.02, -0.04))
     pelvis = tuple(rng.uniform(-0.1, 0.1, 3).tolist())
     rest = (pelvis, soles, load, 0.22, LEGS)
-    balance, ankles = ((0.1, -0.2), (0.0, 0.0), (0.0, 0.0, 0.0)), (54.0, 20.0, 25.0, 0.1)
-    asked = (forces, where, position, velocity, servos, *rest, balance, ankles)
-    found = leg_kernel.offsets(*asked)
-    plain = plainly(leg_kernel, "offsets", *asked)
+    balance, (found, plain) = ((0.1, -0.2), (0.0, 0.0), np.zeros(3)), np.empty((2, 26))
+    asked = (forces, where, position, velocity, servos, *rest, balance, ANKLES)
+    leg_kernel.offsets(*asked, found)
+    plainly(leg_kernel, "offsets", *asked, plain)
     np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
     unloaded = slice(0, 6) if load == 1.0 else slice(12, 26)
     expected = forces[where] * servos[0] + velocity * servos[1]
@@ -86,7 +88,7 @@ def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
 @given(SEEDS)
 def test_compiled_an_ankle_is_what_it_says(plainly, seed):
     a, b, c, d, *gyro, load = np.random.default_rng(seed).uniform(-0.2, 0.2, 8).tolist()
-    asked = ((a, b), (c, d), tuple(gyro)), seed % 2, abs(load), (54.0, 20.0, 25.0, 0.1)
+    asked = ((a, b), (c, d), tuple(gyro)), seed % 2, abs(load), ANKLES
     plain = plainly(leg_kernel, "ankle", *asked)
     assert leg_kernel.ankle(*asked) == pytest.approx(plain, abs=1e-15)
 
