@@ -198,8 +198,6 @@ class WalkingEngine:
             footing=self._footing,
             capture=self._placement.moved,
         )
-        c, s = cos(odometry.yaw), sin(odometry.yaw)
-        x, y, _ = body.com
         return WalkingState(
             phase=gait.phase,
             odometry=odometry,
@@ -208,7 +206,7 @@ class WalkingEngine:
             footsteps=plan.footsteps,
             zmp=plan.zmp,
             dcm=plan.dcm,
-            com=np.array([odometry.x + c * x - s * y, odometry.y + s * x + c * y]),
+            com=plan.com,
             roll=body.roll,
             pitch=body.pitch,
             step_count=gait.completed,

@@ -10,39 +10,83 @@ Array = NDArray[np.float64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
 
+Pendulum = tuple[float, float, float, float, float, float]
+"""Position x, y [m], velocity x, y [m/s], ZMP x, y [m]."""
+
+Motion = tuple[float, float, float, float]
+"""Position x, y [m], velocity x, y [m/s]."""
+
 Frame = tuple[float, float, float, float, float]
 """Origin x, y [m], cosine and sine of the direction, and the direction [rad] of the plan frame."""
 
 
 @njit(cache=True)
-def bring_over(
+def show(
     planned: Vector,
     foot: Vector,
     odometry: Vector,
+    pendulum: Pendulum,
+    error: Motion,
+    omega: float,
+    com: Vector,
+    edges: Array,
+    references: Array,
+    way: Point,
     points: Array,
     feet: Array,
     footsteps: Array,
-    way: Point,
 ) -> Point:
-    """Bring all that a snapshot shows of the plan over into the odometry frame.
+    """All that a snapshot shows of the plan, in the odometry frame.
 
     Args:
         planned: see `frame_of`.
         foot: see `frame_of`.
         odometry: see `frame_of`.
-        points: x, y [m], brought over (n, 2).
-        feet: x, y, height [m], yaw [rad], brought over (2, 4).
-        footsteps: x, y [m], yaw [rad] first, brought over (m, 4).
+        pendulum: of the plan.
+        error: of the body against it.
+        omega: of the pendulum [1/s].
+        com: mass centre as measured, in the robot frame (3,) [m].
+        edges: of the soles that carry, see `walking.support_kernel` (n, 5).
+        references: of the feet, see `walking.swing_foot_kernel` (2, 10).
         way: a direction of the plan frame.
+        points: set to planned ZMP, DCM and mass centre, measured DCM and mass centre, and the
+            corners of the soles that carry, x, y (5 + n, 2) [m].
+        feet: set to x, y, height [m], yaw [rad] of the references (2, 4).
+        footsteps: x, y [m], yaw [rad] first, brought over (m, 4).
 
     Returns:
         the direction in the odometry frame.
     """
+    x, y, vx, vy, zmp_x, zmp_y = pendulum
+    ex, ey, evx, evy = error
+    points[0, 0], points[0, 1] = zmp_x, zmp_y
+    points[1, 0], points[1, 1] = x + vx / omega, y + vy / omega
+    points[2, 0], points[2, 1] = x, y
+    points[3, 0], points[3, 1] = x + ex + (vx + evx) / omega, y + ey + (vy + evy) / omega
+    number = edges.shape[0]
+    for k in range(number):
+        corner = edges[(k + 1) % number]
+        points[5 + k, 0], points[5 + k, 1] = corner[0], corner[1]
+    for k in range(2):
+        own = references[k]
+        feet[k, 0], feet[k, 1], feet[k, 2], feet[k, 3] = own[0], own[1], own[3], own[2]
     frame = frame_of(planned, foot, odometry)
     place(frame, points, -1)
     place(frame, feet, 3)
     place(frame, footsteps, 2)
+    c, s = cos(odometry[2]), sin(odometry[2])
+    points[4, 0] = odometry[0] + c * com[0] - s * com[1]
+    points[4, 1] = odometry[1] + s * com[0] + c * com[1]
     return turn(frame, way)
+
+
+@njit(cache=True)
+def incline(roll: float, pitch: float, rotation: Array) -> None:
+    """Attitude R_RB of a trunk tilted by roll and pitch [rad], set (3, 3)."""
+    cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
+    rotation[0, 0], rotation[0, 1], rotation[0, 2] = cp, sp * sr, sp * cr
+    rotation[1, 0], rotation[1, 1], rotation[1, 2] = 0.0, cr, -sr
+    rotation[2, 0], rotation[2, 1], rotation[2, 2] = -sp, cp * sr, cp * cr
 
 
 @njit(cache=True)

@@ -86,11 +86,15 @@ class Footing:
             self._polygon = support_polygon(self._sole, *self.feet)
         return self._polygon
 
-    def depth(self, x: float, y: float) -> float:
-        """How far inside that hull a point lies; negative outside [m]."""
+    def edges(self) -> Array:
+        """Its edges, see `walking.support_kernel` (n, 5) [m]."""
         if self._edges is None:
             self._edges = edges(self.polygon())
-        return support_kernel.depth(self._edges, x, y)
+        return self._edges
+
+    def depth(self, x: float, y: float) -> float:
+        """How far inside that hull a point lies; negative outside [m]."""
+        return support_kernel.depth(self.edges(), x, y)
 
     def region(self, margin: float) -> SupportRegion:
         """Region that keeps a margin from the edges of the soles [m]."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from walking import snapshot_kernel
 from walking.snapshot_kernel import frame_of, place, turn
@@ -56,20 +57,37 @@ def test_compiled_it_is_what_it_says(plainly, seed, yaw):
 
 
 @settings(max_examples=30)
-@given(SEEDS)
-def test_all_that_a_snapshot_shows_is_brought_over_alike(plainly, seed):
+@given(SEEDS, st.integers(4, 8))
+def test_all_that_a_snapshot_shows_is_brought_over_alike(plainly, seed, corners):
     rng, motion = draw(seed)
-    tables = [rng.uniform(-1.0, 1.0, shape) for shape in ((8, 2), (2, 4), (5, 4))]
-    way, outcomes = (0.3, -0.2), []
-    for call in (
-        snapshot_kernel.bring_over,
-        lambda *a: plainly(snapshot_kernel, "bring_over", *a),
-    ):
-        own = [table.copy() for table in tables]
-        turned = call(*motion, *own, way)
+    pendulum, error, com = (tuple(rng.uniform(-1.0, 1.0, n).tolist()) for n in (6, 4, 3))
+    edges, references = rng.uniform(-1.0, 1.0, (corners, 5)), rng.uniform(-1.0, 1.0, (2, 10))
+    planned, way, omega, outcomes = rng.uniform(-1.0, 1.0, (5, 4)), (0.3, -0.2), 7.2, []
+    for call in (snapshot_kernel.show, lambda *a: plainly(snapshot_kernel, "show", *a)):
+        own = np.empty((5 + corners, 2)), np.empty((2, 4)), planned.copy()
+        turned = call(*motion, pendulum, error, omega, com, edges, references, way, *own)
         outcomes.append((turned, *(table.tolist() for table in own)))
     assert outcomes[0] == outcomes[1]
-    frame = frame_of(*motion)
-    for table, yaw in zip(tables, (-1, 3, 2), strict=True):
+    frame, now, off = frame_of(*motion), np.array(pendulum), np.array(error)
+    body = now[:4] + off
+    dcm, felt = now[:2] + now[2:4] / omega, body[:2] + body[2:] / omega
+    points = np.array([now[4:], dcm, now[:2], felt, *np.roll(edges[:, :2], -1, axis=0)])
+    feet = references[:, [0, 1, 3, 2]]
+    for table, yaw in ((points, -1), (feet, 3), (planned, 2)):
         place(frame, table, yaw)
-    assert outcomes[0] == (turn(frame, way), *(table.tolist() for table in tables))
+    assert own[0][[0, 1, 2, 3, *range(5, 5 + corners)]] == pytest.approx(points)
+    seen = complex(*motion[2][:2]) + np.exp(1j * motion[2][2]) * complex(*com[:2])
+    assert complex(*own[0][4]) == pytest.approx(seen)
+    np.testing.assert_array_equal(own[1], feet)
+    np.testing.assert_array_equal(own[2], planned)
+    assert turned == turn(frame, way)
+
+
+@given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
+def test_a_trunk_is_turned_about_its_axes(plainly, roll, pitch):
+    found, plain = np.empty((3, 3)), np.empty((3, 3))
+    snapshot_kernel.incline(roll, pitch, found)
+    plainly(snapshot_kernel, "incline", roll, pitch, plain)
+    np.testing.assert_allclose(found, plain, atol=1e-15)
+    expected = Rotation.from_euler("YX", [pitch, roll]).as_matrix()
+    np.testing.assert_allclose(found, expected, atol=1e-15)
