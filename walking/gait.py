@@ -87,6 +87,8 @@ class Gait:
         self._shift_fixed = True
         self._lift = timing.lift
         self._future = NO_STEPS
+        self._walk: tuple[object, ...] | None = None  # what the footholds and ramps are made of
+        self._ramps = Ramps(np.empty((0, 13)))
         still = planner.still
         self._nominal = still, stance[0], planner.landing(stance[0], still)
 
@@ -247,24 +249,36 @@ class Gait:
         return moved(landing, wanted, self._move, self._turn)
 
     def plan(self, landing: Footstep, wish: Strides, *, moving: bool) -> Ramps:
-        """ZMP reference from now on if the swing foot lands at `landing`."""
+        """ZMP reference from now on if the swing foot lands at `landing`.
+
+        Where nothing has changed it is that of the last tick, its first ramp a tick shorter.
+        """
         support, swing = self.footholds[self.support], self.footholds[self.swing]
         if not self.stepping:
-            self._future = NO_STEPS
+            self._future, self._walk = NO_STEPS, None
             centre = self._reference.between(*self.footholds)
             ramp = ZmpRamp(max(1, -self._elapsed), *self.zmp, *centre, (support, swing))
             return Ramps(table_of([ramp]))
-        double = self.double
-        self._future, ramps = self._reference.onwards(
+        double, single = self.double, self._single.ticks
+        walk = (support, swing, landing, wish, self.timing, moving, double, single)
+        if walk == self._walk:
+            table = self._ramps.table.copy()
+            if double:
+                table[0, 0], table[0, 1:3] = -self._elapsed, self.zmp
+            else:
+                table[0, 0] = self.ticks_left
+            return Ramps(table)
+        self._walk = walk
+        self._future, self._ramps = self._reference.onwards(
             (swing, support),
             landing,
             self._planner.chain(wish),
             self.timing,
             zmp=self.zmp if double else (0.0, 0.0),
-            left=(-self._elapsed, self._single.ticks) if double else (0, self.ticks_left),
+            left=(-self._elapsed, single) if double else (0, self.ticks_left),
             moving=moving,
         )
-        return ramps
+        return self._ramps
 
     def swings(self) -> Swings:
         """Swings under way and to come, none while the robot stands."""

@@ -171,3 +171,15 @@ def test_a_hurried_footstep_leaves_the_foot_time_for_its_way(gait):
     assert gait.hasten(0, far)
     way = far.x - gait.feet[gait.swing, 0]
     assert gait.ticks_left * CONTROL_PERIOD >= 1.875 * way / GAIT.swing_speed
+
+
+def test_the_reference_of_a_tick_is_the_same_as_if_made_anew(gait):
+    gait.start(0)
+    wishes = [PLANNER.strides(velocity, GAIT.footstep_time) for velocity in (FORWARD, SLOWER)]
+    for k in range(START + 3 * STEP):
+        wish = wishes[k // 50 % 2]
+        found = gait.plan(gait.landing, wish, moving=True)
+        gait._walk = None
+        anew = gait.plan(gait.landing, wish, moving=True)
+        np.testing.assert_array_equal(found.table, anew.table)
+        tick(gait, (FORWARD, SLOWER)[k // 50 % 2])
