@@ -35,6 +35,7 @@ class Gait:
     Attributes:
         stepping: whether a footstep is under way.
         support: index of the support foot of this footstep.
+        swing: index of the foot that swings in it.
         footholds: where the feet stand, or last stood.
         spots: where the ZMP is meant to be under either of these if it carries alone [m].
         feet: reference of both feet, see `walking.swing_foot_kernel` (2, 10).
@@ -44,7 +45,9 @@ class Gait:
         hurried: whether this footstep is shorter than its timing to catch a fall.
         clock: all times; see `set_clock`.
         timing: of the footsteps to come.
+        lift: height at mid-swing of the swing under way [m]; it follows `timing` in the air.
         double: whether both feet are meant to carry.
+        right_weight: scheduled share of the weight on the right foot [1].
         swing_phase: progress of the swing, 0 before and 1 after it [1].
         ticks_left: control ticks until the end of single support [1].
         adjustable: whether the landing may still move.
@@ -71,7 +74,7 @@ class Gait:
         self._turn = gait.landing_turn * CONTROL_PERIOD
         self._lift_change = gait.lift_speed * CONTROL_PERIOD
         self.stepping = False
-        self.support = 0
+        self.support, self.swing = 0, 1
         self.footholds = list(stance)
         under = self._reference.under
         self.spots = (under(stance[0]), under(stance[1]))
@@ -85,17 +88,12 @@ class Gait:
         shift = WeightShift(0, self._tick, self._reference.between(*stance), 0.5)
         self.set_clock(Clock(timing, shift, self._usual))
         self._shift_fixed = True
-        self._lift = timing.lift
+        self.lift = timing.lift
         self._future = NO_STEPS
         self._walk: tuple[object, ...] | None = None  # what the footholds and ramps are made of
         self._ramps = Ramps(np.empty((0, 13)))
         still = planner.still
         self._nominal = still, stance[0], planner.landing(stance[0], still)
-
-    @property
-    def swing(self) -> int:
-        """Index of the foot that swings in this footstep."""
-        return 1 - self.support
 
     @property
     def flying(self) -> bool:
@@ -112,23 +110,12 @@ class Gait:
         return Phase.RIGHT_SUPPORT if self.support else Phase.LEFT_SUPPORT
 
     @property
-    def right_weight(self) -> float:
-        """Scheduled share of the weight on the right foot [1]."""
-        goal = float(self.support) if self.stepping else 0.5
-        return self._shift.right_weight_at(self._tick, goal)
-
-    @property
     def zmp(self) -> Point:
         """Scheduled ZMP [m]."""
         goal = (
             self.spots[self.support] if self.stepping else self._reference.between(*self.footholds)
         )
         return self._shift.zmp_at(self._tick, goal)
-
-    @property
-    def lift(self) -> float:
-        """Height at mid-swing of the swing under way [m]; it follows `timing` in the air."""
-        return self._lift
 
     @property
     def support_feet(self) -> tuple[Footstep, Footstep]:
@@ -228,11 +215,13 @@ class Gait:
 
     def _look_at_clock(self) -> None:
         """What the times say of now: after every change of them, of the tick, of `held`."""
-        self._elapsed = elapsed = self._tick - self._shift.end
-        self.double = not self.stepping or elapsed < 0
-        self.ticks_left = self._single.ticks - elapsed
-        self.swing_phase = phase = self._single.phase(elapsed) if self.stepping else 1.0
-        self.adjustable = self.stepping and not self.held and phase < self._freeze
+        shift, single, stepping = self._shift, self._single, self.stepping
+        self._elapsed = elapsed = self._tick - shift.end
+        self.double = not stepping or elapsed < 0
+        self.right_weight = shift.right_weight_at(self._tick, self.support if stepping else 0.5)
+        self.ticks_left = single.ticks - elapsed
+        self.swing_phase = phase = single.phase(elapsed) if stepping else 1.0
+        self.adjustable = stepping and not self.held and phase < self._freeze
 
     def _shift_until(self, end: int) -> WeightShift:
         """The weight shift under way made to end in another tick."""
@@ -300,7 +289,7 @@ class Gait:
                 self.landing.row,
             ),
             self._future,
-            (begin, self._lift, not self.held),
+            (begin, self.lift, not self.held),
             (
                 self.ticks_left + timing.double + usual.first,
                 timing.double + timing.single,
@@ -337,15 +326,15 @@ class Gait:
         swing, single, landing = -1, self._single, self.landing
         if self.stepping and not self.held and single.first < self._elapsed <= single.last:
             swing = self.swing
-            change = self.timing.lift - self._lift
-            self._lift += min(self._lift_change, max(-self._lift_change, change))
+            change = self.timing.lift - self.lift
+            self.lift += min(self._lift_change, max(-self._lift_change, change))
         swing_foot_kernel.advance(
             self.feet,
             self._contact_decay,
             swing,
             (landing.x, landing.y, landing.yaw),
             single.last - self._elapsed + 1,
-            (self._lift, self.swing_phase),
+            (self.lift, self.swing_phase),
             CONTROL_PERIOD,
         )
 
@@ -370,11 +359,11 @@ class Gait:
 
     def _begin(self, support: int, double: int, zmp: Point, right_weight: float) -> None:
         self.stepping = True
-        self.support = support
+        self.support, self.swing = support, 1 - support
         self.held = self.hurried = False
         self._tick = 0
         self._shift_fixed = False
         shift = WeightShift(0, double, zmp, right_weight)
         self.set_clock(Clock(self.timing, shift, self._usual))
-        self._lift = self.timing.lift
+        self.lift = self.timing.lift
         self.landing = self.nominal(self._planner.still)
