@@ -24,8 +24,8 @@ class Head:
         parameters: HeadParameters,
     ) -> None:
         self._position, self._velocity = np.array([pan, tilt]), np.zeros(2)
-        self._limits = limits
-        self._law = (parameters.rate, parameters.acceleration, CONTROL_PERIOD)
+        self._limits = np.array(limits)
+        self._law = np.array([parameters.rate, parameters.acceleration, CONTROL_PERIOD])
 
     def advance(self, target: HeadTarget) -> tuple[float, float]:
         """Set-points of pan and tilt of this tick [rad]."""

@@ -15,8 +15,8 @@ def advance(
     position: Array,
     velocity: Array,
     target: Pair,
-    limits: tuple[Pair, Pair],
-    law: tuple[float, float, float],
+    limits: Array,
+    law: Array,
 ) -> Pair:
     """One tick: on either axis the fastest approach that can still stop at the target.
 
@@ -24,16 +24,16 @@ def advance(
         position: pan and tilt, brought up to date (2,) [rad].
         velocity: their rates, brought up to date (2,) [rad/s].
         target: pan and tilt [rad].
-        limits: lower and upper limit of either [rad].
-        law: rate [rad/s], acceleration [rad/s²], period of control [s].
+        limits: lower and upper limit of either (2, 2) [rad].
+        law: rate [rad/s], acceleration [rad/s²], period of control [s] (3,).
 
     Returns:
         pan and tilt [rad].
     """
-    rate, acceleration, period = law
+    rate, acceleration, period = law[0], law[1], law[2]
     step = acceleration * period
     for axis in range(2):
-        low, high = limits[axis]
+        low, high = limits[axis, 0], limits[axis, 1]
         error = min(high, max(low, target[axis])) - position[axis]
         # Largest speed from which whole ticks of braking still end at the target.
         reach = step * (sqrt(0.25 + 2.0 * abs(error) / (step * period)) - 0.5)

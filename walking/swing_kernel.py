@@ -63,10 +63,10 @@ def react(
     now: tuple[int, float, bool],
     later: tuple[int, int, float],
     spot: Spot,
-    profiles: tuple[Array, Array],
-    reaction: Vector,
+    first: Array,
+    others: Array,
+    law: Array,
     state: Array,
-    clock: Point,
 ) -> tuple[Point, Point]:
     """One tick of the pelvis.
 
@@ -76,22 +76,22 @@ def react(
         now: see `swings`.
         later: see `swings`.
         spot: see `swings`.
-        profiles: of the first swing, and of the others (ticks + 1, 6).
-        reaction: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg.
+        first: profile of the first swing (ticks + 1, 6).
+        others: profile of the others (ticks + 1, 6).
+        law: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg; ω [1/s], control period [s]
+            (5,).
         state: offset of the pelvis x, y, and ξ x, y, brought up to date (4,) [m].
-        clock: ω [1/s], control period [s].
 
     Returns:
         offset x, y [m], and its acceleration x, y [m/s²].
     """
     table = swings(feet, steps, now, later, spot)
-    w, period = clock
+    w, period, reaction = law[3], law[4], (law[0], law[1], law[2])
     x = y = now_x = now_y = 0.0
     for k in range(table.shape[0]):
         swing = table[k]
-        moment = profiles[1][0]
+        moment = others[0]
         if k == 0:
-            first = profiles[0]
             moment = first[min(first.shape[0] - 1, max(0, -int(swing[0])))]
         dx, dy = _moved(swing, reaction, moment[0], moment[1], moment[2])
         decay = exp(-w * period * swing[0]) if swing[0] > 0.0 else 1.0

@@ -134,8 +134,8 @@ class SwingCompensation:
 
     def __init__(self, lipm: Lipm, reaction: LegReaction) -> None:
         self._lipm = lipm
-        self._w = (lipm.omega, CONTROL_PERIOD)
-        self._reaction = (reaction.thrust, reaction.weight, reaction.knee)
+        law = reaction.thrust, reaction.weight, reaction.knee, lipm.omega, CONTROL_PERIOD
+        self._law = np.array(law)
         self._profiles: dict[int, Array] = {0: np.zeros((1, 6))}
         self._state = np.zeros(4)
         self.offset: Point = (0.0, 0.0)
@@ -150,10 +150,10 @@ class SwingCompensation:
             swings.now,
             swings.later,
             swings.spot,
-            (self._profile(first), self._profile(others)),
-            self._reaction,
+            self._profile(first),
+            self._profile(others),
+            self._law,
             self._state,
-            self._w,
         )
 
     def _profile(self, ticks: int) -> Array:

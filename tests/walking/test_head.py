@@ -53,9 +53,10 @@ def test_left_and_right_mirror():
 
 @given(st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6))
 def test_compiled_it_is_what_it_says(plainly, drawn):
-    outcomes = []
+    outcomes, limits = [], np.array(LIMITS)
+    law = np.array([6.0, 60.0, CONTROL_PERIOD])
     for call in (head_kernel.advance, lambda *a: plainly(head_kernel, "advance", *a)):
         position, velocity = np.array(drawn[:2]), np.array(drawn[2:4])
-        told = call(position, velocity, tuple(drawn[4:]), LIMITS, (6.0, 60.0, CONTROL_PERIOD))
+        told = call(position, velocity, tuple(drawn[4:]), limits, law)
         outcomes.append([*told, *position, *velocity])
     assert outcomes[0] == outcomes[1]

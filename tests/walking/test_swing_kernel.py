@@ -25,10 +25,11 @@ def draw(seed, count):
 def test_compiled_it_is_what_it_says(plainly, seed, count):
     rng, swings = draw(seed, count)
     profiles = (rng.normal(0.0, 100.0, (40, 6)), rng.normal(0.0, 100.0, (45, 6)))
+    law = np.array([7e-4, 0.012, 3e-4, 7.2, 0.005])
     state, outcomes = rng.normal(0.0, 0.01, 4), []
     for call in (swing_kernel.react, lambda *a: plainly(swing_kernel, "react", *a)):
         own = state.copy()
-        found = call(*swings, profiles, (7e-4, 0.012, 3e-4), own, (7.2, 0.005))
+        found = call(*swings, *profiles, law, own)
         outcomes.append([*np.ravel(found), *own])
     np.testing.assert_allclose(*outcomes, rtol=1e-12, atol=1e-15)
 
