@@ -7,6 +7,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.record import FrameRecord
 from navigation.belief import Belief, Motion
@@ -33,7 +34,7 @@ class BeliefLayer:
         map_period: time between two local maps and clouds of particles at least [s].
     """
 
-    def __init__(self, stream: rr.RecordingStream, map_period: float) -> None:
+    def __init__(self, stream: BlockStream, map_period: float) -> None:
         self._stream = stream
         self._map_period = map_period
         self._map_at = -np.inf

@@ -1,8 +1,8 @@
 """A Rerun recording whose columns are sent together: many in a row take a fifth less."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
+import pyarrow as pa
 import rerun as rr
 import rerun.blueprint as rrb
 import rerun_bindings
@@ -23,7 +23,9 @@ class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typ
 
     def __init__(self, recording_id: str) -> None:
         super().__init__(APPLICATION, recording_id=recording_id)
-        self._kept: list[tuple[str, dict[str, Any], dict[Any, Any]]] = []
+        self._kept: list[
+            tuple[str, dict[str, pa.Array], dict[rr.ComponentDescriptor, pa.Array]]
+        ] = []
 
     def begin(self, sinks: Sequence[rr.FileSink | rr.GrpcSink], arrangement: rrb.Blueprint) -> None:
         """Send everything to `sinks` from now on, the viewer's `arrangement` first.
@@ -52,18 +54,14 @@ class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typ
         finally:
             packing.disconnect()
 
-    def send_columns(
+    def keep(
         self,
-        entity_path: str,
-        indexes: Iterable[Any],
-        columns: Iterable[Any],
-        *,
-        strict: bool | None = None,
+        path: str,
+        times: dict[str, pa.Array],
+        values: dict[rr.ComponentDescriptor, pa.Array],
     ) -> None:
-        """Keep the columns of an entity: times and components, as for the class it extends."""
-        times = {index.timeline_name(): index.as_arrow_array() for index in indexes}
-        values = {column.component_descriptor(): column.as_arrow_array() for column in columns}
-        self._kept.append((entity_path, times, values))
+        """Keep rows of an entity: their times by timeline, their values by component."""
+        self._kept.append((path, times, values))
 
     def send(self) -> None:
         """Send all that is kept."""

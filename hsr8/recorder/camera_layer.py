@@ -9,6 +9,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.geometry import xyzw
 from hsr8.recorder.record import FrameRecord, Image
@@ -37,7 +38,7 @@ class CameraLayer:
 
     def __init__(
         self,
-        stream: rr.RecordingStream,
+        stream: BlockStream,
         model: mujoco.MjModel,
         size: tuple[int, int],
         jpeg: int,

@@ -8,40 +8,9 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 
-from walking.value import value
+from hsr8.recorder.block_stream import BlockStream
 
 TIMELINE = "sim_time"
-
-
-@value
-class _Times:
-    """Times of rows, in the form in which Rerun keeps them."""
-
-    array: pa.Array
-
-    def timeline_name(self) -> str:
-        """Which time it is."""
-        return TIMELINE
-
-    def as_arrow_array(self) -> pa.Array:
-        """One for each row."""
-        return self.array
-
-
-@value
-class _Column:
-    """A component in the form in which Rerun keeps it."""
-
-    descriptor: rr.ComponentDescriptor
-    array: pa.Array
-
-    def component_descriptor(self) -> rr.ComponentDescriptor:
-        """Which component it is."""
-        return self.descriptor
-
-    def as_arrow_array(self) -> pa.Array:
-        """Its rows."""
-        return self.array
 
 
 class Channel:
@@ -56,7 +25,7 @@ class Channel:
         columns: builds the columns from components, for example ``rr.Points3D.columns``.
     """
 
-    def __init__(self, stream: rr.RecordingStream, path: str, columns: Callable[..., Any]) -> None:
+    def __init__(self, stream: BlockStream, path: str, columns: Callable[..., Any]) -> None:
         self._stream = stream
         self._path = path
         self._columns = columns
@@ -84,29 +53,35 @@ class Channel:
         if not self._times:
             return
         times = pa.array((1e9 * np.array(self._times)).astype("timedelta64[ns]"))
-        self._stream.send_columns(self._path, [_Times(times)], self._packed())
+        self._stream.keep(self._path, {TIMELINE: times}, self._packed())
         self._times.clear()
         self._lengths.clear()
         self._components.clear()
 
-    def _packed(self) -> list[Any]:
-        """The rows as Rerun wants them."""
-        joined = {name: _joined(values) for name, values in self._components.items()}
-        offsets = pa.array(list(accumulate(self._lengths, initial=0)), pa.int32())
-        columns: list[Any] = []
-        for name in joined.keys() & self._types.keys():
-            descriptor, kind = self._types[name]
-            rows = pa.ListArray.from_arrays(offsets, _array(joined.pop(name), kind))
-            columns.append(_Column(descriptor, rows))
-        if joined:
-            found = self._columns(**joined)
-            for column in found:
-                kind = column.as_arrow_array().type.value_type
-                name = str(column.component_descriptor().component).rpartition(":")[2]
-                if _convertible(joined.get(name), kind):
-                    self._types[name] = (column.component_descriptor(), kind)
-            columns += found.partition(self._lengths)
-        return columns
+    def _packed(self) -> dict[rr.ComponentDescriptor, pa.Array]:
+        """The rows of each component as Rerun wants them."""
+        offsets = pa.array(np.fromiter(accumulate(self._lengths, initial=0), np.int32))
+        packed: dict[rr.ComponentDescriptor, pa.Array] = {}
+        new: dict[str, Any] = {}
+        for name, rows in self._components.items():
+            values = _joined(rows)
+            if name in self._types:
+                descriptor, kind = self._types[name]
+                packed[descriptor] = pa.ListArray.from_arrays(offsets, _array(values, kind))
+            else:
+                new[name] = values
+        return packed | self._learned(new) if new else packed
+
+    def _learned(self, components: dict[str, Any]) -> dict[rr.ComponentDescriptor, pa.Array]:
+        """The rows of components as Rerun itself packs them; their types are kept."""
+        found = self._columns(**components)
+        for column in found:
+            kind = column.as_arrow_array().type.value_type
+            name = str(column.component_descriptor().component).rpartition(":")[2]
+            if _convertible(components.get(name), kind):
+                self._types[name] = (column.component_descriptor(), kind)
+        rows = found.partition(self._lengths)
+        return {column.component_descriptor(): column.as_arrow_array() for column in rows}
 
 
 def _joined(rows: list[Any]) -> Any:

@@ -12,6 +12,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
 
 Array = NDArray[np.float64]
@@ -158,7 +159,7 @@ class Scene:
     """
 
     def __init__(
-        self, stream: rr.RecordingStream, model: mujoco.MjModel, extent: tuple[float, float]
+        self, stream: BlockStream, model: mujoco.MjModel, extent: tuple[float, float]
     ) -> None:
         self._model = model
         self._data = mujoco.MjData(model)
@@ -193,7 +194,7 @@ class Scene:
         self._positions: list[Array] = []
         self._quaternions: list[Array] = []
 
-    def _stand(self, stream: rr.RecordingStream, path: str, chosen: NDArray[np.bool_]) -> None:
+    def _stand(self, stream: BlockStream, path: str, chosen: NDArray[np.bool_]) -> None:
         for batch in batches(self._model, chosen):
             position, quaternion = self._poses(batch, self._data.xpos, self._data.xquat)
             pose = {batch.centre: position, "quaternions": xyzw(quaternion)}

@@ -7,6 +7,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.record import FrameRecord
 from navigation.decision import DirectionField, MotionDecision
@@ -29,7 +30,7 @@ class PlanLayer:
         period: time between two fields at least [s].
     """
 
-    def __init__(self, stream: rr.RecordingStream, period: float) -> None:
+    def __init__(self, stream: BlockStream, period: float) -> None:
         self._period = period
         self._drawn_at = -np.inf
         self._motion: MotionDecision | None = None

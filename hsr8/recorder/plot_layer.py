@@ -7,6 +7,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.record import FrameRecord, TickRecord
 from navigation.angles import wrap
@@ -44,7 +45,7 @@ class Curves:
 
     def __init__(
         self,
-        stream: rr.RecordingStream,
+        stream: BlockStream,
         path: str,
         curves: Sequence[tuple[str, palette.Colour]],
     ) -> None:
@@ -77,9 +78,7 @@ class Lane:
         states: colour of every state.
     """
 
-    def __init__(
-        self, stream: rr.RecordingStream, path: str, states: dict[str, palette.Colour]
-    ) -> None:
+    def __init__(self, stream: BlockStream, path: str, states: dict[str, palette.Colour]) -> None:
         look = rr.StateConfiguration(values=list(states), colors=list(states.values()))
         stream.log(path, look, static=True)
         self._channel = Channel(stream, path, rr.StateChange.columns)
@@ -108,7 +107,7 @@ def gaze_reason(frame: FrameRecord) -> str:
 class PlotLayer:
     """Plots and state lanes of the decisions and the belief."""
 
-    def __init__(self, stream: rr.RecordingStream) -> None:
+    def __init__(self, stream: BlockStream) -> None:
         self._clearance = Curves(stream, "/plots/clearance", (("clearance [m]", BLUE),))
         self._partial = Curves(
             stream,

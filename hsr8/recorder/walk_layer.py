@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.arc import mean_velocity
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
 from hsr8.recorder.record import TickRecord
@@ -43,7 +44,7 @@ SIDES = {"l": (BLUE, SAND, GREEN), "r": (ORANGE, RED, VIOLET)}
 class WalkLayer:
     """Logs how the robot walks."""
 
-    def __init__(self, stream: rr.RecordingStream) -> None:
+    def __init__(self, stream: BlockStream) -> None:
         stream.log(
             "/world/walking/points",
             rr.Arrows3D.from_fields(
@@ -152,7 +153,7 @@ class WalkLayer:
             part.flush()
 
     @staticmethod
-    def _torque_curves(stream: rr.RecordingStream, group: str) -> tuple[Curves, list[int]]:
+    def _torque_curves(stream: BlockStream, group: str) -> tuple[Curves, list[int]]:
         columns = [k for k, name in enumerate(LEG_JOINTS) if f"_{group}" in name]
         named = []
         shades = {side: iter(colours) for side, colours in SIDES.items()}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import rerun as rr
 
-from hsr8.recorder.channel import Channel
+from hsr8.recorder.channel import TIMELINE, Channel
 
 RNG = np.random.default_rng(0)
 
@@ -44,9 +44,9 @@ class Stream:
     def __init__(self):
         self.sent = []
 
-    def send_columns(self, path, times, columns):
-        rows = {str(c.component_descriptor()): c.as_arrow_array() for c in columns}
-        self.sent.append((path, times[0].as_arrow_array(), rows))
+    def keep(self, path, times, values):
+        rows = {str(component): value for component, value in values.items()}
+        self.sent.append((path, times[TIMELINE], rows))
 
 
 @pytest.mark.parametrize(("columns", "rows"), KINDS)
@@ -85,5 +85,5 @@ def test_rows_at_once_are_rows_one_by_one():
 
 
 def test_without_rows_nothing_is_sent():
-    stream = SimpleNamespace(send_columns=None)
+    stream = SimpleNamespace(keep=None)
     Channel(stream, "/there", rr.Points3D.columns).flush()

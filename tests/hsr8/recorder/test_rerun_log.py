@@ -221,14 +221,16 @@ def test_a_killed_run_leaves_a_log_that_opens(tmp_path):
     """The process is ended by the system, without a chance to finish the file."""
     script = """
 import os, sys, rerun as rr
+from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
-stream = rr.RecordingStream("hsr8", recording_id="killed")
+stream = BlockStream("killed")
 stream.save(sys.argv[1])
 channel = Channel(stream, "/plots/x", rr.Scalars.columns)
 for k in range(100):
     channel.add(0.02 * k, scalars=[float(k)])
     if k % 50 == 49:
         channel.flush()
+stream.send()
 stream.flush()
 os.kill(os.getpid(), 9)
 """
