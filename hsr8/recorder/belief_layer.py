@@ -1,6 +1,7 @@
 """What the robot believes, drawn over the true world."""
 
-from math import cos, pi, sin
+from collections.abc import Sequence
+from math import pi
 
 import numpy as np
 import rerun as rr
@@ -9,9 +10,11 @@ from numpy.typing import NDArray
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
+from hsr8.recorder.pace import Pace
 from hsr8.recorder.record import FrameRecord
 from navigation.belief import Belief, Motion
 from navigation.decision import MotionDecision
+from navigation.observation import CameraView
 
 Array = NDArray[np.float64]
 
@@ -36,8 +39,7 @@ class BeliefLayer:
 
     def __init__(self, stream: BlockStream, map_period: float) -> None:
         self._stream = stream
-        self._map_period = map_period
-        self._map_at = -np.inf
+        self._map_pace = Pace(map_period)
         self._map_shape: tuple[int, ...] = ()
         self._motion: MotionDecision | None = None  # whose virtual obstacles are shown
         self._aim: list[float] = []
@@ -82,61 +84,65 @@ class BeliefLayer:
             self._map,
         )
 
-    def add(self, frame: FrameRecord) -> None:
-        """Take one camera frame."""
-        time, belief = frame.time, frame.belief
-        x, y, heading = belief.pose.tolist()
-        self._pose.add(
-            time,
-            origins=np.array([[x, y, MARK_HEIGHT]]),
-            vectors=HEADING_LENGTH * np.array([[cos(heading), sin(heading), 0.0]]),
-        )
-        centres = np.array([[x, y, MARK_HEIGHT]])
-        self._ellipses(self._uncertainty, time, centres, belief.pose_covariance[None, :2, :2])
-        self._add_tracks(time, belief)
-        if frame.motion is not self._motion:
-            self._motion = frame.motion
-            self._add_virtual(frame)
-        self._view.add(time, strips=[_wedge(belief)])
-        target = frame.task.target.tolist()
-        if target != self._aim:
-            self._aim = target
-            self._target.add(time, positions=np.array([[*target, 0.05]]))
-        if time - self._map_at >= self._map_period - 1e-9:
-            self._map_at = time
-            self._add_particles(time, belief)
-            self._add_map(time, belief)
+    def add(self, frames: Sequence[FrameRecord]) -> None:
+        """Take camera frames."""
+        times, beliefs = [frame.time for frame in frames], [frame.belief for frame in frames]
+        poses = np.array([belief.pose for belief in beliefs])
+        ones = [1] * len(times)
+        centres, ahead = np.full((len(times), 3), MARK_HEIGHT), np.zeros((len(times), 3))
+        centres[:, :2] = poses[:, :2]
+        ahead[:, 0], ahead[:, 1] = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        self._pose.add_rows(times, ones, origins=centres, vectors=HEADING_LENGTH * ahead)
+        covariances = np.array([belief.pose_covariance for belief in beliefs])[:, :2, :2]
+        self._ellipses(self._uncertainty, times, ones, centres, covariances)
+        self._view.add_rows(times, ones, strips=list(_wedges(poses, [b.view for b in beliefs])))
+        self._add_tracks(times, beliefs)
+        for frame in frames:
+            if frame.motion is not self._motion:
+                self._motion = frame.motion
+                self._add_virtual(frame)
+            target = frame.task.target.tolist()
+            if target != self._aim:
+                self._aim = target
+                self._target.add(frame.time, positions=np.array([[*target, 0.05]]))
+            if self._map_pace.due(frame.time):
+                self._add_particles(frame.time, frame.belief)
+                self._add_map(frame.time, frame.belief)
 
     def flush(self) -> None:
         """Send the block."""
         for channel in self._channels:
             channel.flush()
 
-    def _add_tracks(self, time: float, belief: Belief) -> None:
-        tracks = belief.tracks
-        n = len(tracks)
-        centres = np.full((n, 3), MARK_HEIGHT)
-        centres[:, :2] = np.array([t.position for t in tracks]).reshape(n, 2)
-        self._tracks.add(
-            time,
+    def _add_tracks(self, times: list[float], beliefs: Sequence[Belief]) -> None:
+        tracks = [track for belief in beliefs for track in belief.tracks]
+        moments = np.repeat(np.arange(len(times)), [len(belief.tracks) for belief in beliefs])
+        centres = np.full((len(tracks), 3), MARK_HEIGHT)
+        centres[:, :2] = np.reshape([t.position for t in tracks], (-1, 2))
+        colours = [
+            palette.packed(palette.of_label(t.label), SEEN if t.visible else UNSEEN) for t in tracks
+        ]
+        self._tracks.add_rows(
+            times,
+            _counts(times, moments),
             centers=centres,
-            lengths=np.full(n, FLAT),
+            lengths=np.full(len(tracks), FLAT),
             radii=np.array([t.radius for t in tracks]),
-            colors=np.array(
-                [
-                    palette.packed(palette.of_label(t.label), SEEN if t.visible else UNSEEN)
-                    for t in tracks
-                ],
-                dtype=np.uint32,
-            ),
+            colors=np.array(colours, dtype=np.uint32),
         )
-        covariances = np.array([t.covariance[:2, :2] for t in tracks]).reshape(n, 2, 2)
+        covariances = np.reshape([t.covariance for t in tracks], (-1, 4, 4))[:, :2, :2]
         known = np.trace(covariances, axis1=1, axis2=2) < LOST_SIGMA**2
-        self._ellipses(self._spread, time, centres[known], covariances[known])
-        moving = [i for i, t in enumerate(tracks) if t.motion is not Motion.STATIC]
-        vectors = np.zeros((len(moving), 3))
-        vectors[:, :2] = np.array([tracks[i].velocity for i in moving]).reshape(-1, 2)
-        self._velocities.add(time, origins=centres[moving], vectors=VELOCITY_SCALE * vectors)
+        counts = _counts(times, moments[known])
+        self._ellipses(self._spread, times, counts, centres[known], covariances[known])
+        moving = np.array([t.motion is not Motion.STATIC for t in tracks], dtype=bool)
+        vectors = np.zeros((len(tracks), 3))
+        vectors[:, :2] = np.reshape([t.velocity for t in tracks], (-1, 2))
+        self._velocities.add_rows(
+            times,
+            _counts(times, moments[moving]),
+            origins=centres[moving],
+            vectors=VELOCITY_SCALE * vectors[moving],
+        )
 
     def _add_particles(self, time: float, belief: Belief) -> None:
         """Where lost movers may be; a particle is the larger the more likely it is."""
@@ -180,17 +186,30 @@ class BeliefLayer:
         )
 
     @staticmethod
-    def _ellipses(channel: Channel, time: float, centres: Array, covariances: Array) -> None:
+    def _ellipses(
+        channel: Channel,
+        times: list[float],
+        counts: list[int],
+        centres: Array,
+        covariances: Array,
+    ) -> None:
         half, direction = ellipse.axes(covariances)
         n = len(half)
         quaternions = np.zeros((n, 4))
         quaternions[:, 2], quaternions[:, 3] = np.sin(direction / 2), np.cos(direction / 2)
-        channel.add(
-            time,
+        channel.add_rows(
+            times,
+            counts,
             centers=centres,
             half_sizes=np.column_stack([SIGMAS * half, np.full(n, FLAT)]),
             quaternions=quaternions,
         )
+
+
+def _counts(times: list[float], moments: NDArray[np.intp]) -> list[int]:
+    """How many of `moments` are each of the times, by its number."""
+    counts: list[int] = np.bincount(moments, minlength=len(times)).tolist()
+    return counts
 
 
 def _map_look(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
@@ -212,15 +231,14 @@ def _rings(colour: palette.Colour, fill: rr.components.FillMode) -> rr.Ellipsoid
     return rr.Ellipsoids3D.from_fields(colors=[colour], fill_mode=fill, line_radii=[0.004])
 
 
-def _wedge(belief: Belief) -> Array:
-    """Outline of the field of view on the floor (n, 3) [m]."""
-    x, y, heading = belief.pose.tolist()
-    axis = belief.view.rotation[:, 2]
-    middle = heading + float(np.arctan2(axis[1], axis[0]))
-    half = min(0.5 * belief.view.horizontal_fov, pi)
-    angles = middle + half * np.linspace(-1.0, 1.0, 9)
-    rim = np.column_stack([x + VIEW_RANGE * np.cos(angles), y + VIEW_RANGE * np.sin(angles)])
-    outline = np.full((len(rim) + 2, 3), MARK_HEIGHT)
-    outline[0, :2] = outline[-1, :2] = x, y
-    outline[1:-1, :2] = rim
-    return outline
+def _wedges(poses: Array, views: Sequence[CameraView]) -> Array:
+    """Outlines on the floor of the fields of view from poses (m, 3): (m, n, 3) [m]."""
+    axes = np.array([view.rotation[:, 2] for view in views])
+    middles = poses[:, 2] + np.arctan2(axes[:, 1], axes[:, 0])
+    halves = np.minimum([0.5 * view.horizontal_fov for view in views], pi)
+    angles = middles[:, None] + halves[:, None] * np.linspace(-1.0, 1.0, 9)
+    outlines = np.full((len(poses), 11, 3), MARK_HEIGHT)
+    outlines[:, :, :2] = poses[:, None, :2]
+    outlines[:, 1:-1, 0] += VIEW_RANGE * np.cos(angles)
+    outlines[:, 1:-1, 1] += VIEW_RANGE * np.sin(angles)
+    return outlines

@@ -1,5 +1,6 @@
 """The head camera: its pose in the world, its image, what was recognised, the gaze map."""
 
+from collections.abc import Sequence
 from math import cos, pi, radians, sin, tan
 
 import cv2
@@ -47,6 +48,9 @@ class CameraLayer:
         self._jpeg_quality = jpeg
         self._parameters = gaze
         self._gaze: GazeDecision | None = None  # that is shown
+        self._times: list[float] = []
+        self._positions: list[Array] = []
+        self._rotations: list[Array] = []
         self._id = model.camera(HEAD_CAMERA).id
         self._size = width, height = size
         self._focal = focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
@@ -84,35 +88,39 @@ class CameraLayer:
 
     def add_pose(self, time: float, data: mujoco.MjData) -> None:
         """Take the camera's true pose from `data`."""
-        # MuJoCo's camera looks along -z with y up; Rerun's as the project's along z, y down.
-        rotation = data.cam_xmat[self._id].reshape(3, 3) * (1.0, -1.0, -1.0)
-        quaternion = np.empty(4)
-        mujoco.mju_mat2Quat(quaternion, rotation.ravel())
-        self._pose.add(
-            time,
-            translation=data.cam_xpos[self._id][None].copy(),
-            quaternion=xyzw(quaternion)[None],
-        )
+        self._times.append(time)
+        self._positions.append(data.cam_xpos[self._id].copy())
+        self._rotations.append(data.cam_xmat[self._id].copy())
 
-    def add_frame(self, frame: FrameRecord) -> None:
-        """Take one camera frame."""
-        if frame.image is not None:
-            self._image.add(frame.time, blob=[_jpeg(frame.image, self._jpeg_quality)])
-        boxes = np.array([d.box for d in frame.detections], dtype=float).reshape(-1, 4)
-        self._boxes.add(
-            frame.time,
+    def add_frames(self, frames: Sequence[FrameRecord]) -> None:
+        """Take camera frames."""
+        found = [d for frame in frames for d in frame.detections]
+        boxes = np.array([d.box for d in found], dtype=float).reshape(-1, 4)
+        self._boxes.add_rows(
+            [frame.time for frame in frames],
+            [len(frame.detections) for frame in frames],
             centers=0.5 * (boxes[:, :2] + boxes[:, 2:]),
             half_sizes=0.5 * (boxes[:, 2:] - boxes[:, :2]),
-            colors=np.array(
-                [palette.packed(palette.of_label(d.label)) for d in frame.detections],
-                dtype=np.uint32,
-            ),
-            labels=[f"{d.distance:.1f} m" for d in frame.detections],
+            colors=palette.packed_all(palette.of_label(d.label) for d in found),
+            labels=[f"{d.distance:.1f} m" for d in found],
         )
-        self._add_gaze(frame)
+        for frame in frames:
+            if frame.image is not None:
+                self._image.add(frame.time, blob=[_jpeg(frame.image, self._jpeg_quality)])
+            self._add_gaze(frame)
 
     def flush(self) -> None:
         """Send the block."""
+        if self._times:
+            self._pose.add_rows(
+                self._times,
+                [1] * len(self._times),
+                translation=np.array(self._positions),
+                quaternion=_attitudes(np.array(self._rotations)),
+            )
+        self._times.clear()
+        self._positions.clear()
+        self._rotations.clear()
         for channel in (
             self._pose,
             self._image,
@@ -144,7 +152,7 @@ class CameraLayer:
         self._choice.add(
             frame.time,
             positions=map_points(chosen, gaze_map.shape, self._parameters),
-            colors=np.array([palette.packed(palette.BELIEF)], dtype=np.uint32),
+            colors=palette.packed_all([palette.BELIEF]),
         )
         self._window.add(frame.time, strips=[map_points(window, gaze_map.shape, self._parameters)])
 
@@ -202,6 +210,16 @@ def image_points(
         [0.5 * size[0] - focal * left / depth, 0.5 * size[1] + focal * down / depth]
     )
     return np.clip(pixels, 0.0, size)
+
+
+def _attitudes(rotations: Array) -> Array:
+    """Quaternions in Rerun's order (n, 4) of a camera with MuJoCo's rotations (n, 9)."""
+    # MuJoCo's camera looks along -z with y up; Rerun's as the project's along z, y down.
+    turned = rotations * np.tile((1.0, -1.0, -1.0), 3)
+    found = np.empty((len(turned), 4))
+    for quaternion, rotation in zip(found, turned, strict=True):
+        mujoco.mju_mat2Quat(quaternion, rotation)
+    return xyzw(found)
 
 
 def _jpeg(image: Image, quality: int) -> NDArray[np.uint8]:

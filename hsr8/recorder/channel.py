@@ -31,22 +31,31 @@ class Channel:
         self._columns = columns
         self._types: dict[str, tuple[rr.ComponentDescriptor, pa.DataType]] = {}
         self._times: list[float] = []
-        self._lengths: list[int] = []
+        self._counts: list[int] = []
         self._components: dict[str, list[Any]] = {}
 
     def add(self, time: float, **components: Sequence[Any] | np.ndarray) -> None:
         """Add one row; every component has one element per instance, which may be none."""
-        self._times.append(time)
-        self._lengths.append(len(next(iter(components.values()))))
+        self.add_rows([time], [len(next(iter(components.values())))], **components)
+
+    def add_rows(
+        self,
+        times: Sequence[float],
+        counts: Sequence[int],
+        /,
+        **components: Sequence[Any] | np.ndarray,
+    ) -> None:
+        """Add a row at each of `times`.
+
+        Args:
+            times: of the rows [s].
+            counts: number of instances of each row.
+            components: one element per instance, those of one row after those of the other.
+        """
+        self._times += times
+        self._counts += counts
         for name, values in components.items():
             self._components.setdefault(name, []).append(values)
-
-    def add_rows(self, times: Sequence[float], **components: np.ndarray) -> None:
-        """Add a row at each of `times`; components have as many rows of as many instances."""
-        for name, values in components.items():
-            self._components.setdefault(name, []).append(values.reshape(-1, *values.shape[2:]))
-        self._times += times
-        self._lengths += [next(iter(components.values())).shape[1]] * len(times)
 
     def flush(self) -> None:
         """Send the rows added since the last flush."""
@@ -55,12 +64,12 @@ class Channel:
         times = pa.array((1e9 * np.array(self._times)).astype("timedelta64[ns]"))
         self._stream.keep(self._path, {TIMELINE: times}, self._packed())
         self._times.clear()
-        self._lengths.clear()
+        self._counts.clear()
         self._components.clear()
 
     def _packed(self) -> dict[rr.ComponentDescriptor, pa.Array]:
         """The rows of each component as Rerun wants them."""
-        offsets = pa.array(np.fromiter(accumulate(self._lengths, initial=0), np.int32))
+        offsets = pa.array(np.fromiter(accumulate(self._counts, initial=0), np.int32))
         packed: dict[rr.ComponentDescriptor, pa.Array] = {}
         new: dict[str, Any] = {}
         for name, rows in self._components.items():
@@ -80,7 +89,7 @@ class Channel:
             name = str(column.component_descriptor().component).rpartition(":")[2]
             if _convertible(components.get(name), kind):
                 self._types[name] = (column.component_descriptor(), kind)
-        rows = found.partition(self._lengths)
+        rows = found.partition(self._counts)
         return {column.component_descriptor(): column.as_arrow_array() for column in rows}
 
 

@@ -191,6 +191,7 @@ class Scene:
             static=True,
         )
         self._times: list[float] = []
+        self._places: list[Array] = []
         self._positions: list[Array] = []
         self._quaternions: list[Array] = []
 
@@ -214,9 +215,7 @@ class Scene:
         self._times.append(time)
         self._positions.append(self._data.xpos.copy())
         self._quaternions.append(self._data.xquat.copy())
-        for batch in self._movers:
-            heights = np.full((len(movers), 1), self._model.geom_size[batch.geoms[0], 1])
-            self._mover_channel.add(time, centers=np.hstack([movers, heights]))
+        self._places.append(movers)
 
     def flush(self) -> None:
         """Send the block."""
@@ -225,11 +224,21 @@ class Scene:
         positions, quaternions = np.array(self._positions), np.array(self._quaternions)
         for batch, channel in zip(self._robot, self._channels, strict=True):
             position, quaternion = self._poses(batch, positions, quaternions)
-            rows = {batch.centre: position, "quaternions": xyzw(quaternion)}
-            channel.add_rows(self._times, **rows)
+            rows = {batch.centre: position.reshape(-1, 3)}
+            rows["quaternions"] = xyzw(quaternion).reshape(-1, 4)
+            channel.add_rows(self._times, [len(batch.geoms)] * len(self._times), **rows)
             channel.flush()
+        for batch in self._movers:
+            places = np.concatenate(self._places)
+            heights = np.full(len(places), self._model.geom_size[batch.geoms[0], 1])
+            self._mover_channel.add_rows(
+                self._times,
+                [len(movers) for movers in self._places],
+                centers=np.column_stack([places, heights]),
+            )
         self._mover_channel.flush()
         self._times.clear()
+        self._places.clear()
         self._positions.clear()
         self._quaternions.clear()
 

@@ -1,5 +1,10 @@
 """Colours of people's pictures: log, plots and video agree on them."""
 
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
 Colour = tuple[int, int, int]
 
 LABELS: dict[str, Colour] = {
@@ -39,3 +44,8 @@ def packed(colour: Colour, alpha: int = 255) -> int:
     """0xRRGGBBAA."""
     red, green, blue = colour
     return (red << 24) | (green << 16) | (blue << 8) | alpha
+
+
+def packed_all(colours: Iterable[Colour]) -> NDArray[np.uint32]:
+    """Opaque colours, each as 0xRRGGBBAA (n,)."""
+    return np.array([packed(colour) for colour in colours], dtype=np.uint32)

@@ -1,5 +1,6 @@
 """What the planner is about to do: its field around the robot, the way along it, the decision."""
 
+from collections.abc import Sequence
 from math import cos, sin
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
+from hsr8.recorder.pace import Pace
 from hsr8.recorder.record import FrameRecord
 from navigation.decision import DirectionField, MotionDecision
 from navigation.univector import normalized
@@ -31,8 +33,7 @@ class PlanLayer:
     """
 
     def __init__(self, stream: BlockStream, period: float) -> None:
-        self._period = period
-        self._drawn_at = -np.inf
+        self._pace = Pace(period)
         self._motion: MotionDecision | None = None
         self._shown = False
         for path, style in (
@@ -45,12 +46,19 @@ class PlanLayer:
         self._way = Channel(stream, "/plan/way", rr.LineStrips3D.columns)
         self._decision = Channel(stream, "/plan/decision", rr.Arrows3D.columns)
 
-    def add(self, frame: FrameRecord) -> None:
-        """Take one camera frame."""
-        motion = frame.motion
-        if motion is self._motion:
-            return
-        self._motion = motion
+    def add(self, frames: Sequence[FrameRecord]) -> None:
+        """Take camera frames."""
+        for frame in frames:
+            if frame.motion is not self._motion:
+                self._motion = frame.motion
+                self._add_decision(frame, frame.motion)
+
+    def flush(self) -> None:
+        """Send the block."""
+        for channel in (self._field, self._way, self._decision):
+            channel.flush()
+
+    def _add_decision(self, frame: FrameRecord, motion: MotionDecision) -> None:
         x, y, _ = frame.belief.pose.tolist()
         length = SPEED_SCALE * motion.speed
         self._decision.add(
@@ -62,18 +70,12 @@ class PlanLayer:
             if self._shown:
                 self._draw(frame.time, np.zeros((0, 2)), np.zeros((0, 2)), [])
             self._shown = False
-        elif frame.time - self._drawn_at >= self._period - 1e-9:
-            self._drawn_at = frame.time
+        elif self._pace.due(frame.time):
             self._shown = True
             here = frame.belief.pose[:2]
             points = grid(here)
             way = along(motion.field, here, frame.task.target)
             self._draw(frame.time, points, normalized(motion.field.at(points)), [way])
-
-    def flush(self) -> None:
-        """Send the block."""
-        for channel in (self._field, self._way, self._decision):
-            channel.flush()
 
     def _draw(self, time: float, points: Array, directions: Array, ways: list[Array]) -> None:
         arrows = ARROW * _raised(directions, 0.0)

@@ -52,21 +52,14 @@ class Curves:
         names, colours = zip(*curves, strict=True)
         stream.log(path, rr.SeriesLines(names=list(names), colors=list(colours)), static=True)
         self._channel = Channel(stream, path, rr.Scalars.columns)
-        self._times: list[float] = []
-        self._values: list[tuple[float, ...]] = []
 
-    def add(self, time: float, *values: float) -> None:
-        """One value of every curve; NaN leaves a gap."""
-        self._times.append(time)
-        self._values.append(values)
+    def add(self, times: Sequence[float], values: Array) -> None:
+        """Values of all curves at n times (n, curves); NaN leaves a gap."""
+        self._channel.add_rows(times, [values.shape[1]] * len(values), scalars=values.ravel())
 
     def flush(self) -> None:
         """Send the block."""
-        if self._times:
-            self._channel.add_rows(self._times, scalars=np.array(self._values))
-            self._channel.flush()
-            self._times.clear()
-            self._values.clear()
+        self._channel.flush()
 
 
 class Lane:
@@ -131,21 +124,28 @@ class PlotLayer:
             self._localization,
         )
 
-    def add(self, record: TickRecord) -> None:
-        """Take one record."""
-        time, truth = record.time, record.truth
-        self._clearance.add(time, truth.clearance if np.isfinite(truth.clearance) else np.nan)
+    def add(self, records: Sequence[TickRecord]) -> None:
+        """Take records at the rate of the plots."""
+        clearance = np.array([[record.truth.clearance] for record in records])
+        shown = np.where(np.isfinite(clearance), clearance, np.nan)
+        self._clearance.add([record.time for record in records], shown)
 
-    def add_frame(self, frame: FrameRecord, truth: Array) -> None:
-        """Take a camera frame and the true pose (3,) at that time."""
-        gaze, belief = frame.gaze, frame.belief
-        self._partial.add(frame.time, gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
-        dx, dy, turn = (belief.pose - truth).tolist()
-        spread = 2.0 * float(ellipse.axes(belief.pose_covariance[None, :2, :2])[0][0, 0])
-        self._error.add(frame.time, float(np.hypot(dx, dy)), spread, abs(wrap(turn)))
-        self._situation.add(frame.time, frame.motion.situation)
-        self._gaze.add(frame.time, gaze_reason(frame))
-        self._localization.add(frame.time, "lost" if belief.lost else "localized")
+    def add_frames(self, seen: Sequence[tuple[FrameRecord, Array]]) -> None:
+        """Take camera frames, each with the true pose (3,) at that time."""
+        frames = [frame for frame, _ in seen]
+        times, gazes = [f.time for f in frames], [f.gaze for f in frames]
+        self._partial.add(
+            times, np.array([(g.psi_lm, g.psi_sf, g.psi_ob, g.psi_way) for g in gazes])
+        )
+        dx, dy, turn = np.array([frame.belief.pose - truth for frame, truth in seen]).T
+        covariance = np.array([f.belief.pose_covariance for f in frames])[:, :2, :2]
+        spread = 2.0 * ellipse.axes(covariance)[0][:, 0]
+        turned = [abs(wrap(angle)) for angle in turn.tolist()]
+        self._error.add(times, np.column_stack([np.hypot(dx, dy), spread, turned]))
+        for frame in frames:
+            self._situation.add(frame.time, frame.motion.situation)
+            self._gaze.add(frame.time, gaze_reason(frame))
+            self._localization.add(frame.time, "lost" if frame.belief.lost else "localized")
 
     def flush(self) -> None:
         """Send the block."""

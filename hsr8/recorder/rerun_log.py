@@ -19,15 +19,15 @@ from hsr8.recorder.camera_layer import CameraLayer
 from hsr8.recorder.channel import TIMELINE, Channel
 from hsr8.recorder.geometry import Scene, sole_outline
 from hsr8.recorder.log_level import RATES, LogLevel
+from hsr8.recorder.pace import Pace
 from hsr8.recorder.plan_layer import PlanLayer
 from hsr8.recorder.plot_layer import PlotLayer
-from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_layer import WalkLayer
 from hsr8.recorder.walking_table import OdometryToWorld
 from hsr8.recorder.writing import refusal
 from hsr8.world.layout import Layout
 from navigation.gaze_parameters import GazeParameters
-from walking.state import Footstep
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,9 @@ class RerunLog:
         live: str = "",
         index: bool = True,
     ) -> None:
-        self._rates = rates = RATES[level]
+        rates = RATES[level]
+        self._pose_pace, self._frame_pace = Pace(rates.pose), Pace(rates.frame)
+        self._trail_pace = Pace(TRAIL_PERIOD)
         # Rerun keeps the threads of a stream that nobody holds any more until it is asked.
         rerun_bindings.flush_and_cleanup_orphaned_recordings()
         self._stream = BlockStream(path.parent.name)
@@ -107,11 +109,8 @@ class RerunLog:
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D.columns)
         self._trail: list[list[float]] = []
         self._log_way_points(layout)
-        self._trail_at = -np.inf
         self._waiting = Block(LIVE_BLOCK if live else PERIOD)
         self._time = 0.0
-        self._pose_at = -np.inf
-        self._frame_at = -np.inf
 
     def on_record(self, record: TickRecord) -> None:
         """Log one record."""
@@ -136,59 +135,76 @@ class RerunLog:
             else:
                 self._stream.disconnect()
 
-    def _add(self, record: TickRecord) -> None:
-        time, truth = record.time, record.truth
-        self._time = time
-        if time - self._pose_at >= self._rates.pose - 1e-9:
-            self._pose_at = time
+    def _add(self, records: Sequence[TickRecord]) -> None:
+        self._time = records[-1].time
+        shown = [record for record in records if self._pose_pace.due(record.time)]
+        for record in shown:
+            truth = record.truth
             movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
-            self._scene.add(time, truth.qpos, movers)
+            self._scene.add(record.time, truth.qpos, movers)
             if self._camera is not None:
-                self._camera.add_pose(time, self._scene.data)
-            self._plots.add(record)
-            self._walk.add(record)
-        self._walk.watch(record)
-        if record.frame is not None and time - self._frame_at >= self._rates.frame - 1e-9:
-            self._frame_at = time
-            self._add_frame(record, record.frame)
+                self._camera.add_pose(record.time, self._scene.data)
+        if shown:
+            self._plots.add(shown)
+            self._walk.add(shown)
+        for record in records:
+            self._walk.watch(record)
+        with_frame = [record for record in records if record.frame is not None]
+        seen = [record for record in with_frame if self._frame_pace.due(record.time)]
+        if seen:
+            self._add_frames(seen)
 
-    def _add_frame(self, record: TickRecord, frame: FrameRecord) -> None:
+    def _add_frames(self, records: Sequence[TickRecord]) -> None:
+        pairs = [(r.frame, r.truth.robot) for r in records if r.frame is not None]
+        frames = [frame for frame, _ in pairs]
         if self._camera is not None:
-            self._camera.add_frame(frame)
+            self._camera.add_frames(frames)
         for layer in self._minds:
-            layer.add(frame)
-        self._plots.add_frame(frame, record.truth.robot)
-        if record.time - self._trail_at >= TRAIL_PERIOD - 1e-9:
-            self._trail_at = record.time
-            x, y, _ = record.truth.robot.tolist()
-            self._trail.append([x, y, 0.003])
-        # Planned footholds are known in the odometry frame; they are drawn from the true pose.
-        there = OdometryToWorld(record)
-        placed = [
-            Footstep(f.left, *there.point((f.x, f.y)), f.yaw + there.turn)
-            for f in record.walking.footsteps
-        ]
-        self._footsteps.add(
-            frame.time,
-            strips=[self._sole(f) for f in placed],
-            colors=_colours([palette.LEFT_FOOT if f.left else palette.RIGHT_FOOT for f in placed]),
-            radii=np.full(len(placed), 0.004),
+            layer.add(frames)
+        self._plots.add_frames(pairs)
+        for record in records:
+            if self._trail_pace.due(record.time):
+                x, y, _ = record.truth.robot.tolist()
+                self._trail.append([x, y, 0.003])
+        self._add_footsteps(records, [frame.time for frame in frames])
+
+    def _add_footsteps(self, records: Sequence[TickRecord], times: list[float]) -> None:
+        """Planned footholds, known in the odometry frame, as seen from the true pose."""
+        steps = [step for record in records for step in record.walking.footsteps]
+        counts = [len(record.walking.footsteps) for record in records]
+        moments = np.repeat(np.arange(len(records)), counts)
+        there = OdometryToWorld(records)
+        places = there.point(np.reshape([(f.x, f.y) for f in steps], (-1, 2)), moments)
+        yaws = np.array([f.yaw for f in steps]) + there.turn[moments]
+        self._footsteps.add_rows(
+            times,
+            counts,
+            strips=[
+                self._sole(step.left, place, yaw)
+                for step, place, yaw in zip(steps, places, yaws.tolist(), strict=True)
+            ],
+            colors=palette.packed_all(
+                palette.LEFT_FOOT if step.left else palette.RIGHT_FOOT for step in steps
+            ),
+            radii=np.full(len(steps), 0.004),
         )
 
-    def _sole(self, step: Footstep) -> Array:
+    def _sole(self, left: bool, place: Array, yaw: float) -> Array:
         """Outline of a foot on the floor (5, 3) [m]."""
-        c, s = cos(step.yaw), sin(step.yaw)
-        outline = self._soles[not step.left] @ np.array([[c, s], [-s, c]]) + [step.x, step.y]
-        return np.column_stack([outline, np.full(len(outline), SOLE_HEIGHT)])
+        c, s = cos(yaw), sin(yaw)
+        outline = np.full((5, 3), SOLE_HEIGHT)
+        outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + place
+        return outline
 
     def _flush(self) -> None:
-        for record in self._waiting.take():
-            self._add(record)
+        records = self._waiting.take()
+        if records:
+            self._add(records)
         if self._trail:
             self._path.add(
                 self._time,
                 strips=[np.array(self._trail)],
-                colors=_colours([palette.TRUTH]),
+                colors=palette.packed_all([palette.TRUTH]),
                 radii=np.array([0.006]),
             )
             del self._trail[: -round(TRAIL / TRAIL_PERIOD)]
@@ -248,7 +264,3 @@ class RerunLog:
                 ),
                 static=True,
             )
-
-
-def _colours(colours: Sequence[palette.Colour]) -> NDArray[np.uint32]:
-    return np.array([palette.packed(c) for c in colours], dtype=np.uint32)

@@ -2,7 +2,6 @@
 
 from collections import deque
 from collections.abc import Sequence
-from math import cos, degrees, isnan, nan, sin
 
 import numpy as np
 import rerun as rr
@@ -17,9 +16,9 @@ from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walking_table import LEG_JOINTS, LIGHT, OdometryToWorld
 from navigation.angles import wrap
 from walking.admission import Limit
+from walking.state import WalkingState
 
 Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 GAIT = {
     "standing": GREY,
@@ -105,31 +104,36 @@ class WalkLayer:
             self._said,
         )
 
-    def add(self, record: TickRecord) -> None:
-        """Take one record at the rate of the plots."""
-        time, truth, walking = record.time, record.truth, record.walking
-        there = OdometryToWorld(record)
-        pressed = float(truth.foot_force.sum()) > LIGHT
-        planned = there.point(walking.zmp)
-        com, dcm = there.point(walking.balance.com), there.point(walking.balance.dcm)
-        measured = tuple(truth.zmp.tolist()) if pressed else (nan, nan)
-        support = [there.point(corner) for corner in walking.balance.support.tolist()]
-        self._add_curves(time, truth.robot, [planned, measured, com, dcm], support)
-        shown = (planned, planned if isnan(measured[0]) else measured, com, dcm)
-        self._points.add(time, origins=np.array([(x, y, PIN) for x, y in shown]))
-        standing = (str(walking.phase), walking.step_count)
-        if standing != self._stood:
-            self._stood = standing
-            strip = np.array([(x, y, FLOOR) for x, y in (*support, support[0])])
-            self._support.add(time, strips=[strip])
-        asked, given = record.command.velocity, walking.given.tolist()
-        for curves, a, g in zip(self._commanded, asked, given, strict=True):
-            curves.add(time, a, g)
+    def add(self, records: Sequence[TickRecord]) -> None:
+        """Take records at the rate of the plots."""
+        times, truths = [r.time for r in records], [r.truth for r in records]
+        walks = [record.walking for record in records]
+        there = OdometryToWorld(records)
+        known = [(walking.zmp, walking.balance.com, walking.balance.dcm) for walking in walks]
+        planned, com, dcm = there.point(np.array(known)).swapaxes(0, 1)
+        pressed = np.array([truth.foot_force for truth in truths]).sum(axis=1) > LIGHT
+        zmp = np.array([truth.zmp for truth in truths])
+        measured = np.where(pressed[:, None], zmp, np.nan)
+        corners = [len(walking.balance.support) for walking in walks]
+        moments = np.repeat(np.arange(len(walks)), corners)
+        support = there.point(np.concatenate([w.balance.support for w in walks]), moments)
+        points = np.stack([planned, measured, com, dcm], axis=1)
+        self._add_curves(times, np.array([t.robot for t in truths]), points, support, moments)
+        points[:, 1] = np.where(np.isnan(measured[:, :1]), planned, measured)
+        pins = np.full((len(times), len(POINTS), 3), PIN)
+        pins[..., :2] = points
+        self._points.add_rows(times, [len(POINTS)] * len(times), origins=pins.reshape(-1, 3))
+        asked = np.array([record.command.velocity for record in records])
+        given = np.array([walking.given for walking in walks])
+        for curves, a, g in zip(self._commanded, asked.T, given.T, strict=True):
+            curves.add(times, np.column_stack([a, g]))
+        torque = np.array([truth.joint_torque for truth in truths])
         for curves, columns in self._torque:
-            curves.add(time, *truth.joint_torque[columns].tolist())
-        self._tilt.add(time, degrees(walking.roll), degrees(walking.pitch))
-        self._phase.add(time, str(walking.phase))
-        self._tell_admission(record)
+            curves.add(times, torque[:, columns])
+        self._tilt.add(times, np.degrees([(walking.roll, walking.pitch) for walking in walks]))
+        for record, area in zip(records, np.split(support, np.cumsum(corners[:-1])), strict=True):
+            self._add_gait(record.time, record.walking, area)
+            self._tell_admission(record)
 
     def watch(self, record: TickRecord) -> None:
         """Take every record: what is too short for the rate of the plots."""
@@ -137,7 +141,7 @@ class WalkLayer:
         if measured is not None:
             time, velocity = measured
             for curves, value in zip(self._achieved, velocity, strict=True):
-                curves.add(time, value)
+                curves.add([time], np.array([[value]]))
         pushes = record.truth.pushes
         if pushes or self._pushed:
             self._pushed = bool(pushes)
@@ -163,15 +167,34 @@ class WalkLayer:
         return Curves(stream, f"/plots/torque_{group}", named), columns
 
     def _add_curves(
-        self, time: float, robot: Array, points: Sequence[Point], support: Sequence[Point]
+        self,
+        times: list[float],
+        robot: Array,
+        points: Array,
+        support: Array,
+        moments: NDArray[np.intp],
     ) -> None:
-        x, y, yaw = robot.tolist()
-        c, s = cos(yaw), sin(yaw)
+        """Points (n, 4, 2), and corners of the soles with the moment of each."""
+        here, yaw = robot[:, :2], robot[:, 2]
+        c, s = np.cos(yaw), np.sin(yaw)
+        x, y = (points - here[:, None]).T
+        edge_x, edge_y = (support - here[moments]).T
+        firsts = np.searchsorted(moments, np.arange(len(times)))
         # Forward and left of the robot.
         for curves, (along, across) in zip(self._zmp, ((c, s), (-s, c)), strict=True):
-            seen = [along * (px - x) + across * (py - y) for px, py in points]
-            edges = [along * (px - x) + across * (py - y) for px, py in support]
-            curves.add(time, *seen, min(edges), max(edges))
+            edges = along[moments] * edge_x + across[moments] * edge_y
+            ends = np.minimum.reduceat(edges, firsts), np.maximum.reduceat(edges, firsts)
+            curves.add(times, np.column_stack([(along * x + across * y).T, *ends]))
+
+    def _add_gait(self, time: float, walking: WalkingState, support: Array) -> None:
+        """The phase, and with every new one the support polygon (n, 2) in W [m]."""
+        self._phase.add(time, str(walking.phase))
+        standing = (str(walking.phase), walking.step_count)
+        if standing != self._stood:
+            self._stood = standing
+            strip = np.full((len(support) + 1, 3), FLOOR)
+            strip[:, :2] = *support, support[0]
+            self._support.add(time, strips=[strip])
 
     def _tell_admission(self, record: TickRecord) -> None:
         admission = record.walking.admission
@@ -198,11 +221,11 @@ class _Speedometer:
         """Middle of the stride [s] and velocity in it, when there is one."""
         x, y, yaw = record.truth.robot.tolist()
         self._yaw += wrap(yaw - self._yaw)
-        pose = np.array([x, y, self._yaw])
         waited = not self._marks or record.time - self._marks[-1][0] >= PATIENCE - 1e-9
         if record.walking.step_count == self._steps and not waited:
             return None
         self._steps = record.walking.step_count
+        pose = np.array([x, y, self._yaw])
         self._marks.append((record.time, pose))
         first, start = self._marks[0] if not waited else self._marks[max(0, len(self._marks) - 2)]
         if record.time - first <= 0.0:

@@ -9,7 +9,6 @@ the moment, so that planned and true curves can be compared.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, sin
 from pathlib import Path
 
 import mujoco
@@ -21,9 +20,10 @@ from hsr8.recorder.block import Block
 from hsr8.recorder.headed_file import HeadedWriter, read_headed
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.world.index import ModelIndex
+from hsr8.world.truth import Truth
 from walking.admission import Limit
 from walking.joints import JOINT_NAMES
-from walking.state import Phase
+from walking.state import Phase, WalkingState
 
 Array = NDArray[np.float64]
 
@@ -148,7 +148,8 @@ class WalkingTableWriter(Listener):
         records = self._waiting.take()
         table = np.empty(len(records), dtype=_row_type(len(COLUMNS)))
         table["time"] = [record.time for record in records]
-        table["values"] = np.reshape([_row(record) for record in records], (-1, len(COLUMNS)))
+        if records:
+            table["values"] = _values(records)
         self._file.write(table.tobytes())
 
 
@@ -194,53 +195,74 @@ class OdometryToWorld:
     """Puts what the robot knows in its odometry frame where the robot truly is.
 
     Args:
-        record: of the moment.
+        records: of n moments.
+
+    Attributes:
+        turn: from the odometry frame to W at each moment (n,) [rad].
     """
 
-    def __init__(self, record: TickRecord) -> None:
-        here = record.walking.odometry
-        x, y, yaw = record.truth.robot.tolist()
-        self.turn = yaw - here.yaw
-        self._c, self._s = cos(self.turn), sin(self.turn)
-        self._x = x - self._c * here.x + self._s * here.y
-        self._y = y - self._s * here.x - self._c * here.y
+    def __init__(self, records: Sequence[TickRecord]) -> None:
+        odometry = [record.walking.odometry for record in records]
+        x, y, yaw = np.reshape([(here.x, here.y, here.yaw) for here in odometry], (-1, 3)).T
+        true_x, true_y, true_yaw = np.reshape([r.truth.robot for r in records], (-1, 3)).T
+        self.turn: Array = true_yaw - yaw
+        self._c, self._s = np.cos(self.turn), np.sin(self.turn)
+        self._x = true_x - self._c * x + self._s * y
+        self._y = true_y - self._s * x - self._c * y
 
-    def point(self, point: Sequence[float] | Array) -> tuple[float, float]:
-        """A point of the odometry frame in W [m]."""
-        x, y = float(point[0]), float(point[1])
-        return self._x + self._c * x - self._s * y, self._y + self._s * x + self._c * y
+    def point(self, points: Array, moments: NDArray[np.intp] | slice = slice(None)) -> Array:
+        """Points of the odometry frame (n, ..., 2) in W, of every moment or of `moments` [m]."""
+        x, y = points.T
+        c, s = self._c[moments], self._s[moments]
+        there = self._x[moments] + c * x - s * y, self._y[moments] + s * x + c * y
+        return np.array(there).T
 
-    def vector(self, vector: Sequence[float] | Array) -> tuple[float, float]:
-        """A direction of the odometry frame in W."""
-        x, y = float(vector[0]), float(vector[1])
-        return self._c * x - self._s * y, self._s * x + self._c * y
+    def vector(self, vectors: Array) -> Array:
+        """Directions of the odometry frame (n, ..., 2) in W."""
+        x, y = vectors.T
+        return np.array([self._c * x - self._s * y, self._s * x + self._c * y]).T
 
 
-def _row(record: TickRecord) -> list[float]:
-    truth, walking, balance = record.truth, record.walking, record.walking.balance
-    there = OdometryToWorld(record)
-    force = truth.foot_force.tolist()
-    pressure = truth.zmp.tolist() if sum(force) > LIGHT else [float("nan")] * 2
-    row: list[float] = [PHASES.index(walking.phase), walking.step_count]
-    row += record.command.velocity
-    row += walking.given.tolist()
-    row += truth.robot.tolist()
-    row += (*there.point(walking.zmp), *pressure)
-    row += (*there.point(balance.com), *there.point(walking.com))
-    row += (*there.point(walking.dcm), *there.point(balance.dcm))
-    for (x, y, z, yaw), load in zip(balance.feet.tolist(), force, strict=True):
-        row += (*there.point((x, y)), z, yaw + there.turn, load)
-    row += there.vector(balance.capture)
-    row += (balance.zmp_depth, walking.roll, walking.pitch)
+def _values(records: Sequence[TickRecord]) -> Array:
+    """All columns but the time (n, columns)."""
+    truths, walks = [r.truth for r in records], [r.walking for r in records]
+    balances = [walking.balance for walking in walks]
+    there = OdometryToWorld(records)
+    force = np.array([truth.foot_force for truth in truths])
+    pressed = force.sum(axis=1, keepdims=True) > LIGHT
+    feet = np.array([balance.feet for balance in balances])
+    feet[..., :2], feet[..., 3] = there.point(feet[..., :2]), feet[..., 3] + there.turn[:, None]
+    points = [(b.com, w.com, w.dcm, b.dcm) for w, b in zip(walks, balances, strict=True)]
+    return np.column_stack(
+        [
+            [(PHASES.index(walking.phase), walking.step_count) for walking in walks],
+            [record.command.velocity for record in records],
+            [walking.given for walking in walks],
+            [truth.robot for truth in truths],
+            there.point(np.array([walking.zmp for walking in walks])),
+            np.where(pressed, [truth.zmp for truth in truths], np.nan),
+            there.point(np.array(points)).reshape(len(records), -1),
+            np.dstack([feet, force]).reshape(len(records), -1),
+            there.vector(np.array([balance.capture for balance in balances])),
+            [(w.balance.zmp_depth, w.roll, w.pitch) for w in walks],
+            [_bound(walking) for walking in walks],
+            [_push(truth) for truth in truths],
+            np.array([truth.joint_torque for truth in truths])[:, : len(LEG_JOINTS)],
+        ]
+    )
+
+
+def _bound(walking: WalkingState) -> int:
+    """The constraints that altered the command, a bit each."""
     limits = walking.admission.limits if walking.admission is not None else ()
-    row.append(sum({1 << LIMITS.index(limit) for limit in limits}))
-    if truth.pushes:
-        push = truth.pushes[0]
-        row += (*push.point.tolist(), *push.force.tolist(), push.begin, push.impulse)
-    else:
-        row += [0.0] * 8
-    row += truth.joint_torque[: len(LEG_JOINTS)].tolist()
-    return row
+    return sum({1 << LIMITS.index(limit) for limit in limits})
+
+
+def _push(truth: Truth) -> tuple[float, ...]:
+    if not truth.pushes:
+        return (0.0,) * 8
+    push = truth.pushes[0]
+    return (*push.point.tolist(), *push.force.tolist(), push.begin, push.impulse)
 
 
 def _row_type(columns: int) -> np.dtype[np.void]:

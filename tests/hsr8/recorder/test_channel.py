@@ -69,12 +69,19 @@ def test_later_blocks_are_what_rerun_itself_makes_of_them(columns, rows):
 
 
 def test_rows_at_once_are_rows_one_by_one():
-    stream, values = Stream(), RNG.normal(size=(5, 4, 3))
+    stream, counts = Stream(), [4, 0, 1, 3]
     once, each = (Channel(stream, "/there", rr.Points3D.columns) for _ in range(2))
     for _ in range(2):
-        once.add_rows([0.1 * k for k in range(5)], positions=values)
-        for k, row in enumerate(values):
-            each.add(0.1 * k, positions=row)
+        rows = [points(n) for n in counts]
+        once.add_rows(
+            [0.1 * k for k in range(len(rows))],
+            counts,
+            positions=np.concatenate([row["positions"] for row in rows]),
+            colors=np.concatenate([row["colors"] for row in rows]),
+            labels=[label for row in rows for label in row["labels"]],
+        )
+        for k, row in enumerate(rows):
+            each.add(0.1 * k, **row)
         once.flush()
         each.flush()
     for (_, times, rows), (_, same_times, same) in zip(

@@ -105,10 +105,14 @@ def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
 def test_the_odometry_frame_is_put_where_the_robot_is(fake):
     record = fake.record(0.0, (1.0, 2.0, pi / 2))
     walking = replace(record.walking, odometry=Odometry(0.5, 0.0, 0.0, np.eye(3)))
-    there = OdometryToWorld(replace(record, walking=walking))
-    assert there.point((0.5, 0.0)) == pytest.approx((1.0, 2.0))
-    assert there.point((0.6, 0.0)) == pytest.approx((1.0, 2.1))
-    assert there.vector((1.0, 0.0)) == pytest.approx((0.0, 1.0))
+    there = OdometryToWorld([replace(record, walking=walking), fake.record(0.02)])
+    assert there.turn.tolist() == [pi / 2, 0.0]
+    points = np.array([[[0.5, 0.0], [0.6, 0.0]], [[0.5, 0.0], [0.6, 0.0]]])
+    placed = there.point(points)
+    assert placed[0] == pytest.approx(np.array([[1.0, 2.0], [1.0, 2.1]]))
+    assert placed[1] == pytest.approx(points[1])
+    assert there.point(points[0], np.array([0, 0])) == pytest.approx(placed[0])
+    assert there.vector(np.array([[1.0, 0.0]] * 2)) == pytest.approx(np.array([[0, 1], [1, 0]]))
 
 
 @pytest.mark.parametrize(
