@@ -4,6 +4,7 @@ All geoms of one kind share an entity and one row carries all their poses. That 
 fifth of one transform per body, and the log is no larger.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -197,8 +198,8 @@ class Scene:
 
     def _stand(self, stream: BlockStream, path: str, chosen: NDArray[np.bool_]) -> None:
         for batch in batches(self._model, chosen):
-            position, quaternion = self._poses(batch, self._data.xpos, self._data.xquat)
-            pose = {batch.centre: position, "quaternions": xyzw(quaternion)}
+            position, quaternion = _poses([batch], self._data.xpos, self._data.xquat)
+            pose = {batch.centre: position, "quaternions": quaternion}
             stream.log(f"{path}/{batch.kind}", shapes(self._model, batch, **pose), static=True)
 
     @property
@@ -221,13 +222,19 @@ class Scene:
         """Send the block."""
         if not self._times:
             return
-        positions, quaternions = np.array(self._positions), np.array(self._quaternions)
+        position, quaternion = _poses(
+            self._robot, np.array(self._positions), np.array(self._quaternions)
+        )
+        first = 0
         for batch, channel in zip(self._robot, self._channels, strict=True):
-            position, quaternion = self._poses(batch, positions, quaternions)
-            rows = {batch.centre: position.reshape(-1, 3)}
-            rows["quaternions"] = xyzw(quaternion).reshape(-1, 4)
+            last = first + len(batch.geoms)
+            rows = {
+                batch.centre: position[:, first:last].reshape(-1, 3),
+                "quaternions": quaternion[:, first:last].reshape(-1, 4),
+            }
             channel.add_rows(self._times, [len(batch.geoms)] * len(self._times), **rows)
             channel.flush()
+            first = last
         for batch in self._movers:
             places = np.concatenate(self._places)
             heights = np.full(len(places), self._model.geom_size[batch.geoms[0], 1])
@@ -242,9 +249,16 @@ class Scene:
         self._positions.clear()
         self._quaternions.clear()
 
-    @staticmethod
-    def _poses(batch: Batch, positions: Array, quaternions: Array) -> tuple[Array, Array]:
-        """Poses of geoms (..., n, 3) and (..., n, 4) from those of all bodies."""
-        turn = quaternions[..., batch.bodies, :]
-        position = positions[..., batch.bodies, :] + rotate(turn, batch.offset)
-        return position, multiply(turn, batch.rotation)
+
+def _poses(found: Sequence[Batch], positions: Array, quaternions: Array) -> tuple[Array, Array]:
+    """Poses of the geoms of batches, one after the other, from those of all bodies.
+
+    Returns:
+        Positions (..., n, 3) [m] and quaternions in Rerun's order (..., n, 4).
+    """
+    bodies = np.concatenate([batch.bodies for batch in found])
+    offset = np.concatenate([batch.offset for batch in found])
+    rotation = np.concatenate([batch.rotation for batch in found])
+    turn = quaternions[..., bodies, :]
+    position = positions[..., bodies, :] + rotate(turn, offset)
+    return position, xyzw(multiply(turn, rotation))
