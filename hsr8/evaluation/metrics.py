@@ -17,10 +17,10 @@ from hsr8.world.falls import Falls
 from hsr8.world.layout import Layout
 from hsr8.world.truth import Truth
 from navigation.angles import wrap
-from navigation.belief import Track
 
 Array = NDArray[np.float64]
 Value = object
+Seen = tuple[FrameRecord, Truth]  # a camera frame, and what was true then
 
 TOLERANCE = 0.10  # the true position may be so much farther from a point than the believed [m]
 HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
@@ -62,7 +62,8 @@ class Metrics(Listener):
         self._clearance = inf
         self._falls = Falls()
         self._frames = 0
-        self._squares = np.zeros(2)
+        self._place_squares = 0.0
+        self._heading_squares = 0.0
         self._nees = 0.0
         self._speed_squares = 0.0
         self._speeds = 0
@@ -117,8 +118,8 @@ class Metrics(Listener):
             "time_to_goal_s": self._done_at,
             "path_length_m": self._path,
             "min_clearance_m": _measured(self._clearance),
-            "localization_rmse_m": sqrt(self._squares[0] / n) if n else None,
-            "heading_rmse_deg": degrees(sqrt(self._squares[1] / n)) if n else None,
+            "localization_rmse_m": sqrt(self._place_squares / n) if n else None,
+            "heading_rmse_deg": degrees(sqrt(self._heading_squares / n)) if n else None,
             "nees_mean": self._nees / n if n else None,
             "obstacle_speed_rmse_mps": (
                 sqrt(self._speed_squares / self._speeds) if self._speeds else None
@@ -146,8 +147,15 @@ class Metrics(Listener):
 
     def _work_off(self) -> None:
         """Count the records that wait."""
-        for record in self._waiting.take():
+        records = self._waiting.take()
+        for record in records:
             self._add(record)
+        seen = [(record.frame, record.truth) for record in records if record.frame is not None]
+        if seen:
+            self._locate(seen)
+            self._match(seen)
+        for frame, truth in seen:
+            self._look(frame, truth)
 
     def _add(self, record: TickRecord) -> None:
         truth = record.truth
@@ -158,8 +166,6 @@ class Metrics(Listener):
         self._falls.add(truth.time, fallen=truth.fallen)
         if not self._falls.lasting(truth.time):
             self._tilt = max(self._tilt, hypot(record.walking.roll, record.walking.pitch))
-        if record.frame is not None:
-            self._look(record.frame, truth)
         self._last = truth
 
     def _via_total(self) -> int:
@@ -194,16 +200,23 @@ class Metrics(Listener):
             self._paused += truth.time - then
         self._anchor = (truth.time, x, y)
 
+    def _locate(self, seen: Sequence[Seen]) -> None:
+        """Compare the believed poses with the true ones."""
+        errors = np.array([frame.belief.pose - truth.robot for frame, truth in seen])
+        errors[:, 2] = [wrap(turn) for turn in errors[:, 2].tolist()]
+        covariances = np.array([frame.belief.pose_covariance for frame, _ in seen])
+        whitened = np.linalg.solve(covariances, errors[..., None])[..., 0]
+        for error, white in zip(errors, whitened, strict=True):
+            dx, dy, turn = error.tolist()
+            self._place_squares += dx * dx + dy * dy
+            self._heading_squares += turn**2
+            self._nees += float(error @ white) / 3.0
+
     def _look(self, frame: FrameRecord, truth: Truth) -> None:
         belief = frame.belief
-        dx, dy, turn = (belief.pose - truth.robot).tolist()
-        error = np.array([dx, dy, wrap(turn)])
         self._frames += 1
-        self._squares += (dx * dx + dy * dy, error[2] ** 2)
-        self._nees += float(error @ np.linalg.solve(belief.pose_covariance, error)) / 3.0
         self._lost += belief.lost
         self._faults = belief.filter_faults
-        self._match(belief.tracks, truth)
         self._tracks.add(frame, truth)
         gaze = (frame.gaze.pan, frame.gaze.tilt)
         if self._gaze is not None:
@@ -216,18 +229,22 @@ class Metrics(Listener):
         self._head = head
         self._follow_mission(frame, truth)
 
-    def _match(self, tracks: Sequence[Track], truth: Truth) -> None:
+    def _match(self, seen: Sequence[Seen]) -> None:
         """Compare the velocity of every track with that of the obstacle next to it."""
-        if len(truth.obstacle_positions) == 0 or not tracks:
+        tracks = [track for frame, _ in seen for track in frame.belief.tracks]
+        if not tracks or not self._layout.obstacles:
             return
-        places = np.array([track.position for track in tracks])
-        away = truth.obstacle_positions - places[:, None]
+        moments = np.repeat(np.arange(len(seen)), [len(frame.belief.tracks) for frame, _ in seen])
+        obstacles = np.array([truth.obstacle_positions for _, truth in seen])
+        away = obstacles[moments] - np.array([track.position for track in tracks])[:, None]
         distance = np.hypot(away[..., 0], away[..., 1])
         nearest = distance.argmin(axis=1)
         found = distance.min(axis=1) <= MATCHED
-        speeds = np.array([track.velocity for track in tracks])
-        wrong = (speeds - truth.obstacle_velocities[nearest])[found]
-        self._speed_squares += float(np.sum(wrong * wrong))
+        true = np.array([truth.obstacle_velocities for _, truth in seen])[moments, nearest]
+        wrong = (np.array([track.velocity for track in tracks]) - true)[found]
+        ends = np.bincount(moments[found], minlength=len(seen)).cumsum()
+        for squares in np.split(wrong * wrong, ends[:-1]):
+            self._speed_squares += float(np.sum(squares))
         self._speeds += len(wrong)
 
     def _follow_mission(self, frame: FrameRecord, truth: Truth) -> None:
