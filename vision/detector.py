@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vision.beacon import find_posts
 from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
-from vision.colour import OUTSIDE, ColourTable
+from vision.colour import OUTSIDE, ColourTable, Labels
 from vision.colour_file import load_table
 from vision.cylinder import (
     Candidate,
@@ -111,9 +111,8 @@ class Detector:
             return ()
         inner = self._padded[1:-1, 1:-1]
         inner[:] = labels
-        body = hide(self._own_body, inner, camera=self._camera, pose=pose, label=OUTSIDE)
-        if body is not None:
-            blobs = [_cut_by(blob, body) for blob in blobs]
+        if hide(self._own_body, inner, camera=self._camera, pose=pose, label=OUTSIDE):
+            blobs = [_cut_by_body(blob, inner) for blob in blobs]
         view = View(self._camera, pose)
         outlines = trace(blobs, self._padded, view, self._parameters.edge_sigma)
         sightings = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
@@ -309,11 +308,11 @@ def _somewhere_within(cylinder: Cylinder, thickest: float, typical: float) -> Cy
     return replace(cylinder, covariance=cylinder.covariance + spread)
 
 
-def _cut_by(blob: Blob, body: NDArray[np.bool_]) -> Blob:
+def _cut_by_body(blob: Blob, labels: Labels) -> Blob:
     """`blob`, which counts as cut at the bottom where it meets the robot's own body."""
     left, top, right, bottom = blob.box
-    around = body[max(top - 1, 0) : bottom + 1, max(left - 1, 0) : right + 1]
-    if not around.any():
+    around = labels[max(top - 1, 0) : bottom + 1, max(left - 1, 0) : right + 1]
+    if not (around == OUTSIDE).any():
         return blob
     return replace(blob, touches=(*blob.touches[:3], True))
 

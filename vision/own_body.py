@@ -48,7 +48,7 @@ def hide(
     camera: PinholeCamera,
     pose: CameraPose,
     label: int,
-) -> NDArray[np.bool_] | None:
+) -> bool:
     """Give the background that may be the robot's own body another label, in place.
 
     Args:
@@ -59,22 +59,20 @@ def hide(
         label: what the body becomes.
 
     Returns:
-        Which pixels it became (h, w); None if there are none.
+        Whether the body may be in the image.
     """
-    hidden: NDArray[np.uint8] | None = None
-    for part in parts:
-        points = part.outline(camera, pose)
-        if not len(points):
-            continue
-        if hidden is None:
-            hidden = np.zeros(labels.shape, np.uint8)
-        hull = cv2.convexHull(np.rint(points).astype(np.int32))
-        cv2.fillConvexPoly(hidden, hull, 1)
-    if hidden is None:
-        return None
-    left, top, width, height = cv2.boundingRect(hidden)
-    box = slice(top, top + height), slice(left, left + width)
-    here, seen = hidden[box], labels[box]
-    np.multiply(here, seen == 0, out=here)
-    seen += label * here
-    return hidden.view(np.bool_)
+    outlines = [points for part in parts if len(points := part.outline(camera, pose))]
+    if not outlines:
+        return False
+    hulls = [cv2.convexHull(np.rint(points).astype(np.int32)) for points in outlines]
+    left, top, width, height = cv2.boundingRect(np.concatenate(hulls))
+    corner = np.array([max(left, 0), max(top, 0)], np.int32)
+    seen = labels[corner[1] : top + height, corner[0] : left + width]
+    if not seen.size:
+        return False
+    hidden = np.zeros(seen.shape, np.uint8)
+    for hull in hulls:
+        cv2.fillConvexPoly(hidden, hull - corner, 1)
+    hidden *= seen == 0
+    seen += label * hidden
+    return True
