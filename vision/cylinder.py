@@ -139,23 +139,26 @@ def locate(
     """
     if not candidates:
         return []
-    sides, known, rims, azimuths, slopes = [], [], [], [], []
+    sides: list[float] = []
+    known: list[float] = []
+    rims: list[float] = []
+    azimuths, slopes = [], []
     owned, points = [0], [0]
     for candidate in candidates:
         for side in (candidate.left, candidate.right):
-            sides.append((side.azimuth, side.sigma, side.count, side.low, side.high, side.trusted))
-        known.append((candidate.radius, candidate.radius_sigma, candidate.height))
+            sides += side.azimuth, side.sigma, side.count, side.low, side.high, side.trusted
+        known += candidate.radius, candidate.radius_sigma, candidate.height
         for cue in sorted(candidate.rims, key=_height):
             rim = cue.rim
-            rims.append((cue.height, 1.0 if cue.near else -1.0, rim.sigma))
+            rims += cue.height, 1.0 if cue.near else -1.0, rim.sigma
             azimuths.append(rim.azimuth)
             slopes.append(rim.slope)
             points.append(points[-1] + len(rim.slope))
-        owned.append(len(rims))
+        owned.append(len(slopes))
     pose = view.pose
     result, covariances = cylinder_kernel.locate(
         np.array(sides).reshape(-1, 2, 6),
-        np.array(known),
+        np.array(known).reshape(-1, 3),
         np.array(rims, float).reshape(-1, 3),
         np.array(owned),
         np.array(points),

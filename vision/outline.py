@@ -66,7 +66,7 @@ class Rim:
 
     def free(self) -> "Rim":
         """The part next to the background."""
-        return self._part(self.outer == 0) if self.outer.any() else self
+        return self._part(self.outer == 0) if self.covered else self
 
     def against(self, label: int) -> "Rim":
         """The part next to things of colour class `label`."""
