@@ -90,3 +90,19 @@ def test_vision_is_as_far_off_in_smeared_images_as_it_says(rate):
             error = np.array([found.distance, found.bearing]) - true_polar(thing)
             errors.append(error @ np.linalg.solve(found.covariance, error) / 2.0)
     assert 0.1 < np.mean(told) < 1.5 < np.mean(untold)
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.8, True), (1.2, True), (0.3, False)])
+def test_an_obstacle_is_found_if_it_looks_about_as_wide_as_the_smear(share, found):
+    """And whatever makes it so: its size, its distance, the head's speed or the exposure."""
+    rng = np.random.default_rng(6)
+    detector = Detector(CAMERA, VisionParameters())
+    for _ in range(12):
+        distance, rate = rng.uniform(0.7, 1.4), rng.uniform(4.0, 6.0)
+        radius = rng.uniform(0.06, 0.11)
+        shutter = 2.0 * radius / distance / share / rate
+        thing, gaze = at(distance, rng.uniform(-15.0, 15.0), "red", radius), pose(tilt=-0.35)
+        turning = gaze.rotation.T @ (0.0, 0.0, rate)
+        image = MotionBlur(CAMERA, shutter).smear(paint([thing], gaze), turning)
+        seen = detector.detect(image, replace(gaze, pan_smear=rate * shutter))
+        assert (len(seen) == 1) is found
