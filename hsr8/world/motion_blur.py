@@ -8,9 +8,6 @@ from vision.camera import PinholeCamera
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
-Smeared = NDArray[np.float32]
-
-STEP = 2.0  # the image is averaged over places no farther apart [pixel]
 
 
 class MotionBlur:
@@ -47,23 +44,16 @@ class MotionBlur:
         ends = [
             cv2.perspectiveTransform(self._corners, self._warp(s * turned)) for s in (-0.5, 0.5)
         ]
-        way, share = float(np.abs(ends[1] - ends[0]).max()), 0.25
-        if way <= STEP:
+        looks = 1 + round(0.5 * float(np.abs(ends[1] - ends[0]).max()))  # one every two pixels
+        if looks == 1:
             return image
-        seen = image.astype(np.float32)
-        while way > STEP:
-            # The mean over a way is that of the means over both of its halves.
-            before, after = self._turned(seen, -share * turned), self._turned(seen, share * turned)
-            seen = cv2.addWeighted(before, 0.5, after, 0.5, 0.0)
-            way, share = 0.5 * way, 0.5 * share
-        return np.round(seen).astype(np.uint8)
-
-    def _turned(self, image: Smeared, rotation: Array) -> Smeared:
-        """What the camera sees once it has turned by a rotation vector (3,) [rad]."""
-        turned: Smeared = cv2.warpPerspective(
-            image, self._warp(rotation), image.shape[1::-1], borderMode=cv2.BORDER_REPLICATE
-        )
-        return turned
+        size, total = image.shape[1::-1], np.zeros(image.shape, np.float32)
+        for share in (np.arange(looks) + 0.5) / looks - 0.5:
+            seen = cv2.warpPerspective(
+                image, self._warp(share * turned), size, borderMode=cv2.BORDER_REPLICATE
+            )
+            cv2.accumulate(seen, total)
+        return np.round(total / looks).astype(np.uint8)
 
     def _warp(self, rotation: Array) -> Array:
         """Where points of the image are once the camera has turned by a rotation vector (3,)."""
