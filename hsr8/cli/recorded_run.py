@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 
-from hsr8.cli import report
+from hsr8.cli import report, termination
 from hsr8.cli.command_line import checkpoint_period, log_level, option_tables
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run
@@ -106,7 +106,7 @@ def _view(options: Run) -> Iterator[LiveView | None]:
         return
     if options.no_log:
         raise UsageError("--view shows the log, and --no-log writes none: leave one of them out")
-    with live_view(options.view) as view:
+    with termination.like_ctrl_c(), live_view(options.view) as view:
         if view.page:
             print(f"watch it in a browser on this machine:  {view.page}", file=sys.stderr)
         yield view

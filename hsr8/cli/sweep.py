@@ -4,17 +4,16 @@ import itertools
 import os
 import re
 import shlex
-import signal
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from collections.abc import Sequence
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
-from types import FrameType
 
 from rich.console import Console
 from rich.table import Table
 
+from hsr8.cli import termination
 from hsr8.cli.command_line import flat, option_tables, run_words, settings
 from hsr8.cli.options import Sweep
 from hsr8.cli.sweep_cost import tell_cost
@@ -143,7 +142,7 @@ def _run(
     with ExitStack() as stack:
         if progress is not None:
             stack.callback(progress.close)
-        stack.enter_context(_terminated_like_ctrl_c())
+        stack.enter_context(termination.like_ctrl_c())
         try:
             executor = stack.enter_context(closing(open_executor(options.executor, workers)))
             drive(jobs, executor, record, progress.tick if progress else lambda: None)
@@ -256,17 +255,3 @@ def _exit_code(summaries: Sequence[Summary]) -> int:
     if any(s.refused and not s.runs for s in summaries):
         return 2
     return 0 if all(s.passed.count == s.runs for s in summaries) else 1
-
-
-@contextmanager
-def _terminated_like_ctrl_c() -> Iterator[None]:
-    """SIGTERM, which schedulers send, ends a sweep like Ctrl-C."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
