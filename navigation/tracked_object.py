@@ -90,21 +90,21 @@ class TrackedObject:
             position, velocity = mean[:2], mean[2:4]
             turn_rate = float(self.particles.weights @ self.particles.turn_rates)
         return Track(
-            self.id,
-            self.label,
-            position,
-            velocity,
-            covariance,
-            self.radius,
-            self.radius_sigma,
-            self.motion,
-            self.hits,
-            time - self.last_time,
-            self.last_seen.copy(),
-            self.last_time == time,
-            self.particles,
-            self.reach(time, p),
-            turn_rate,
+            id=self.id,
+            label=self.label,
+            position=position,
+            velocity=velocity,
+            covariance=covariance,
+            radius=self.radius,
+            radius_sigma=self.radius_sigma,
+            motion=self.motion,
+            hits=self.hits,
+            age=time - self.last_time,
+            last_seen=self.last_seen.copy(),
+            visible=self.last_time == time,
+            particles=self.particles,
+            reach=self.reach(time, p),
+            turn_rate=turn_rate,
         )
 
 

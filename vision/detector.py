@@ -257,14 +257,14 @@ class Detector:
         blobs = sighting.blobs
         return Detection(
             kind=sighting.kind,
-            label="/".join([self._table.classes[blob.label - 1].name for blob in blobs]),
+            label="/".join(self._table.classes[blob.label - 1].name for blob in blobs),
             bearing=bearing,
             distance=distance,
             covariance=covariance,
             radius=cylinder.radius,
             radius_sigma=sqrt(float(cylinder.covariance[2, 2])),
             by_radius=by_radius,
-            cut=any([blob.cut for blob in blobs]),
+            cut=any(blob.cut for blob in blobs),
             occluded=sighting.occluded,
             box=_around(blobs),
         )
@@ -312,7 +312,7 @@ def _cut_by_body(blob: Blob, labels: Labels) -> Blob:
     """`blob`, which counts as cut at the bottom where it meets the robot's own body."""
     left, top, right, bottom = blob.box
     around = labels[max(top - 1, 0) : bottom + 1, max(left - 1, 0) : right + 1]
-    if not np.count_nonzero(around == OUTSIDE):
+    if not (around == OUTSIDE).any():
         return blob
     return replace(blob, touches=(*blob.touches[:3], True))
 
