@@ -62,7 +62,7 @@ def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
 
 def log_level(options: Run) -> LogLevel | None:
     """How much is logged; None for nothing."""
-    return None if options.no_log else LogLevel(options.log_level)
+    return None if options.no_log else LogLevel(options.log_level or LogLevel.STANDARD)
 
 
 def checkpoint_period(options: Run) -> int:

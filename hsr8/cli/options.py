@@ -54,12 +54,13 @@ class Run:
     no_log: bool = False
     """Write no Rerun log."""
     log_level: Annotated[
-        Literal["minimal", "standard", "full"],
+        Literal["minimal", "standard", "full"] | None,
         _arg(
             "{minimal,standard,full}",
-            "poses, curves and events; with images and beliefs; every frame of everything",
+            "poses, curves and events; with images and beliefs, as without this option; "
+            "every frame of everything",
         ),
-    ] = "standard"
+    ] = None
     view: Annotated[
         Literal["native", "web"] | None,
         _arg(

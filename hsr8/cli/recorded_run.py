@@ -4,7 +4,6 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 
@@ -18,6 +17,7 @@ from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import Check, exit_code
 from hsr8.loop import Simulation
 from hsr8.recorder import atomic
+from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.manifest import RUNNING, Manifest
 from hsr8.recorder.progress import Progress
 from hsr8.recorder.run_folder import RunFolder
@@ -43,11 +43,12 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
+    log, period = log_level(options), checkpoint_period(options)
     recording, simulation = _recording(options, scenario)
-    with _view(options) as view:
+    with _view(options, log) as view:
         path = RunFolder.create(options.out, scenario.name, scenario.seed)
         with CrashReport(path), _interruptible(simulation):
-            _record(recording, path, manifest, options, view)
+            recording.into(path, manifest, log=log, live=_address(view), checkpoint=period)
             result = recording.run()
         return _told(options, result, manifest, view)
 
@@ -65,12 +66,14 @@ def resume(options: Run) -> int:
     if reason not in (RUNNING, FAILED, "interrupted"):
         raise UsageError(f"{run.path} has nothing to go on with: it ended by {reason!r}")
     manifest = Manifest.read(run.manifest, run.path)
+    given = options.no_log or options.log_level
+    log = log_level(options) if given else manifest.log_level
+    period = checkpoint_period(options) or manifest.checkpoint
     recording, simulation = _recording(options, run.scenario())
-    options = replace(options, no_log=options.no_log or not run.log_files)
-    with _view(options) as view:
+    with _view(options, log) as view:
         with CrashReport(run.path), _interruptible(simulation):
             recording.resume(run)
-            _record(recording, run.path, manifest, options, view)
+            recording.into(run.path, manifest, log=log, live=_address(view), checkpoint=period)
             result = recording.run()
         return _told(options, result, manifest, view)
 
@@ -90,26 +93,23 @@ def _recording(options: Run, scenario: Scenario) -> tuple[Recording, Simulation]
     return Recording(simulation, watchers), simulation
 
 
-def _record(
-    recording: Recording, path: Path, manifest: Manifest, options: Run, view: LiveView | None
-) -> None:
-    live = "" if view is None else view.address
-    period = checkpoint_period(options)
-    recording.into(path, manifest, log=log_level(options), live=live, checkpoint=period)
-
-
 @contextmanager
-def _view(options: Run) -> Iterator[LiveView | None]:
+def _view(options: Run, log: LogLevel | None) -> Iterator[LiveView | None]:
     """The viewer that was asked for, if one was."""
     if options.view is None:
         yield None
         return
-    if options.no_log:
-        raise UsageError("--view shows the log, and --no-log writes none: leave one of them out")
+    if log is None:
+        way = "leave out --no-log" if options.no_log else "give --log-level"
+        raise UsageError(f"--view shows the log, and this run writes none: {way}")
     with termination.like_ctrl_c(), live_view(options.view) as view:
         if view.page:
             print(f"watch it in a browser on this machine:  {view.page}", file=sys.stderr)
         yield view
+
+
+def _address(view: LiveView | None) -> str:
+    return "" if view is None else view.address
 
 
 def _told(options: Run, result: Result, manifest: Manifest, view: LiveView | None) -> int:

@@ -43,7 +43,7 @@ class Checkpoints:
         metrics: the run's results so far.
         folder: its run folder.
         period: simulated time between two of them, whole seconds [s].
-        writers: of the files that are kept.
+        writers: of the files that are kept, and of the log.
     """
 
     def __init__(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import RecordingFailed, SimulationDiverged
-from hsr8.evaluation.checkpoint import Checkpoint, Checkpoints, read_checkpoint
+from hsr8.evaluation.checkpoint import Checkpoint, Checkpoints, Writes, read_checkpoint
 from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Check, judge
 from hsr8.gl import require_gl
@@ -108,9 +108,8 @@ class Recording:
         before = None if self._checkpoint is None else self._checkpoint.frame
         movers = len(simulation.layout.movers)
         libraries = manifest.libraries | digests(scenario.own)
-        folder = RunFolder(
-            path, replace(manifest, libraries=libraries), dump(scenario), movers, before
-        )
+        manifest = replace(manifest, libraries=libraries, log=log or "", checkpoint=checkpoint)
+        folder = RunFolder(path, manifest, dump(scenario), movers, before)
         self._folder = folder
         with self._failure_noted():
             table = WalkingTableWriter(
@@ -119,6 +118,7 @@ class Recording:
             tape = TapeWriter(path / run_folder.TAPE)
             simulation.tape = tape
             writers: list[Listener] = [folder, table]
+            saved: list[Writes] = [folder, table, tape]
             if log is not None:
                 require_threads(path)
                 # Loaded where it is needed: runs without a log begin a third of a second sooner.
@@ -139,11 +139,10 @@ class Recording:
                     index=scenario.duration <= LONGEST_INDEXED,
                 )
                 writers.append(rerun_log)
+                saved.append(rerun_log)
             self._listeners = writers + self._listeners
             if checkpoint:
-                simulation.each_second = Checkpoints(
-                    self._metrics, path, checkpoint, (folder, table, tape)
-                )
+                simulation.each_second = Checkpoints(self._metrics, path, checkpoint, saved)
 
     def resume(self, run: Run) -> None:
         """Go on from the checkpoint of `run`; call it before `into`.

@@ -11,6 +11,7 @@ from typing import Any
 from hsr8 import arithmetic
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic
+from hsr8.recorder.log_level import LogLevel
 from hsr8.version import VERSION
 
 LIBRARIES = (
@@ -45,6 +46,8 @@ class Manifest:
         python: version.
         machine: operating system and processor.
         libraries: version by name, and the arithmetic in force.
+        log: how much the Rerun log holds; empty without one.
+        checkpoint: simulated time between two checkpoints, 0 for none [s].
         format: number of the run folder's.
     """
 
@@ -58,6 +61,8 @@ class Manifest:
     python: str
     machine: str
     libraries: dict[str, str]
+    log: str = ""
+    checkpoint: int = 0
     format: int = FORMAT
 
     @classmethod
@@ -81,13 +86,23 @@ class Manifest:
         """Manifest of the run in `path` that goes on.
 
         Raises:
-            UsageError: something is missing in `given`.
+            UsageError: something is missing in `given`, or says nothing about log or checkpoints.
         """
         names = [field.name for field in fields(cls)]
         missing = [name for name in names if name not in given]
         if missing:
             raise UsageError(f"the manifest of {path} lacks {', '.join(missing)}")
+        log, checkpoint = given["log"], given["checkpoint"]
+        if log not in ("", *LogLevel):
+            raise UsageError(f"the manifest of {path} names no level of the log: {log!r}")
+        if not isinstance(checkpoint, int) or checkpoint < 0:
+            raise UsageError(f"the manifest of {path} names no time of checkpoints: {checkpoint!r}")
         return replace(cls(**{name: given[name] for name in names}), exit_reason=RUNNING)
+
+    @property
+    def log_level(self) -> LogLevel | None:
+        """How much the Rerun log holds; None without one."""
+        return LogLevel(self.log) if self.log else None
 
     def ended(self, exit_reason: str) -> "Manifest":
         """The same run, ended."""

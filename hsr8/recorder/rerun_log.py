@@ -115,7 +115,7 @@ class RerunLog:
     def on_record(self, record: TickRecord) -> None:
         """Log one record."""
         if self._waiting.add(record):
-            self._flush()
+            self._work_off()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Log one event."""
@@ -123,11 +123,15 @@ class RerunLog:
         level = LEVELS.get(kind, "INFO")
         self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
 
+    def flush(self) -> None:
+        """Hand everything to the operating system."""
+        self._work_off()
+        self._wait()
+
     def close(self, exit_reason: str) -> None:
         """Write what is left and finish the file, unless it takes no more."""
         try:
-            self._flush()
-            self._wait()
+            self.flush()
             self.on_event(self._time, "end", exit_reason)
         finally:
             if self._full:
@@ -196,7 +200,8 @@ class RerunLog:
         outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + place
         return outline
 
-    def _flush(self) -> None:
+    def _work_off(self) -> None:
+        """Send the records that wait."""
         records = self._waiting.take()
         if records:
             self._add(records)

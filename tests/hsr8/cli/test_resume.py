@@ -4,10 +4,13 @@ import shutil
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
 from hsr8.evaluation.difference import motion, results
+from hsr8.recorder import atomic
+from hsr8.recorder.log_reader import Log
 from hsr8.recorder.run_reader import open_run
 
 STAND_INS = ["--body", "kinematic", "--camera", "analytic"]
@@ -74,6 +77,7 @@ def test_a_killed_run_comes_to_the_identical_end(cut, whole, capsys):
     assert cut.manifest["exit_reason"] == "running"
     assert entry(["run", str(cut.path), "--resume", "--quiet"]) == 1  # no goal in 5 s
     check_the_same(open_run(cut.path), whole)
+    assert cut.log_files == []
     assert entry(["check", "replay", str(cut.path)]) == 0
 
 
@@ -82,10 +86,14 @@ def test_physics_pixels_and_log_go_on_too(tmp_path):
     words = [word for word in QUICK if word != "5"]
     words.insert(words.index("--duration") + 1, "2.5")
     entry([*words, "--no-log", "--out", str(tmp_path / "whole")])
-    run = killed(tmp_path / "cut", 333, "--duration", "2.5")
+    run = killed(tmp_path / "cut", 403, "--duration", "2.5", "--log-level", "full")
     assert entry(["run", str(run.path), "--resume", "--quiet"]) == 1
+    run = open_run(run.path)
     check_the_same(run, open_run(tmp_path / "whole"))
     assert [file.name for file in run.log_files] == ["log.rrd", "log-2.rrd"]
+    times = Log(run.log_files).table("/plots/tilt").time
+    assert np.diff(times).max() == pytest.approx(0.02)  # every pose, without a hole
+    assert (run.manifest["log"], run.manifest["checkpoint"]) == ("full", 1)
 
 
 def test_a_run_that_ended_has_nothing_to_go_on_with(whole, capsys):
@@ -103,6 +111,20 @@ def test_without_a_checkpoint_there_is_nothing_to_go_on_from(cut, capsys):
 def test_a_run_goes_on_as_what_it_was(cut, option, capsys):
     assert entry(["run", str(cut.path), "--resume", *option]) == 2
     assert f"{option[0]} cannot be given with --resume" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("log", "most"), ("log", ["full"]), ("checkpoint", -1), ("checkpoint", "2")]
+)
+def test_a_manifest_that_does_not_say_how_to_record_is_told(cut, name, value, capsys):
+    atomic.write_json(cut.path / "manifest.json", cut.manifest | {name: value})
+    assert entry(["run", str(cut.path), "--resume"]) == 2
+    assert f"the manifest of {cut.path} names no" in capsys.readouterr().err
+
+
+def test_a_run_without_a_log_is_shown_only_with_a_level_for_it(cut, capsys):
+    assert entry(["run", str(cut.path), "--resume", "--view", "web"]) == 2
+    assert "give --log-level" in capsys.readouterr().err
 
 
 def test_a_damaged_checkpoint_is_reported_and_leaves_the_run_as_it_was(cut, capsys):
