@@ -5,11 +5,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import Belief
+from navigation.belief.belief import Belief
+from navigation.belief.prediction import predict
 from navigation.decision import GazeDecision, MotionDecision, Task
-from navigation.landmark_obstacles import LandmarkObstacles
+from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.observation import CameraView, Frame
-from navigation.prediction import predict
 from walking.value import value
 
 Array = NDArray[np.float64]

@@ -11,7 +11,17 @@ import tempfile
 from pathlib import Path
 
 VARIABLE = "NUMBA_CACHE_DIR"
-FOLDERS = ("hsr8/world", "navigation", "vision", "walking")  # that have kernels
+FOLDERS = (
+    "hsr8/world",
+    "navigation/belief",
+    "navigation/motion",
+    "vision",
+    "walking",
+    "walking/body",
+    "walking/footsteps",
+    "walking/gait",
+    "walking/pattern",
+)  # that have kernels
 _ROOT = Path(__file__).resolve().parents[1]
 
 

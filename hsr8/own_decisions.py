@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import Looks, Moves
 from hsr8.errors import UsageError
-from navigation.belief import Belief
+from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 
 Array = NDArray[np.float64]

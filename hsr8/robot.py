@@ -10,13 +10,13 @@ import numpy as np
 from hsr8.decisions import Decisions, Now
 from hsr8.recorder.record import FrameRecord, Image
 from hsr8.recorder.walk_tally import WalkTally
-from navigation.belief import Belief
+from navigation.belief.belief import Belief
 from navigation.observation import CameraView, Frame, Observation
 from vision.camera import CameraPose
 from vision.detection import Detection
 from vision.parameters import PoseParameters
+from walking.body.odometry import increment
 from walking.command import Command, HeadTarget, VelocityCommand
-from walking.odometry import increment
 from walking.sensing import BodySensors
 from walking.state import HeadCameraPose, Odometry, WalkingState
 from walking.targets import JointTargets

@@ -15,15 +15,15 @@ from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command
 from hsr8.seeds import named_rng
 from hsr8.world.layout import Layout
 from hsr8.world.models import models_dir, reading_models
-from navigation.estimator import Estimator
-from navigation.gaze import GazePlanner
-from navigation.landmark_obstacles import LandmarkObstacles
+from navigation.belief.estimator import Estimator
+from navigation.gaze.planner import GazePlanner
 from navigation.mission import Mission
+from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.peers.choice import build_planner
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.own_body import BodyPart
-from walking.robot_model import RobotModel
+from walking.body.robot_model import RobotModel
 from walking.similarity import parameters_for
 from walking.walker import Walker
 

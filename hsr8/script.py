@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.command import Command as Asked
 from hsr8.scenario.command import Footsteps, RandomCommands
-from navigation.belief import Belief
+from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, Task
 from walking.command import Command, CommandState, VelocityCommand
 

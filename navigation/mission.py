@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.decision import Task
-from navigation.decision_parameters import MissionParameters
+from navigation.parameters.navigation import MissionParameters
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navigation.belief import Motion, Track
+from navigation.belief.belief import Motion, Track
 from navigation.value import value
 
 Array = NDArray[np.float64]

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.gaze_parameters import EvaluationParameters
 from navigation.obstacle_set import ObstacleSet, largest_deviation
+from navigation.parameters.gaze import EvaluationParameters
 from navigation.value import value
 
 Array = NDArray[np.float64]

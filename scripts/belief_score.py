@@ -6,9 +6,9 @@ from math import hypot
 
 from hsr8.evaluation.track_metrics import owners
 from navigation.angles import wrap
-from navigation.belief import Belief, Motion, Track
+from navigation.belief.belief import Belief, Motion, Track
+from navigation.belief.visibility import Viewpoint
 from navigation.observation import Frame
-from navigation.visibility import Viewpoint
 
 import numpy as np
 from numpy.typing import NDArray

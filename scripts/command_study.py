@@ -11,10 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from walking.admission import Limit
+from walking.body.robot_model import RobotModel
 from walking.command import CommandState, HeadTarget
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
-from walking.robot_model import RobotModel
 
 import numpy as np
 from study_page import options_of, write_page

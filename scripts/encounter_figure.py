@@ -5,8 +5,8 @@ from math import atan2, cos, hypot, inf, isfinite, sin
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.render.walk_panels import INK
-from navigation.collision_band import Encounter, free_intervals
-from navigation.virtual_obstacle import foot_velocity, path_point
+from navigation.motion.collision_band import Encounter, free_intervals
+from navigation.motion.virtual_obstacle import foot_velocity, path_point
 
 import numpy as np
 from figure_style import (

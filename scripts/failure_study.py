@@ -22,7 +22,7 @@ from hsr8.render.top_down import TopDown
 from hsr8.scenario.loader import load
 from hsr8.world.truth import Contact, Truth
 from navigation.angles import wrap
-from navigation.belief import Motion, Track
+from navigation.belief.belief import Motion, Track
 
 import numpy as np
 from numpy.typing import NDArray

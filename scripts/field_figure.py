@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-from navigation.avoid_obstacle import avoid_obstacle
-from navigation.belief import Motion, Track
-from navigation.decision_parameters import NavigationParameters
-from navigation.extended_radius import extended_radius, physical_radius
-from navigation.motion_field import FieldScene, MotionField
-from navigation.move_to_goal import muf
+from navigation.belief.belief import Motion, Track
+from navigation.motion.avoid_obstacle import avoid_obstacle
+from navigation.motion.extended_radius import extended_radius, physical_radius
+from navigation.motion.motion_field import FieldScene, MotionField
+from navigation.motion.move_to_goal import muf
+from navigation.motion.univector import normalized
 from navigation.obstacle_set import ObstacleSet
-from navigation.univector import normalized
+from navigation.parameters.navigation import NavigationParameters
 
 import numpy as np
 from figure_style import GOAL, MOVER, ROBOT, STILL, disc, figure, square, styled

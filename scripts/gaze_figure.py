@@ -7,12 +7,12 @@ import argparse
 from math import cos, sin
 from pathlib import Path
 
-from navigation.belief import Belief, Motion, Particles, Track
-from navigation.deadline_gaze import deadline_votes
+from navigation.belief.belief import Belief, Motion, Particles, Track
 from navigation.decision import SpeedLimits, Task
-from navigation.decision_parameters import NavigationParameters
-from navigation.gaze import GazePlanner
-from navigation.gaze_scene import gaze_scene
+from navigation.gaze.deadline import deadline_votes
+from navigation.gaze.planner import GazePlanner
+from navigation.gaze.scene import gaze_scene
+from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
 
 import numpy as np

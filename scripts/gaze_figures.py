@@ -5,10 +5,10 @@ from math import cos, degrees, sin
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.render.walk_panels import INK
-from navigation.decision_parameters import NavigationParameters
-from navigation.extended_radius import extended_radius
-from navigation.gaze_scene import GazeScene, gaze_scene
-from navigation.landmark import points_to_world
+from navigation.belief.landmark import points_to_world
+from navigation.gaze.scene import GazeScene, gaze_scene
+from navigation.motion.extended_radius import extended_radius
+from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
 
 import numpy as np

@@ -14,13 +14,13 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
-from walking.get_up import GetUp, Outcome
-from walking.get_up_motion import MOTIONS, Motions
-from walking.key_posture import STRAIGHT, KeyPosture
-from walking.lying import lying_on, up_in_trunk
+from walking.get_up.get_up import GetUp, Outcome
+from walking.get_up.get_up_motion import MOTIONS, Motions
+from walking.get_up.key_posture import STRAIGHT, KeyPosture
+from walking.get_up.lying import lying_on, up_in_trunk
 from walking.parameters import CONTROL_PERIOD, GetUpParameters, WalkingParameters
-from walking.robot_model import RobotModel
 from walking.walker import Walker
 
 import mujoco

@@ -21,8 +21,8 @@ from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
 from navigation.angles import wrap
-from navigation.belief import Belief
-from navigation.estimator import Estimator
+from navigation.belief.belief import Belief
+from navigation.belief.estimator import Estimator
 from navigation.observation import Frame
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Do the tests notice a wrong equation: small mistakes made on purpose, one at a time.
 
     python scripts/mutation_study.py --each 40
-    python scripts/mutation_study.py --modules navigation/univector --each 1000
+    python scripts/mutation_study.py --modules navigation/motion/univector --each 1000
 
 It prints rows of the table in docs/results/tests.md, which says of each survivor what it means.
 
@@ -31,39 +31,45 @@ from hypothesis import Phase, settings
 
 ROOT = Path(__file__).resolve().parents[1]
 TESTS = {  # where they are not those of the same name
-    "walking/swing_kernel": ("walking/test_swing_kernel", "walking/test_swing_reaction"),
-    "walking/foothold_kernel": ("walking/test_foothold_kernel", "walking/test_zmp_reference"),
-    "walking/estimation_kernel": tuple(
-        f"walking/test_{name}"
+    "walking/gait/swing_kernel": (
+        "walking/gait/test_swing_kernel",
+        "walking/gait/test_swing_reaction",
+    ),
+    "walking/footsteps/foothold_kernel": (
+        "walking/footsteps/test_foothold_kernel",
+        "walking/pattern/test_zmp_reference",
+    ),
+    "walking/body/estimation_kernel": tuple(
+        f"walking/body/test_{name}"
         for name in ("estimation_kernel", "estimation", "odometry", "leg_kinematics")
     ),
 }
 MODULES = (
     "navigation/partial_evaluation",
-    "navigation/gaze_map",
-    "navigation/univector",
-    "navigation/move_to_goal",
-    "navigation/avoid_obstacle",
-    "navigation/motion_field",
-    "navigation/extended_radius",
-    "navigation/virtual_obstacle",
-    "navigation/velocity_modification",
-    "navigation/localization",
-    "navigation/pose_kernel",
-    "navigation/association",
-    "navigation/particle_kernel",
-    "navigation/mode_kernel",
-    "navigation/motion_modes",
-    "navigation/local_map",
-    "walking/lipm",
-    "walking/zmp_reference",
-    "walking/zmp_kernel",
-    "walking/foot_placement",
-    "walking/foothold_kernel",
-    "walking/swing_kernel",
-    "walking/steady_gains",
-    "walking/touch_down",
-    "walking/estimation_kernel",
+    "navigation/gaze/gaze_map",
+    "navigation/motion/univector",
+    "navigation/motion/move_to_goal",
+    "navigation/motion/avoid_obstacle",
+    "navigation/motion/motion_field",
+    "navigation/motion/extended_radius",
+    "navigation/motion/virtual_obstacle",
+    "navigation/motion/velocity_modification",
+    "navigation/belief/localization",
+    "navigation/belief/pose_kernel",
+    "navigation/belief/association",
+    "navigation/belief/particle_kernel",
+    "navigation/belief/mode_kernel",
+    "navigation/belief/motion_modes",
+    "navigation/belief/local_map",
+    "walking/pattern/lipm",
+    "walking/pattern/zmp_reference",
+    "walking/pattern/zmp_kernel",
+    "walking/balance/foot_placement",
+    "walking/footsteps/foothold_kernel",
+    "walking/gait/swing_kernel",
+    "walking/body/steady_gains",
+    "walking/servos/touch_down",
+    "walking/body/estimation_kernel",
 )
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,

@@ -15,19 +15,19 @@ from dataclasses import dataclass, field
 from math import cos, hypot, sin
 from pathlib import Path
 
+from walking.body.robot_model import RobotModel, Sole
 from walking.command import Command, CommandState, VelocityCommand
-from walking.footsteps import FootstepPlanner
-from walking.gait import Gait
-from walking.generator import make_generator
-from walking.lipm import Lipm
+from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.steering import Steering
+from walking.footsteps.stride import STILL
+from walking.gait.gait import Gait
+from walking.gait.transition import Transition
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.pattern import PendulumState, dcm_reference
-from walking.robot_model import RobotModel, Sole
+from walking.pattern.generator import make_generator
+from walking.pattern.lipm import Lipm
+from walking.pattern.pattern import PendulumState, dcm_reference
+from walking.pattern.support import SupportRegion, support_region
 from walking.state import Footstep
-from walking.steering import Steering
-from walking.stride import STILL
-from walking.support import SupportRegion, support_region
-from walking.transition import Transition
 
 import numpy as np
 from scipy.spatial import ConvexHull

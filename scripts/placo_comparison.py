@@ -17,9 +17,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from walking.body.robot_model import Sole
 from walking.command import VelocityCommand
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.robot_model import Sole
 
 import numpy as np
 from pattern_study import OUTSIDE, Walker

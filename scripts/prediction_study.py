@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
-from navigation.belief import Belief, Motion, Track
-from navigation.bend import mean_velocity
+from navigation.belief.belief import Belief, Motion, Track
+from navigation.motion.bend import mean_velocity
 
 import numpy as np
 from numpy.typing import NDArray

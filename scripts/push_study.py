@@ -12,10 +12,10 @@ import argparse
 import copy
 from math import sqrt
 
+from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.robot_model import RobotModel
 
 import mujoco
 import numpy as np

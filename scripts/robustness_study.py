@@ -13,9 +13,9 @@ longer walks, which would leave the field of bumps. Tune on seeds 0-99, report o
 import argparse
 from math import radians
 
+from walking.body.robot_model import RobotModel
 from walking.engine import WalkingEngine
 from walking.parameters import WalkingParameters
-from walking.robot_model import RobotModel
 
 import numpy as np
 from scipy.stats import chi2

@@ -17,12 +17,12 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from hsr8.world.scaled_model import scale_robot
+from walking.body.joints import LEG_JOINTS
+from walking.body.leg_kinematics import FootPose, leg_angles
+from walking.body.robot_model import READY, RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.joints import LEG_JOINTS
-from walking.leg_kinematics import FootPose, leg_angles
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.robot_model import READY, RobotModel
 from walking.similarity import carried, parameters_for
 from walking.yardsticks import HSR_VIII
 

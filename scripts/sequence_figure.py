@@ -17,8 +17,8 @@ from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.generator import draw_layout
 from hsr8.world.layout import Layout
-from navigation.belief import Motion, Track
-from navigation.extended_radius import extended_radius
+from navigation.belief.belief import Motion, Track
+from navigation.motion.extended_radius import extended_radius
 from navigation.obstacle_set import ObstacleSet
 from navigation.partial_evaluation import psi_obstacle
 

@@ -15,11 +15,11 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
 from walking.rehearsal import rehearse
-from walking.robot_model import RobotModel
 
 import numpy as np
 from command_study import EVERY, random_states

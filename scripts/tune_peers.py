@@ -22,7 +22,7 @@ from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from navigation.angles import wrap
-from navigation.belief import Belief
+from navigation.belief.belief import Belief
 
 import numpy as np
 import tyro

@@ -8,10 +8,10 @@ Sensor noise and leg collisions on. Tune on seeds 0-99, report on seeds from 100
 import argparse
 from dataclasses import replace
 
+from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, ArmParameters, WalkingParameters
-from walking.robot_model import RobotModel
 
 import numpy as np
 from speed_study import SETTLED, zmp_error

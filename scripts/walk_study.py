@@ -11,9 +11,9 @@ import argparse
 import cProfile
 import pstats
 
+from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.robot_model import RobotModel
 
 import numpy as np
 from study_page import add_seeds

@@ -4,7 +4,7 @@ from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
 
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
 

@@ -9,7 +9,16 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "docs" / "equations.md").read_text(encoding="utf-8")
+PACKAGES = ("hsr8", "navigation", "vision", "walking", "scripts", "tests")
 NAMES = sorted(set(re.findall(r"`([\w/]+\.py)::([\w.]+)`", TEXT)))
+
+
+def place(file: str) -> Path:
+    """A file of the table, named from `navigation` on where no package is named."""
+    if file.partition("/")[0] not in PACKAGES:
+        tests = Path(file).name.startswith("test_")
+        file = f"tests/navigation/{file}" if tests else f"navigation/{file}"
+    return ROOT / file
 
 
 @cache
@@ -27,9 +36,7 @@ def defined(file: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize(("file", "name"), NAMES)
 def test_what_the_table_names_exists(file, name):
-    if "/" not in file:
-        file = f"{'tests/navigation' if file.startswith('test_') else 'navigation'}/{file}"
-    assert name in defined(ROOT / file)
+    assert name in defined(place(file))
 
 
 def test_every_equation_has_a_function_and_a_test():
@@ -45,8 +52,8 @@ def test_every_equation_has_a_function_and_a_test():
 @pytest.mark.parametrize("number", range(1, 12))
 def test_docstrings_bear_the_number_of_their_equation(number):
     for row in (line for line in TEXT.splitlines() if line.startswith(f"| ({number})")):
-        for file, name in re.findall(r"`(\w+\.py)::([\w.]+)`", row.split(" | ")[2]):
-            told = defined(ROOT / "navigation" / file)[name]
+        for file, name in re.findall(r"`([\w/]+\.py)::([\w.]+)`", row.split(" | ")[2]):
+            told = defined(place(file))[name]
             spans = re.findall(r"\((\d+)\)(?:-\((\d+)\))?", told)
             assert any(int(a) <= number <= int(b or a) for a, b in spans), (name, told)
 

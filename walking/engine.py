@@ -5,36 +5,36 @@ from math import cos, hypot, sin
 import numpy as np
 
 from walking.admission import AdmissionReport, Limit
-from walking.catching import CatchingPendulum
-from walking.caution import Caution
+from walking.balance.catching import CatchingPendulum
+from walking.balance.foot_placement import FootPlacement
+from walking.balance.pressure_hold import PressureHold
+from walking.balance.stabilizer import Stabilizer
+from walking.body.estimation import Estimation
+from walking.body.joints import HEAD
+from walking.body.odometry import LegOdometry
+from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget
-from walking.cycle import Cycle
-from walking.estimation import Estimation
-from walking.foot_placement import FootPlacement
-from walking.footsteps import FootstepPlanner
-from walking.gait import Gait
-from walking.generator import make_generator
-from walking.head import Head
-from walking.heading_hold import HeadingHold
-from walking.joints import HEAD
-from walking.lipm import Lipm
-from walking.odometry import LegOdometry
+from walking.footsteps.caution import Caution
+from walking.footsteps.cycle import Cycle
+from walking.footsteps.heading_hold import HeadingHold
+from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.speed_hold import SpeedHold
+from walking.footsteps.steering import Steering
+from walking.footsteps.stride import STILL, Strides
+from walking.gait.gait import Gait
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.pattern import PendulumState
-from walking.posture import ready_stance
-from walking.pressure_hold import PressureHold
-from walking.robot_model import RobotModel
+from walking.pattern.generator import make_generator
+from walking.pattern.lipm import Lipm
+from walking.pattern.pattern import PendulumState
+from walking.pattern.support import Footing, SupportRegion
 from walking.sensing import BodySensors
+from walking.servos.head import Head
+from walking.servos.posture import ready_stance
+from walking.servos.touch_down import TouchDown
+from walking.servos.whole_body import WholeBody
 from walking.snapshot import camera_pose, plan_seen
-from walking.speed_hold import SpeedHold
-from walking.stabilizer import Stabilizer
 from walking.state import WalkingState
-from walking.steering import Steering
-from walking.stride import STILL, Strides
-from walking.support import Footing, SupportRegion
 from walking.targets import JointTargets
-from walking.touch_down import TouchDown
-from walking.whole_body import WholeBody
 
 SAME_LIFT = 1e-9  # difference of swing heights that is rounding [m]
 

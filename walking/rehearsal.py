@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from walking.body.robot_model import RobotModel
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
-from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 
 START = 0.03  # time in double support before the first footstep [s]

@@ -4,9 +4,9 @@ from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
+from walking.body.robot_model import RobotModel
 from walking.dimension import Dimension, Rule, ShareLeft, ShareTaken
 from walking.parameters import WalkingParameters
-from walking.robot_model import RobotModel
 from walking.yardsticks import HSR_VIII, Yardsticks
 
 Section = TypeVar("Section")

@@ -4,14 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from walking import snapshot_kernel
-from walking.gait import Gait
-from walking.joints import HEAD
-from walking.measurement import BodyMeasurement
-from walking.pattern import PendulumState
-from walking.robot_model import RobotModel
+from walking.body.joints import HEAD
+from walking.body.measurement import BodyMeasurement
+from walking.body.robot_model import RobotModel
+from walking.gait.gait import Gait
+from walking.pattern.pattern import PendulumState
+from walking.pattern.support import Footing
 from walking.sensing import BodySensors
 from walking.state import Balance, Footstep, HeadCameraPose, Odometry, foothold
-from walking.support import Footing
 from walking.value import value
 
 Array = NDArray[np.float64]

@@ -46,8 +46,8 @@ def show(
         error: of the body against it.
         omega: of the pendulum [1/s].
         com: mass centre as measured, in the robot frame (3,) [m].
-        edges: of the soles that carry, see `walking.support_kernel` (n, 5).
-        references: of the feet, see `walking.swing_foot_kernel` (2, 10).
+        edges: of the soles that carry, see `walking.pattern.support_kernel` (n, 5).
+        references: of the feet, see `walking.gait.swing_foot_kernel` (2, 10).
         way: a direction of the plan frame.
         points: set to planned ZMP, DCM and mass centre, measured DCM and mass centre, and the
             corners of the soles that carry, x, y (5 + n, 2) [m].

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from walking.admission import AdmissionReport, Limit
+from walking.body.odometry import LegOdometry
+from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.get_up import GetUp, Outcome
-from walking.odometry import LegOdometry
+from walking.get_up.get_up import GetUp, Outcome
 from walking.parameters import WalkingParameters
 from walking.rehearsal import rehearse
-from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 from walking.state import Phase, WalkingState
 from walking.targets import JointTargets

@@ -17,7 +17,7 @@ from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import Block, read_tape
 from hsr8.world.models import models_dir
 from hsr8.world.physics import CONTROL_PERIOD
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]
 

@@ -23,7 +23,7 @@ from hsr8.robot_builder import build_decisions, build_estimator, build_script
 from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
 from hsr8.world.physics import CONTROL_PERIOD
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 from walking.targets import JointTargets
 
 STAND_STILL = np.zeros(len(JOINT_NAMES))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hsr8.recorder.record import FrameRecord
 from hsr8.world.layout import Obstacle
 from hsr8.world.truth import Truth
-from navigation.belief import Motion, Track
+from navigation.belief.belief import Motion, Track
 
 Array = NDArray[np.float64]
 

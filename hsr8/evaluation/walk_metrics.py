@@ -10,7 +10,7 @@ from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]
 Velocity = dict[str, float]

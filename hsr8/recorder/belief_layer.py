@@ -12,7 +12,7 @@ from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
 from hsr8.recorder.pace import Pace
 from hsr8.recorder.record import FrameRecord
-from navigation.belief import Belief, Motion
+from navigation.belief.belief import Belief, Motion
 from navigation.decision import MotionDecision
 from navigation.observation import CameraView
 

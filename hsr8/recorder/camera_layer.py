@@ -16,7 +16,7 @@ from hsr8.recorder.geometry import xyzw
 from hsr8.recorder.record import FrameRecord, Image
 from hsr8.world.assembly import HEAD_CAMERA
 from navigation.decision import GazeDecision
-from navigation.gaze_parameters import GazeParameters
+from navigation.parameters.gaze import GazeParameters
 
 Array = NDArray[np.float64]
 

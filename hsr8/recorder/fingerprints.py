@@ -5,7 +5,7 @@ import struct
 from math import nan
 
 from hsr8.decisions import Decided
-from navigation.belief import Belief
+from navigation.belief.belief import Belief
 
 CHANNELS = ("pose", "pose covariance", "tracks", "local map", "state")
 DECISIONS = ("belief at the decision", "task", "motion", "gaze")

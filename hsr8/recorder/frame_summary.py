@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.world.truth import Truth
-from navigation.belief import Track
+from navigation.belief.belief import Track
 
 _MOTIONS = ("static", "moving", "unknown")
 _NUMBERS = "%.4f,%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.4f"

@@ -13,7 +13,7 @@ from hsr8.recorder.channel import Channel
 from hsr8.recorder.pace import Pace
 from hsr8.recorder.record import FrameRecord
 from navigation.decision import DirectionField, MotionDecision
-from navigation.univector import normalized
+from navigation.motion.univector import normalized
 
 Array = NDArray[np.float64]
 

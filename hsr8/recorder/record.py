@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hsr8.decisions import Decided, Now
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth import Truth
-from navigation.belief import Belief
+from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import Frame
 from vision.detection import Detection

@@ -27,7 +27,7 @@ from hsr8.recorder.walk_layer import WalkLayer
 from hsr8.recorder.walking_table import OdometryToWorld
 from hsr8.recorder.writing import refusal
 from hsr8.world.layout import Layout
-from navigation.gaze_parameters import GazeParameters
+from navigation.parameters.gaze import GazeParameters
 
 Array = NDArray[np.float64]
 

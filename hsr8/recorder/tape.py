@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.recorder.guarded_file import GuardedWriter, read_payloads
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]
 

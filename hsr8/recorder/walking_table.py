@@ -22,7 +22,7 @@ from hsr8.recorder.record import Listener, TickRecord
 from hsr8.world.index import ModelIndex
 from hsr8.world.truth import Truth
 from walking.admission import Limit
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 from walking.state import Phase, WalkingState
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from hsr8.scenario.disturbance import Impulse, PushDuration, PushedBody
 from hsr8.scenario.section import CONTROL_PERIOD_MS, Degrees, Point, Section
-from walking.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
+from walking.body.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 
 Instant = Annotated[float, Interval(ge=0.0, le=7200.0)]
 Lasting = Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=7200.0)]

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from hsr8.scenario.camera import LENSES
-from navigation.decision_parameters import NavigationParameters
+from navigation.parameters.navigation import NavigationParameters
 
 Table = dict[str, Any]
 

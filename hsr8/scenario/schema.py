@@ -18,9 +18,9 @@ from hsr8.scenario.robot import Robot
 from hsr8.scenario.section import PeriodMs, Section
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.scenario.world import World
-from navigation.belief_parameters import BeliefParameters
 from navigation.decision import SpeedLimits
-from navigation.decision_parameters import NavigationParameters
+from navigation.parameters.belief import BeliefParameters
+from navigation.parameters.navigation import NavigationParameters
 from vision.parameters import VisionParameters
 from walking.parameters import WalkingParameters
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.world.models import reading_models
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 
 Ints = NDArray[np.intp]
 

@@ -19,7 +19,7 @@ from hsr8.world.sensors import SensorSuite
 from hsr8.world.surroundings import Surroundings
 from hsr8.world.truth import Truth
 from hsr8.world.world_faults import WorldFaults
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
 

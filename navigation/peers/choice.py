@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from navigation.decision import SpeedLimits
-from navigation.decision_parameters import NavigationParameters
+from navigation.motion.planner import Planner
+from navigation.parameters.navigation import NavigationParameters
 from navigation.peers.dynamic_window import DynamicWindow
 from navigation.peers.n_posture import NPosture
 from navigation.peers.orca import Orca
@@ -13,7 +14,6 @@ from navigation.peers.path_integral import PathIntegral
 from navigation.peers.peer_planner import Avoids, PeerPlanner
 from navigation.peers.plain_univector import PlainUnivector
 from navigation.peers.potential_field import PotentialField
-from navigation.planner import Planner
 
 
 def build_planner(

@@ -5,8 +5,8 @@ from math import cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.parameters.planner import OrcaParameters
 from navigation.peers.half_planes import HalfPlane, orca_plane, solve
-from navigation.peers.parameters import OrcaParameters
 from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.peers.parameters import MppiParameters
+from navigation.parameters.planner import MppiParameters
 from navigation.peers.planning_scene import PlanningScene
 from navigation.peers.roll_out import contact_cost, gaps, roll_out
 

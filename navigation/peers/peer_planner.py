@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.belief import Belief
-from navigation.body_command import idle_velocity
+from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task
-from navigation.decision_parameters import NavigationParameters
-from navigation.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
+from navigation.motion.body_command import idle_velocity
+from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.navigation import NavigationParameters
 from navigation.peers.planning_scene import Envelope, PlanningScene
 
 Array = NDArray[np.float64]

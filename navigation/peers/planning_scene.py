@@ -6,8 +6,8 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.body_command import body_velocity
 from navigation.decision import SpeedLimits, Task
+from navigation.motion.body_command import body_velocity
 from navigation.obstacle_set import ObstacleSet
 
 Array = NDArray[np.float64]

@@ -13,11 +13,11 @@ from hsr8.world.assembly import Optics, assemble
 from hsr8.world.layout import Beacon, Layout, Obstacle
 from hsr8.world.motion import Shuttle
 from hsr8.world.truth import Contact, Truth
-from navigation.belief import Belief, Motion, Track
-from navigation.belief_parameters import LocalMapParameters
+from navigation.belief.belief import Belief, Motion, Track
+from navigation.belief.local_map import LocalMap
 from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObstacle
-from navigation.local_map import LocalMap
 from navigation.observation import CameraView, Frame
+from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
 from walking.command import HeadTarget, VelocityCommand
 from walking.state import Balance, Footstep, HeadCameraPose, Odometry, Phase, WalkingState

@@ -5,8 +5,8 @@ import pytest
 
 from hsr8.decisions import Decisions
 from navigation.decision import GazeDecision, MotionDecision
-from navigation.decision_parameters import LandmarkParameters
-from navigation.landmark_obstacles import LandmarkObstacles
+from navigation.motion.landmark_obstacles import LandmarkObstacles
+from navigation.parameters.motion import LandmarkParameters
 
 FOOTSTEP = 0.34
 

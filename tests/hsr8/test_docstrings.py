@@ -2,7 +2,7 @@ from dataclasses import dataclass
 
 from hsr8.docstrings import docstrings
 from hsr8.scenario.schema import Navigation, Scenario
-from navigation.decision_parameters import NavigationParameters
+from navigation.parameters.navigation import NavigationParameters
 
 
 @dataclass

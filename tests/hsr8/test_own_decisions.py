@@ -10,7 +10,7 @@ from hsr8.robot_builder import field_of_view, head_camera, known_beacons
 from hsr8.seeds import named_rng
 from hsr8.world.generator import draw_layout
 from navigation.decision import GazeDecision, MotionDecision
-from navigation.gaze import GazePlanner
+from navigation.gaze.planner import GazePlanner
 from navigation.peers.choice import build_planner
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"]

@@ -14,8 +14,8 @@ from hsr8.errors import UsageError
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
 from hsr8.snapshot import MAGIC, decode, encode
-from navigation.belief import Motion
-from walking.get_up import Outcome
+from navigation.belief.belief import Motion
+from walking.get_up.get_up import Outcome
 from walking.state import Phase
 
 ANCHORS = {"model": None, "robot model": None}

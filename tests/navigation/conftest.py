@@ -5,9 +5,9 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from navigation.belief import Belief, Motion, Particles, Track
+from navigation.belief.belief import Belief, Motion, Particles, Track
+from navigation.belief.landmark import sighting
 from navigation.decision import SpeedLimits, Task
-from navigation.landmark import sighting
 from navigation.observation import CameraView, Frame, Observation
 
 HEIGHT = 0.47

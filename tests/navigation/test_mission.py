@@ -3,8 +3,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from navigation.decision_parameters import MissionParameters
 from navigation.mission import Mission
+from navigation.parameters.navigation import MissionParameters
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 

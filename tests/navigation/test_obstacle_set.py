@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from navigation.belief import Motion
+from navigation.belief.belief import Motion
 from navigation.obstacle_set import ObstacleSet, _deviations, largest_deviation
 
 

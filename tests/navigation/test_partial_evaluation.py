@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation.belief_parameters import LocalMapParameters
-from navigation.decision_parameters import NavigationParameters
-from navigation.gaze_parameters import EvaluationParameters
 from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.belief import LocalMapParameters
+from navigation.parameters.gaze import EvaluationParameters
+from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import (
     SamplePoints,
     attended,

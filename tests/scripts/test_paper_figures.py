@@ -5,7 +5,7 @@ import figure_style
 import numpy as np
 import pytest
 
-from navigation.avoid_obstacle import spiral_turn
+from navigation.motion.avoid_obstacle import spiral_turn
 
 
 @pytest.fixture(scope="module")

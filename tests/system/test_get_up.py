@@ -9,10 +9,10 @@ import pytest
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
 from hsr8.world.models import models_dir
-from walking.get_up import GetUp, Outcome
-from walking.key_posture import STRAIGHT
+from walking.body.robot_model import RobotModel
+from walking.get_up.get_up import GetUp, Outcome
+from walking.get_up.key_posture import STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
-from walking.robot_model import RobotModel
 from walking.state import Phase
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"

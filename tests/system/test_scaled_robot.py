@@ -9,11 +9,11 @@ import pytest
 
 from hsr8.world.models import models_dir
 from hsr8.world.scaled_model import scale_robot
+from walking.body.joints import JOINT_NAMES
+from walking.body.robot_model import RobotModel
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 from walking.similarity import carried, parameters_for
 from walking.yardsticks import HSR_VIII

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from walking.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
-from walking.leg_kinematics import foot_pose
+from walking.body.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
+from walking.body.leg_kinematics import foot_pose
+from walking.body.robot_model import RobotModel
 from walking.parameters import CONTROL_PERIOD
-from walking.robot_model import RobotModel
 from walking.sensing import BodySensors
 
 MODEL = Path(__file__).resolve().parents[2] / "models" / "hsr8" / "hsr8.xml"

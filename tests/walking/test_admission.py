@@ -5,9 +5,9 @@ import pytest
 from walking.admission import Limit
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import FootstepPlanner
+from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.steering import Steering
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.steering import Steering
 
 AHEAD = HeadTarget()
 LIMITS = WalkingParameters().limits

@@ -10,7 +10,7 @@ import pytest
 from walking.admission import Limit
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import FootstepPlanner
+from walking.footsteps.planner import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 
 AHEAD, STAND = HeadTarget(), VelocityCommand()

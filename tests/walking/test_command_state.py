@@ -7,12 +7,12 @@ import pytest
 
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import FootstepPlanner
-from walking.gait import Gait
+from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.stride import Strides, Timing
+from walking.gait.gait import Gait
+from walking.gait.swing_foot_kernel import HEIGHT
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Footstep, Phase
-from walking.stride import Strides, Timing
-from walking.swing_foot_kernel import HEIGHT
 
 AHEAD = HeadTarget()
 PARAMETERS = WalkingParameters()

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from walking.body.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps import STANCE_TURN
-from walking.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
+from walking.footsteps.planner import STANCE_TURN
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.state import Phase
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from walking.body.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 from walking.parameters import WalkingParameters
 
 GENERATORS = ["dcm", "preview", "paper", "robust"]

@@ -2,19 +2,12 @@
 
 import pytest
 
-from walking import (
-    estimation_kernel,
-    foothold_kernel,
-    head_kernel,
-    leg_kernel,
-    snapshot_kernel,
-    stride_kernel,
-    support_kernel,
-    swing_foot_kernel,
-    swing_kernel,
-    zmp_kernel,
-)
+from walking import snapshot_kernel
+from walking.body import estimation_kernel, head_kernel, leg_kernel
+from walking.footsteps import foothold_kernel, stride_kernel
+from walking.gait import swing_foot_kernel, swing_kernel
 from walking.parameters import WalkingParameters
+from walking.pattern import support_kernel, zmp_kernel
 from walking.rehearsal import rehearse
 
 

@@ -2,14 +2,14 @@
 
 import pytest
 
+from walking.body.robot_model import Sole
 from walking.command import VelocityCommand
-from walking.footsteps import FootstepPlanner
-from walking.gait import Gait
+from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.steering import Steering
+from walking.footsteps.stride import STILL
+from walking.gait.gait import Gait
 from walking.parameters import WalkingParameters
-from walking.robot_model import Sole
 from walking.state import Footstep
-from walking.steering import Steering
-from walking.stride import STILL
 
 PARAMETERS = WalkingParameters()
 LIMITS = PARAMETERS.limits

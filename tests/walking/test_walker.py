@@ -9,7 +9,7 @@ import pytest
 from walking.admission import AdmissionReport, Limit
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.get_up import Outcome
+from walking.get_up.get_up import Outcome
 from walking.parameters import GetUpParameters, WalkingParameters
 from walking.state import Phase
 from walking.walker import Walker

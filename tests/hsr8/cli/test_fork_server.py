@@ -14,7 +14,7 @@ import os, sys
 from hsr8.cli.fork_server import load_everything
 load_everything()
 from mujoco import egl
-from walking.leg_kernel import pose
+from walking.body.leg_kernel import pose
 print(len(os.listdir("/proc/self/task")), len(pose.signatures), egl.EGL_DISPLAY)
 print("rerun" in sys.modules)
 """

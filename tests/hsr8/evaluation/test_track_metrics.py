@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.evaluation.track_metrics import TrackMetrics, owners
-from navigation.belief import Motion
+from navigation.belief.belief import Motion
 
 DT = 0.06
 

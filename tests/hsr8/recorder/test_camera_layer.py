@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hsr8.recorder.camera_layer import image_points, map_points
-from navigation.gaze_map import GazeGrid
-from navigation.gaze_parameters import GazeParameters
+from navigation.gaze.gaze_map import GazeGrid
+from navigation.parameters.gaze import GazeParameters
 
 FOCAL, SIZE = 160.0, (320, 240)
 

@@ -10,7 +10,7 @@ from hsr8.errors import UsageError
 from hsr8.recorder import log_reader
 from hsr8.recorder.log_reader import Log, read_log
 from hsr8.recorder.rerun_log import RerunLog
-from navigation.gaze_parameters import GazeParameters
+from navigation.parameters.gaze import GazeParameters
 
 
 def _write(path, model, layout, records):

@@ -12,8 +12,8 @@ from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import LARGEST_SEED
 from hsr8.scenario.section import Section
-from navigation.belief_parameters import BeliefParameters
-from navigation.decision_parameters import NavigationParameters
+from navigation.parameters.belief import BeliefParameters
+from navigation.parameters.navigation import NavigationParameters
 from vision.parameters import VisionParameters
 from walking.parameters import WalkingParameters
 

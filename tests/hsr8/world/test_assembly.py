@@ -8,7 +8,7 @@ from hsr8.world.generator import draw_layout
 from hsr8.world.index import ModelIndex
 from hsr8.world.models import models_dir
 from hsr8.world.physics import place_robot
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
 from vision.camera import CameraPose, PinholeCamera
 from vision.detector import Detector
 from vision.parameters import VisionParameters
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 from walking.targets import JointTargets
 
 CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))

@@ -5,10 +5,10 @@ from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.kinematic import KinematicBody
 from hsr8.world.layout import Obstacle, standard_beacons
 from hsr8.world.models import models_dir
+from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import WalkingParameters
-from walking.robot_model import RobotModel
 from walking.targets import JointTargets
 
 

@@ -9,7 +9,7 @@ from hsr8.world.index import ModelIndex
 from hsr8.world.layout import Layout
 from hsr8.world.physics import place_robot
 from hsr8.world.saturation import SaturationWatch
-from walking.joints import JOINT_NAMES
+from walking.body.joints import JOINT_NAMES
 
 EMPTY = Layout((4.0, 4.0), (), (), (0.0, 0.0, 0.0), np.zeros((0, 2)), None, endless=False)
 KNEE = JOINT_NAMES.index("l_knee")

@@ -8,7 +8,7 @@ import pytest
 
 from hsr8.world.models import models_dir
 from hsr8.world.scaled_model import scale_robot
-from walking.robot_model import RobotModel
+from walking.body.robot_model import RobotModel
 from walking.yardsticks import HSR_VIII
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from navigation.decision import Task
-from navigation.decision_parameters import LandmarkParameters, NavigationParameters
-from navigation.landmark_obstacles import LandmarkObstacles
 from navigation.mission import Mission
+from navigation.motion.landmark_obstacles import LandmarkObstacles
+from navigation.motion.planner import Planner
+from navigation.parameters.motion import LandmarkParameters
+from navigation.parameters.navigation import NavigationParameters
+from navigation.parameters.planner import Method, PlannerParameters
 from navigation.peers.choice import build_planner
-from navigation.peers.parameters import Method, PlannerParameters
 from navigation.peers.peer_planner import PeerPlanner
-from navigation.planner import Planner
 
 PEERS = [m for m in get_args(Method) if m != "univector"]
 EACH = pytest.mark.parametrize("method", PEERS)

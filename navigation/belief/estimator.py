@@ -1,0 +1,92 @@
+"""From camera frames to belief: localization, tracks and local map in their order."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.belief.belief import Belief
+from navigation.belief.local_map import LocalMap
+from navigation.belief.localization import Localizer
+from navigation.belief.self_mapping import SelfMapping
+from navigation.belief.sightings import in_world
+from navigation.belief.tracker import Tracker
+from navigation.belief.visibility import Viewpoint
+from navigation.observation import Frame
+from navigation.parameters.belief import BeliefParameters
+
+Array = NDArray[np.float64]
+
+
+class Estimator:
+    """Turns frames into beliefs.
+
+    Args:
+        parameters: of localization, tracks and map.
+        beacons: position in W by name [m].
+        start_pose: x, y, heading of R in W (3,) [m, m, rad].
+        start_covariance: of the start pose (3, 3); without beacons that pose is exact, for it
+            defines the frame.
+        rng: source of the particles of lost tracks.
+    """
+
+    def __init__(
+        self,
+        parameters: BeliefParameters,
+        beacons: Mapping[str, tuple[float, float]],
+        start_pose: Array,
+        start_covariance: Array,
+        rng: np.random.Generator,
+    ) -> None:
+        self._parameters = parameters
+        self._localizer: Localizer | SelfMapping
+        if beacons:
+            self._localizer = Localizer(
+                parameters.localization, beacons, start_pose, start_covariance
+            )
+        else:
+            self._localizer = SelfMapping(parameters, start_pose)
+        self._tracker = Tracker(parameters.tracking, rng)
+        self._map: LocalMap | None = None
+        self._recoveries = 0
+
+    def update(self, frame: Frame) -> Belief:
+        """Take in one frame; the belief returned is never changed by later ones.
+
+        Raises:
+            ValueError: if the frame is not younger than the one before.
+        """
+        p = self._parameters
+        localizer = self._localizer
+        localizer.update(frame)
+        pose, covariance = localizer.pose, localizer.covariance
+        centre = (float(pose[0]), float(pose[1]))
+        if self._map is None or localizer.recoveries != self._recoveries:
+            # What was placed from a wrong pose stands in the wrong place.
+            self._recoveries = localizer.recoveries
+            self._map = LocalMap(p.local_map, centre, frame.time)
+            self._tracker.clear()
+        seen = in_world(
+            frame.observations,
+            pose,
+            covariance,
+            pose_sigma_limit=p.tracking.pose_sigma_limit,
+        )
+        sure = Viewpoint.of(frame.view, pose, p.tracking.sure_range)
+        tracks = self._tracker.update(frame.time, seen, sure, self._map.free_at(seen.positions))
+        if isinstance(localizer, SelfMapping):
+            localizer.learn(frame, tracks)
+        searched = replace(sure, range=p.local_map.range)
+        self._map.update(frame.time, searched, centre, seen.positions, seen.radii)
+        return Belief(
+            time=frame.time,
+            pose=pose,
+            pose_covariance=covariance,
+            tracks=tracks,
+            local_map=self._map.snapshot(),
+            view=frame.view,
+            seen_beacons=tuple(o.label for o in frame.observations if o.kind == "beacon"),
+            lost=localizer.lost,
+            filter_faults=localizer.faults,
+        )

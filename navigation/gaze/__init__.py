@@ -1,0 +1,1 @@
+"""Gaze: the belief becomes the direction in which the camera looks."""

@@ -1,0 +1,29 @@
+"""The vote for the ground that the confidence gate waits for."""
+
+import numpy as np
+
+from navigation.belief.belief import Belief
+from navigation.gaze.gaze_map import Votes
+from navigation.motion.confidence_gate import gate_points
+from navigation.parameters.navigation import NavigationParameters
+
+
+def gate_vote(
+    belief: Belief, way: float, height: float, weight: float, parameters: NavigationParameters
+) -> list[Votes]:
+    """A vote for the ground that holds the robot up, if there is some.
+
+    Args:
+        belief: what the robot believes.
+        way: bearing of the planned velocity in R [rad].
+        height: of the camera above the floor [m].
+        weight: of the vote.
+        parameters: of the decisions.
+    """
+    g, p = parameters.gate, parameters.gaze
+    points = gate_points(belief.pose, float(belief.pose[2]) + way, g)
+    if float(np.min(belief.local_map.confidence_at(points))) >= g.confidence:
+        return []
+    pan = min(max(way, -p.pan_limit), p.pan_limit)
+    tilt = -float(np.arctan2(height, 0.5 * (g.near + g.far)))
+    return [Votes.one(pan, tilt, weight)]

@@ -1,0 +1,130 @@
+"""Everything the gaze weighs in one moment: obstacles, beacons, partial evaluations."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap_array
+from navigation.belief.belief import Belief
+from navigation.belief.landmark import points_to_world
+from navigation.decision import MotionDecision
+from navigation.motion.extended_radius import extended_radius
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.navigation import NavigationParameters
+from navigation.partial_evaluation import (
+    MapEvaluation,
+    SamplePoints,
+    attended,
+    obstacle_free_distance,
+    psi_local_map,
+    psi_obstacle,
+    psi_self,
+    psi_way,
+)
+from navigation.value import value
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@value
+class GazeScene:
+    """One moment as the gaze sees it.
+
+    Attributes:
+        obstacles: all tracks (n).
+        bearing: of the obstacles in R (n,) [rad].
+        distance: of the obstacles (n,) [m].
+        attended: the set O (n,).
+        reachable: within pan and half a field of view (n,).
+        psi_ob: eq. (3) (n,).
+        psi_sf: eq. (2).
+        psi_way: eq. (4).
+        map: eq. (1).
+        samples: its sample points.
+        beacon_bearing: of the beacons worth a look, in R (m,) [rad].
+        beacon_distance: of them (m,) [m].
+        camera_height: above the floor [m].
+    """
+
+    obstacles: ObstacleSet
+    bearing: Array
+    distance: Array
+    attended: Mask
+    reachable: Mask
+    psi_ob: Array
+    psi_sf: float
+    psi_way: float
+    map: MapEvaluation
+    samples: SamplePoints
+    beacon_bearing: Array
+    beacon_distance: Array
+    camera_height: float
+
+    @property
+    def psi_ob_max(self) -> float:
+        """Largest psi_ob over the set O."""
+        return float(self.psi_ob[self.attended].max(initial=0.0))
+
+
+def relative(points: Array, pose: Array) -> tuple[Array, Array]:
+    """Bearing in R (n,) [rad] and distance (n,) [m] of points in W (n, 2) [m]."""
+    offset = points - pose[:2]
+    bearing = wrap_array(np.arctan2(offset[:, 1], offset[:, 0]) - pose[2])
+    return bearing, np.hypot(offset[:, 0], offset[:, 1])
+
+
+def gaze_scene(
+    belief: Belief,
+    motion: MotionDecision | None,
+    samples: SamplePoints,
+    beacons: Array,
+    parameters: NavigationParameters,
+) -> GazeScene:
+    """Evaluate (1)-(4) in the present belief.
+
+    Args:
+        belief: what the robot believes.
+        motion: what it does, None before the first decision.
+        samples: sample points of (1).
+        beacons: known places of beacons in W (m, 2) [m].
+        parameters: of the decisions.
+    """
+    e, g = parameters.evaluation, parameters.gaze
+    view, pose = belief.view, belief.pose
+    reach = g.pan_limit + 0.5 * view.horizontal_fov
+    obstacles = ObstacleSet.from_tracks(belief.tracks)
+    bearing, distance = relative(obstacles.position, pose)
+    body = np.zeros(2) if motion is None else motion.velocity[:2]
+    velocity = points_to_world(pose, body[None])[0] - pose[:2]
+    psi_sf = psi_self(belief.pose_covariance, e)
+    psi_ob = psi_obstacle(obstacles, pose[:2], velocity, e)
+    members = attended(obstacles, pose, velocity, e.attention_range)
+    height = float(view.position[2])
+    in_gaze = (np.abs(wrap_array(samples.bearing - view.pan)) <= 0.5 * view.horizontal_fov) & (
+        np.abs(-np.arctan2(height, samples.distance) - view.tilt) <= 0.5 * view.vertical_fov
+    )
+    confidence = belief.local_map.confidence_at(points_to_world(pose, samples.points))
+    radii = extended_radius(obstacles, psi_sf, psi_ob, parameters.univector)
+    centres = obstacles.position[members]
+    radii = radii[members]
+    if motion is not None and motion.virtual_obstacles:
+        centres = np.concatenate([centres, [v.position for v in motion.virtual_obstacles]])
+        radii = np.concatenate([radii, [v.radius for v in motion.virtual_obstacles]])
+    free = obstacle_free_distance(pose[:2], centres, radii, e.d_n_thres)
+    beacon_bearing, beacon_distance = relative(beacons, pose)
+    worth = (beacon_distance <= e.beacon_range) & (np.abs(beacon_bearing) <= reach)
+    return GazeScene(
+        obstacles=obstacles,
+        bearing=bearing,
+        distance=distance,
+        attended=members,
+        reachable=np.abs(bearing) <= reach,
+        psi_ob=psi_ob,
+        psi_sf=psi_sf,
+        psi_way=psi_way(free, e),
+        map=psi_local_map(confidence, in_gaze, e),
+        samples=samples,
+        beacon_bearing=beacon_bearing[worth],
+        beacon_distance=beacon_distance[worth],
+        camera_height=height,
+    )

@@ -1,0 +1,175 @@
+"""Time-to-contact filter: the best of many velocities, rolled out over real footsteps.
+
+The robot cannot turn on the spot in no time, so a velocity is not judged by its straight
+line alone: each candidate is first walked for some footsteps with the body's own motion,
+then turns as long as it must, then goes straight.
+"""
+
+from math import atan2, hypot, nan, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.decision import SpeedLimits
+from navigation.motion import rollout_kernel
+from navigation.motion.body_command import envelope
+from navigation.motion.facing import Facing
+from navigation.motion.hypotheses import Hypotheses
+from navigation.parameters.motion import BodyParameters, FilterParameters
+from navigation.value import value
+
+Array = NDArray[np.float64]
+
+
+@value
+class Paths:
+    """n piecewise straight paths of k pieces from one point.
+
+    Attributes:
+        velocity: of each piece (k, n, 2) [m/s].
+        duration: of each piece (k, n) [s]; the last may be infinite.
+    """
+
+    velocity: Array
+    duration: Array
+
+
+def contact_times(paths: Paths, position: Array, discs: Hypotheses) -> tuple[Array, Array]:
+    """Time to first contact of every path with every disc.
+
+    Inside a disc it is zero if closing, and nothing if leaving.
+
+    Args:
+        paths: of the robot.
+        position: where they start (2,) [m].
+        discs: m discs at constant velocity.
+
+    Returns:
+        Time to contact (n, m) [s], infinite for none; closing speed at the start (n, m), of
+        discs out of reach of the first piece zero [m/s].
+    """
+    return rollout_kernel.contact_times(
+        paths.velocity, paths.duration, position, discs.position, discs.velocity, discs.radius
+    )
+
+
+class CollisionFilter:
+    """Chooses among many velocities the one that costs least and touches nothing soon."""
+
+    def __init__(
+        self, parameters: FilterParameters, body: BodyParameters, limits: SpeedLimits
+    ) -> None:
+        """Prepare the candidates.
+
+        Args:
+            parameters: horizons and penalties.
+            body: mapping to the body.
+            limits: envelope of the walking layer.
+        """
+        self._parameters = parameters
+        self._body = body
+        self._limits = limits
+        turns = 2.0 * pi * np.arange(parameters.headings) / parameters.headings
+        speeds = limits.forward * np.arange(1, parameters.speeds + 1) / parameters.speeds
+        self._turns = np.repeat(turns, parameters.speeds)
+        self._speeds = np.tile(speeds, parameters.headings)
+
+    def choose(
+        self,
+        pose: Array,
+        wanted: Array,
+        course: float,
+        *,
+        facing: Facing,
+        body_now: Array,
+        discs: Hypotheses,
+    ) -> Array:
+        """Velocity in W to walk with (2,) [m/s].
+
+        Args:
+            pose: of the robot (3,) [m, m, rad].
+            wanted: velocity asked for in W (2,) [m/s].
+            course: its direction, also when it is zero [rad].
+            facing: where the body turns to.
+            body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
+            discs: what not to touch.
+        """
+        near = discs.within_reach(pose[:2], self._limits.forward)
+        if len(near) == 0:
+            return wanted
+        candidates = self.candidates(wanted, course)
+        penalty = self.penalty(
+            pose, candidates, course, facing=facing, body_now=body_now, discs=near
+        )
+        c, s = np.cos(pose[2]), np.sin(pose[2])
+        now = np.array([c * body_now[0] - s * body_now[1], s * body_now[0] + c * body_now[1]])
+        off, change = candidates - wanted, candidates - now
+        cost = (
+            np.hypot(off[:, 0], off[:, 1])
+            + self._parameters.change_weight * np.hypot(change[:, 0], change[:, 1])
+        ) / self._limits.forward + penalty
+        best: Array = candidates[int(np.argmin(cost))]
+        return best
+
+    def candidates(self, wanted: Array, course: float) -> Array:
+        """The wanted velocity, standing, and a fan of directions and speeds (n, 2) [m/s]."""
+        angles = course + self._turns
+        fan = self._speeds[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        return np.concatenate([wanted[None], np.zeros((1, 2)), fan])
+
+    def penalty(
+        self,
+        pose: Array,
+        candidates: Array,
+        course: float,
+        *,
+        facing: Facing,
+        body_now: Array,
+        discs: Hypotheses,
+    ) -> Array:
+        """Penalty for contacts of every candidate (n,); arguments as for `choose`."""
+        p = self._parameters
+        paths = self.paths(pose, candidates, course, facing, body_now)
+        time, closing = contact_times(paths, pose[:2], discs)
+        offset = discs.position - pose[:2]
+        depth = 1.0 - np.hypot(offset[:, 0], offset[:, 1]) / discs.radius
+        return rollout_kernel.penalties(
+            time,
+            closing,
+            depth,
+            discs.horizon,
+            discs.weight,
+            (p.urgent_time, p.urgent_weight, p.weight),
+            (p.inside_weight, p.inside_depth, p.inside_closing),
+        )
+
+    def paths(
+        self, pose: Array, candidates: Array, course: float, facing: Facing, body_now: Array
+    ) -> Paths:
+        """Where the body would really go, footstep by footstep, for every candidate."""
+        p, limits = self._parameters, self._limits
+        velocity, duration = rollout_kernel.roll_out(
+            candidates,
+            float(pose[2]),
+            course,
+            nan if facing.heading is None else facing.heading,
+            facing.aside,
+            body_now,
+            envelope(limits, self._body.turn_gain),
+            (
+                limits.footstep,
+                limits.acceleration * limits.footstep,
+                p.turn_change,
+                self._body.turn_wait,
+                self._body.side_step * limits.lateral,
+            ),
+            p.steps,
+        )
+        return Paths(velocity, duration)
+
+
+def direction_and_speed(velocity: Array, fallback: float) -> tuple[float, float]:
+    """Direction [rad] and norm [m/s] of `velocity` (2,); `fallback` if it is zero."""
+    x, y = velocity.tolist()
+    speed = hypot(x, y)
+    return (atan2(y, x) if speed > 1e-9 else fallback), speed

@@ -1,0 +1,33 @@
+"""Ground ahead that must have been seen before the robot walks there fast."""
+
+from functools import cache
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.parameters.motion import GateParameters
+
+Array = NDArray[np.float64]
+
+
+def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Array:
+    """Points asked for, three columns before a robot that moves in `direction` (3 rows, 2) [m].
+
+    Args:
+        pose: of the robot (3,) [m, m, rad].
+        direction: of its motion in W [rad].
+        parameters: extent of the ground.
+    """
+    p = parameters
+    along, across = _ground(p.near, p.far, p.half_width, p.rows)
+    c, s = cos(direction), sin(direction)
+    points: Array = pose[:2] + np.stack([c * along - s * across, s * along + c * across], axis=1)
+    return points
+
+
+@cache
+def _ground(near: float, far: float, half_width: float, rows: int) -> tuple[Array, Array]:
+    """The points along and across the motion, from the robot (3 rows,), (3 rows,) [m]."""
+    along, across = np.meshgrid(np.linspace(near, far, rows), (-half_width, 0.0, half_width))
+    return along.ravel(), across.ravel()

@@ -1,0 +1,35 @@
+"""Extended radius of obstacles, Yoo & Kim, eq. (7)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.motion import UnivectorParameters
+
+Array = NDArray[np.float64]
+
+
+def extended_radius(
+    obstacles: ObstacleSet, psi_sf: float, psi_ob: Array, parameters: UnivectorParameters
+) -> Array:
+    """S_oe = S_r + S_o + omega (eta_vo |v_o| + eta_imp (psi_sf + psi_ob)) (Yoo & Kim, eq. (7)).
+
+    |v_o| is the speed over ground: with a speed relative to the walking robot every static
+    obstacle would swell and close the gaps.
+
+    Args:
+        obstacles: n obstacles.
+        psi_sf: eq. (2).
+        psi_ob: eq. (3) of each (n,).
+        parameters: radii and gains.
+
+    Returns:
+        (n,) [m].
+    """
+    swell = parameters.eta_vo * obstacles.speed + parameters.eta_imp * (psi_sf + psi_ob)
+    return physical_radius(obstacles, parameters) + parameters.margin + parameters.omega_soe * swell
+
+
+def physical_radius(obstacles: ObstacleSet, parameters: UnivectorParameters) -> Array:
+    """S_phys = S_robot + S_o, the distance at which the bodies touch (n,) [m]."""
+    return parameters.s_robot + obstacles.radius

@@ -1,0 +1,293 @@
+"""Modified univector field: where to go at a point among obstacles and virtual obstacles."""
+
+from math import atan2, cos, hypot, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.decision import VirtualObstacle
+from navigation.motion.avoid_obstacle import avoid_obstacle, spiral_turn
+from navigation.motion.extended_radius import physical_radius
+from navigation.motion.move_to_goal import move_to_goal, muf
+from navigation.motion.univector import blended_sum, nearness, shrunk_for_goal, weighted_sum
+from navigation.motion.virtual_obstacle import (
+    PathPoint,
+    VirtualSides,
+    oval,
+    path_point,
+    printed_path_length,
+    printed_radius,
+)
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.motion import MoverParameters, UnivectorParameters
+from navigation.value import value
+
+Array = NDArray[np.float64]
+
+
+@value
+class FieldScene:
+    """What the field is made of.
+
+    Attributes:
+        obstacles: n obstacles in W.
+        s_oe: extended radii (n,) [m].
+        psi: psi_sf + psi_ob of each (n,).
+        target: destination (2,) [m].
+        target_heading: heading to arrive with [rad].
+        side: remembered side of the arrival, see `move_to_goal`.
+        signs: sign of (9) for each obstacle (n,); None for the short way at every point.
+    """
+
+    obstacles: ObstacleSet
+    s_oe: Array
+    psi: Array
+    target: Array
+    target_heading: float
+    side: int = 0
+    signs: Array | None = None
+
+
+@value
+class VirtualForce:
+    """Dynamic virtual obstacle in force and the way out of it.
+
+    Attributes:
+        obstacle: what the recorder shows.
+        direction: g, where the field leads at the robot [rad].
+        outward: angle of n, from the mover's path to the robot's side [rad].
+        weight: f in [0, 1].
+    """
+
+    obstacle: VirtualObstacle
+    direction: float
+    outward: float
+    weight: float
+
+
+class MotionField:
+    """u_T of eq. (10) with the obstacles of eq. (9) and the virtual ones of eq. (11)."""
+
+    def __init__(self, univector: UnivectorParameters, mover: MoverParameters) -> None:
+        """Keep the parameters of the field and of moving obstacles."""
+        self._univector = univector
+        self._mover = mover
+        self._sides = VirtualSides(mover)
+
+    def at(
+        self, points: Array, heading: float, scene: FieldScene, forces: tuple[VirtualForce, ...]
+    ) -> Array:
+        """u_T at `points` (..., 2) in W [m] for a robot with `heading` [rad]: (..., 2).
+
+        `forces` in the blend by distance act alike at all points: they belong to one place
+        of the robot.
+        """
+        p = self._univector
+        u_muf = muf(points, heading, scene.target, scene.target_heading, p, side=scene.side)
+        if p.blend == "weights":
+            return self._weighted(points, u_muf, scene, forces)
+        return self._blended(points, u_muf, scene, forces)
+
+    def planned(
+        self, heading: float, scene: FieldScene, forces: tuple[VirtualForce, ...]
+    ) -> "PlannedField":
+        """The field of a decision, for those who watch.
+
+        In the blend by distance a virtual obstacle acts at the robot's place alone: the field
+        around it is without.
+        """
+        p = self._univector
+        acting = forces if p.blend == "weights" else ()
+        return PlannedField(p, self._mover, heading, scene, acting)
+
+    def _weighted(
+        self, points: Array, u_muf: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]
+    ) -> Array:
+        """The printed sum: a virtual obstacle is one more obstacle with S_oe = R_vo."""
+        p = self._univector
+        u_auf = avoid_obstacle(
+            points,
+            scene.target,
+            scene.obstacles.position,
+            scene.s_oe,
+            d_e=p.d_e,
+            d_b=p.d_b,
+            k_r=p.k_r,
+            inside=p.inside,
+            signs=scene.signs,
+        )
+        if forces:
+            virtual = avoid_obstacle(
+                points,
+                scene.target,
+                np.array([f.obstacle.position for f in forces]),
+                np.array([f.obstacle.radius for f in forces]),
+                d_e=p.d_e,
+                d_b=p.d_b,
+                k_r=p.k_r,
+                inside=p.inside,
+                outward=np.array([f.outward for f in forces]),
+                abeam=True,
+            )
+            u_auf = np.concatenate([u_auf, virtual], axis=-2)
+        return weighted_sum(u_muf, u_auf, p.w_muf, p.w_auf)
+
+    def _blended(
+        self, points: Array, u_muf: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]
+    ) -> Array:
+        """The sum by distance, with radii that leave the destination reachable."""
+        p = self._univector
+        centres = scene.obstacles.position
+        offset = centres - scene.target
+        radii, d_e = shrunk_for_goal(
+            scene.s_oe,
+            physical_radius(scene.obstacles, p),
+            np.hypot(offset[:, 0], offset[:, 1]),
+            p,
+        )
+        u_auf = avoid_obstacle(
+            points,
+            scene.target,
+            centres,
+            radii,
+            d_e=d_e,
+            d_b=p.d_b,
+            k_r=p.k_r,
+            inside=p.inside,
+            signs=scene.signs,
+        )
+        away = np.asarray(points)[..., None, :] - centres
+        ramp = nearness(np.hypot(away[..., 0], away[..., 1]), radii, d_e, p.d_b)
+        g = np.array([[cos(f.direction), sin(f.direction)] for f in forces]).reshape(-1, 2)
+        weight = np.array([f.weight for f in forces])
+        return blended_sum(u_muf, u_auf, ramp, g, weight, virtual_weight=p.virtual_weight)
+
+    def own_forces(
+        self, pose: Array, velocity: Array, scene: FieldScene
+    ) -> tuple[VirtualForce, ...]:
+        """Virtual obstacles of the own form: uncapped, in the whole band, with a side kept.
+
+        Args:
+            pose: of the robot (3,) [m, m, rad].
+            velocity: of the robot in W (2,) [m/s].
+            scene: the scene.
+        """
+        forces = []
+        banded = set()
+        for index in np.nonzero(scene.obstacles.speed >= self._mover.least_speed)[0].tolist():
+            foot = self._foot(pose, scene, index)
+            s_oe = float(scene.s_oe[index])
+            if foot is None or abs(foot.lateral) >= s_oe:
+                continue
+            relative = scene.obstacles.velocity[index] - velocity
+            length = self._mover.path_time * hypot(*relative.tolist())
+            length += self._univector.eta_imp * float(scene.psi[index])
+            if foot.along >= length:
+                continue
+            track = int(scene.obstacles.ids[index])
+            banded.add(track)
+            side = self._sides.update(track, foot, self._to_goal(pose, scene))
+            f = oval(foot.along / length, self._mover.xi)
+            forces.append(
+                self._force(track, foot, side, weight=f, radius=f * s_oe, pose=pose, scene=scene)
+            )
+        self._sides.keep(banded)
+        return tuple(forces)
+
+    def _to_goal(self, pose: Array, scene: FieldScene) -> tuple[float, float]:
+        """u_muf at the robot."""
+        p = self._univector
+        goal, heading = scene.target, scene.target_heading
+        phi = float(move_to_goal(pose[:2], pose[2], goal, heading, p, side=scene.side))
+        return cos(phi), sin(phi)
+
+    def printed_forces(
+        self, pose: Array, velocity: Array, scene: FieldScene, indices: tuple[int, ...]
+    ) -> tuple[VirtualForce, ...]:
+        """Virtual obstacles as printed, eq. (11) in (9), of the obstacles with these `indices`."""
+        forces = []
+        phi = float(
+            move_to_goal(pose[:2], pose[2], scene.target, scene.target_heading, self._univector)
+        )
+        for index in indices:
+            foot = self._foot(pose, scene, index)
+            if foot is None:
+                continue
+            relative = scene.obstacles.velocity[index] - velocity
+            length = printed_path_length(
+                hypot(*relative.tolist()),
+                float(scene.psi[index]),
+                self._mover.omega_dist,
+                self._univector.eta_vo,
+                self._univector.eta_imp,
+            )
+            radius = printed_radius(foot, float(scene.s_oe[index]), length, self._mover.xi)
+            if radius is not None:
+                goal_side = foot.ux * sin(phi) - foot.uy * cos(phi)
+                side = -1 if goal_side < 0.0 else 1
+                track = int(scene.obstacles.ids[index])
+                forces.append(
+                    self._force(
+                        track, foot, side, weight=1.0, radius=radius, pose=pose, scene=scene
+                    )
+                )
+        return tuple(forces)
+
+    def _foot(self, pose: Array, scene: FieldScene, index: int) -> PathPoint | None:
+        return path_point(
+            pose[:2],
+            scene.obstacles.position[index],
+            scene.obstacles.velocity[index],
+            self._mover.least_speed,
+        )
+
+    def _force(
+        self,
+        track: int,
+        foot: PathPoint,
+        side: int,
+        *,
+        weight: float,
+        radius: float,
+        pose: Array,
+        scene: FieldScene,
+    ) -> VirtualForce:
+        """Leave the path sideways, more along it the farther the robot is out of the oval."""
+        p = self._univector
+        nx, ny = foot.normal(side)
+        outward = atan2(ny, nx)
+        gap = max(0.0, side * foot.lateral - radius)
+        turn = float(spiral_turn(gap, radius, p.d_e, p.k_r))
+        to_target = scene.target - np.array([foot.x, foot.y])
+        to_robot = pose[:2] - np.array([foot.x, foot.y])
+        cross = float(to_target[0] * to_robot[1] - to_target[1] * to_robot[0])
+        sign = 1.0 if cross < 0.0 else -1.0
+        return VirtualForce(
+            VirtualObstacle(np.array([foot.x, foot.y]), radius, track),
+            (outward + sign * turn + pi) % (2.0 * pi) - pi,
+            outward,
+            weight,
+        )
+
+
+@value
+class PlannedField:
+    """The field that a decision was made in; looking at it changes nothing.
+
+    Attributes:
+        univector, mover: parameters of the field.
+        heading: of the robot [rad].
+        scene: obstacles and destination.
+        forces: virtual obstacles that act wherever they are looked at.
+    """
+
+    univector: UnivectorParameters
+    mover: MoverParameters
+    heading: float
+    scene: FieldScene
+    forces: tuple[VirtualForce, ...]
+
+    def at(self, points: Array) -> Array:
+        """u_T at `points` (..., 2) in W [m]: (..., 2)."""
+        field = MotionField(self.univector, self.mover)
+        return field.at(points, self.heading, self.scene, self.forces)

@@ -1,0 +1,119 @@
+"""Move-to-goal univector field with an arrival heading, Yoo & Kim, eq. (8)."""
+
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from navigation.angles import wrap_array
+from navigation.parameters.motion import UnivectorParameters
+
+Array = NDArray[np.float64]
+
+
+def move_to_goal(
+    position: ArrayLike,
+    heading: ArrayLike,
+    target: Array,
+    target_heading: float,
+    parameters: UnivectorParameters,
+    *,
+    side: int = 0,
+) -> Array:
+    """Direction phi_m of the move-to-goal field (Yoo & Kim, eq. (8)).
+
+    The signs are plus and theta_c is counted from the robot's heading: as printed the
+    field leads away from the destination. Beyond d_con it points at the destination.
+
+    Args:
+        position: of the robot in W (..., 2) [m].
+        heading: of the robot (...) [rad]; matters only for k_alpha != 1.
+        target: destination (2,) [m].
+        target_heading: heading to arrive with [rad].
+        parameters: gains, d_con and the form of the arrival.
+        side: remembered sign of beta for |beta| near pi, 0 for none.
+
+    Returns:
+        (...) [rad], wrapped.
+    """
+    offset = np.asarray(target) - np.asarray(position, dtype=np.float64)
+    bearing: Array = np.arctan2(offset[..., 1], offset[..., 0])
+    distance: Array = np.hypot(offset[..., 0], offset[..., 1])
+    if parameters.arrival == "nposture":
+        return wrap_array(bearing - _posture_turn(offset, bearing, target_heading, parameters))
+    beta = wrap_array(target_heading - bearing)
+    if side:
+        beta = np.where(
+            (np.abs(beta) > parameters.side_clear) & (np.sign(beta) != side),
+            beta + side * 2.0 * pi,
+            beta,
+        )
+    if parameters.arrival == "hard":
+        alpha = wrap_array(bearing - np.asarray(heading))
+        near = np.asarray(heading) + parameters.k_alpha * alpha + parameters.k_beta * beta
+    else:
+        ramp = (parameters.d_con - distance) / (parameters.arrival_ramp * parameters.d_con)
+        turn = parameters.k_beta * beta * np.clip(ramp, 0.0, 1.0)
+        near = bearing + np.clip(turn, -parameters.arrival_clamp, parameters.arrival_clamp)
+    return wrap_array(np.where(distance > parameters.d_con, bearing, near))
+
+
+def muf(
+    position: ArrayLike,
+    heading: ArrayLike,
+    target: Array,
+    target_heading: float,
+    parameters: UnivectorParameters,
+    *,
+    side: int = 0,
+) -> Array:
+    """u_muf of eq. (8) with k_rho = 1: unit vectors (..., 2), zero at the destination.
+
+    k_rho scales the speed, see `arrival_gain`; the third component of the printed vector
+    is a heading, which the body turns to by itself. Arguments as for `move_to_goal`.
+    """
+    phi = move_to_goal(position, heading, target, target_heading, parameters, side=side)
+    there = np.all(np.asarray(position) == target, axis=-1)
+    unit: Array = np.stack([np.cos(phi), np.sin(phi)], axis=-1)
+    return np.where(there[..., None], 0.0, unit)
+
+
+def _posture_turn(
+    offset: Array, bearing: Array, target_heading: float, parameters: UnivectorParameters
+) -> Array:
+    """Kim's posture field: turn against the bearing of a point beyond the destination."""
+    p = parameters
+    beyond = p.posture_offset * np.array([np.cos(target_heading), np.sin(target_heading)])
+    ahead = offset + beyond
+    return p.posture_gain * wrap_array(np.arctan2(ahead[..., 1], ahead[..., 0]) - bearing)
+
+
+class ArrivalSide:
+    """Remembers on which side to circle a destination that must be entered from beyond.
+
+    At |beta| = pi both sides are equal and noise would make the field chatter.
+    """
+
+    def __init__(self, parameters: UnivectorParameters) -> None:
+        self._parameters = parameters
+        self._side = 0
+
+    def update(self, beta: float) -> int:
+        """Sign to give beta, 0 while it is free, from the present `beta` [rad], wrapped."""
+        if abs(beta) < self._parameters.side_clear:
+            self._side = 0
+        elif self._side == 0 and abs(beta) > self._parameters.side_set:
+            self._side = 1 if beta > 0.0 else -1
+        return self._side
+
+    def reset(self) -> None:
+        """Forget the side, for a new destination."""
+        self._side = 0
+
+
+def arrival_gain(distance: float, is_goal: bool, parameters: UnivectorParameters) -> float:
+    """k_rho of eq. (8): one at via points, falling towards the goal; scales the speed only."""
+    if not is_goal:
+        return 1.0
+    slow = parameters.slow_share
+    return min(1.0, slow + (1.0 - slow) * distance / parameters.slow_distance)

@@ -1,0 +1,73 @@
+"""On which side to pass an obstacle, remembered and agreed upon with its neighbours.
+
+Eq. (9) takes the short way round each obstacle by itself. Between two obstacles that the
+robot cannot go through that sends it into the gap, and near the line to the destination
+the side may flip from step to step.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.motion import UnivectorParameters
+
+Array = NDArray[np.float64]
+
+
+def short_way(position: Array, target: Array, centres: Array) -> Array:
+    """Sign of (9) at `position` (2,) [m]: +1, counter-clockwise, if cross(p_od, p_or) < 0 (n,)."""
+    p_od, p_or = target - centres, position - centres
+    cross = p_od[:, 0] * p_or[:, 1] - p_od[:, 1] * p_or[:, 0]
+    return np.where(cross < 0.0, 1.0, -1.0)
+
+
+def groups(obstacles: ObstacleSet, width: float) -> NDArray[np.int64]:
+    """Number of the group of each obstacle; gaps in a group are narrower than `width` [m] (n,)."""
+    if len(obstacles) == 0:
+        return np.zeros(0, dtype=np.int64)
+    offset = obstacles.position[:, None] - obstacles.position
+    gap = np.hypot(offset[..., 0], offset[..., 1]) - obstacles.radius[:, None] - obstacles.radius
+    _, labels = connected_components(gap < width, directed=False)
+    return np.asarray(labels, dtype=np.int64)
+
+
+class PassingSides:
+    """Signs of (9) for one robot, kept from step to step.
+
+    Args:
+        parameters: whether to group, whether to remember, and the ring of (9).
+    """
+
+    def __init__(self, parameters: UnivectorParameters) -> None:
+        self._parameters = parameters
+        self._signs: dict[int, float] = {}
+
+    def signs(self, position: Array, target: Array, obstacles: ObstacleSet, s_oe: Array) -> Array:
+        """Sign with which to pass each obstacle (n,).
+
+        Args:
+            position: of the robot (2,) [m].
+            target: destination (2,) [m].
+            obstacles: n obstacles.
+            s_oe: extended radii (n,) [m].
+        """
+        p = self._parameters
+        chosen = short_way(position, target, obstacles.position)
+        label = groups(obstacles, 2.0 * p.s_robot) if p.grouping else np.arange(len(obstacles))
+        if p.grouping:
+            for group in np.unique(label):
+                members = label == group
+                middle = obstacles.position[members].mean(axis=0)
+                chosen[members] = short_way(position, target, middle[None])[0]
+        if p.side_memory:
+            offset = obstacles.position - position
+            near = np.hypot(offset[:, 0], offset[:, 1]) <= s_oe + p.d_e + p.d_b
+            ids = obstacles.ids.tolist()
+            for group in np.unique(label):
+                members = np.flatnonzero((label == group) & near).tolist()
+                known = [self._signs[ids[k]] for k in members if ids[k] in self._signs]
+                if known:
+                    chosen[label == group] = known[0]
+            self._signs = {ids[k]: float(chosen[k]) for k in np.flatnonzero(near).tolist()}
+        return chosen

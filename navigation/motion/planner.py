@@ -1,0 +1,281 @@
+"""How to move during the next footstep: field, speed, gate, filter, body."""
+
+from dataclasses import replace
+from math import atan2, cos, hypot, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.angles import wrap
+from navigation.belief.belief import Belief
+from navigation.decision import MotionDecision, SpeedLimits, Task
+from navigation.motion.body_command import body_velocity, idle_velocity
+from navigation.motion.collision_band import CollisionCase, Encounter
+from navigation.motion.collision_filter import CollisionFilter, direction_and_speed
+from navigation.motion.confidence_gate import gate_points
+from navigation.motion.extended_radius import extended_radius, physical_radius
+from navigation.motion.facing import Facing
+from navigation.motion.hypotheses import collision_hypotheses
+from navigation.motion.motion_field import FieldScene, MotionField, VirtualForce
+from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
+from navigation.motion.passing_side import PassingSides
+from navigation.motion.shoulder_check import ShoulderCheck
+from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
+from navigation.motion.way_search import way_point
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.navigation import NavigationParameters
+from navigation.partial_evaluation import psi_obstacle, psi_self
+
+Array = NDArray[np.float64]
+
+_NO_DIRECTION = 1e-9
+
+
+class Planner:
+    """Modified univector field with velocity modification (Yoo & Kim, section III).
+
+    The profile `extended` adds a confidence gate and a time-to-contact filter.
+    """
+
+    def __init__(self, parameters: NavigationParameters, limits: SpeedLimits) -> None:
+        """Start standing.
+
+        Args:
+            parameters: profile.
+            limits: envelope of the walking layer.
+        """
+        self._parameters = parameters
+        self._limits = limits
+        self._field = MotionField(parameters.univector, parameters.mover)
+        self._filter = CollisionFilter(parameters.filter, parameters.body, limits)
+        self._sides = PassingSides(parameters.univector)
+        self._arrival = ArrivalSide(parameters.univector)
+        self._shoulder: ShoulderCheck | None = None
+        self._way: tuple[float, float] | None = None
+        self._leg = -1
+        self._body = np.zeros(3)
+        self._direction: float | None = None
+
+    def plan(self, belief: Belief, task: Task) -> MotionDecision:
+        """Decide the motion of the next footstep; call once per footstep.
+
+        Args:
+            belief: what the robot believes now.
+            task: where it is to go.
+        """
+        heading = float(belief.pose[2])
+        if self._direction is None:
+            self._direction = heading
+        if task.done or belief.lost:
+            turn = self._parameters.body.lost_turn
+            self._body = idle_velocity(not task.done, turn, self._limits)
+            return MotionDecision(self._body, self._direction)
+        obstacles = ObstacleSet.from_tracks(belief.tracks)
+        task = self._round_obstacles(belief, task, obstacles)
+        scene, radii = self._scene(belief, task, obstacles)
+        wanted = self._wanted(belief, task, scene)
+        facing = self._facing(belief, task, wanted)
+        course, speed = self._filtered(belief, wanted, facing, obstacles)
+        self._way = course, speed
+        self._body = body_velocity(
+            course,
+            speed,
+            heading,
+            facing.on(course),
+            limits=self._limits,
+            turn_gain=self._parameters.body.turn_gain,
+        )
+        return replace(wanted, velocity=self._body, extended_radii=radii, glance=facing.glance)
+
+    def _round_obstacles(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
+        """The task, or one on the way round still obstacles that block the straight way."""
+        p = self._parameters
+        if not p.way_search.enabled or task.aligning:
+            return task
+        still = obstacles.where(obstacles.static)
+        radii = physical_radius(still, p.univector) + p.univector.margin
+        here = belief.pose[:2]
+        point = way_point(here, task.target, still.position, radii, p.way_search)
+        if point is task.target:
+            return task
+        dx, dy = (task.target - point).tolist()
+        return replace(task, target=point, heading=atan2(dy, dx), is_goal=False)
+
+    def _filtered(
+        self,
+        belief: Belief,
+        wanted: MotionDecision,
+        facing: Facing,
+        obstacles: ObstacleSet,
+    ) -> tuple[float, float]:
+        """Direction [rad] and speed [m/s] that touch nothing soon."""
+        p = self._parameters
+        if not p.filter.enabled:
+            return wanted.direction, wanted.speed
+        discs = collision_hypotheses(
+            belief.tracks,
+            obstacles,
+            p.univector.s_robot,
+            p.filter,
+            belief.local_map,
+        )
+        velocity = self._filter.choose(
+            belief.pose,
+            wanted.speed * np.array([cos(wanted.direction), sin(wanted.direction)]),
+            wanted.direction,
+            facing=facing,
+            body_now=self._body,
+            discs=discs,
+        )
+        return direction_and_speed(velocity, wanted.direction)
+
+    def _scene(
+        self, belief: Belief, task: Task, obstacles: ObstacleSet
+    ) -> tuple[FieldScene, tuple[tuple[int, float], ...]]:
+        """The field's obstacles with their extended radii."""
+        p = self._parameters
+        known = [t.particles is None or t.age <= p.univector.memory for t in belief.tracks]
+        obstacles = obstacles.where(np.array(known, dtype=np.bool_))
+        psi_sf = psi_self(belief.pose_covariance, p.evaluation)
+        psi_ob = psi_obstacle(
+            obstacles, belief.pose[:2], self._ground_velocity(belief.pose), p.evaluation
+        )
+        s_oe = extended_radius(obstacles, psi_sf, psi_ob, p.univector)
+        side = 0
+        if p.univector.arrival == "ramped":
+            if task.index != self._leg:
+                self._arrival.reset()
+                self._leg = task.index
+            dx, dy = (task.target - belief.pose[:2]).tolist()
+            side = self._arrival.update(wrap(task.heading - atan2(dy, dx)))
+        signs = None
+        if p.univector.grouping or p.univector.side_memory:
+            signs = self._sides.signs(belief.pose[:2], task.target, obstacles, s_oe)
+        scene = FieldScene(obstacles, s_oe, psi_sf + psi_ob, task.target, task.heading, side, signs)
+        return scene, tuple(zip(obstacles.ids.tolist(), s_oe.tolist(), strict=True))
+
+    def _wanted(self, belief: Belief, task: Task, scene: FieldScene) -> MotionDecision:
+        """Direction of the field and speed along it, before the filter."""
+        p = self._parameters
+        pose = belief.pose
+        if task.aligning:
+            return MotionDecision(self._body, float(pose[2]))
+        velocity = self._ground_velocity(pose)
+        forces: tuple[VirtualForce, ...] = ()
+        if p.mover.virtual_obstacle == "own":
+            forces = self._field.own_forces(pose, velocity, scene)
+        direction = self._steer(pose, scene, forces)
+        distance = hypot(*(task.target - pose[:2]).tolist())
+        desired = self._limits.forward * arrival_gain(distance, task.is_goal, p.univector)
+        encounters = self._encounters(pose, direction, scene)
+        speed = self._modified(encounters, direction, velocity, desired)
+        if p.mover.virtual_obstacle == "printed":
+            blocked = self._blocking(encounters, speed)
+            forces = self._field.printed_forces(pose, velocity, scene, blocked)
+            if forces:
+                direction = self._steer(pose, scene, forces)
+        self._direction = direction
+        allowed = min(speed.speed, self._gate(belief, direction))
+        return MotionDecision(
+            self._body,
+            direction,
+            allowed,
+            speed.situation,
+            tuple(f.obstacle for f in forces),
+            field=self._field.planned(float(pose[2]), scene, forces),
+        )
+
+    def _facing(self, belief: Belief, task: Task, wanted: MotionDecision) -> Facing:
+        """Where the body turns to: the task's heading at the goal, else to its way or aside."""
+        p = self._parameters
+        dx, dy = (task.target - belief.pose[:2]).tolist()
+        if task.aligning or (task.is_goal and hypot(dx, dy) < p.univector.holonomic_distance):
+            return Facing(task.heading)
+        # Only the deadline gaze hears what the body turned aside for.
+        if not p.shoulder.enabled or p.gaze.mode != "deadline":
+            return Facing()
+        if self._shoulder is None:
+            reach = p.gaze.pan_limit + p.gaze.box_share * belief.view.horizontal_fov
+            forward = self._limits.forward
+            self._shoulder = ShoulderCheck(p.shoulder, reach, p.univector.s_robot, forward)
+        course, speed = self._way or (wanted.direction, wanted.speed)
+        aside = self._shoulder.aside(belief, course, speed)
+        return Facing(aside=aside, glance=self._shoulder.glance())
+
+    def _ground_velocity(self, pose: Array) -> Array:
+        forward, left, _ = self._body.tolist()
+        c, s = cos(float(pose[2])), sin(float(pose[2]))
+        return np.array([c * forward - s * left, s * forward + c * left])
+
+    def _steer(self, pose: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]) -> float:
+        u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, forces).tolist()
+        if hypot(u_x, u_y) < _NO_DIRECTION:
+            return float(pose[2]) if self._direction is None else self._direction
+        return atan2(u_y, u_x)
+
+    def _encounters(self, pose: Array, direction: float, scene: FieldScene) -> dict[int, Encounter]:
+        """The movers in axes of the line of motion, by their index in the scene."""
+        p = self._parameters
+        radii = scene.s_oe
+        if p.mover.radius == "physical":
+            radii = physical_radius(scene.obstacles, p.univector) + p.mover.margin
+        c, s = cos(direction), sin(direction)
+        encounters = {}
+        for index in np.nonzero(scene.obstacles.speed >= p.mover.least_speed)[0].tolist():
+            x, y = (scene.obstacles.position[index] - pose[:2]).tolist()
+            u, w = scene.obstacles.velocity[index].tolist()
+            encounters[index] = Encounter(
+                c * x + s * y, c * y - s * x, c * u + s * w, c * w - s * u, float(radii[index])
+            )
+        return encounters
+
+    def _modified(
+        self, encounters: dict[int, Encounter], direction: float, velocity: Array, desired: float
+    ) -> ModifiedSpeed:
+        p, limits = self._parameters.mover, self._limits
+        now = max(0.0, float(velocity[0]) * cos(direction) + float(velocity[1]) * sin(direction))
+        movers = tuple(encounters.values())
+        if p.velocity_modification == "off" or not movers:
+            return ModifiedSpeed(desired, "free")
+        if p.velocity_modification == "closed":
+            return modify_speed(
+                movers,
+                desired,
+                now,
+                v_max=limits.forward,
+                acceleration=limits.acceleration,
+                footstep=limits.footstep,
+                horizon=p.horizon,
+                wait_in_band=p.wait_in_band,
+            )
+        return sample_speed(
+            movers,
+            desired,
+            now,
+            v_max=limits.forward,
+            acceleration=limits.acceleration,
+            samples=p.samples,
+            horizon=p.horizon,
+            acceleration_time=p.acceleration_time,
+            wait_in_band=p.wait_in_band,
+        )
+
+    def _blocking(self, encounters: dict[int, Encounter], speed: ModifiedSpeed) -> tuple[int, ...]:
+        """Movers no speed avoids: case (c), and (b) with the escape out of reach."""
+        definite = {
+            index
+            for index, e in encounters.items()
+            if e.case(self._limits.forward) is CollisionCase.DEFINITE
+        }
+        if speed.situation == "path_change":
+            definite |= {i for i, e in encounters.items() if e.in_band()}
+        return tuple(sorted(definite))
+
+    def _gate(self, belief: Belief, direction: float) -> float:
+        """Largest speed towards ground the robot may never have seen [m/s]."""
+        p = self._parameters.gate
+        if not p.enabled:
+            return self._limits.forward
+        points = gate_points(belief.pose, direction, p)
+        seen = float(np.min(belief.local_map.confidence_at(points))) >= p.confidence
+        return self._limits.forward if seen else p.speed

@@ -1,0 +1,98 @@
+"""The sum of the univector fields, Yoo & Kim, eq. (10)."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from navigation.parameters.motion import UnivectorParameters
+
+Array = NDArray[np.float64]
+
+_NOTHING = 1e-9
+
+
+def normalized(v: Array) -> Array:
+    """v/|v| over the last axis, zero where v is zero."""
+    norm = np.hypot(v[..., 0], v[..., 1])[..., None]
+    unit: Array = np.where(norm > _NOTHING, v / np.maximum(norm, _NOTHING), 0.0)
+    return unit
+
+
+def weighted_sum(u_muf: Array, u_auf: Array, w_muf: float, w_auf: float) -> Array:
+    """u_T = w_muf u_muf + w_auf N(sum u_auf) (Yoo & Kim, eq. (10)), as printed.
+
+    Args:
+        u_muf: unit vectors (..., 2).
+        u_auf: of n obstacles (..., n, 2).
+        w_muf: weight of move-to-goal.
+        w_auf: weight of avoid-obstacle.
+
+    Returns:
+        (..., 2); its norm is no speed.
+    """
+    total: Array = w_muf * u_muf + w_auf * normalized(u_auf.sum(axis=-2))
+    return total
+
+
+def nearness(rho: Array, s_oe: Array, d_e: ArrayLike, d_b: float) -> Array:
+    """Ramp of an obstacle: 1 up to S_oe + d_e/2, falling to 0 at S_oe + d_e + d_b (..., n)."""
+    half = 0.5 * np.asarray(d_e)
+    ramp: Array = np.clip(1.0 - (rho - s_oe - half) / (half + d_b), 0.0, 1.0)
+    return ramp
+
+
+def blended_sum(
+    u_muf: Array,
+    u_auf: Array,
+    ramp: Array,
+    u_virtual: Array,
+    weight: Array,
+    *,
+    virtual_weight: float,
+) -> Array:
+    """Sum that lets the nearest obstacle decide: W from 0 far away to 1 at the obstacle.
+
+    With fixed weights the field cannot turn more than asin(w_auf/w_muf) off the way to
+    the destination; here it can, and it stays continuous.
+
+    Args:
+        u_muf: unit vectors (..., 2).
+        u_auf: of n obstacles (..., n, 2).
+        ramp: their nearness (..., n).
+        u_virtual: directions at m dynamic virtual obstacles (..., m, 2), or (m, 2) for all.
+        weight: their f in [0, 1] (..., m), or (m,) for all.
+        virtual_weight: weight of virtual against real obstacles.
+
+    Returns:
+        (..., 2).
+    """
+    active = ramp * (np.abs(u_auf).sum(axis=-1) > 0.0)
+    avoid = (active[..., None] ** 2 * u_auf).sum(axis=-2)
+    avoid = avoid + virtual_weight * (weight[..., None] ** 2 * u_virtual).sum(axis=-2)
+    share = np.maximum(active.max(axis=-1, initial=0.0), weight.max(axis=-1, initial=0.0))
+    total: Array = (1.0 - share)[..., None] * u_muf + share[..., None] * normalized(avoid)
+    vanishing = np.hypot(total[..., 0], total[..., 1])[..., None] < _NOTHING
+    return np.where(vanishing, u_muf, total)
+
+
+def shrunk_for_goal(
+    s_oe: Array, s_physical: Array, goal_distance: Array, parameters: UnivectorParameters
+) -> tuple[Array, Array]:
+    """Extended radii and offsets small enough to let the robot reach the destination.
+
+    A destination inside S_oe + d_e of an obstacle could never be reached.
+
+    Args:
+        s_oe: extended radii (n,) [m].
+        s_physical: radii at which the bodies touch (n,) [m].
+        goal_distance: rho_od (n,) [m].
+        parameters: radius offset and the room to leave.
+
+    Returns:
+        Radii and offsets (n,), (n,) [m].
+    """
+    p, d_e = parameters, parameters.d_e
+    room = p.goal_share * np.maximum(p.goal_gap, goal_distance - s_physical)
+    near = goal_distance < s_oe + d_e
+    radius = np.where(near, np.minimum(s_oe, s_physical + room), s_oe)
+    offset = np.where(near, np.minimum(d_e, np.maximum(p.goal_offset, goal_distance - radius)), d_e)
+    return radius, offset

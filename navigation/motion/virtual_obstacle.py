@@ -1,0 +1,143 @@
+"""Dynamic virtual obstacle: an oval on the path of a mover, Yoo & Kim, eq. (11)."""
+
+from math import expm1, hypot, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.parameters.motion import MoverParameters
+from navigation.value import value
+
+Array = NDArray[np.float64]
+
+
+def oval(h: float, xi: float) -> float:
+    """Shape f = (rho^(1-h) - 1)/(rho - 1), rho = ((1 - xi)/xi)² (Yoo & Kim, eq. (11)).
+
+    Args:
+        h: |p_vo - p_o|/delta_dist, clipped to [0, 1].
+        xi: convexity in (0, 1); at 1/2 the oval is a triangle.
+
+    Returns:
+        R_vo/S_oe: 1 at h = 0, xi at 1/2, 0 at 1.
+    """
+    h = min(1.0, max(0.0, h))
+    rho = ((1.0 - xi) / xi) ** 2
+    if abs(rho - 1.0) < 1e-4:
+        return 1.0 - h
+    return expm1((1.0 - h) * log(rho)) / (rho - 1.0)
+
+
+@value
+class PathPoint:
+    """Foot of the robot on the path of a mover.
+
+    Attributes:
+        ux, uy: unit vector of the mover's velocity.
+        along: from the mover to the foot, along its velocity [m].
+        lateral: of the robot, left of the path [m].
+        x, y: p_vo in W [m].
+    """
+
+    ux: float
+    uy: float
+    along: float
+    lateral: float
+    x: float
+    y: float
+
+    def normal(self, side: int) -> tuple[float, float]:
+        """n, from the path towards `side` (+1 left, -1 right)."""
+        return -side * self.uy, side * self.ux
+
+
+def path_point(
+    robot: Array, obstacle: Array, velocity: Array, least_speed: float
+) -> PathPoint | None:
+    """p_vo, the projection of the robot on the path of the mover (Yoo & Kim, eq. (11)).
+
+    Args:
+        robot: position (2,) [m].
+        obstacle: position (2,) [m].
+        velocity: of the obstacle over ground (2,) [m/s].
+        least_speed: below it there is no path [m/s].
+
+    Returns:
+        None without a path or if the foot lies behind the mover.
+    """
+    vx, vy = velocity.tolist()
+    speed = hypot(vx, vy)
+    if speed < least_speed:
+        return None
+    ux, uy = vx / speed, vy / speed
+    ox, oy = obstacle.tolist()
+    rx, ry = robot.tolist()
+    along = (rx - ox) * ux + (ry - oy) * uy
+    if along <= 0.0:
+        return None
+    lateral = ux * (ry - oy) - uy * (rx - ox)
+    return PathPoint(ux, uy, along, lateral, ox + along * ux, oy + along * uy)
+
+
+def foot_velocity(robot_velocity: Array, foot: PathPoint) -> Array:
+    """v_r_perp_op = (v_r . q) q/|q|², q = p_vo - p_o: how the foot moves (2,) [m/s].
+
+    The projection divides by the squared norm, else its unit would be m²/s (eq. (11)).
+    """
+    u = np.array([foot.ux, foot.uy])
+    velocity: Array = (robot_velocity @ u) * u
+    return velocity
+
+
+def printed_path_length(
+    relative_speed: float,
+    psi: float,
+    omega_dist: float,
+    eta_vo: float,
+    eta_imp: float,
+) -> float:
+    """delta_dist = omega_dist (eta_vo |v_ro| + eta_imp (psi_sf + psi_ob)) (eq. (11)) [m]."""
+    return omega_dist * (eta_vo * relative_speed + eta_imp * psi)
+
+
+def printed_radius(foot: PathPoint, s_oe: float, length: float, xi: float) -> float | None:
+    """R_vo = min(f S_oe, |p_vo - p_r|) (Yoo & Kim, eq. (11)) [m]; None beyond the length.
+
+    On the path itself it is zero: the robot is on the circle, which still turns it away.
+    """
+    if foot.along >= length:
+        return None
+    return min(oval(foot.along / length, xi) * s_oe, abs(foot.lateral))
+
+
+class VirtualSides:
+    """Side on which the robot leaves the path of each mover, kept until it is settled."""
+
+    def __init__(self, parameters: MoverParameters) -> None:
+        self._parameters = parameters
+        self._sides: dict[int, int] = {}
+
+    def update(self, track: int, foot: PathPoint, u_muf: tuple[float, float]) -> int:
+        """Side (+1 left of the path, -1 right) for a mover in whose band the robot is.
+
+        Args:
+            track: number of the mover.
+            foot: robot and path.
+            u_muf: move-to-goal direction, decides while the robot is near the path.
+        """
+        p = self._parameters
+        side = self._sides.get(track)
+        here = 1 if foot.lateral >= 0.0 else -1
+        if side is None:
+            goal_side = foot.ux * u_muf[1] - foot.uy * u_muf[0]
+            side = here
+            if abs(foot.lateral) < p.side_switch and abs(goal_side) > p.side_aligned:
+                side = 1 if goal_side > 0.0 else -1
+        elif side != here and abs(foot.lateral) > p.side_hold:
+            side = here
+        self._sides[track] = side
+        return side
+
+    def keep(self, tracks: set[int]) -> None:
+        """Forget every mover not in `tracks`."""
+        self._sides = {t: s for t, s in self._sides.items() if t in tracks}

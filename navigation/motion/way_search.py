@@ -1,0 +1,102 @@
+"""A way point on the way round still obstacles, where the straight way is blocked.
+
+The paper's planner only updates way points; the field alone gets trapped before walls and
+clusters. The search is Dijkstra's on a grid of the static tracks.
+"""
+
+from math import ceil, hypot
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+
+from navigation.parameters.motion import WaySearchParameters
+
+Array = NDArray[np.float64]
+Cells = NDArray[np.int64]
+
+_STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
+
+
+def way_point(
+    position: Array, target: Array, centres: Array, radii: Array, parameters: WaySearchParameters
+) -> Array:
+    """The farthest point of the shortest way that can be walked to straight (2,) [m].
+
+    Args:
+        position: of the robot (2,) [m].
+        target: destination (2,) [m].
+        centres: of the still obstacles (n, 2) [m].
+        radii: distance from each within which the robot does not fit (n,) [m].
+        parameters: cell, reach and margin around the search.
+
+    Returns:
+        `target` if the straight way is free or there is no way at all.
+    """
+    if _free(position, target, centres, radii):
+        return target
+    way = shortest_way(position, target, centres, radii, parameters)
+    chosen = target
+    for point in way:
+        away = hypot(*(point - position).tolist())
+        if away > parameters.reach or not _free(position, point, centres, radii):
+            break
+        chosen = point
+    return chosen
+
+
+def shortest_way(
+    position: Array, target: Array, centres: Array, radii: Array, parameters: WaySearchParameters
+) -> Array:
+    """Cell centres from the robot to the destination (m, 2) [m]; none if there is no way."""
+    p = parameters
+    low = np.minimum(position, target) - p.around
+    shape = [ceil(side / p.cell) for side in (np.maximum(position, target) + p.around - low)]
+    rows, columns = np.indices(shape)
+    points = low + p.cell * (np.stack([rows.ravel(), columns.ravel()], axis=1) + 0.5)
+    start, end = (int(np.argmin(np.hypot(*(points - place).T))) for place in (position, target))
+    offset = points[:, None] - centres
+    open_ = ~np.any(np.hypot(offset[..., 0], offset[..., 1]) < radii, axis=1)
+    open_[[start, end]] = True
+    number = np.arange(len(points), dtype=np.int64).reshape(shape)
+    ends = [_neighbours(number, step) for step in _STEPS]
+    here, there = (np.concatenate([e[k] for e in ends]) for k in (0, 1))
+    both = open_[here] & open_[there]
+    here, there = here[both], there[both]
+    length = np.hypot(*(points[here] - points[there]).T)
+    graph = coo_array((length, (here, there)), shape=(len(points), len(points))).tocsr()
+    distance, previous = dijkstra(graph, directed=False, indices=[end], return_predecessors=True)
+    if not np.isfinite(distance[0, start]):
+        return np.zeros((0, 2))
+    cells = []
+    cell = start
+    while cell != end:
+        cell = int(previous[0, cell])
+        cells.append(cell)
+    way: Array = points[cells]
+    way[-1] = target
+    return way
+
+
+def _neighbours(number: Cells, step: tuple[int, int]) -> tuple[Cells, Cells]:
+    """Cells and the cells one `step` from them."""
+    i, j = step
+    rows, columns = number.shape
+    here = number[: rows - i, max(0, -j) : columns - max(0, j)]
+    there = number[i:, max(0, j) : columns - max(0, -j)]
+    return here.ravel(), there.ravel()
+
+
+def _free(start: Array, end: Array, centres: Array, radii: Array) -> bool:
+    """Whether the straight way from `start` to `end` leaves no obstacle's room narrower.
+
+    A start inside a radius may leave it.
+    """
+    along = end - start
+    square = float(along @ along)
+    offset = centres - start
+    share = np.clip(offset @ along / max(square, 1e-12), 0.0, 1.0)
+    gap = np.hypot(*(offset - share[:, None] * along).T)
+    inside = np.hypot(*offset.T) < radii
+    return not bool(np.any((gap < radii) & ~(inside & (share == 0.0))))

@@ -1,0 +1,1 @@
+"""Parameters of belief and decisions: their fields are the keys of a scenario."""

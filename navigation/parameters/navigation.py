@@ -1,0 +1,108 @@
+"""Parameters of the decisions: mission, gaze, planner and motion.
+
+Defaults are the profile `extended`; `NavigationParameters.paper` is the reference with
+the printed structure. Every difference between the two is a field of a section.
+"""
+
+from dataclasses import dataclass, field
+
+from navigation.parameters.bounds import Positive
+from navigation.parameters.gaze import EvaluationParameters, GazeParameters
+from navigation.parameters.motion import (
+    BodyParameters,
+    FilterParameters,
+    GateParameters,
+    LandmarkParameters,
+    MoverParameters,
+    ShoulderParameters,
+    UnivectorParameters,
+    WaySearchParameters,
+)
+from navigation.parameters.planner import PlannerParameters
+
+
+@dataclass(frozen=True)
+class MissionParameters:
+    """Sequence of via points, arrival at the goal."""
+
+    r_via: Positive = 0.15
+    """Distance at which a via point is passed [m]."""
+    r_goal: Positive = 0.05
+    """Distance at which the goal is reached and the turn to its heading begins [m]."""
+    r_release: Positive = 0.08
+    """Distance beyond which a robot turning at the goal walks back to it [m]."""
+    heading_tolerance: Positive = 0.07
+    """Heading error at which the mission is done [rad]."""
+
+
+@dataclass(frozen=True)
+class NavigationParameters:
+    """All parameters of the decisions; the defaults are the profile `extended`."""
+
+    mission: MissionParameters = field(default_factory=MissionParameters)
+    """Way points and arrival."""
+    evaluation: EvaluationParameters = field(default_factory=EvaluationParameters)
+    """Partial evaluations."""
+    gaze: GazeParameters = field(default_factory=GazeParameters)
+    """Gaze."""
+    planner: PlannerParameters = field(default_factory=PlannerParameters)
+    """Choice of the planner, and the peers."""
+    univector: UnivectorParameters = field(default_factory=UnivectorParameters)
+    """Univector field."""
+    mover: MoverParameters = field(default_factory=MoverParameters)
+    """Moving obstacles."""
+    gate: GateParameters = field(default_factory=GateParameters)
+    """Confidence gate."""
+    filter: FilterParameters = field(default_factory=FilterParameters)
+    """Time-to-contact filter."""
+    landmarks: LandmarkParameters = field(default_factory=LandmarkParameters)
+    """Landmarks as obstacles."""
+    shoulder: ShoulderParameters = field(default_factory=ShoulderParameters)
+    """Looks over the shoulder."""
+    way_search: WaySearchParameters = field(default_factory=WaySearchParameters)
+    """Way-point search."""
+    body: BodyParameters = field(default_factory=BodyParameters)
+    """Body command."""
+
+    @classmethod
+    def extended(cls) -> "NavigationParameters":
+        """Our best."""
+        return cls()
+
+    @classmethod
+    def paper(cls) -> "NavigationParameters":
+        """Printed structure and constants with the least repairs: a reference."""
+        return cls(
+            evaluation=EvaluationParameters(map_ratio="printed", t_heading=0.0),
+            gaze=GazeParameters(
+                mode="integrated",
+                w_lm=0.21,
+                w_way=0.17,
+                w_sf=0.29,
+                w_ob=0.33,
+                box_share=0.5,
+                obstacle_votes="mean",
+                map_votes="mean",
+                candidates="obstacles",
+                switch_ratio=1.0,
+            ),
+            univector=UnivectorParameters(
+                arrival="hard",
+                k_beta=-0.5,
+                holonomic_distance=0.0,
+                d_e=0.40,
+                d_b=0.80,
+                inside="zero",
+                blend="weights",
+                memory=25.0,
+            ),
+            mover=MoverParameters(
+                virtual_obstacle="printed",
+                velocity_modification="closed",
+                radius="extended",
+                wait_in_band=False,
+            ),
+            gate=GateParameters(enabled=False),
+            filter=FilterParameters(enabled=False),
+            shoulder=ShoulderParameters(enabled=False),
+        )

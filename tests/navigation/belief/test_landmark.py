@@ -1,0 +1,51 @@
+from math import hypot
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from navigation.angles import wrap
+from navigation.belief.landmark import (
+    points_from,
+    points_to_world,
+    pose_from_points,
+    sighting,
+    to_world,
+)
+
+metres = st.floats(-5.0, 5.0)
+headings = st.floats(-3.14, 3.14)
+
+
+@given(metres, metres, headings, metres, metres)
+def test_a_sighting_leads_back_to_the_landmark(x, y, heading, a, b):
+    distance, bearing = sighting((x, y, heading), (a, b))
+    back = to_world((x, y, heading), distance, bearing)
+    assert hypot(back[0] - a, back[1] - b) < 1e-9
+
+
+@given(metres, metres, headings, metres, metres)
+def test_points_are_seen_where_sightings_are(x, y, heading, a, b):
+    distance, bearing = sighting((x, y, heading), (a, b))
+    seen = points_from((x, y, heading), np.array([[a, b]]))
+    assert np.allclose(seen, [[distance * np.cos(bearing), distance * np.sin(bearing)]], atol=1e-9)
+    assert np.allclose(points_to_world(np.array([x, y, heading]), seen), [[a, b]], atol=1e-9)
+
+
+@given(metres, metres, headings)
+def test_pose_from_points_inverts_the_sightings(x, y, heading):
+    landmarks = np.array([[2.0, 1.0], [-1.0, 3.0], [0.5, -2.0]])
+    seen = []
+    for landmark in landmarks:
+        distance, bearing = sighting((x, y, heading), tuple(landmark.tolist()))
+        seen.append((distance * np.cos(bearing), distance * np.sin(bearing)))
+    for count in (2, 3):
+        pose = pose_from_points(np.array(seen[:count]), landmarks[:count])
+        assert np.allclose(pose[:2], [x, y], atol=1e-8)
+        assert abs(wrap(pose[2] - heading)) < 1e-8
+
+
+def test_one_point_is_not_enough():
+    with pytest.raises(ValueError, match="at least 2"):
+        pose_from_points(np.zeros((1, 2)), np.zeros((1, 2)))

@@ -1,0 +1,176 @@
+import numpy as np
+import pytest
+
+from navigation.belief.local_map import LocalMap
+from navigation.belief.visibility import Viewpoint
+from navigation.parameters.belief import LocalMapParameters
+
+NONE = (np.empty((0, 2)), np.empty(0))
+P = LocalMapParameters()
+
+
+def look(grid, time, camera, pose=(0.0, 0.0, 0.0), obstacles=NONE):
+    viewpoint = Viewpoint.of(camera, np.array(pose, float), P.range)
+    grid.update(time, viewpoint, (pose[0], pose[1]), *obstacles)
+
+
+@pytest.mark.parametrize("rate", [10, 15, 16.667, 30])
+def test_confidence_is_085_after_5_s_at_any_frame_rate(view, rate):
+    grid = LocalMap(P, (0.05, 0.05), 0.0)
+    point = np.array([[1.0, 0.0]])
+    look(grid, 0.0, view(pan=0.0))
+    frames = 0
+    while grid.confidence_at(point)[0] >= 0.85:
+        frames += 1
+        look(grid, frames / rate, view(pan=1.57))
+    assert abs(frames / rate - 5.0) <= 1.0 / rate + 1e-9
+
+
+def test_confidence_starts_at_zero_rises_in_view_and_never_goes_negative(view):
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    point = np.array([[1.0, 0.1]])
+    assert grid.confidence_at(point)[0] == 0.0
+    assert grid.age_at(point)[0] == np.inf
+    look(grid, 1.0, view(pan=0.0))
+    assert grid.confidence_at(point)[0] == 1.0
+    assert grid.age_at(point)[0] == 0.0
+    look(grid, 100.0, view(pan=1.57))
+    assert grid.confidence_at(point)[0] == 0.0
+    assert grid.confidence.min() == 0.0
+
+
+def test_outside_the_map_is_confident_and_unknown(view):
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    look(grid, 1.0, view())
+    far = np.array([[50.0, 0.0], [0.0, -50.0]])
+    assert grid.confidence_at(far).tolist() == [1.0, 1.0]
+    assert grid.age_at(far).tolist() == [0.0, 0.0]
+    assert grid.occupancy_at(far).tolist() == [0.5, 0.5]
+
+
+def test_a_mirrored_scene_gives_a_mirrored_map(view):
+    rng = np.random.default_rng(0)
+    discs = rng.uniform(-2, 2, (5, 2))
+    radii = np.full(5, 0.1)
+    grid, mirrored = LocalMap(P, (0.05, 0.0), 0.0), LocalMap(P, (0.05, 0.0), 0.0)
+    look(grid, 1.0, view(pan=0.37), obstacles=(discs, radii))
+    look(mirrored, 1.0, view(pan=-0.37), obstacles=(discs * [1, -1], radii))
+    assert grid.confidence.any()
+    assert np.array_equal(grid.confidence, mirrored.confidence[::-1])
+    assert np.array_equal(grid.occupancy, mirrored.occupancy[::-1])
+
+
+def test_only_the_footprint_of_the_camera_is_seen(view):
+    camera = view(pan=0.8, tilt=-0.4)
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    look(grid, 1.0, camera)
+    n = len(grid.age)
+    centres = grid.origin + (np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1) + 0.5) * P.cell
+    seen = Viewpoint.of(camera, np.zeros(3), P.range).contains(centres.reshape(-1, 2))
+    assert np.array_equal(grid.confidence.ravel() == 1.0, seen)
+    assert np.array_equal(grid.confidence_at(centres.reshape(-1, 2)), grid.confidence.ravel())
+
+
+def test_what_stands_in_the_way_hides_the_floor_and_is_occupied(view):
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    obstacle = (np.array([[1.0, 0.0]]), np.array([0.1]))
+    for k in range(5):
+        look(grid, 0.1 * k, view(pan=0.0), obstacles=obstacle)
+    front, on, behind, beside = np.array([[0.7, 0.0], [1.0, 0.0], [1.6, 0.0], [1.6, 0.7]])
+    assert grid.confidence_at([front, behind, beside]).tolist() == [1.0, 0.0, 1.0]
+    assert grid.occupancy_at([front])[0] < 0.2
+    assert grid.occupancy_at([on])[0] > 0.8
+    assert grid.occupancy_at([behind])[0] == 0.5
+
+
+def test_rolling_keeps_what_is_known_in_its_place_in_the_world(view):
+    rolled = LocalMap(P, (0.0, 0.0), 0.0)
+    look(rolled, 0.0, view(pan=0.3))
+    points = np.random.default_rng(0).uniform(-2.2, 2.2, (400, 2))
+    before = rolled.age_at(points)
+    for k, centre in enumerate([(0.3, 0.1), (0.75, -0.42), (-0.33, 0.6)], 1):
+        look(rolled, 0.0, view(tilt=1.5), pose=(*centre, 0.1 * k))
+        assert np.array_equal(rolled.age_at(points), before)
+    look(rolled, 0.0, view(tilt=1.5), pose=(40.0, 0.0, 0.0))
+    look(rolled, 0.0, view(tilt=1.5), pose=(0.0, 0.0, 0.0))
+    assert np.all(rolled.age_at(points) == np.inf)
+
+
+@pytest.mark.parametrize("centre", [(4.0, 0.0), (0.0, 4.0), (0.0, -4.0)])
+def test_it_goes_with_the_robot_along_either_axis(view, centre):
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    look(grid, 0.2, view(), pose=(*centre, 0.0))
+    assert grid.occupancy_at([(centre[0] + 1.0, centre[1])])[0] < 0.5  # seen free
+
+
+def test_a_snapshot_stays_as_it_is(view):
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    look(grid, 0.0, view(pan=0.0))
+    snapshot = grid.snapshot()
+    confidence, occupancy = snapshot.confidence.copy(), snapshot.occupancy.copy()
+    look(grid, 3.0, view(pan=1.0), pose=(0.5, 0.0, 0.0))
+    assert snapshot.time == 0.0
+    assert np.array_equal(snapshot.confidence, confidence)
+    assert np.array_equal(snapshot.occupancy, occupancy)
+    assert not np.array_equal(grid.confidence, confidence)
+
+
+def test_a_shifted_map_equals_one_computed_anew(view):
+    """The map that rolls with the robot, against a large one that never moves."""
+    rng = np.random.default_rng(5)
+    rolling = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
+    fixed = LocalMap(LocalMapParameters(size=20.0), (0.0, 0.0), 0.0)
+    obstacles, radii = rng.uniform(0, 4, (12, 2)), rng.uniform(0.05, 0.12, 12)
+    for k in range(1, 60):
+        pose = np.array([0.06 * k, 0.04 * k, 0.6 + 0.5 * np.sin(0.3 * k)])
+        viewpoint = Viewpoint.of(view(pan=np.sin(0.7 * k)), pose, 2.5)
+        near = np.hypot(*(obstacles - pose[:2]).T) < 2.0
+        rolling.update(0.06 * k, viewpoint, tuple(pose[:2]), obstacles[near], radii[near])
+        fixed.update(0.06 * k, viewpoint, (0.0, 0.0), obstacles[near], radii[near])
+    x, y = rolling.origin
+    steps = (np.arange(len(rolling.age)) + 0.5) * rolling.cell
+    points = np.stack(np.meshgrid(x + steps, y + steps), axis=-1).reshape(-1, 2)
+    assert np.array_equal(rolling.age_at(points), fixed.age_at(points))
+    assert np.array_equal(rolling.occupancy_at(points), fixed.occupancy_at(points))
+    assert rolling.origin != LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0).origin
+    assert np.isfinite(rolling.age).mean() > 0.1
+
+
+@pytest.mark.parametrize("rate", [10, 30])
+def test_occupancy_does_not_depend_on_the_frame_rate(view, rate):
+    viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
+    place = np.array([[1.0, 0.0]])
+    local_map = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
+    for k in range(1, rate // 10 + 1):
+        local_map.update(k / rate, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+    odds = 15.0 * 0.1
+    assert local_map.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-odds)))
+    assert local_map.occupancy_at([[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))
+
+
+def test_free_is_where_the_cell_and_its_four_neighbours_were_seen_empty(view):
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    obstacle = (np.array([[1.0, 0.0]]), np.array([0.1]))
+    for k in range(5):
+        look(grid, 0.1 * k, view(pan=0.0), obstacles=obstacle)
+    n = len(grid.age)
+    empty = np.pad(grid.occupancy < 0.5, 1)
+    wanted = empty[1:-1, 1:-1] & empty[:-2, 1:-1] & empty[2:, 1:-1]
+    wanted &= empty[1:-1, :-2] & empty[1:-1, 2:]
+    centres = grid.origin + (np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1) + 0.5) * P.cell
+    assert np.array_equal(grid.free_at(centres.reshape(-1, 2)), wanted.ravel())
+    assert 0 < wanted.sum() < (grid.occupancy < 0.5).sum()
+    assert not grid.free_at([[50.0, 0.0]])[0]
+
+
+def test_evidence_of_one_look_and_of_all_is_bounded(view):
+    viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
+    place = np.array([[1.0, 0.0]])
+    grid = LocalMap(P, (0.0, 0.0), 0.0)
+    grid.update(100.0, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+    odds = min(P.look * P.occupied_rate, P.evidence_limit)
+    assert grid.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-odds)))
+    for k in range(200):
+        grid.update(101.0 + k, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+    assert grid.occupancy_at(place) == pytest.approx(1 / (1 + np.exp(-P.evidence_limit)))
+    assert grid.occupancy_at([[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(P.evidence_limit)))

@@ -1,0 +1,45 @@
+"""Compiled against plain Python bit for bit, and against formulas over whole arrays."""
+
+import numpy as np
+import pytest
+
+from navigation.belief import local_map_kernel as kernel
+
+CELL = 0.1
+CORNER = (-7, 4)
+SIDE = 12
+
+
+@pytest.fixture
+def grid():
+    rng = np.random.default_rng(3)
+    low = np.multiply(CORNER, CELL)
+    points = rng.uniform(low - 3 * CELL, low + (SIDE + 3) * CELL, (400, 2))
+    strange = np.array([[np.nan, 0.5], [np.inf, 0.5], [0.0, -1e300]])
+    return np.concatenate([points, strange]), rng.uniform(-3.0, 1.0, (SIDE, SIDE))
+
+
+def test_compiled_and_plain_agree(grid):
+    points, cells = grid
+    for function, arguments in ((kernel.under, (cells, 7.0)), (kernel.free, (cells,))):
+        found = function(points, CORNER, CELL, *arguments)
+        assert np.array_equal(found, function.py_func(points, CORNER, CELL, *arguments))
+
+
+def test_what_holds_is_the_cell_whose_square_a_point_is_in(grid):
+    points, cells = grid
+    found = kernel.under(points, CORNER, CELL, cells, 7.0)
+    padded = np.pad(cells, SIDE, constant_values=7.0)
+    column, row = (np.floor(points[:-3] / CELL).astype(int) - CORNER + SIDE).T
+    assert np.array_equal(found[:-3], padded[row, column])
+    assert (found[-3:] == 7.0).all()
+    assert 100 < (found != 7.0).sum() < 300
+
+
+def test_free_is_what_is_empty_with_its_four_neighbours(grid):
+    points, cells = grid
+    cross = CELL * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
+    around = [kernel.under(points + step, CORNER, CELL, cells, 7.0) < 0.0 for step in cross]
+    free = kernel.free(points, CORNER, CELL, cells)
+    assert np.array_equal(free, np.all(around, axis=0))
+    assert 0 < free.sum() < len(points)

@@ -1,0 +1,302 @@
+from dataclasses import replace
+from itertools import permutations
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+
+from navigation.angles import wrap
+from navigation.belief.landmark import sighting
+from navigation.belief.localization import Localizer
+from navigation.observation import CameraView, Frame, Observation
+from navigation.parameters.belief import LocalizationParameters
+
+BEACONS = {f"b{i}": (3.0 * cos(i * pi / 4), 3.0 * sin(i * pi / 4)) for i in range(8)}
+P0 = np.eye(3) * 4e-4
+DT = 0.1
+
+
+VIEW = CameraView(np.eye(3), np.zeros(3), 0.0, 0.0, 1.5, 1.2)
+
+
+SLIP, DRIFT, TURN_DRIFT, FOOTSTEP = 0.03, 0.003, 0.006, 0.34
+
+
+def frame(time, odometry, observations, motion=(4e-6, 4e-6, 1e-6), yaw_sigma=0.0):
+    view = replace(VIEW, yaw_sigma=yaw_sigma)
+    return Frame(time, np.array(odometry, float), np.diag(motion), view, tuple(observations))
+
+
+def beacon(pose, name, noise=(0.0, 0.0), place=None):
+    distance, bearing = sighting(pose, place or BEACONS[name])
+    covariance = np.diag([0.05**2, 0.02**2])
+    return Observation(
+        "beacon", name, distance + noise[0], bearing + noise[1], covariance, 0.05, 0.01
+    )
+
+
+def walk(rng, start, seconds, names_at, parameters=None, speed=0.15, turn=0.4):
+    """Walk in circles with slipping odometry; yield the localizer and the true pose."""
+    pose, odometry = np.array(start, float), np.zeros(3)
+    localizer = Localizer(parameters or LocalizationParameters(), BEACONS, pose, P0)
+    frames = FOOTSTEP / DT
+    for k in range(1, int(seconds / DT)):
+        slip = rng.normal(0, SLIP * np.sqrt(frames), 3)
+        drift = rng.normal(0, [DRIFT, DRIFT, TURN_DRIFT]) * np.sqrt(frames)
+        body = np.array([speed, 0.0, turn])
+        motion = frames * DT**2 * ((SLIP * body) ** 2 + np.square([DRIFT, DRIFT, TURN_DRIFT]))
+        for u, q in ((body * (1 + slip) + drift, pose), (body, odometry)):
+            middle = q[2] + 0.5 * u[2] * DT
+            q[0] += DT * (cos(middle) * u[0] - sin(middle) * u[1])
+            q[1] += DT * (sin(middle) * u[0] + cos(middle) * u[1])
+            q[2] += DT * u[2]
+        seen = [beacon(pose, n, (rng.normal(0, 0.05), rng.normal(0, 0.02))) for n in names_at(k)]
+        localizer.update(frame(k * DT, odometry, seen, motion))
+        yield localizer, pose
+
+
+def test_eight_beacons_at_once_for_40_s_without_a_fault():
+    rng = np.random.default_rng(1)
+    for localizer, pose in walk(rng, (0, 0, 0), 40.0, lambda _: BEACONS):
+        assert np.linalg.eigvalsh(localizer.covariance)[0] > 0
+        assert np.hypot(*(localizer.pose - pose)[:2]) < 0.15
+    assert localizer.faults == 0
+    assert not localizer.lost
+    assert np.hypot(*(localizer.pose - pose)[:2]) < 0.08
+
+
+def test_is_honest_whatever_the_heading():
+    nees = []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        start = (0.0, 0.0, pi - 0.01 + 0.02 * (seed % 2))
+        turn = 0.0 if seed < 6 else 0.4
+        names = list(BEACONS)
+        for k, (localizer, pose) in enumerate(
+            walk(rng, start, 20.0, lambda k, n=names: [n[k % 8]], turn=turn, speed=0.05)
+        ):
+            error = localizer.pose - pose
+            error[2] = wrap(error[2])
+            assert -pi < localizer.pose[2] <= pi
+            assert abs(error[2]) < 0.3
+            if k > 20:
+                nees.append(error @ np.linalg.solve(localizer.covariance, error) / 3)
+    assert 0.6 < np.mean(nees) < 1.6
+
+
+def updates(count, seed):
+    """Random odometry, gaps, noise and beacons, outliers among them, for so many frames."""
+    rng = np.random.default_rng(seed)
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    pose, time = np.zeros(3), 0.0
+    for _ in range(count):
+        time += float(rng.choice([0.06, 0.06, 0.5, 5.0]))
+        motion = 10.0 ** rng.uniform(-9, -3, 3)
+        step = rng.normal((0.01, 0.0, 0.02), np.sqrt(motion))
+        c, s = cos(pose[2]), sin(pose[2])
+        pose += [c * step[0] - s * step[1], s * step[0] + c * step[1], step[2]]
+        seen = []
+        for name in rng.choice(list(BEACONS), rng.integers(0, 4), replace=False).tolist():
+            sigma = 10.0 ** rng.uniform(-4, -0.5, 2)
+            scale = 1.0 if rng.random() > 0.02 else 100.0
+            observation = beacon(pose, name, noise=scale * rng.normal(0, sigma))
+            seen.append(replace(observation, covariance=np.diag(sigma**2)))
+        localizer.update(frame(time, pose, seen, motion))
+        covariance = localizer.covariance
+        assert np.array_equal(covariance, covariance.T)
+        assert np.linalg.eigvalsh(covariance)[0] > 0.0
+    assert localizer.faults == 0
+
+
+def test_covariance_stays_positive_definite_over_1000_random_updates():
+    updates(1000, seed=7)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)  # the limit of the fast suite is too short for it on a busy machine
+@pytest.mark.parametrize("seed", range(10))
+def test_covariance_stays_positive_definite_over_ten_times_10000_random_updates(seed):
+    updates(10_000, seed)
+
+
+def test_rotating_the_world_rotates_the_estimate():
+    def final(turn):
+        c, s = cos(turn), sin(turn)
+        R = np.array([[c, -s], [s, c]])
+        beacons = {n: tuple((R @ p).tolist()) for n, p in BEACONS.items()}
+        rng = np.random.default_rng(3)
+        localizer = Localizer(LocalizationParameters(), beacons, np.array([0, 0, turn]), P0)
+        for k in range(1, 50):
+            noise = (rng.normal(0, 0.03), rng.normal(0, 0.02))
+            seen = [beacon((0.02 * k, 0, 0), f"b{k % 8}", noise)]
+            localizer.update(frame(k * DT, (0.02 * k, 0, 0), seen))
+        return localizer.pose, localizer.covariance, R
+
+    plain, P, _ = final(0.0)
+    for turn in (0.7, 2.9, -3.1):
+        turned, Q, R = final(turn)
+        assert np.allclose(turned[:2], R @ plain[:2], atol=2e-4)
+        assert abs(wrap(turned[2] - plain[2] - turn)) < 2e-4
+        # Sigma points follow the axes of the Cholesky factor, so only nearly invariant.
+        assert np.allclose(Q[:2, :2], R @ P[:2, :2] @ R.T, rtol=1e-2, atol=1e-6)
+
+
+def test_the_order_of_beacons_in_a_frame_does_not_matter():
+    results = []
+    for order in permutations(["b0", "b2", "b5"]):
+        localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+        seen = [beacon((0.02, -0.01, 0.015), n) for n in order]
+        localizer.update(frame(0.1, (0, 0, 0), seen))
+        results.append((localizer.pose, localizer.covariance))
+    for pose, covariance in results[1:]:
+        assert np.allclose(pose, results[0][0], atol=1e-3)
+        assert np.allclose(covariance, results[0][1], atol=1e-5)
+
+
+def test_updates_of_one_frame_add_their_information():
+    """filterpy alone reuses the sigma points of the prediction and goes negative."""
+    names = ["a", "b", "c", "d"]
+    sigma = []
+    for count in (1, 2, 4):
+        beacons = {n: (3.0, 0.0) for n in names[:count]}
+        localizer = Localizer(LocalizationParameters(), beacons, np.zeros(3), P0)
+        seen = [beacon((0, 0, 0), n, place=(3.0, 0.0)) for n in beacons]
+        localizer.update(frame(0.1, (0, 0, 0), seen))
+        sigma.append(localizer.covariance[0, 0])
+    expected = [1 / (1 / 4e-4 + n / 0.05**2) for n in (1, 2, 4)]
+    assert np.allclose(sigma, expected, rtol=0.02)
+
+
+def test_a_beacon_reported_twice_counts_once():
+    results = []
+    for names in (["b0"], ["b0", "b0"]):
+        localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+        localizer.update(frame(0.1, (0, 0, 0), [beacon((0, 0, 0), n) for n in names]))
+        results.append(localizer.covariance)
+    assert np.array_equal(*results)
+
+
+def test_odometry_alone_follows_the_midpoint_rule_and_doubts_itself():
+    localizer = Localizer(LocalizationParameters(), {}, np.array([1.0, 2.0, pi / 2]), P0)
+    localizer.update(frame(0.0, (5, 5, 1.0), []))
+    before = np.trace(localizer.covariance)
+    localizer.update(frame(0.1, (5 + cos(1.0), 5 + sin(1.0), 1.0), []))
+    # The mean of an uncertain heading shortens the step by half its variance.
+    assert np.allclose(localizer.pose, [1.0, 3.0 - 2e-4, pi / 2], atol=1e-6)
+    assert np.trace(localizer.covariance) > before
+
+
+def test_an_outlier_is_ignored():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    localizer.update(frame(0.1, (0, 0, 0), [beacon((0, 0, 0), "b0", noise=(1.0, 0.5))]))
+    assert np.allclose(localizer.pose, 0, atol=1e-9)
+    assert not localizer.lost
+
+
+def test_kidnapped_is_noticed_and_recovered_from_beacons():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    truth = (1.0, -0.7, 2.0)
+    noticed = False
+    for k in range(1, 60):
+        names = [f"b{(k // 10) % 8}", f"b{(k // 10 + 1) % 8}"]
+        localizer.update(frame(k * DT, (0, 0, 0), [beacon(truth, n) for n in names]))
+        noticed |= localizer.lost
+    assert noticed
+    assert not localizer.lost
+    assert localizer.recoveries == 1
+    assert np.allclose(localizer.pose, truth, atol=0.01)
+
+
+def test_one_beacon_out_of_place_does_not_lose_the_robot():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    for k in range(1, 60):
+        seen = [moved, beacon((0, 0, 0), "b1"), beacon((0, 0, 0), "b2")]
+        localizer.update(frame(k * DT, (0, 0, 0), seen))
+        assert not localizer.lost
+    assert np.allclose(localizer.pose, 0, atol=0.02)
+
+
+def test_a_broken_filter_is_counted_and_started_again():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), -np.eye(3))
+    localizer.update(frame(0.0, (0, 0, 0), [beacon((0, 0, 0), "b0")]))
+    assert localizer.faults == 1
+    assert localizer.lost
+    for k in range(1, 4):
+        seen = [beacon((0, 0, 0), "b0"), beacon((0, 0, 0), "b2")]
+        localizer.update(frame(k * DT, (0, 0, 0), seen))
+    assert not localizer.lost
+    assert localizer.faults == 1
+
+
+def test_an_old_frame_is_refused():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    localizer.update(frame(1.0, (0, 0, 0), []))
+    with pytest.raises(ValueError, match="order of their capture"):
+        localizer.update(frame(1.0, (0, 0, 0), []))
+
+
+def test_the_shared_error_of_a_frame_is_counted_once():
+    """Four bearings with the same error of the camera's direction tell the heading no better."""
+    sigmas = {}
+    for shared in (0.0, 0.0198):
+        localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+        seen = [beacon((0, 0, 0), f"b{i}") for i in (0, 2, 4, 6)]
+        localizer.update(frame(0.1, (0, 0, 0), seen, yaw_sigma=shared))
+        sigmas[shared] = np.sqrt(localizer.covariance[2, 2])
+    prior = 0.02
+    assert sigmas[0.0] == pytest.approx((prior**-2 + 4 * 0.02**-2) ** -0.5, rel=0.1)
+    assert sigmas[0.0198] > 0.9 * (prior**-2 + 0.02**-2) ** -0.5
+
+
+def test_what_a_frame_tells_is_added_with_all_correlations():
+    """Against the linear filter in its information form, the shared error between all bearings."""
+    names, shared = ("b0", "b3", "b5"), 0.015
+    H, R = [], np.zeros((6, 6))
+    R[1::2, 1::2] = shared**2
+    for k, name in enumerate(names):
+        x, y = BEACONS[name]
+        H += [[-x / 3.0, -y / 3.0, 0.0], [y / 9.0, -x / 9.0, -1.0]]
+        R[2 * k, 2 * k], R[2 * k + 1, 2 * k + 1] = 0.05**2, 0.02**2
+    H = np.array(H)
+    expected = np.linalg.inv(np.linalg.inv(P0) + H.T @ np.linalg.solve(R, H))
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    seen = [beacon((0, 0, 0), name) for name in names]
+    localizer.update(frame(0.1, (0, 0, 0), seen, yaw_sigma=shared))
+    np.testing.assert_allclose(localizer.covariance, expected, atol=0.01 * expected.max())
+
+
+@pytest.mark.parametrize("part", ["x", "P"])
+def test_a_filter_with_a_number_that_is_none_is_started_again(part):
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    localizer.update(frame(0.1, (0, 0, 0), []))
+    getattr(localizer._filter, part)[...] = np.nan
+    localizer.update(frame(0.2, (0, 0, 0), []))
+    assert localizer.faults == 1
+    assert np.isfinite(localizer.pose).all()
+    assert np.isfinite(localizer.covariance).all()
+
+
+def test_a_moved_beacon_is_found_out_and_no_longer_misleads():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    for k in range(1, 40):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved, beacon((0, 0, 0), "b1")]))
+    assert localizer.displaced == {"b0"}
+    for k in range(40, 100):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved]))
+    assert not localizer.lost
+    assert np.hypot(*localizer.pose[:2]) < 0.05
+
+
+def test_a_moved_beacon_does_not_spoil_finding_back():
+    localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
+    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    for k in range(1, 30):
+        localizer.update(frame(k * DT, (0, 0, 0), [moved]))
+    assert localizer.lost
+    seen = [moved, beacon((0, 0, 0), "b2"), beacon((0, 0, 0), "b5")]
+    localizer.update(frame(3.0, (0, 0, 0), seen[1:]))
+    localizer.update(frame(3.1, (0, 0, 0), seen))
+    assert not localizer.lost
+    assert np.hypot(*localizer.pose[:2]) < 0.05

@@ -1,0 +1,74 @@
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+
+from navigation.angles import wrap
+from navigation.belief.place_recognition import PlaceRecognition
+from navigation.parameters.belief import RecognitionParameters
+
+LABELS = ["red", "green", "red", "blue", "green", "red"]
+PLACES = np.array([(1.5, 0.2), (0.9, 1.3), (-0.4, 1.6), (-1.4, 0.3), (-0.7, -1.2), (0.8, -1.0)])
+
+
+def recognise(observe, frame, pose, indices, *, labels=LABELS, places=PLACES, **parameters):
+    recognition = PlaceRecognition(RecognitionParameters(**parameters), 6.0)
+    seen = frame(
+        1.0, (4, 5, 6), [observe(pose, PLACES[i].tolist(), label=LABELS[i]) for i in indices]
+    )
+    recognition.remember(seen.observations, seen)
+    return recognition.locate(seen, labels, places)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_three_things_tell_where_it_is(observe, frame, seed):
+    rng = np.random.default_rng(seed)
+    pose = np.array([*rng.uniform(-1, 1, 2), rng.uniform(-pi, pi)])
+    found = recognise(observe, frame, pose.tolist(), rng.permutation(6)[:4].tolist())
+    assert np.allclose(found[:2], pose[:2], atol=1e-6)
+    assert wrap(float(found[2] - pose[2])) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_two_are_too_few(observe, frame):
+    assert recognise(observe, frame, (0, 0, 0), [0, 1]) is None
+    assert (
+        recognise(observe, frame, (0, 0, 0), range(6), labels=[], places=np.empty((0, 2))) is None
+    )
+
+
+def test_what_was_never_mapped_is_not_recognised(observe, frame):
+    assert recognise(observe, frame, (0, 0, 0), range(4), places=1.4 * PLACES) is None
+
+
+def test_the_place_may_have_changed_by_as_much_as_is_tolerated(observe, frame):
+    changed = PLACES + 0.04 * np.array([(1, 0), (-1, 0), (0, 1), (0, -1), (1, 0), (0, 1)])
+    for tolerance, known in ((0.06, True), (0.02, False)):
+        found = recognise(observe, frame, (0, 0, 0), range(6), places=changed, tolerance=tolerance)
+        assert (found is not None) == known
+
+
+def test_two_places_alike_are_not_told_apart(observe, frame):
+    angle = 2.0
+    turn = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
+    twice = np.concatenate([PLACES, PLACES @ turn + (6.0, 1.0)])
+    assert recognise(observe, frame, (0, 0, 0), range(4)) is not None
+    assert recognise(observe, frame, (0, 0, 0), range(4), labels=2 * LABELS, places=twice) is None
+
+
+def test_moved_world_moved_pose(observe, frame):
+    angle = -2.3
+    c, s = cos(angle), sin(angle)
+    moved = PLACES @ np.array([[c, s], [-s, c]]) + (0.7, -2.0)
+    plain = recognise(observe, frame, (0.3, 0.1, 0.4), range(5))
+    there = recognise(observe, frame, (0.3, 0.1, 0.4), range(5), places=moved)
+    x, y = plain[:2].tolist()
+    assert np.allclose(there[:2], [c * x - s * y + 0.7, s * x + c * y - 2.0])
+    assert wrap(float(there[2] - plain[2] - angle)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_what_was_seen_long_ago_counts_no_more(observe, frame):
+    recognition = PlaceRecognition(RecognitionParameters(), 6.0)
+    for k, i in enumerate((0, 1, 3)):
+        seen = frame(5.0 * k, (0, 0, 0), [observe((0, 0, 0), PLACES[i].tolist(), label=LABELS[i])])
+        recognition.remember(seen.observations, seen)
+    assert recognition.locate(seen, LABELS, PLACES) is None

@@ -1,0 +1,77 @@
+from dataclasses import replace
+from math import cos, sin
+
+import numpy as np
+import pytest
+
+from navigation.belief.landmark import to_world
+from navigation.belief.sightings import in_world
+
+
+def convert(observations, pose, P, **changes):
+    options = {"pose_sigma_limit": 10.0} | changes
+    return in_world(observations, np.array(pose), P, **options)
+
+
+def test_covariance_is_the_first_order_propagation(observe):
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        pose = rng.uniform(-3, 3, 3)
+        place = tuple((pose[:2] + rng.uniform(0.5, 2, 2)).tolist())
+        A = rng.standard_normal((3, 3)) * 0.02
+        P = A @ A.T
+        o = observe(pose.tolist(), place, sigma=(0.05, 0.02))
+        seen = convert([o], pose, P)
+        assert np.allclose(seen.positions[0], place)
+
+        def f(v, o=o):
+            return np.array(to_world(v[:3], o.distance + v[3], o.bearing + v[4]))
+
+        v, h = np.concatenate([pose, [0.0, 0.0]]), 1e-6
+        J = np.stack([(f(v + h * e) - f(v - h * e)) / (2 * h) for e in np.eye(5)], axis=1)
+        whole = np.zeros((5, 5))
+        whole[:3, :3], whole[3:, 3:] = P, o.covariance
+        assert np.allclose(seen.covariances[0], J @ whole @ J.T, atol=1e-8)
+
+
+def test_a_radius_known_otherwise_is_conditioning_on_it(observe):
+    """By sampling: place and radius are drawn together, and those with that radius chosen."""
+    rng = np.random.default_rng(1)
+    pose, place = (0.5, -0.2, 0.7), (1.1, 0.4)
+    o = observe(pose, place, sigma=(0.02, 0.02), radius=0.085, radius_sigma=0.02)
+    slope = np.array([0.4, -0.7])
+    joint = np.zeros((3, 3))
+    joint[:2, :2] = o.covariance + 0.02**2 * np.outer(slope, slope)
+    joint[:2, 2] = joint[2, :2] = slope * 0.02**2
+    joint[2, 2] = 0.02**2
+    seen = convert([replace(o, covariance=joint[:2, :2], by_radius=slope)], pose, np.zeros((3, 3)))
+    drawn = rng.multivariate_normal([o.distance, o.bearing, o.radius], joint, 400_000)
+    chosen = drawn[np.abs(drawn[:, 2] - 0.06) < 5e-4]
+    points = np.array([to_world(np.array(pose), d, b) for d, b, _ in chosen])
+    moved, covariance = seen.of_radius(0, 0.06, 0.0)
+    assert moved == pytest.approx(points.mean(axis=0), abs=2e-3)
+    assert covariance == pytest.approx(np.cov(points.T), abs=5e-5)
+    same, whole = seen.of_radius(0, o.radius, o.radius_sigma)
+    assert np.array_equal(same, seen.positions[0])
+    assert whole == pytest.approx(seen.covariances[0])
+
+
+def test_a_lost_pose_does_not_drown_the_tracks(observe):
+    pose = (0.0, 0.0, 0.4)
+    P = np.diag([1.0, 0.5, 1.0])
+    limited = convert([observe(pose, (1.0, 0.2))], pose, P, pose_sigma_limit=0.1)
+    same = convert([observe(pose, (1.0, 0.2))], pose, 0.01 * P)
+    assert np.allclose(limited.covariances, same.covariances)
+
+
+def test_beacons_are_no_obstacles(observe):
+    seen = convert([observe((0, 0, 0), (1.0, 0.0), kind="beacon")], (0.0, 0.0, 0.0), np.eye(3))
+    assert seen.observations == ()
+    assert seen.positions.shape == (0, 2)
+    assert seen.covariances.shape == (0, 2, 2)
+
+
+def test_direction_adds_up(observe):
+    pose = (1.0, -1.0, 2.0)
+    seen = convert([observe(pose, (1.0 + cos(0.3), -1.0 + sin(0.3)))], pose, np.zeros((3, 3)))
+    assert np.allclose(seen.positions[0], [1.0 + cos(0.3), -1.0 + sin(0.3)])

@@ -1,0 +1,85 @@
+from math import atan2, cos, pi, sin
+
+import numpy as np
+import pytest
+
+from navigation.belief.visibility import Viewpoint
+
+
+@pytest.fixture
+def ahead(view):
+    return Viewpoint.of(view(pan=0.0, tilt=-0.5), np.zeros(3), 2.5)
+
+
+def test_contains_agrees_with_projection(view):
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        camera = view(pan=rng.uniform(-1.5, 1.5), tilt=rng.uniform(-1.0, 0.2))
+        pose = rng.uniform(-3, 3, 3)
+        points = pose[:2] + rng.uniform(-3, 3, (200, 2))
+        heading = pose[2]
+        c, s = cos(heading), sin(heading)
+        in_R = np.column_stack([(points - pose[:2]) @ [[c, -s], [s, c]], np.zeros(200)])
+        rays = (in_R - camera.position) @ camera.rotation
+        image = (
+            (rays[:, 2] > 0)
+            & (np.abs(np.arctan2(rays[:, 0], rays[:, 2])) <= camera.horizontal_fov / 2)
+            & (np.abs(np.arctan2(rays[:, 1], rays[:, 2])) <= camera.vertical_fov / 2)
+        )
+        near = np.hypot(*(points - pose[:2]).T) <= 2.5
+        seen = Viewpoint.of(camera, pose, 2.5).contains(points)
+        assert np.array_equal(seen, image & near)
+
+
+def test_a_margin_only_takes_away(ahead):
+    points = np.random.default_rng(1).uniform(-3, 3, (500, 2))
+    whole, inner = ahead.contains(points), ahead.contains(points, margin=0.1)
+    assert not (inner & ~whole).any()
+    assert inner.sum() < whole.sum()
+
+
+def test_height_matters(ahead):
+    """What is too near on the floor is seen higher up, and far things the other way round."""
+    near = np.array([[0.1, 0.0]])
+    assert not ahead.contains(near).any()
+    assert ahead.contains(near, height=0.42).any()
+
+
+def test_a_disc_hides_what_is_behind_it_and_nothing_else(ahead):
+    centre, radius = np.array([[1.0, 0.0]]), np.array([0.1])
+    angles = np.linspace(-0.3, 0.3, 61)
+    behind = 2.0 * np.column_stack([np.cos(angles), np.sin(angles)])
+    half = atan2(radius[0], np.sqrt(1.0 - radius[0] ** 2))
+    assert np.array_equal(ahead.hidden(behind, centre, radius), np.abs(angles) < half)
+    assert not ahead.hidden(0.4 * behind, centre, radius).any()
+    assert not ahead.hidden(centre, centre, radius).any()
+    assert not ahead.hidden(-behind, centre, radius).any()
+
+
+def test_nothing_hides_without_discs(ahead):
+    assert not ahead.hidden(np.ones((3, 2)), np.empty((0, 2)), np.empty(0)).any()
+
+
+def test_visibility_moves_with_the_robot(view):
+    rng = np.random.default_rng(2)
+    points, discs, radii = rng.uniform(-2, 2, (300, 2)), rng.uniform(-2, 2, (4, 2)), np.full(4, 0.1)
+
+    def expected(x, y, turn):
+        c, s = cos(turn), sin(turn)
+        R = np.array([[c, -s], [s, c]])
+        viewpoint = Viewpoint.of(view(pan=0.4), np.array([x, y, turn]), 2.5)
+        return viewpoint.expects(
+            points @ R.T + (x, y), discs @ R.T + (x, y), radii, margin=0.05, slack=0.05
+        )
+
+    plain = expected(0.0, 0.0, 0.0)
+    assert plain.any()
+    assert np.array_equal(expected(1.0, -2.0, pi / 3), plain)
+
+
+def test_an_all_round_camera_contains_everything_in_range(view):
+    rng = np.random.default_rng(2)
+    points = rng.uniform(-3.0, 3.0, (50, 2))
+    wide = view(0.4, -0.3, hfov=2.0 * np.pi, vfov=np.pi)
+    seen = Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5).contains(points, margin=0.1)
+    np.testing.assert_array_equal(seen, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)

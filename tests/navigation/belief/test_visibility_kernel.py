@@ -1,0 +1,94 @@
+"""Compiled against plain Python bit for bit, and against formulas over whole arrays."""
+
+from math import tan
+
+import numpy as np
+import pytest
+
+from navigation.belief import visibility_kernel as kernel
+from navigation.belief.visibility import Viewpoint
+
+
+@pytest.fixture
+def scene(view):
+    """Points, viewpoint, its camera array, discs."""
+
+    def drawn(seed, *, wide=False):
+        rng = np.random.default_rng(seed)
+        camera = view(pan=rng.uniform(-1, 1), tilt=-0.4, hfov=7.0 if wide else 1.5)
+        viewpoint = Viewpoint.of(camera, rng.uniform(-1, 1, 3), 2.5)
+        points = rng.uniform(-3, 3, (200, 2))
+        centres, radii = rng.uniform(-2, 2, (20, 2)), rng.uniform(0.05, 0.2, 20)
+        return points, viewpoint, viewpoint._camera(0.1, 0.05), centres, radii
+
+    return drawn
+
+
+def contained(points, v, height, margin):
+    d = np.column_stack([points - v.position[:2], np.full(len(points), height - v.position[2])])
+    near = np.hypot(d[:, 0], d[:, 1]) <= v.range
+    right, down, forward = (d @ v.rotation).T
+    inside = np.abs(right) <= tan(v.horizontal_half - margin) * forward
+    inside &= np.abs(down) <= tan(v.vertical_half - margin) * forward
+    return near & inside & (forward > 0.0)
+
+
+def hidden(points, v, centres, radii, slack):
+    p, a = points[:, None] - v.position[:2], centres - v.position[:2]
+    along = np.sum(p * a, axis=2)
+    across = p[..., 0] * a[:, 1] - p[..., 1] * a[:, 0]
+    nearer = along > np.sum(a * a, axis=1)
+    return (nearer & (np.abs(across) < (radii + slack) * np.hypot(*p.T).T)).any(axis=1)
+
+
+@pytest.mark.parametrize("wide", [False, True])
+def test_compiled_and_plain_agree(scene, wide):
+    points, v, camera, centres, radii = scene(0, wide=wide)
+    for function, arguments in (
+        (kernel.contains, (points, v.position, camera)),
+        (kernel.hidden, (points, v.position, centres, radii, 0.05)),
+        (kernel.expects, (points, v.position, camera, centres, radii, 0.05)),
+        (kernel.searched, (np.array([-9.0, -8.0]), 0.15, 16, v.position, camera, centres, radii)),
+    ):
+        assert np.array_equal(function(*arguments), function.py_func(*arguments))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_points_agree_with_the_formulas_over_arrays(scene, seed):
+    points, v, camera, centres, radii = scene(seed)
+    inside, blocked = contained(points, v, 0.1, 0.05), hidden(points, v, centres, radii, 0.03)
+    assert np.array_equal(kernel.contains(points, v.position, camera), inside)
+    assert np.array_equal(kernel.hidden(points, v.position, centres, radii, 0.03), blocked)
+    clear = kernel.expects(points, v.position, camera, centres, radii, 0.03)
+    assert np.array_equal(clear, inside & ~blocked)
+    assert 0 < clear.sum() < inside.sum()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_cells_agree_with_the_formulas_over_arrays(scene, seed):
+    _, v, _, centres, radii = scene(seed)
+    corner, cell, count = (-20, -17), 0.1, 40
+    marks = v.searched(corner, cell, count, centres, radii)
+    x, y = (cell * (first + np.arange(count) + 0.5) for first in corner)
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    apart = np.hypot(*(points[:, None] - centres).transpose(2, 0, 1))
+    on = (apart < radii + 0.5 * cell).any(axis=1)
+    seen = np.where(hidden(points, v, centres, radii, 0.0), kernel.UNSEEN, kernel.FREE)
+    wanted = contained(points, v, 0.0, 0.0) * np.where(on, kernel.COVERED, seen)
+    assert np.array_equal(marks.ravel(), wanted)
+    assert set(wanted.tolist()) == {kernel.UNSEEN, kernel.FREE, kernel.COVERED}
+
+
+def test_a_look_is_written_alike_by_compiled_and_plain_code():
+    rng = np.random.default_rng(6)
+    marks = rng.integers(0, 3, (20, 20)).astype(np.uint8)
+    maps = []
+    for write in (kernel.take_in, kernel.take_in.py_func):
+        seen_at, log_odds = np.zeros((20, 20)), np.linspace(-4, 4, 400).reshape(20, 20)
+        write(marks, seen_at, log_odds, 3.0, (-0.4, 1.0, 4.0))
+        maps.append((seen_at, log_odds))
+    assert np.array_equal(maps[0], maps[1])
+    change = np.array([0.0, -0.4, 1.0])[marks]
+    before = np.linspace(-4, 4, 400).reshape(20, 20)
+    assert np.array_equal(maps[0][1], np.clip(before + change, -4.0, 4.0))
+    assert np.array_equal(maps[0][0], 3.0 * (marks > 0))

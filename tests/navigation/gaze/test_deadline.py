@@ -1,0 +1,164 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from navigation.belief.belief import Motion
+from navigation.gaze.deadline import (
+    deadline_votes,
+    glance_vote,
+    map_deadlines,
+    obstacle_deadlines,
+    self_urgency,
+)
+from navigation.gaze.scene import gaze_scene
+from navigation.parameters.gaze import DeadlineParameters
+from navigation.parameters.navigation import NavigationParameters
+from navigation.partial_evaluation import SamplePoints
+
+P = NavigationParameters.extended()
+SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)
+
+
+def votes(b, way=0.0):
+    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
+    return obstacle_deadlines(scene, b, way, 0.2, P)
+
+
+def value(b, way=0.0):
+    (v,) = votes(b, way).value
+    return v
+
+
+def test_a_vote_grows_with_age_up_to_its_limit(belief, track):
+    values = [value(belief([track((1, 0), (-0.05, 0), age=a)])) for a in (0, 0.5, 1, 2, 9)]
+    assert np.all(np.diff(values) >= 0)
+    assert values[0] < 0.1
+    assert values[-1] == pytest.approx(P.gaze.deadline.urgency_limit**1.5)
+
+
+def test_it_is_1_at_half_the_worst_case_time_to_contact(belief, track):
+    gap = 1.0 - 0.08 - P.univector.s_robot - 0.05
+    contact = gap / (0.05 + 0.5 * 0.01 + 0.2)
+    age = 0.5 * contact - 0.1
+    assert value(belief([track((1, 0), (-0.05, 0), age=age)])) == pytest.approx(1.0)
+
+
+def test_near_before_far_and_on_the_way_before_beside(belief, track):
+    def v(place, way=0.0):
+        return value(belief([track(place, (-0.05, 0), age=0.3)]), way)
+
+    assert v((0.6, 0)) > v((1.2, 0))
+    assert v((1, 0)) > v((0, 1))
+    assert v((0, 1), way=np.pi / 2) == pytest.approx(v((1, 0)))
+
+
+def test_undecided_before_mover_before_static(belief, track):
+    v = [value(belief([track((1, 0), (0.0, 0.05), m, age=0.3)])) for m in Motion]
+    by = dict(zip(Motion, v, strict=True))
+    assert by[Motion.UNKNOWN] > by[Motion.MOVING] > by[Motion.STATIC]
+
+
+def test_what_is_new_and_undecided_is_looked_at_until_it_was_seen_often_enough(belief, track):
+    few, enough = P.gaze.deadline.fresh_hits - 1, P.gaze.deadline.fresh_hits
+
+    def v(motion, hits):
+        return value(belief([track((1.5, 0), (0.0, 0.05), motion, age=0.1, hits=hits)]))
+
+    assert v(Motion.UNKNOWN, few) > v(Motion.UNKNOWN, enough)
+    for known in (Motion.MOVING, Motion.STATIC):
+        assert v(known, few) == v(known, enough)
+
+
+def test_beyond_the_range_of_attention_only_what_is_new_votes(belief, track):
+    far = P.evaluation.attention_range + 0.5
+    hits = (P.gaze.deadline.fresh_hits - 1, P.gaze.deadline.fresh_hits)
+    new, known = (belief([track((far, 0), (0, 0), Motion.UNKNOWN, hits=n)]) for n in hits)
+    assert len(votes(new).value) == 1
+    assert len(votes(known).value) == 0
+
+
+def test_a_lost_mover_votes_where_it_may_be(belief, track):
+    cloud = ([[1, 0.5], [1, -0.5], [-3, 0]], np.zeros((3, 2)), [0.5, 0.3, 0.2])
+    v = votes(belief([track((1, 0), (0.1, 0), age=3.0, particles=cloud)]))
+    assert v.pan == pytest.approx([np.arctan2(0.5, 1), -np.arctan2(0.5, 1)])
+    assert v.value[0] / v.value[1] == pytest.approx(0.5 / 0.3)
+
+
+def test_votes_are_not_clipped_to_the_pan_stop(belief, track):
+    angle = np.radians(115)
+    v = votes(belief([track((np.cos(angle), np.sin(angle)), (0.0, -0.1))]))
+    assert v.pan == pytest.approx([angle])
+    assert len(votes(belief([track((-1, 0.1), (0.1, 0))])).pan) == 0
+
+
+def test_fresh_ground_does_not_vote_and_old_ground_does(belief):
+    b = belief(age=lambda x, y: 3.0 if y > 0 else 0.0)
+    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
+    v = map_deadlines(scene, b, 0.0, 0.2, P)
+    assert np.all(v.value[v.pan < -0.01] == 0.0)
+    assert np.all(v.value[v.pan > 0.01] > 0.0)
+    never = belief(age=lambda x, y: np.inf)
+    assert np.isfinite(map_deadlines(scene, never, 0.0, 0.2, P).value).all()
+
+
+def test_ground_votes_on_its_rings_as_far_round_as_the_gaze_sees(belief):
+    p = replace(
+        P, gaze=replace(P.gaze, deadline=DeadlineParameters(map_rings=(2.0, 0.4), map_rays=5))
+    )
+    b = belief()
+    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), p)
+    v = map_deadlines(scene, b, 0.0, 0.2, p)
+    reach = P.gaze.pan_limit + P.gaze.box_share * b.view.horizontal_fov
+    assert v.pan == pytest.approx(np.tile(np.linspace(-reach, reach, 5), 2))
+    assert scene.camera_height / np.tan(-v.tilt) == pytest.approx(np.repeat([2.0, 0.4], 5))
+
+
+def test_mirror_symmetry(belief, track):
+    left = votes(belief([track((1, 0.4), (-0.1, 0.05), age=0.5)]), 0.3)
+    right = votes(belief([track((1, -0.4), (-0.1, -0.05), age=0.5)]), -0.3)
+    assert left.pan == pytest.approx(-right.pan)
+    assert left.value == pytest.approx(right.value)
+
+
+def test_self_urgency_hears_position_and_heading(belief):
+    assert self_urgency(belief(sigma=0.025, turn_sigma=0.0), P) == pytest.approx(0.5)
+    assert self_urgency(belief(sigma=0.0, turn_sigma=0.03), P) == pytest.approx(0.5)
+    assert self_urgency(belief(sigma=1.0), P) == 1.0
+
+
+def test_a_glance_is_voted_for_once_the_gaze_reaches_it(belief):
+    reach = P.gaze.pan_limit + P.gaze.box_share * belief().view.horizontal_fov
+    for heading in (0.0, 2.0, -3.0):
+        b = belief(pose=(1.0, 0.0, heading))
+        for bearing in np.linspace(-3.1, 3.1, 41):
+            votes = glance_vote(b, heading + bearing, P.gaze)
+            assert len(votes) == (abs(bearing) <= reach)
+            for vote in votes:
+                assert vote.value.tolist() == [P.gaze.deadline.glance_weight]
+                assert abs(vote.pan[0] - bearing) <= P.gaze.box_share * b.view.horizontal_fov + 1e-9
+
+
+@pytest.mark.parametrize("turn", [0.8, -0.8])
+def test_a_body_that_turns_votes_for_what_comes_into_reach(belief, track, turn):
+    def pans(bearing, rate):
+        place = (np.cos(bearing), np.sin(bearing))
+        b = belief([track(place, (0.05, 0.0), age=3.0)], age=lambda x, y: 0.0)
+        scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
+        v = deadline_votes(scene, b, 0.0, 0.2, P, turn=rate)
+        return v.pan[v.value > P.gaze.deadline.way_weight]
+
+    reach = P.gaze.pan_limit + P.gaze.box_share * belief().view.horizontal_fov
+    behind = np.copysign(reach + 0.1, turn)
+    assert len(pans(behind, 0.0)) == 0
+    assert len(pans(-behind, turn)) == 0
+    (pan,) = pans(behind, turn)
+    assert abs(pan) < abs(behind)
+
+
+def test_without_a_glance_nobody_votes_for_one(belief):
+    scene = gaze_scene(belief(), None, SAMPLES, np.zeros((0, 2)), P)
+    without, with_one = (
+        deadline_votes(scene, belief(), 0.0, 0.2, P, glance=g) for g in (None, 2.0)
+    )
+    assert len(with_one.value) == len(without.value) + 1

@@ -1,0 +1,142 @@
+from math import pi
+
+import numpy as np
+import pytest
+
+from navigation.gaze.gaze_map import GazeGrid, Votes
+
+STEP = pi / 36
+
+
+def grid(half_pan=0.75, half_tilt=0.6):
+    return GazeGrid(
+        pan_limit=pi / 2,
+        tilt_min=-pi / 3,
+        tilt_max=pi / 9,
+        step=STEP,
+        half_pan=half_pan,
+        half_tilt=half_tilt,
+    )
+
+
+def random_votes(rng, n):
+    return Votes(rng.uniform(-1.5, 1.5, n), rng.uniform(-1, 0.3, n), rng.uniform(0, 1, n) / n)
+
+
+def test_the_grid_covers_the_head():
+    g = grid()
+    assert (len(g.tilt), len(g.pan)) == (17, 37)
+    assert g.pan[0] == pytest.approx(-pi / 2)
+    assert g.tilt[-1] == pytest.approx(pi / 9)
+
+
+def test_a_vote_counts_in_its_box_only():
+    g = grid()
+    pan, tilt = g.pan[20], g.tilt[8]
+    region = g.region(Votes.one(pan, tilt, 0.7))[0]
+    inside = (np.abs(g.pan - pan) <= 0.75)[None, :] & (np.abs(g.tilt - tilt) <= 0.6)[:, None]
+    assert region[8, 20] == 0.7
+    assert np.array_equal(region > 0, inside)
+
+
+def test_moving_a_candidate_moves_its_box():
+    g = grid(0.4, 0.3)
+    one = g.region(Votes.one(g.pan[15], g.tilt[8], 1.0))[0]
+    other = g.region(Votes.one(g.pan[16], g.tilt[9], 1.0))[0]
+    assert np.array_equal(np.roll(one, (1, 1), (0, 1)), other)
+
+
+def test_the_product_equals_the_sum_of_regions_in_any_order():
+    rng = np.random.default_rng(0)
+    g, votes = grid(), random_votes(rng, 40)
+    gm = g.gaze_map(votes)
+    assert gm == pytest.approx(g.region(votes).sum(axis=0))
+    order = rng.permutation(40)
+    shuffled = Votes(votes.pan[order], votes.tilt[order], votes.value[order])
+    assert g.gaze_map(shuffled) == pytest.approx(gm)
+    assert 0.0 <= gm.min() <= gm.max() <= 1.0
+
+
+def test_one_candidate_is_looked_at():
+    g = grid(0.4, 0.3)
+    rng = np.random.default_rng(1)
+    for pan, tilt in zip(rng.uniform(-1.0, 1.0, 50), rng.uniform(-0.7, 0.0, 50), strict=True):
+        p, t = g.highest_centre(g.gaze_map(Votes.one(pan, tilt, 1.0)), 0.0, 0.0)
+        assert abs(p - pan) <= STEP
+        assert abs(t - tilt) <= STEP
+
+
+def test_of_equal_plateaus_the_nearer_wins_and_stays():
+    g = grid(0.3, 0.3)
+    votes = Votes(np.array([-1.0, 1.0]), np.array([-0.4, -0.4]), np.ones(2))
+    gm = g.gaze_map(votes)
+    pan, tilt = g.highest_centre(gm, -0.2, -0.4)
+    assert pan < 0.0
+    for _ in range(100):
+        assert g.highest_centre(gm, pan, tilt) == (pan, tilt)
+    assert g.highest_centre(gm, 0.2, -0.4)[0] > 0.0
+
+
+def test_scaling_all_weights_changes_nothing():
+    rng = np.random.default_rng(2)
+    g = grid()
+    for _ in range(20):
+        votes = random_votes(rng, 12)
+        scaled = Votes(votes.pan, votes.tilt, 7.0 * votes.value)
+        one = g.highest_centre(g.gaze_map(votes), 0.1, -0.3)
+        assert one == g.highest_centre(g.gaze_map(scaled), 0.1, -0.3)
+
+
+def test_nothing_to_see_keeps_the_gaze():
+    g = grid()
+    assert g.highest_centre(np.zeros((17, 37)), 0.33, -0.2) == (0.33, -0.2)
+
+
+def test_a_hollow_plateau_gives_one_of_its_members():
+    g = grid()
+    gm = np.zeros((17, 37))
+    gm[4:9, 10:15] = 1.0
+    gm[5:8, 11:14] = 0.5
+    pan, tilt = g.highest_centre(gm, 0.0, 0.0)
+    assert g.value_at(gm, pan, tilt) == 1.0
+
+
+def test_the_largest_plateau_wins_over_the_nearest():
+    g = grid()
+    gm = np.zeros((17, 37))
+    gm[4:9, 2:7] = 1.0
+    gm[8, 18] = 1.0
+    assert g.highest_centre(gm, 0.0, g.tilt[8])[0] == pytest.approx(g.pan[4])
+
+
+def test_the_value_is_that_of_the_nearest_cell_also_outside_the_grid():
+    g = grid()
+    gm = np.arange(17.0 * 37.0).reshape(17, 37)
+    rng = np.random.default_rng(3)
+    for pan, tilt in zip(rng.uniform(-2, 2, 100), rng.uniform(-1.5, 0.8, 100), strict=True):
+        row, column = np.argmin(np.abs(g.tilt - tilt)), np.argmin(np.abs(g.pan - pan))
+        assert g.value_at(gm, pan, tilt) == gm[row, column]
+
+
+def test_of_plateaus_equally_far_the_smaller_pan_wins():
+    g = grid()
+    gm = np.zeros((17, 37))
+    gm[8, [10, 26]] = 1.0
+    assert g.highest_centre(gm, 0.0, g.tilt[8]) == (g.pan[10], g.tilt[8])
+
+
+def test_a_bent_plateau_gives_its_member_nearest_the_centroid():
+    g = grid()
+    gm = np.zeros((17, 37))
+    gm[4:9, 10] = gm[8, 10:17] = 1.0  # centroid (7.1, 11.9), not of the plateau
+    assert g.highest_centre(gm, 0.0, 0.0) == (g.pan[12], g.tilt[8])
+
+
+def test_no_votes_ask_for_nothing():
+    nothing = Votes.join([])
+    assert len(nothing.pan) == len(nothing.tilt) == len(nothing.value) == 0
+    assert not grid().gaze_map(nothing).any()
+    joined = Votes.join([Votes.one(0.1, -0.2, 0.3), nothing, Votes.one(0.4, -0.5, 0.6)])
+    assert joined.pan.tolist() == [0.1, 0.4]
+    assert joined.tilt.tolist() == [-0.2, -0.5]
+    assert joined.value.tolist() == [0.3, 0.6]

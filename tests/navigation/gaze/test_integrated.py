@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+
+from navigation.gaze.integrated import integrated_votes
+from navigation.gaze.planner import GazePlanner
+from navigation.gaze.scene import gaze_scene
+from navigation.parameters.navigation import NavigationParameters
+from navigation.partial_evaluation import SamplePoints
+
+PAPER, EXTENDED = NavigationParameters.paper(), NavigationParameters.extended()
+SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)
+NO_BEACONS = np.zeros((0, 2))
+
+
+def votes(b, t, p=PAPER, beacons=NO_BEACONS):
+    return integrated_votes(gaze_scene(b, None, SAMPLES, beacons, p), b, t, p)
+
+
+def test_the_printed_map_stays_within_0_and_1(belief, task, track, limits):
+    rng = np.random.default_rng(0)
+    gaze = GazePlanner(PAPER, limits, {"a/b": (2.5, 0.5)}, 1.5, 1.22)
+    for _ in range(10):
+        tracks = [
+            track(c, v, sigma=0.2, id=i)
+            for i, (c, v) in enumerate(
+                zip(rng.uniform(-2, 2, (9, 2)), rng.normal(0, 0.1, (9, 2)), strict=True)
+            )
+        ]
+        b = belief(tracks, sigma=0.2, confidence=lambda x, y: 0.0)
+        gm = gaze.grid.gaze_map(votes(b, task()))
+        assert gm.min() >= 0.0
+        assert gm.max() <= 1.0 + 1e-12
+
+
+def test_no_obstacles_leave_the_way_and_the_map(belief, task):
+    v = votes(belief(sigma=0.0), task((2.0, 2.0)))
+    assert v.pan == pytest.approx([np.pi / 4])
+    assert v.value == pytest.approx([PAPER.gaze.w_way])
+    v = votes(belief(sigma=0.0, confidence=lambda x, y: float(y < 0.0)), task())
+    assert v.pan[0] > 0.3
+    assert v.value[0] == pytest.approx(PAPER.gaze.w_lm)
+
+
+def test_stale_on_both_sides_looks_ahead_in_the_paper_but_aside_in_extended(belief, task):
+    b = belief(sigma=0.0, confidence=lambda x, y: float(abs(y) < 0.5))
+    assert abs(votes(b, task()).pan[0]) < 0.05
+    v = votes(b, task(), EXTENDED)
+    sides = v.pan[:-1]
+    assert np.abs(sides).min() > 0.3
+    assert v.value[:-1].sum() <= EXTENDED.gaze.w_lm + 1e-12
+
+
+def test_mirrored_ground_mirrors_the_candidate(belief, task):
+    left = votes(belief(sigma=0.0, confidence=lambda x, y: float(y + 0.3 * x > 0.2)), task())
+    right = votes(belief(sigma=0.0, confidence=lambda x, y: float(-y + 0.3 * x > 0.2)), task())
+    assert left.pan[0] == pytest.approx(-right.pan[0])
+
+
+def test_printed_votes_of_obstacles_are_a_mean_and_extended_a_sum(belief, task, track):
+    places = [(0.6, 0.1 * i) for i in range(4)]
+    tracks = [track(x, (-0.1, 0.0), sigma=0.2, id=i) for i, x in enumerate(places)]
+    b = belief(tracks, sigma=0.0)
+    seen = slice(-4, None)
+    paper = votes(b, task())
+    assert paper.value[1:5] == pytest.approx(PAPER.gaze.w_ob / 4)
+    assert votes(b, task(), EXTENDED).value[seen] == pytest.approx(EXTENDED.gaze.w_ob)
+
+
+def test_beacons_share_the_vote_of_self_localization(belief, task):
+    b = belief(sigma=0.2)
+    v = votes(b, task(), EXTENDED, np.array([[2.0, 0.5], [2.0, -0.5]]))
+    assert v.value[-2:] == pytest.approx(EXTENDED.gaze.w_sf / 2)
+    assert v.tilt[-2:] == pytest.approx(0.0)
+
+
+def test_what_the_head_cannot_reach_does_not_vote(belief, task, track):
+    behind = track((-1.0, 0.05), (0.3, 0.0), sigma=0.2)
+    assert len(votes(belief([behind], sigma=0.0), task()).pan) == 1
+
+
+def test_obstacles_and_beacons_together_do_not_exceed_one(belief, task, track, view, limits):
+    """Everything at its largest and in one line of sight."""
+    gaze = GazePlanner(PAPER, limits, {}, 1.6, 2.0)
+    mover = track((2.2, 0.0), (-0.2, 0.0), sigma=1.0)
+    b = belief([mover], sigma=0.2, confidence=lambda x, y: 0.0, camera=view(1.57, -0.44))
+    v = votes(b, task(), beacons=np.array([[4.0, 0.0]]))
+    assert v.value.sum() == pytest.approx(1.0)
+    assert gaze.grid.gaze_map(v).max() == pytest.approx(1.0)

@@ -1,0 +1,106 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from navigation.gaze.planner import GazePlanner
+from navigation.parameters.navigation import NavigationParameters
+
+BEACONS = {"cyan/yellow": (2.9, 0.5), "yellow/cyan": (-2.9, 0.0)}
+EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
+
+
+def planner(limits, p=EXTENDED, mode=None):
+    if mode is not None:
+        p = replace(p, gaze=replace(p.gaze, mode=mode))
+    return GazePlanner(p, limits, BEACONS, 1.5, 1.22)
+
+
+@pytest.mark.parametrize("mode", ["deadline", "urgency", "integrated"])
+def test_an_urgent_obstacle_is_looked_at(mode, belief, task, track, limits):
+    side = track((0.3, 0.6), (-0.05, -0.1), sigma=0.08, age=1.0)
+    decision = planner(limits, mode=mode).choose(belief([side]), task(), None)
+    assert abs(decision.pan - np.arctan2(0.6, 0.3)) < 0.7
+    assert decision.pan > 0.3
+    assert decision.gaze_map.max() > 0.0
+    assert 0.0 <= decision.psi_ob <= 1.0
+
+
+def test_a_lost_mover_beside_is_looked_for(belief, task, track, limits):
+    cloud = ([[0.0, -0.8], [0.1, -0.9]], np.zeros((2, 2)), [0.5, 0.5])
+    lost = track((0, -0.8), (0.1, 0), age=2.0, particles=cloud)
+    assert planner(limits).choose(belief([lost]), task(), None).pan < -0.6
+
+
+def test_the_gaze_stays_within_the_limits_of_the_head(belief, task, track, limits):
+    g = EXTENDED.gaze
+    rng = np.random.default_rng(0)
+    for k in range(30):
+        tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (6, 2))]
+        decision = planner(limits).choose(belief(tracks, time=float(k)), task(), None)
+        assert abs(decision.pan) <= g.pan_limit + 1e-9
+        assert g.tilt_min - 1e-9 <= decision.tilt <= g.tilt_max + 1e-9
+
+
+def test_it_is_not_decided_again_before_arrival(belief, task, track, limits, view):
+    gaze = planner(limits)
+    left, right = track((0.3, 0.6), (-0.1, 0), age=1.0), track((0.3, -0.6), (-0.1, 0), age=1.0)
+    first = gaze.choose(belief([left]), task(), None)
+    on_the_way = gaze.choose(belief([right], time=0.06), task(), None)
+    assert on_the_way is first
+    there = view(first.pan, first.tilt)
+    gaze.choose(belief([right], time=0.12, camera=there), task(), None)
+    later = gaze.choose(belief([right], time=0.24, camera=there), task(), None)
+    assert later.pan < 0.0 < first.pan
+
+
+def test_equal_claims_do_not_make_it_chatter(belief, task, track, limits, view):
+    gaze = planner(limits)
+    both = [track((0.0, y), (-0.05, 0), age=1.0) for y in (0.7, -0.7)]
+    first = gaze.choose(belief(both), task(), None)
+    for k in range(1, 100):
+        camera = view(first.pan, first.tilt)
+        assert (
+            gaze.choose(belief(both, time=0.12 * k, camera=camera), task(), None).pan == first.pan
+        )
+
+
+def test_fixed_and_sweep_do_not_listen(belief, task, track, limits):
+    side = belief([track((0.3, 0.6), (-0.1, 0), age=1.0)])
+    assert planner(limits, mode="fixed").choose(side, task(), None).pan == 0.0
+    sweep = planner(limits, mode="sweep")
+    pans = [
+        sweep.choose(belief([track((0.3, 0.6))], time=0.06 * k), task(), None).pan
+        for k in range(1, 70)
+    ]
+    amplitude = EXTENDED.gaze.sweep_amplitude
+    assert max(pans) == pytest.approx(amplitude, rel=0.01)
+    assert min(pans) == pytest.approx(-amplitude, rel=0.01)
+
+
+def test_a_lost_robot_searches(belief, task, limits):
+    gaze = planner(limits)
+    pans = [gaze.choose(belief(lost=True, time=0.06 * k), task(), None).pan for k in range(70)]
+    assert max(pans) > 1.0
+    assert min(pans) < -1.0
+
+
+@pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
+def test_an_uncertain_robot_raises_its_gaze_to_a_beacon(p, belief, task, limits):
+    sure = planner(limits, p).choose(belief(sigma=0.0, turn_sigma=0.0), task(), None)
+    unsure = planner(limits, p).choose(belief(sigma=0.2), task(), None)
+    assert unsure.tilt >= sure.tilt
+    assert unsure.psi_sf > sure.psi_sf == 0.0
+    assert unsure.gaze_map.max() > sure.gaze_map.max()
+
+
+def test_the_order_of_tracks_is_irrelevant(belief, task, track, limits):
+    rng = np.random.default_rng(3)
+    for p in (EXTENDED, PAPER):
+        tracks = [
+            track(c, (0.1, 0), age=1.0, id=i) for i, c in enumerate(rng.uniform(-1.5, 1.5, (7, 2)))
+        ]
+        one = planner(limits, p).choose(belief(tracks), task(), None)
+        other = planner(limits, p).choose(belief(tracks[::-1]), task(), None)
+        assert (one.pan, one.tilt) == (other.pan, other.tilt)
+        assert one.gaze_map == pytest.approx(other.gaze_map)

@@ -1,0 +1,98 @@
+from dataclasses import replace
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from navigation.gaze.planner import GazePlanner
+from navigation.gaze.policy import gaze_policy, single_weight
+from navigation.parameters.gaze import GazeMode
+from navigation.parameters.navigation import NavigationParameters
+
+BEACONS = {"cyan/yellow": (2.9, 0.5), "yellow/cyan": (-2.9, 0.0), "magenta/cyan": (0.5, 2.9)}
+P = NavigationParameters.extended()
+MODES = get_args(GazeMode)
+PSI = [mode for mode in MODES if mode.startswith("psi-")]
+LISTENING = [mode for mode in MODES if mode not in ("fixed", "sweep")]
+
+
+def planner(limits, mode):
+    return GazePlanner(replace(P, gaze=replace(P.gaze, mode=mode)), limits, BEACONS, 1.5, 1.22)
+
+
+@pytest.fixture
+def choose(limits, task):
+    def choose(mode, belief, **where):
+        return planner(limits, mode).choose(belief, task(**where), None)
+
+    return choose
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_every_gaze_stays_within_the_head_s_limits(mode, choose, belief, track):
+    rng = np.random.default_rng(1)
+    for k in range(12):
+        tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (5, 2))]
+        gaze = choose(mode, belief(tracks, time=0.37 * k, confidence=lambda x, y: 0.5))
+        assert abs(gaze.pan) <= P.gaze.pan_limit + 1e-9
+        assert P.gaze.tilt_min - 1e-9 <= gaze.tilt <= P.gaze.tilt_max + 1e-9
+        assert np.isfinite(gaze.gaze_map).all()
+        assert gaze.gaze_map.min() >= 0.0
+
+
+@pytest.mark.parametrize("mode", LISTENING)
+def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(
+    mode, choose, belief, track, limits, task
+):
+    def world(side):
+        tracks = [track((0.4, 0.8 * side), (-0.05, -0.1 * side), sigma=0.1, age=1.5)]
+        unseen = belief(tracks, confidence=lambda x, y: 0.2 if side * y > 0 else 1.0)
+        beacons = {"cyan/yellow": (0.5, 2.9 * side)}
+        p = replace(P, gaze=replace(P.gaze, mode=mode))
+        goal = task(target=(0.2, 2.0 * side))
+        return GazePlanner(p, limits, beacons, 1.5, 1.22).choose(unseen, goal, None)
+
+    left, right = world(1.0), world(-1.0)
+    assert left.pan > 0.1
+    assert right.pan == pytest.approx(-left.pan, abs=P.gaze.step + 1e-9)
+    assert right.gaze_map == pytest.approx(left.gaze_map[:, ::-1])
+
+
+def test_a_single_evaluation_hears_itself_alone(choose, belief, track):
+    blind = belief(sigma=0.0, turn_sigma=0.0)
+    assert choose("psi-lm", blind).gaze_map.max() == 0.0
+    assert choose("psi-sf", blind).gaze_map.max() == 0.0
+    assert choose("psi-ob", blind).gaze_map.max() == 0.0
+    unseen = belief(sigma=0.0, turn_sigma=0.0, confidence=lambda x, y: float(y < 0))
+    assert choose("psi-lm", unseen).pan > 0.2
+    beside = belief([track((0.3, -0.6), (0.0, 0.1), sigma=0.1)], sigma=0.0, turn_sigma=0.0)
+    assert choose("psi-ob", beside).pan < -0.2
+    assert choose("psi-way", beside, target=(0.0, 2.0)).pan > 0.5
+    assert choose("psi-sf", belief(sigma=0.3)).gaze_map.max() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("mode", PSI)
+def test_the_weight_of_a_single_evaluation_is_one(mode):
+    g = single_weight(P.gaze, mode)
+    weights = [g.w_lm, g.w_sf, g.w_ob, g.w_way]
+    assert sorted(weights) == [0.0, 0.0, 0.0, 1.0]
+    assert getattr(g, f"w_{mode.removeprefix('psi-')}") == 1.0
+
+
+def test_only_the_sweep_moves_without_arriving(limits):
+    for mode in MODES:
+        p = replace(P, gaze=replace(P.gaze, mode=mode))
+        steady = gaze_policy(p, limits, planner(limits, mode).grid).steady
+        assert steady == (mode != "sweep")
+
+
+def test_the_sweep_comes_back_after_its_period(choose, belief):
+    one = choose("sweep", belief(time=0.7))
+    assert choose("sweep", belief(time=0.7 + P.gaze.sweep_period)).pan == pytest.approx(one.pan)
+    half = choose("sweep", belief(time=0.7 + 0.5 * P.gaze.sweep_period))
+    assert half.pan == pytest.approx(-one.pan)
+
+
+def test_the_fixed_gaze_hears_nothing(choose, belief, track):
+    urgent = belief([track((0.3, 0.6), (-0.1, 0), age=1.0)], lost=True)
+    assert choose("fixed", urgent).pan == 0.0

@@ -1,0 +1,101 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from navigation.belief.belief import Motion
+from navigation.motion.hypotheses import collision_hypotheses
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.motion import FilterParameters
+
+P = FilterParameters()
+SURE = 0.12 + 0.08 + 0.005 + P.margin
+"""Distance from the axis of a track of 0.08 m, give or take 0.005 m, at which it is touched [m]."""
+
+
+class LookedAt:
+    """A local map of one age."""
+
+    def __init__(self, age):
+        self._age = age
+
+    def age_at(self, points):
+        return np.full(len(points), self._age)
+
+
+def build(*tracks, p=P, looked=np.inf):
+    obstacles = ObstacleSet.from_tracks(tracks)
+    return collision_hypotheses(tracks, obstacles, 0.12, p, LookedAt(looked))
+
+
+def test_static_obstacles_matter_briefly_and_without_their_sigma(track):
+    h = build(track((1, 0), sigma=0.05))
+    assert h.radius == pytest.approx([SURE])
+    assert h.horizon.tolist() == [P.static_horizon]
+    assert h.weight.tolist() == [1.0]
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.1, 0.0)])
+def test_the_less_sure_its_radius_the_more_room_it_gets(track, place):
+    sure, unsure = (build(track((1, 0), place, radius_sigma=s)) for s in (0.005, 0.02))
+    assert unsure.radius - sure.radius == pytest.approx(np.full(len(sure), 0.015))
+
+
+def test_a_visible_mover_may_reverse(track):
+    h = build(track((1, 0), (0.1, 0.0), sigma=0.05))
+    assert h.velocity == pytest.approx(np.array([[0.1, 0.0], [-0.1, 0.0]]))
+    assert h.weight == pytest.approx([1.0, P.reversal_weight])
+    assert h.horizon == pytest.approx([P.moving_horizon, P.reversal_horizon])
+    assert h.radius == pytest.approx(2 * [SURE + 0.05])
+
+
+def test_the_undecided_keep_their_velocity_and_do_not_reverse(track):
+    h = build(track((1, 0), (0.1, 0.0), Motion.UNKNOWN, sigma=1.0))
+    assert len(h) == 1
+    assert h.horizon.tolist() == [P.moving_horizon]
+    assert h.radius == pytest.approx([SURE + P.sigma_limit])
+
+
+def test_a_lost_mover_is_its_particles(track):
+    cloud = ([[1, 0], [2, 0]], [[0.1, 0], [-0.1, 0]], [0.25, 0.75])
+    h = build(track((1.5, 0), (0.1, 0), age=3.0, particles=cloud), track((0, 1)))
+    assert h.position.tolist() == [[0, 1], [1, 0], [2, 0]]
+    assert h.weight == pytest.approx([1.0, 0.25 * P.particle_weight, 0.75 * P.particle_weight])
+
+
+def test_what_walks_a_bend_is_followed_along_its_chord_and_back_on_it(track):
+    """In two seconds about a quarter circle; turned back, it walks the same circle."""
+    turn = 0.25 * np.pi
+    h = build(track((1, 0), (0.1, 0.0), turn_rate=turn))
+    chord = 0.1 * 2.0 * np.sqrt(2.0) / np.pi / np.sqrt(2.0) * np.array([1.0, 1.0])
+    assert P.bend_time == 2.0
+    assert h.velocity[0] == pytest.approx(chord)
+    assert h.velocity[1] == pytest.approx(chord * (-1.0, 1.0))
+    cloud = ([[1, 0]], [[0.1, 0]], [1.0])
+    lost = track((1, 0), (0.1, 0), age=3.0, particles=cloud, turn_rates=[turn])
+    assert build(lost).velocity[0] == pytest.approx(chord)
+
+
+def test_only_what_can_be_reached_in_time_is_kept(track):
+    h = build(track((0.6, 0)), track((2, 0)), track((0, 2), (0.0, 0.1)), track((0, 2.5)))
+    near = h.within_reach(np.zeros(2), 0.2)
+    assert near.position.tolist() == [[0.6, 0], [0, 2]]
+
+
+def test_no_tracks_are_no_hypotheses():
+    assert len(build()) == 0
+
+
+def test_an_unseen_mover_can_have_gone_anywhere_near_until_its_place_is_looked_at(track):
+    p = replace(P, reachable=True, reversal_weight=0.0)
+    plain = replace(p, reachable=False)
+    for age, grown in ((0.2, None), (1.3, 0.1), (5.0, 0.4), (6.5, None)):
+        mover = track((1, 0), (0.1, 0.0), age=age)
+        h, without = build(mover, p=p), build(mover, p=plain)
+        assert len(h) - len(without) == (grown is not None)
+        if grown is not None:
+            assert h.position[-1] == pytest.approx(mover.last_seen)
+            assert h.radius[-1] == pytest.approx(SURE + grown)
+            assert not h.velocity[-1].any()
+        assert len(build(mover, p=p, looked=0.1)) == len(without)
+    assert len(build(track((1, 0), age=2.0), p=p)) == 1

@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+
+from navigation.belief.belief import Motion
+from navigation.motion.landmark_obstacles import LandmarkObstacles
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.motion import LandmarkParameters
+
+PLACES = {"north": (0.0, 2.8), "south": (0.0, -2.8), "east": (2.8, 0.0), "by": (2.2, 0.3)}
+RANGE = 0.9
+PARAMETERS = LandmarkParameters(attention_range=RANGE)
+
+
+@pytest.fixture
+def landmarks():
+    return LandmarkObstacles(PLACES, 0.05, PARAMETERS)
+
+
+def test_near_ones_are_added_and_nothing_else_is_changed(landmarks, belief, track):
+    rng = np.random.default_rng(0)
+    counts = set()
+    for _ in range(300):
+        tracks = [track(place, id=i) for i, place in enumerate(rng.uniform(-2, 2, (3, 2)))]
+        before = belief(tracks, rng.uniform(-3, 3, 3))
+        after = landmarks.added_to(before)
+        near = {
+            n
+            for n, p in PLACES.items()
+            if np.hypot(*(before.pose[:2] - p)) < PARAMETERS.attention_range
+        }
+        counts.add(len(near))
+        if not near:
+            assert after is before
+            continue
+        added, kept = after.tracks[: len(near)], after.tracks[len(near) :]
+        assert {t.label for t in added} == near
+        assert all(one is other for one, other in zip(kept, tracks, strict=True))
+        assert (after.pose is before.pose, after.time) == (True, before.time)
+    assert counts >= {0, 1, 2}
+
+
+def test_they_stand_where_they_are_known_to_and_are_as_wide(landmarks, belief):
+    added = ObstacleSet.from_tracks(landmarks.added_to(belief(pose=(2.3, 0.1, 1.0))).tracks)
+    assert added.position.tolist() == [list(PLACES["east"]), list(PLACES["by"])]
+    assert added.static.all()
+    assert np.all(added.radius == 0.05)
+    assert np.all(added.sigma < 0.01)
+
+
+def test_their_ids_are_no_tracks_and_stay_the_same(landmarks, belief):
+    def ids(*pose):
+        return {t.label: t.id for t in landmarks.added_to(belief(pose=(*pose, 0.0))).tracks}
+
+    met = [ids(*place) for place in PLACES.values()]
+    assert len({id for some in met for id in some.values()}) == len(PLACES)
+    assert all(id < 0 for some in met for id in some.values())
+    assert met[2] == met[3]
+
+
+def test_without_landmarks_nothing_is_added(belief, track):
+    before = belief([track((0.5, 0.0))])
+    assert LandmarkObstacles({}, 0.05, PARAMETERS).added_to(before) is before
+
+
+def test_they_are_verdicts_not_guesses(landmarks, belief):
+    (north,) = landmarks.added_to(belief(pose=(0.0, 2.5, 0.0))).tracks
+    assert north.motion is Motion.STATIC
+    assert north.particles is None

@@ -1,0 +1,222 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from navigation.motion.avoid_obstacle import avoid_obstacle
+from navigation.motion.extended_radius import extended_radius
+from navigation.motion.motion_field import FieldScene, MotionField
+from navigation.motion.move_to_goal import muf
+from navigation.motion.univector import normalized, weighted_sum
+from navigation.motion.virtual_obstacle import oval
+from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.motion import MoverParameters, UnivectorParameters
+from navigation.parameters.navigation import NavigationParameters
+
+EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
+TARGET = np.array([2.0, 0.0])
+
+
+def scene(tracks, p=EXTENDED, target=TARGET, heading=0.0):
+    o = ObstacleSet.from_tracks(tracks)
+    return FieldScene(o, extended_radius(o, 0.0, np.zeros(len(o)), p.univector), np.zeros(len(o)),
+                      np.asarray(target, float), heading)  # fmt: skip
+
+
+def walk(field, s, starts, reach, length=6.0, step=0.01):
+    """Follow the field; return final distance to the target and least distance to centres."""
+    place = np.array(starts, float)
+    least = np.full(len(place), np.inf)
+    arrived = np.zeros(len(place), bool)
+    for _ in range(round(length / step)):
+        u = normalized(field.at(place, 0.0, s, ()))
+        place = place + step * u * ~arrived[:, None]
+        away = place[:, None] - s.obstacles.position
+        least = np.minimum(least, np.hypot(away[..., 0], away[..., 1]).min(axis=1))
+        arrived |= np.hypot(*(place - s.target).T) < reach
+    return arrived, least
+
+
+@pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
+def test_fifteen_starts_pass_one_disc_on_their_line(p, track):
+    field = MotionField(p.univector, p.mover)
+    s = scene([track((0, 0), radius=0.15)], p)
+    assert s.s_oe[0] == pytest.approx(0.30)
+    starts = [(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)]
+    arrived, least = walk(field, s, starts, 0.05)
+    assert arrived.all()
+    assert least.min() >= 0.30 + (0.10 if p is EXTENDED else 0.0)
+
+
+def test_goals_beside_an_obstacle_are_reached(track):
+    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    s_phys = EXTENDED.univector.s_robot + 0.1
+    angle = np.arange(24) * np.pi / 12
+    starts = 1.5 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    for gap in (0.02, 0.05, 0.10, 0.15, 0.25):
+        s = scene([track((0, 0), radius=0.1)], target=(s_phys + gap, 0.0))
+        arrived, least = walk(field, s, starts, 0.06, length=5.0)
+        assert arrived.all(), gap
+        assert least.min() >= s_phys - 0.05
+
+
+def test_close_to_one_obstacle_the_field_leads_away(track):
+    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    s = scene([track((0, 0))])
+    rng = np.random.default_rng(0)
+    rho = rng.uniform(0.05, float(s.s_oe[0]) + 0.1, 500)
+    angle = rng.uniform(-np.pi, np.pi, 500)
+    outward = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    points = rho[:, None] * outward
+    u = normalized(field.at(points, 0.0, s, ()))
+    inside = rho < s.s_oe[0]
+    ahead = ((TARGET - points) * points).sum(axis=1) < 0.0
+    shows = inside | ahead
+    assert (u * outward).sum(axis=1)[shows].min() >= np.cos(np.radians(63.8))
+
+
+def test_the_blend_is_continuous_where_it_begins(track):
+    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    s = scene([track((0, 0))])
+    edge = float(s.s_oe[0]) + EXTENDED.univector.d_e + EXTENDED.univector.d_b
+    for angle in np.linspace(2.2, 4.0, 20):
+        d = np.array([np.cos(angle), np.sin(angle)])
+        inner, outer = (field.at((edge + e) * d, 0.0, s, ()) for e in (-1e-6, 1e-6))
+        assert inner == pytest.approx(outer, abs=1e-4)
+
+
+def test_a_mover_in_whose_band_the_robot_stands_pushes_it_sideways(track):
+    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    s = scene([track((1.0, 0.02), (-0.1, 0.0))])
+    (force,) = field.own_forces(np.zeros(3), np.array([0.15, 0.0]), s)
+    assert force.obstacle.track_id == 1
+    assert force.obstacle.position == pytest.approx([0.0, 0.02])
+    assert 0.0 < force.weight < 1.0
+    u = field.at(np.zeros(2), 0.0, s, (force,))
+    assert abs(u[1]) > 0.3
+
+
+def test_leaving_or_standing_obstacles_have_no_virtual_one(track):
+    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    for t in (track((1, 0), (0.1, 0)), track((1, 0)), track((1, 1), (-0.1, 0))):
+        assert field.own_forces(np.zeros(3), np.zeros(2), scene([t])) == ()
+
+
+def test_the_printed_form_enters_the_sum_as_an_obstacle(track):
+    field = MotionField(PAPER.univector, PAPER.mover)
+    s = scene([track((0.8, -0.2), (-0.1, 0.06))], PAPER)
+    (force,) = field.printed_forces(np.zeros(3), np.array([0.15, 0.0]), s, (0,))
+    assert force.obstacle.radius <= np.hypot(*force.obstacle.position) + 1e-12
+    with_it = field.at(np.zeros(2), 0.0, s, (force,))
+    without = field.at(np.zeros(2), 0.0, s, ())
+    assert with_it != pytest.approx(without)
+
+
+def test_many_points_give_what_single_points_give(track):
+    rng = np.random.default_rng(1)
+    for p in (EXTENDED, PAPER):
+        field = MotionField(p.univector, p.mover)
+        s = scene([track(c, id=i) for i, c in enumerate(rng.uniform(-1, 1, (6, 2)))], p)
+        points = rng.uniform(-2, 2, (30, 2))
+        all_ = field.at(points, 0.2, s, ())
+        single = np.array([field.at(x, 0.2, s, ()) for x in points])
+        assert all_ == pytest.approx(single)
+
+
+def test_mirror_symmetry(track):
+    rng = np.random.default_rng(2)
+    centres, points = rng.uniform(-1, 1, (6, 2)), rng.uniform(-2, 2, (100, 2))
+    for p in (EXTENDED, PAPER):
+        field = MotionField(p.univector, p.mover)
+        s = scene([track(c) for c in centres], p, (2.0, 0.3), 0.4)
+        m = scene([track(c * [1, -1]) for c in centres], p, (2.0, -0.3), -0.4)
+        mirrored = field.at(points * [1, -1], 0.0, m, ())
+        assert field.at(points, 0.0, s, ()) == pytest.approx(mirrored * [1, -1], abs=1e-9)
+
+
+def test_no_obstacles_leave_the_way_to_the_goal():
+    field = MotionField(UnivectorParameters(), MoverParameters())
+    s = scene([])
+    assert field.at(np.zeros(2), 0.0, replace(s, target=np.array([0.0, 3.0])), ()) == pytest.approx(
+        [0.0, 1.0]
+    )
+
+
+def test_against_the_printed_sign_every_start_enters_the_disc(track):
+    p = PAPER.univector
+    s = scene([track((0, 0), radius=0.15)], PAPER)
+    place = np.array([(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)])
+    least = np.full(15, np.inf)
+    for _ in range(200):
+        u_muf = muf(place, 0.0, s.target, 0.0, p)
+        u = avoid_obstacle(
+            place, s.target, s.obstacles.position, s.s_oe, d_e=p.d_e, d_b=p.d_b, k_r=p.k_r,
+            inside=p.inside,
+        )  # fmt: skip
+        outward = normalized(place[:, None] - s.obstacles.position)
+        other = 2.0 * (u * outward).sum(axis=-1, keepdims=True) * outward - u
+        place = place + 0.01 * normalized(weighted_sum(u_muf, other, p.w_muf, p.w_auf))
+        least = np.minimum(least, np.hypot(*place.T))
+    assert np.all(least < s.s_oe[0])
+
+
+@pytest.mark.parametrize("lateral", [0.0, 0.004, 0.02, -0.02, 0.1, -0.1])
+def test_the_printed_virtual_obstacle_acts_before_a_mover_head_on(lateral, track):
+    """Fig. 4 (c): its centre lies abeam, where the third condition of (9) would drop it."""
+    field = MotionField(PAPER.univector, PAPER.mover)
+    s = scene([track((1.6, lateral), (-0.1, 0.0))], PAPER)
+    forces = field.printed_forces(np.zeros(3), np.array([0.2, 0.0]), s, (0,))
+    without, with_it = (field.at(np.zeros(2), 0.0, s, f) for f in ((), forces))
+    assert without[1] == pytest.approx(0.0)
+    away = np.copysign(1.0, lateral) if abs(lateral) > 0.01 else 1.0
+    assert -0.25 - 1e-9 <= away * with_it[1] < -0.2
+
+
+@pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
+def test_rigid_motion_moves_field_and_forces_along(p, track):
+    a, shift = 0.7, np.array([3.0, -1.0])
+    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    rng = np.random.default_rng(6)
+    acting = 0
+    for _ in range(40):
+        centre, velocity = rng.uniform((0.3, -0.4), (1.2, 0.4)), rng.normal((-0.1, 0.0), 0.04)
+        pose, walking = np.array([*rng.normal(0.0, 0.1, 2), 0.2]), np.array([0.15, 0.02])
+        turned = np.array([*(r @ pose[:2] + shift), pose[2] + a])
+        here = scene([track(centre, velocity), track((0.5, 0.6))], p, TARGET, 0.3)
+        there = scene(
+            [track(r @ centre + shift, r @ velocity), track(r @ [0.5, 0.6] + shift)],
+            p, r @ TARGET + shift, 0.3 + a,
+        )  # fmt: skip
+        forces = []
+        for s, at, v in ((here, pose, walking), (there, turned, r @ walking)):
+            field = MotionField(p.univector, p.mover)
+            if p is PAPER:
+                found = field.printed_forces(at, v, s, (0,))
+            else:
+                found = field.own_forces(at, v, s)
+            # The printed circle goes through the robot: rounding decides whether it is inside.
+            u = field.at(at[:2], at[2], s, () if p is PAPER else found)
+            forces.append((found, u))
+        (own, u), (moved, u_moved) = forces
+        assert u_moved == pytest.approx(r @ u, abs=1e-9)
+        for f, g in zip(own, moved, strict=True):
+            acting += 1
+            assert g.obstacle.position == pytest.approx(r @ f.obstacle.position + shift)
+            assert (g.obstacle.radius, g.weight) == pytest.approx((f.obstacle.radius, f.weight))
+            assert np.exp(1j * (g.direction - f.direction - a)) == pytest.approx(1.0)
+            assert np.exp(1j * (g.outward - f.outward - a)) == pytest.approx(1.0)
+    assert acting > 15
+
+
+def test_the_own_force_has_the_oval_of_its_relative_speed(track):
+    p = EXTENDED
+    s = scene([track((1.0, 0.1), (-0.1, 0.0))])
+    (force,) = MotionField(p.univector, p.mover).own_forces(np.zeros(3), np.array([0.15, 0.0]), s)
+    length = p.mover.path_time * 0.25
+    assert force.weight == pytest.approx(oval(1.0 / length, p.mover.xi))
+    assert force.obstacle.radius == pytest.approx(force.weight * s.s_oe[0])
+    unsure = replace(s, psi=np.ones(1))
+    (force,) = MotionField(p.univector, p.mover).own_forces(
+        np.zeros(3), np.array([0.15, 0.0]), unsure
+    )
+    assert force.weight == pytest.approx(oval(1.0 / (length + p.univector.eta_imp), p.mover.xi))

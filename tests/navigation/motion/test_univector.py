@@ -1,0 +1,115 @@
+import numpy as np
+import pytest
+
+from navigation.motion.univector import (
+    blended_sum,
+    nearness,
+    normalized,
+    shrunk_for_goal,
+    weighted_sum,
+)
+from navigation.parameters.motion import UnivectorParameters
+
+NO_VIRTUAL = np.zeros((0, 2)), np.zeros(0)
+
+
+def unit(angle):
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def test_normalizing_keeps_directions_and_zero():
+    assert normalized(np.array([[3.0, 4.0], [0.0, 0.0]])) == pytest.approx(
+        np.array([[0.6, 0.8], [0, 0]])
+    )
+
+
+def test_without_obstacles_only_the_goal_counts():
+    u = unit(0.7)
+    assert normalized(weighted_sum(u, np.zeros((3, 2)), 0.75, 0.25)) == pytest.approx(u)
+    assert blended_sum(
+        u, np.zeros((3, 2)), np.zeros(3), *NO_VIRTUAL, virtual_weight=1.5
+    ) == pytest.approx(u)
+    assert blended_sum(
+        u, np.zeros((0, 2)), np.zeros(0), *NO_VIRTUAL, virtual_weight=1.5
+    ) == pytest.approx(u)
+
+
+def test_the_printed_weights_turn_at_most_19_5_degrees():
+    u_auf = unit(np.linspace(-np.pi, np.pi, 3601))[:, None, :]
+    total = weighted_sum(unit(0.0), u_auf, 0.75, 0.25)
+    largest = np.degrees(np.abs(np.arctan2(total[:, 1], total[:, 0]))).max()
+    assert largest == pytest.approx(np.degrees(np.arcsin(1 / 3)), abs=0.01)
+
+
+def test_nearness_falls_from_one_to_zero():
+    rho = np.linspace(0.0, 1.0, 1001)
+    ramp = nearness(rho[:, None], np.array([0.3]), 0.2, 0.25)[:, 0]
+    assert np.all(ramp[rho < 0.4 - 1e-9] == 1.0)
+    assert np.all(ramp[rho > 0.75 + 1e-9] == 0.0)
+    assert np.all(np.diff(ramp) <= 0.0)
+    assert np.abs(np.diff(ramp)).max() < 0.01
+
+
+def test_an_obstacle_at_hand_decides_alone():
+    u_auf = unit(np.array([2.0]))
+    total = blended_sum(unit(0.0), u_auf, np.ones(1), *NO_VIRTUAL, virtual_weight=1.5)
+    assert normalized(total) == pytest.approx(u_auf[0])
+
+
+def test_an_obstacle_that_does_not_act_has_no_say():
+    total = blended_sum(unit(0.3), np.zeros((1, 2)), np.ones(1), *NO_VIRTUAL, virtual_weight=1.5)
+    assert total == pytest.approx(unit(0.3))
+
+
+def test_opposite_obstacles_that_cancel_leave_the_goal():
+    u_auf = unit(np.array([np.pi / 2, -np.pi / 2]))
+    total = blended_sum(unit(0.0), u_auf, np.ones(2), *NO_VIRTUAL, virtual_weight=1.5)
+    assert total == pytest.approx(unit(0.0))
+
+
+def test_a_goal_near_an_obstacle_shrinks_it_but_never_into_the_bodies():
+    s_phys = np.full(50, 0.2)
+    distance = np.linspace(0.2, 1.0, 50)
+    s, d_e = shrunk_for_goal(np.full(50, 0.3), s_phys, distance, UnivectorParameters())
+    assert np.all(s > s_phys)
+    assert np.all(s <= 0.3)
+    assert np.all(d_e >= 0.03)
+    untouched = distance >= 0.5
+    assert np.all(s[untouched] == 0.3)
+    assert np.all(d_e[untouched] == 0.2)
+    reachable = distance > 0.235
+    assert np.all((s < distance)[reachable])
+
+
+def test_the_printed_sum_weighs_the_goal_against_the_direction_of_all_obstacles():
+    u_auf = np.array([unit(0.4), unit(1.0), [0.0, 0.0]])
+    total = weighted_sum(unit(-0.3), u_auf, 0.75, 0.25)
+    assert total == pytest.approx(0.75 * unit(-0.3) + 0.25 * unit(0.7))
+
+
+def test_obstacles_count_by_the_square_of_their_nearness():
+    """Two at right angles, of nearness 0.8 and 0.4: the nearer one counts four times."""
+    u_auf, ramp = unit(np.array([0.0, np.pi / 2])), np.array([0.8, 0.4])
+    total = blended_sum(unit(1.0), u_auf, ramp, *NO_VIRTUAL, virtual_weight=1.5)
+    avoid = np.array([4.0, 1.0]) / np.hypot(4.0, 1.0)
+    assert total == pytest.approx(0.2 * unit(1.0) + 0.8 * avoid)
+
+
+def test_virtual_obstacles_join_in_with_their_weight():
+    u_auf, u_virtual = unit(np.array([0.0])), unit(np.array([np.pi / 2]))
+    ramp, weight = np.array([0.4]), np.array([0.8])
+    total = blended_sum(unit(1.0), u_auf, ramp, u_virtual, weight, virtual_weight=1.5)
+    avoid = np.array([1.0, 6.0]) / np.hypot(1.0, 6.0)
+    assert total == pytest.approx(0.2 * unit(1.0) + 0.8 * avoid)
+    alone = blended_sum(
+        unit(1.0), np.zeros((0, 2)), np.zeros(0), u_virtual, weight, virtual_weight=1.5
+    )
+    assert alone == pytest.approx(0.2 * unit(1.0) + 0.8 * u_virtual[0])
+
+
+def test_near_the_goal_the_radius_leaves_its_share_of_the_room():
+    p = UnivectorParameters(goal_share=0.5, goal_gap=0.02, goal_offset=0.03, d_e=0.2)
+    s_oe, s_phys = np.full(3, 0.3), np.full(3, 0.2)
+    s, d_e = shrunk_for_goal(s_oe, s_phys, np.array([0.21, 0.3, 0.45]), p)
+    assert s == pytest.approx([0.21, 0.25, 0.3])
+    assert d_e == pytest.approx([0.03, 0.05, 0.15])

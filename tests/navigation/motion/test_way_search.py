@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+
+from navigation.motion.way_search import shortest_way, way_point
+from navigation.parameters.motion import WaySearchParameters
+
+P = WaySearchParameters()
+START, GOAL = np.zeros(2), np.array([2.0, 0.0])
+WALL = np.array([[1.0, y] for y in np.arange(-0.6, 1.01, 0.2)])
+RADII = np.full(len(WALL), 0.25)
+
+
+def test_a_free_way_is_left_alone():
+    assert way_point(START, GOAL, np.zeros((0, 2)), np.zeros(0), P) is GOAL
+    aside = np.array([[1.0, 0.5]])
+    assert way_point(START, GOAL, aside, np.array([0.3]), P) is GOAL
+
+
+def test_round_a_wall_the_shorter_way_is_taken_and_every_step_of_it_is_free():
+    way = shortest_way(START, GOAL, WALL, RADII, P)
+    gaps = np.hypot(*(way[:-1, None] - WALL).transpose(2, 0, 1))
+    assert np.all(gaps >= 0.25)
+    assert way[-1] == pytest.approx(GOAL)
+    assert way[:, 1].min() < -0.8
+    assert np.hypot(*np.diff(way, axis=0).T).max() < 2.5 * P.cell
+
+
+def test_the_way_point_is_visible_in_reach_and_leads_round():
+    point = way_point(START, GOAL, WALL, RADII, P)
+    assert np.hypot(*point) <= P.reach
+    assert point[1] < -0.3
+    place = START
+    for _ in range(60):
+        point = way_point(place, GOAL, WALL, RADII, P)
+        step = point - place
+        place = place + 0.1 * step / max(0.1, np.hypot(*step))
+        assert np.hypot(*(place - WALL).T).min() > 0.25 - 1e-9
+    assert place == pytest.approx(GOAL, abs=0.01)
+
+
+def test_a_mirrored_wall_mirrors_the_length_of_the_way():
+    one = shortest_way(START, GOAL, WALL, RADII, P)
+    other = shortest_way(START, GOAL, WALL * [1, -1], RADII, P)
+    lengths = [np.hypot(*np.diff(w, axis=0).T).sum() for w in (one, other)]
+    assert lengths[0] == pytest.approx(lengths[1], abs=2 * P.cell)
+
+
+def test_without_any_way_the_task_stays():
+    ring = np.arange(24) * np.pi / 12
+    around = GOAL + 0.6 * np.stack([np.cos(ring), np.sin(ring)], axis=1)
+    assert way_point(START, GOAL, around, np.full(24, 0.2), P) is GOAL

@@ -1,0 +1,172 @@
+"""Where the swing foot lands, on a pendulum without a body."""
+
+import pytest
+
+from walking.admission import Limit
+from walking.balance.catching import CatchingPendulum
+from walking.balance.foot_placement import FootPlacement
+from walking.balance.stabilizer import Stabilizer
+from walking.command import VelocityCommand
+from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.steering import Steering
+from walking.footsteps.stride import STILL
+from walking.gait.gait import Gait
+from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
+from walking.pattern.generator import make_generator
+from walking.pattern.lipm import Lipm
+from walking.pattern.pattern import PendulumState
+from walking.pattern.support import support_region
+from walking.state import Footstep
+
+GENERATORS = ["dcm", "robust"]
+NONE = (0.0, 0.0)
+
+
+class Pendulum:
+    """Steering, gait and pendulum; a DCM error is whatever the test says."""
+
+    def __init__(self, robot, generator, *, first=0):
+        self.parameters = parameters = WalkingParameters(
+            pattern=PatternParameters(generator=generator)
+        )
+        pattern = parameters.pattern
+        self.sole, lipm = robot.sole, Lipm(pattern.lipm_height)
+        made = make_generator(lipm, pattern, robot.sole)
+        self.planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
+        h = parameters.gait.half_stance
+        stance = Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)
+        self.gait = Gait(parameters, self.planner, stance)
+        start = self.gait.plan(stance[1], self.planner.still, moving=False)[-1]
+        state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
+        self.steering = Steering(self.planner, parameters.limits, selective=made.selective)
+        self.catching = CatchingPendulum(lipm, made, self.gait, pattern.dcm_gain, state)
+        stabilizer = Stabilizer(robot, parameters.stabilizer, lipm.omega)
+        self.placement = FootPlacement(
+            lipm, made, self.planner, self.gait, stabilizer=stabilizer, catching=self.catching
+        )
+        self._first = first
+
+    def tick(self, command, error=NONE):
+        gait, steering, placement = self.gait, self.steering, self.placement
+        placement.remember()
+        steering.follow(command, 1.0, settled=True, balanced=True)
+        gait.retime(steering.pace(gait.timing, stepping=gait.stepping))
+        if not gait.stepping and steering.moving:
+            gait.start(self._first)
+        region = support_region(self.sole, *gait.support_feet, self.parameters.pattern.sole_margin)
+        ramps = placement.decide(
+            steering.wish(STILL), steering.velocity, error, region, moving=steering.moving
+        )
+        self.catching.advance(ramps, placement.landing, region)
+        gait.advance(moving=placement.moving)
+        self.catching.touch_down()
+
+    def to_swing(self, command, phase=0.3):
+        """Walk until a foot swings, some footsteps on."""
+        for _ in range(500):
+            self.tick(command)
+            if self.gait.completed == 4 and self.gait.swing_phase > phase:
+                return self
+        raise AssertionError("no footsteps")
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_a_steady_undisturbed_walk_is_as_it_is_wished(robot, generator):
+    walk, command = Pendulum(robot, generator), VelocityCommand(0.2, 0.03, 0.2)
+    walk.to_swing(command)
+    for _ in range(200):
+        walk.tick(command)
+        placement = walk.placement
+        assert placement.bound == []
+        assert placement.moved == NONE
+        assert placement.given == command.velocity
+        assert placement.admitted is None
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+@pytest.mark.parametrize(
+    ("error", "axis"), [((0.025, 0.0), 0), ((-0.025, 0.0), 0), ((0.0, 0.02), 1)]
+)
+def test_a_landing_goes_after_the_body_and_says_why(robot, generator, error, axis):
+    walk, command = Pendulum(robot, generator), VelocityCommand(0.1)
+    walk.to_swing(command)
+    if walk.gait.swing == 1:
+        error = error[0], -error[1]  # to the side of the swing foot
+    walk.tick(command, error)
+    placement = walk.placement
+    assert placement.moved[axis] * error[axis] > 0.0
+    assert abs(placement.moved[axis]) > abs(error[axis])
+    assert Limit.BALANCE in placement.bound
+    support, landing = walk.gait.footholds[walk.gait.support], walk.gait.landing
+    assert walk.planner.same(walk.planner.reachable(support, landing, 0.0, 0.0), landing)
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_what_the_ankles_hold_moves_no_landing(robot, generator):
+    walk, command = Pendulum(robot, generator), VelocityCommand(0.1)
+    walk.to_swing(command)
+    walk.tick(command, (0.005, 0.003))
+    assert walk.placement.moved == NONE
+    assert Limit.BALANCE not in walk.placement.bound
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+@pytest.mark.parametrize(
+    ("velocity", "error"),
+    [
+        ((0.2, 0.05, 0.4), (0.03, 0.01)),
+        ((0.0, -0.08, 0.3), (-0.02, 0.025)),
+        ((0.3, 0.0, 0.0), (0.0, -0.03)),
+    ],
+)
+def test_mirrored_errors_move_mirrored_landings(robot, generator, velocity, error):
+    forward, left, turn = velocity
+    sides = []
+    for side, first in ((1.0, 0), (-1.0, 1)):
+        command = VelocityCommand(forward + 0.05, side * left, side * turn)
+        walk = Pendulum(robot, generator, first=first).to_swing(command)
+        walk.tick(command, (error[0], side * error[1]))
+        landing, placement = walk.gait.landing, walk.placement
+        sides.append(
+            (
+                [landing.x, side * landing.y, side * landing.yaw],
+                [placement.moved[0], side * placement.moved[1]],
+                placement.bound,
+            )
+        )
+    (landing, moved, bound), (other, other_moved, other_bound) = sides
+    assert landing == pytest.approx(other, abs=1e-6)
+    assert moved == pytest.approx(other_moved, abs=1e-6)
+    assert bound == other_bound
+
+
+def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, monkeypatch):
+    walk = Pendulum(robot, "robust").to_swing(VelocityCommand(0.1))
+    slow, before = walk.gait.landing.x, walk.placement.given
+    generator, asked = walk.placement._generator, []
+
+    def admits(*_):
+        asked.append(None)
+        return len(asked) == 2  # half of the change, no more
+
+    monkeypatch.setattr(generator, "admits", admits)
+    fast = VelocityCommand(0.1 + 5 * walk.parameters.limits.forward_acceleration * CONTROL_PERIOD)
+    for _ in range(5):
+        walk.steering.follow(fast, 1.0, settled=True, balanced=True)
+    walk.tick(fast)
+    half = [0.5 * (a + b) for a, b in zip(before, walk.steering.velocity, strict=True)]
+    assert walk.placement.given == pytest.approx(half)
+    assert Limit.ZMP_REGION in walk.placement.bound
+    assert walk.placement.admitted is not None
+    assert slow < walk.placement.landing.x < walk.gait.nominal(walk.steering.wish(STILL)).x
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_a_wish_that_comes_too_late_is_reported(robot, generator):
+    walk, command = Pendulum(robot, generator), VelocityCommand(0.2)
+    walk.to_swing(command, phase=0.9)
+    landing = walk.gait.landing
+    for _ in range(3):
+        walk.tick(VelocityCommand(0.4))
+    assert walk.gait.landing == landing
+    assert Limit.LANDING_FROZEN in walk.placement.bound

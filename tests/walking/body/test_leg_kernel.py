@@ -1,0 +1,104 @@
+"""The compiled kinematics of a tick against the same in plain Python and in numpy."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from walking.body import leg_kernel
+from walking.parameters import CONTROL_PERIOD
+
+LEGS = np.array([[0.0, 0.037, -0.02, 0.1, 0.1, 0.03], [0.0, -0.037, -0.02, 0.1, 0.1, 0.03]])
+LAW = np.array([0.7, 0.019, 0.3, 0.85, 0.22])
+ANKLES = np.array([54.0, 20.0, 25.0, 0.1])
+SEEDS = st.integers(0, 10**6)
+
+
+def draw(seed):
+    rng = np.random.default_rng(seed)
+    feet = np.array(
+        [(*rng.uniform(-0.05, 0.05, 2), rng.uniform(-0.3, 0.3), abs(rng.normal())) for _ in LEGS]
+    )
+    feet[:, 3] *= 0.01
+    return rng, feet
+
+
+@settings(max_examples=30)
+@given(SEEDS)
+def test_compiled_the_posture_is_what_it_says(plainly, seed):
+    rng, feet = draw(seed)
+    which = (seed % 2, int(rng.integers(-1, 2)))
+    com, head = (tuple(rng.uniform(-0.02, 0.02, 2).tolist()) for _ in range(2))
+    tilts, tilt = rng.normal(0.0, 0.01, (2, 2)), tuple(rng.normal(0.0, 0.05, 2).tolist())
+    outcomes = []
+    for call in (leg_kernel.pose, lambda *a: plainly(leg_kernel, "pose", *a)):
+        position, own = np.zeros(26), tilts.copy()
+        build = np.array([0.004, 2.0, 0.35])
+        pelvis = call(position, own, feet, which, com, head, tilt, LAW, build, LEGS)
+        outcomes.append([*position, *own.ravel(), *pelvis])
+    np.testing.assert_allclose(*outcomes, rtol=0.0, atol=1e-12)
+
+
+def test_rates_are_quotients_of_differences():
+    rng = np.random.default_rng(1)
+    angles = rng.uniform(-0.1, 0.1, (3, 26))
+    before, velocity = angles[0].copy(), np.zeros(26)
+    motion = np.zeros(33), np.zeros(32), np.zeros(32)
+    where = rng.permutation(26) + 7, rng.permutation(26) + 6
+    for now in angles[1:]:
+        law = np.array([0.5, 1000.0, CONTROL_PERIOD])
+        rest = (*motion, *where, (1.0, 2.0, 0.0), (0.3, -0.2), law)
+        leg_kernel.rates(now, before, velocity, *rest)
+    np.testing.assert_allclose(velocity, (angles[2] - angles[1]) / CONTROL_PERIOD)
+    np.testing.assert_array_equal(before, angles[2])
+    q, v, a = motion
+    np.testing.assert_array_equal(q[where[0]], angles[2])
+    np.testing.assert_array_equal(v[where[1]], velocity)
+    second = 0.5 * np.diff(angles, n=2, axis=0)[0] / CONTROL_PERIOD**2
+    np.testing.assert_allclose(a[where[1]], second.clip(-1000.0, 1000.0))
+    assert a[:6].tolist() == [0.3, -0.2, 0.0, 0.0, 0.0, 0.0]
+    assert not q[:7].any()
+    assert not v[:6].any()
+
+
+@settings(max_examples=30)
+@given(SEEDS, st.sampled_from([0.0, 0.3, 1.0]))
+def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
+    rng, _ = draw(seed)
+    where = rng.permutation(26) + 6
+    forces = np.array([1.0, 2.0, 54.0, 0.3, -0.2, 0.1, *rng.normal(0.0, 1.0, 26)])
+    position, velocity = rng.uniform(-0.5, 0.5, 26), rng.normal(0.0, 1.0, 26)
+    servos = np.array([rng.uniform(0.01, 0.1, 26), rng.uniform(0.0, 0.1, 26)])
+    soles = ((0.01, 0.04), (0.02, -0.04))
+    pelvis = tuple(rng.uniform(-0.1, 0.1, 3).tolist())
+    rest = (pelvis, soles, load, 0.22, LEGS)
+    balance, (found, plain) = ((0.1, -0.2), (0.0, 0.0), np.zeros(3)), np.empty((2, 26))
+    asked = (forces, where, position, velocity, servos, *rest, balance, ANKLES)
+    leg_kernel.offsets(*asked, found)
+    plainly(leg_kernel, "offsets", *asked, plain)
+    np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
+    unloaded = slice(0, 6) if load == 1.0 else slice(12, 26)
+    expected = forces[where] * servos[0] + velocity * servos[1]
+    np.testing.assert_allclose(found[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
+    shares = [abs(found - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
+    assert [share > 1e-6 for share in shares] == [load < 1.0, load > 0.0]
+
+
+@settings(max_examples=20)
+@given(SEEDS)
+def test_compiled_an_ankle_is_what_it_says(plainly, seed):
+    a, b, c, d, *gyro, load = np.random.default_rng(seed).uniform(-0.2, 0.2, 8).tolist()
+    asked = ((a, b), (c, d), tuple(gyro)), seed % 2, abs(load), ANKLES
+    plain = plainly(leg_kernel, "ankle", *asked)
+    assert leg_kernel.ankle(*asked) == pytest.approx(plain, abs=1e-15)
+
+
+@given(st.floats(-1.0, 1.0))
+def test_the_swing_of_the_arms_is_odd_and_limited(apart):
+    swing = leg_kernel.arm_swing(apart, 2.0, 0.35)
+    assert swing == -leg_kernel.arm_swing(-apart, 2.0, 0.35)
+    assert abs(swing) <= 0.35
+
+
+def test_the_left_arm_goes_back_when_the_left_foot_is_ahead():
+    assert leg_kernel.arm_swing(0.05, 2.0, 0.35) > 0.0

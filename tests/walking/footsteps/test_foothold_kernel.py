@@ -1,0 +1,71 @@
+"""Footholds chained and made a reference, against the same in plain Python."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from walking.body.robot_model import Sole
+from walking.footsteps import foothold_kernel
+from walking.footsteps.planner import TURN_TOLERANCE, FootstepPlanner
+from walking.footsteps.stride import STILL
+from walking.parameters import WalkingParameters
+from walking.state import Footstep, foothold
+
+PARAMETERS = WalkingParameters()
+SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
+PLANNER = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, SOLE)
+SPOT = (0.01, 0.003)
+
+
+def draw(seed):
+    """A stance, strides, and the footholds to come."""
+    rng = np.random.default_rng(seed)
+    left = bool(rng.integers(2))
+    support = Footstep(left, *rng.uniform(-1.0, 1.0, 3).tolist())
+    velocity = tuple((rng.uniform(-1.0, 1.0, 3) * (0.4, 0.15, 1.5)).tolist())
+    strides = PLANNER.strides(STILL if seed % 3 == 0 else velocity, 0.34)
+    landing = PLANNER.landing(support, strides)
+    return rng, support, landing, strides
+
+
+def arguments(support, landing, strides, moving):
+    wish, still, _, most = PLANNER.chain(strides)
+    assert (wish, most) == ((strides.right, strides.left), 4)
+    return support.row, landing.row, (wish, still, (0.001, TURN_TOLERANCE), 4), moving
+
+
+@given(st.integers(0, 10**6), st.booleans())
+def test_each_foothold_is_the_stride_of_the_one_before(seed, moving):
+    _, support, landing, strides = draw(seed)
+    steps, ends = foothold_kernel.sequence(*arguments(support, landing, strides, moving))
+    feet = [support, *map(foothold, steps.tolist())]
+    assert feet[1] == landing
+    for before, after in pairwise(feet[1:]):
+        expected = PLANNER.landing(before, strides)
+        assert after.left is expected.left
+        assert after.row == pytest.approx(expected.row, abs=1e-12)
+    assert ends == (not moving and len(steps) < 4)
+    if ends:
+        assert PLANNER.parallel(*feet[-2:])
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 10**6), st.booleans())
+def test_compiled_they_are_what_they_say(plainly, seed, ends):
+    rng, support, landing, strides = draw(seed)
+    asked = arguments(support, landing, strides, not ends)
+    steps, over = foothold_kernel.sequence(*asked)
+    plain, plainly_over = plainly(foothold_kernel, "sequence", *asked)
+    np.testing.assert_array_equal(steps, plain)
+    assert over == plainly_over
+    swing = Footstep(not support.left, *rng.uniform(-1.0, 1.0, 3).tolist())
+    asked = (swing.row, support.row, steps, (0.1, 0.2), (int(seed % 2), 30, 10, 58, 60), SPOT, over)
+    found = foothold_kernel.ramps(*asked)
+    np.testing.assert_array_equal(found, plainly(foothold_kernel, "ramps", *asked))
+    chain = arguments(support, landing, strides, not ends)[1:]
+    both = foothold_kernel.onwards(swing.row, support.row, *chain, (0.1, 0.2), *asked[4:6])
+    np.testing.assert_array_equal(both[0], steps)
+    np.testing.assert_array_equal(both[1], found)

@@ -1,0 +1,162 @@
+"""Velocity to footholds."""
+
+from math import cos, pi, sin
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from walking.admission import Limit
+from walking.body.robot_model import Sole
+from walking.footsteps.foothold_kernel import sequence
+from walking.footsteps.planner import FootstepPlanner
+from walking.parameters import GaitParameters, LimitParameters
+from walking.state import Footstep, foothold
+
+GAIT, LIMITS = GaitParameters(), LimitParameters()
+SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
+PLANNER = FootstepPlanner(GAIT, LIMITS, SOLE)
+LEFT = Footstep(True, 0.0, GAIT.half_stance, 0.0)
+RIGHT = Footstep(False, 0.0, -GAIT.half_stance, 0.0)
+velocities = st.tuples(
+    st.floats(-LIMITS.backward, LIMITS.forward),
+    st.floats(-LIMITS.lateral, LIMITS.lateral),
+    st.floats(-LIMITS.turn, LIMITS.turn),
+)
+yaws = st.floats(-pi, pi)
+
+
+def mirror(step):
+    return Footstep(not step.left, step.x, -step.y, -step.yaw)
+
+
+def fields(step):
+    return step.left, pytest.approx((step.x, step.y, step.yaw), abs=1e-12)
+
+
+def seen_from(support, step):
+    c, s = cos(support.yaw), sin(support.yaw)
+    dx, dy = step.x - support.x, step.y - support.y
+    return c * dx + s * dy, c * dy - s * dx, step.yaw - support.yaw
+
+
+def landed(support, velocity):
+    return PLANNER.landing(support, PLANNER.strides(velocity, GAIT.footstep_time))
+
+
+def walk(velocity, count):
+    feet = [RIGHT, LEFT]
+    for _ in range(count):
+        feet.append(landed(feet[-1], velocity))
+    return feet
+
+
+def middle(feet):
+    return 0.5 * (feet[-1].x + feet[-2].x), 0.5 * (feet[-1].y + feet[-2].y)
+
+
+@given(velocities)
+def test_mirrored_velocity_gives_mirrored_footholds(velocity):
+    forward, left, turn = velocity
+    here = landed(LEFT, velocity)
+    there = landed(RIGHT, (forward, -left, -turn))
+    assert fields(mirror(here)) == (there.left, (there.x, there.y, there.yaw))
+
+
+@given(velocities, yaws)
+def test_footholds_turn_and_move_with_the_support_foot(velocity, yaw):
+    support = Footstep(True, 1.0, -2.0, yaw)
+    assert seen_from(support, landed(support, velocity)) == pytest.approx(
+        seen_from(LEFT, landed(LEFT, velocity)), abs=1e-9
+    )
+
+
+@given(velocities, st.floats(-0.2, 0.2), st.floats(-0.2, 0.2))
+def test_every_corner_of_a_landing_clears_the_support_foot(velocity, dx, dy):
+    landing = PLANNER.reachable(LEFT, landed(LEFT, velocity), dx, dy)
+    _, y, yaw = seen_from(LEFT, landing)
+    for u in (SOLE.centre - SOLE.half_length, SOLE.centre + SOLE.half_length):
+        for v in (-SOLE.half_width, SOLE.half_width):
+            corner = y + sin(yaw) * u + cos(yaw) * v
+            assert corner <= -(SOLE.half_width + GAIT.foot_clearance) + 1e-9
+
+
+@pytest.mark.parametrize("forward", [0.25, 0.1, -0.15])
+def test_straight_walk_has_the_commanded_speed(forward):
+    feet = walk((forward, 0.0, 0.0), 21)
+    distance = feet[-1].x - feet[1].x
+    assert distance == pytest.approx(21 * forward * GAIT.footstep_time)
+
+
+@pytest.mark.parametrize("left", [0.08, -0.08])
+def test_side_walk_has_the_commanded_speed(left):
+    feet = walk((0.0, left, 0.0), 21)
+    assert feet[-1].left is feet[2].left
+    assert feet[-1].y - feet[2].y == pytest.approx(20 * left * GAIT.footstep_time)
+
+
+@pytest.mark.parametrize("turn", [0.6, -0.6])
+def test_turning_on_the_spot_turns_as_commanded_and_stays(turn):
+    feet = walk((0.0, 0.0, turn), 20)
+    assert feet[-1].yaw == pytest.approx(20 * turn * GAIT.footstep_time)
+    assert middle(feet) == pytest.approx((0.0, 0.0), abs=0.04)
+
+
+def test_stopping_closes_the_stance():
+    landing = landed(LEFT, (0.2, -0.05, -0.3))
+    steps, ends = sequence(LEFT.row, landing.row, PLANNER.chain(PLANNER.still), False)
+    assert ends
+    assert len(steps) == 2
+    assert PLANNER.parallel(*map(foothold, steps.tolist()))
+
+
+def test_walking_on_plans_all_steps_with_alternating_feet():
+    velocity = (0.2, 0.0, 0.1)
+    strides = PLANNER.strides(velocity, GAIT.footstep_time)
+    steps, ends = sequence(LEFT.row, landed(LEFT, velocity).row, PLANNER.chain(strides), True)
+    assert not ends
+    assert steps[:, 3].tolist() == [0.0, 1.0, 0.0, 1.0]
+
+
+def test_the_foot_on_the_side_of_the_motion_opens():
+    assert PLANNER.opening_left((0.1, 0.05, 0.0)) is True
+    assert PLANNER.opening_left((0.1, 0.0, -0.5)) is False
+    assert PLANNER.opening_left((0.1, 0.0, 0.0)) is None
+
+
+@given(velocities)
+def test_a_walk_is_quickened_before_its_footsteps_are_cut(velocity):
+    timing = PLANNER.cadence(velocity)
+    assert GAIT.shortest_time - 0.005 < timing.duration <= GAIT.footstep_time
+    quickest = timing.duration == pytest.approx(GAIT.shortest_time)
+    cut = set(PLANNER.stride_limits(velocity, timing.duration - 0.0025)) - {Limit.CLEARANCE}
+    assert quickest or not cut
+
+
+@given(velocities)
+def test_strides_make_the_velocity_unless_a_limit_says_otherwise(velocity):
+    time = PLANNER.cadence(velocity).duration
+    made = PLANNER.velocity(PLANNER.strides(velocity, time), time)
+    assert made == pytest.approx(velocity, abs=1e-9) or PLANNER.stride_limits(velocity, time)
+
+
+def test_a_turn_that_must_keep_the_feet_apart_is_no_turn_on_the_spot():
+    time = PLANNER.cadence((0.0, 0.0, 1.5)).duration
+    assert PLANNER.stride_limits((0.0, 0.0, 1.5), time) == [Limit.CLEARANCE]
+    _, left, turn = PLANNER.velocity(PLANNER.strides((0.0, 0.0, 1.5), time), time)
+    assert left > 0.01
+    assert turn == pytest.approx(1.5)
+
+
+def test_a_slow_walk_keeps_the_usual_time():
+    for velocity in ((0.2, 0.0, 0.0), (-0.1, 0.08, 0.0), (0.2, 0.0, 0.8)):
+        assert PLANNER.cadence(velocity).duration == pytest.approx(GAIT.footstep_time)
+
+
+@pytest.mark.parametrize("time", [1e-9, 0.008, 0.34])
+@pytest.mark.parametrize("share", [1e-9, 0.5, 1.0 - 1e-9])
+def test_the_shortest_footstep_has_a_tick_of_either_support(time, share):
+    gait = GaitParameters(footstep_time=time, shortest_time=time, double_support=share)
+    timing = FootstepPlanner(gait, LIMITS, SOLE).cadence((0.1, 0.0, 0.0))
+    assert timing.double >= 1
+    assert timing.single >= 1

@@ -1,0 +1,58 @@
+"""Landings of a velocity, against the same in plain Python and against what they are to be."""
+
+from math import cos, sin
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from walking.footsteps import stride_kernel
+
+LIMITS = (0.085, 0.042, 0.3)
+HALF, GAP, HEEL, TOE, WIDTH = BUILD = (0.042, 0.012, -0.0425, 0.0625, 0.03)
+TIME = 0.34
+velocities = st.tuples(st.floats(-0.5, 0.5), st.floats(-0.3, 0.3), st.floats(-2.0, 2.0))
+
+
+@given(velocities)
+def test_compiled_it_is_what_it_says(plainly, velocity):
+    asked = (velocity, TIME, LIMITS, BUILD)
+    assert stride_kernel.strides(*asked) == plainly(stride_kernel, "strides", *asked)
+
+
+@given(velocities)
+def test_the_other_way_round_the_feet_change_places(velocity):
+    forward, left, turn = velocity
+    here, there, moved = stride_kernel.strides(velocity, TIME, LIMITS, BUILD)
+    mirrored = stride_kernel.strides((forward, -left, -turn), TIME, LIMITS, BUILD)
+    assert mirrored == ((there[0], -there[1], -there[2]), (here[0], -here[1], -here[2]), moved)
+
+
+@given(velocities)
+def test_two_footsteps_move_the_stance_by_the_velocity_where_no_limit_binds(velocity):
+    right, left, moved = stride_kernel.strides(velocity, TIME, LIMITS, BUILD)
+    forward, sideways, turn = velocity
+    longest = (abs(forward) * TIME, 2.0 * abs(sideways) * TIME, 2.0 * abs(turn) * TIME)
+    if moved or any(np.array(longest) > LIMITS):
+        return
+    middle, heading = 0.0, 0.0
+    for (x, y, turned), stance in ((right, -HALF), (left, HALF)):
+        # From the middle of the stance to that of the next, from the support foot's side.
+        way = x + 1j * y - 1j * stance - 1j * stance * np.exp(1j * turned)
+        middle += np.exp(-0.5j * turned) * way
+        heading += turned
+    assert middle == pytest.approx(2.0 * TIME * (forward + 1j * sideways), abs=1e-12)
+    assert heading == pytest.approx(2.0 * TIME * turn, abs=1e-12)
+
+
+@given(st.floats(-0.2, 0.2), st.floats(-0.5, 0.5), st.sampled_from((-1.0, 1.0)))
+def test_a_clear_landing_has_every_corner_beside_the_other_sole(y, turned, side):
+    found = stride_kernel.clear(y, turned, side, GAP, (HEEL, TOE, WIDTH))
+    inner = min(
+        side * (found + sin(turned) * u + cos(turned) * v)
+        for u in (HEEL, TOE)
+        for v in (-WIDTH, WIDTH)
+    )
+    assert inner >= WIDTH + GAP - 1e-12
+    assert found == y or inner == pytest.approx(WIDTH + GAP, abs=1e-12)

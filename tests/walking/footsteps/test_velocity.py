@@ -1,0 +1,69 @@
+"""Limits and slew of the velocity."""
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from walking.command import VelocityCommand
+from walking.footsteps.velocity import VelocitySlew, limited
+from walking.parameters import CONTROL_PERIOD, LimitParameters
+
+LIMITS = LimitParameters()
+speeds = st.floats(-2.0, 2.0)
+
+
+@given(speeds, speeds, speeds)
+def test_limited_velocity_is_within_every_limit(forward, left, turn):
+    f, s, t = limited(VelocityCommand(forward, left, turn), LIMITS)
+    assert -LIMITS.backward <= f <= LIMITS.forward
+    assert abs(s) <= LIMITS.lateral
+    assert abs(t) <= LIMITS.turn
+    ahead = LIMITS.forward if f >= 0.0 else LIMITS.backward
+    norm = (f / ahead) ** 2 + (s / LIMITS.lateral) ** 2 + (t / LIMITS.turn) ** 2
+    assert norm <= LIMITS.combined**2 + 1e-9
+
+
+@given(speeds, speeds, speeds)
+def test_limits_are_idempotent_and_mirror(forward, left, turn):
+    once = limited(VelocityCommand(forward, left, turn), LIMITS)
+    assert limited(VelocityCommand(*once), LIMITS) == pytest.approx(once)
+    mirrored = limited(VelocityCommand(forward, -left, -turn), LIMITS)
+    assert mirrored == pytest.approx((once[0], -once[1], -once[2]))
+
+
+def test_slew_reaches_the_command_with_bounded_acceleration():
+    slew = VelocitySlew(LIMITS)
+    speeds = [slew.velocity[0]]
+    for _ in range(200):
+        slew.follow(VelocityCommand(0.2, 0.0, 0.0))
+        speeds.append(slew.velocity[0])
+    assert speeds[-1] == pytest.approx(0.2)
+    largest = LIMITS.forward_acceleration * CONTROL_PERIOD
+    assert all(b - a <= largest + 1e-12 for a, b in pairwise(speeds))
+
+
+def test_slew_comes_to_an_exact_stop():
+    slew = VelocitySlew(LIMITS)
+    for _ in range(100):
+        slew.follow(VelocityCommand(0.13, -0.07, 0.9))
+    for _ in range(300):
+        slew.follow(VelocityCommand())
+    assert not slew.moving
+
+
+@pytest.mark.parametrize("wanted", [0.0, 0.1, -0.3])
+def test_a_walk_is_braked_in_the_braking_time_and_reverses_through_rest(wanted):
+    slew = VelocitySlew(LIMITS)
+    slew.start((LIMITS.forward, 0.0, 0.0))
+    speeds = [slew.velocity[0]]
+    while slew.velocity[0] > max(wanted, 0.0):
+        slew.follow(VelocityCommand(wanted))
+        speeds.append(slew.velocity[0])
+    assert speeds[-1] == max(wanted, 0.0)
+    assert len(speeds) * CONTROL_PERIOD <= LIMITS.braking_time + 2.0 * CONTROL_PERIOD
+    slew.follow(VelocityCommand(wanted))
+    assert (
+        abs(slew.velocity[0] - speeds[-1]) <= LIMITS.forward_acceleration * CONTROL_PERIOD + 1e-12
+    )

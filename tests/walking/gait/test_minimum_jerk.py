@@ -1,0 +1,29 @@
+"""Motion of minimum jerk."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from walking.gait.minimum_jerk import PEAK, minimum_jerk
+
+
+@given(st.floats(0.0, 1.0))
+def test_minimum_jerk_is_symmetric_in_time(share):
+    assert minimum_jerk(share) + minimum_jerk(1.0 - share) == pytest.approx(1.0)
+
+
+def test_minimum_jerk_starts_and_ends_at_rest_and_peaks_in_the_middle():
+    shares = np.linspace(0.0, 1.0, 2001)
+    way = np.array([minimum_jerk(s) for s in shares])
+    speed, force = np.gradient(way, shares), np.gradient(np.gradient(way, shares), shares)
+    assert way[0] == 0.0
+    assert way[-1] == 1.0
+    assert speed.max() == pytest.approx(PEAK, rel=1e-4)
+    assert abs(speed[[0, -1]]).max() < 1e-4
+    assert abs(force[[0, -1]]).max() < 0.1
+
+
+def test_outside_its_time_minimum_jerk_stays_where_it_is():
+    assert minimum_jerk(-1.0) == 0.0
+    assert minimum_jerk(2.0) == 1.0

@@ -1,0 +1,178 @@
+"""A change that the ZMP cannot follow is made in part, and nothing else is touched."""
+
+import numpy as np
+import pytest
+
+from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.stride import Strides, Timing
+from walking.gait.gait import Gait
+from walking.gait.transition import BISECTIONS, Transition
+from walking.parameters import WalkingParameters
+from walking.pattern.pattern import PendulumState
+from walking.pattern.support import support_region
+from walking.state import Footstep
+
+PARAMETERS = WalkingParameters()
+TIME = PARAMETERS.gait.footstep_time
+STANCE = 2.0 * PARAMETERS.gait.half_stance
+SLOW, FAST = (
+    Strides(right=(v * TIME, -STANCE, 0.0), left=(v * TIME, STANCE, 0.0)) for v in (0.1, 0.3)
+)
+
+
+class UpTo:
+    """Admits landings no further ahead than `reach`."""
+
+    selective = True
+
+    def __init__(self, gait):
+        self.gait, self.reach, self.asked, self.lost = gait, np.inf, [], False
+
+    def admits(self, state, ramps, region):
+        self.asked.append(ramps)
+        return self.landing(ramps) <= self.reach
+
+    def holds(self, ramps):
+        return not self.lost
+
+    @staticmethod
+    def landing(ramps):
+        return next(r for r in ramps if not r.feet[1].left).feet[1].x
+
+
+@pytest.fixture
+def setting(robot):
+    planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
+    h = PARAMETERS.gait.half_stance
+    stance = (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0))
+    gait = Gait(PARAMETERS, planner, stance)
+    gait.start(0)
+    generator = UpTo(gait)
+    region = support_region(robot.sole, *stance, 0.005)
+    return gait, generator, Transition(gait, generator), region
+
+
+def tick(setting, wish, *, caught=False, timing=None, moving=True):
+    gait, _, transition, region = setting
+    transition.remember()
+    if timing is not None:
+        gait.retime(timing)
+    state = PendulumState(0.0, 0.0)
+    return transition.admit(state, region, wish, moving=moving, caught=caught)
+
+
+def test_an_admitted_change_is_made_at_once(setting):
+    tick(setting, SLOW)
+    tick(setting, FAST)
+    _, _, transition, _ = setting
+    assert transition.share == 1.0
+    assert transition.landing.x == pytest.approx(0.3 * TIME)
+
+
+def test_the_largest_admitted_share_is_found(setting):
+    _, generator, transition, _ = setting
+    tick(setting, SLOW)
+    slow = transition.landing.x
+    fast = 3.0 * slow
+    generator.reach = slow + 0.6 * (fast - slow)
+    ramps = tick(setting, FAST)
+    assert 0.6 - 0.5**BISECTIONS <= transition.share <= 0.6
+    assert transition.landing.x == pytest.approx(slow + transition.share * (fast - slow))
+    assert any(ramps is one for one in generator.asked)
+    assert transition.strides.right[0] == pytest.approx(transition.landing.x)
+
+
+def test_if_nothing_is_admitted_the_old_plan_goes_on(setting):
+    gait, generator, transition, _ = setting
+    tick(setting, SLOW)
+    before, clock = tick(setting, SLOW), gait.clock
+    generator.reach = -1.0
+    after = tick(setting, FAST, timing=Timing(20, 80, 0.03))
+    assert transition.share == 0.0
+    assert list(after) == list(before)
+    assert gait.clock == clock
+
+
+def test_times_change_by_the_same_share(setting):
+    gait, generator, transition, _ = setting
+    tick(setting, SLOW)
+    generator.reach = 0.5 * (transition.landing.x + 3.0 * transition.landing.x) + 1e-9
+    usual = gait.timing
+    tick(setting, FAST, timing=Timing(14, 74, 0.025))
+    assert transition.share == 0.5
+    assert gait.timing.single == round(0.5 * (usual.single + 74))
+
+
+class FromHere(UpTo):
+    """Also, admits no walk that ends after a footstep shorter than `least`."""
+
+    least = 0.0
+
+    def admits(self, state, ramps, region):
+        ends = len(ramps) < 2 * PARAMETERS.gait.preview_steps
+        return super().admits(state, ramps, region) and not (
+            ends and self.landing(ramps) < self.least
+        )
+
+
+def test_a_walk_ends_by_the_shortest_footstep_from_which_it_can(setting):
+    gait, _, _, region = setting
+    generator = FromHere(gait)
+    transition = Transition(gait, generator)
+    setting = gait, generator, transition, region
+    tick(setting, FAST)
+    fast, still = transition.landing.x, gait._planner.still
+    generator.least = 0.3 * fast
+    ramps = tick(setting, still, moving=False)
+    assert not transition.moving
+    assert transition.strides == still
+    assert 0.3 * fast <= transition.landing.x <= (0.3 + 0.5**BISECTIONS) * fast
+    assert any(ramps is one for one in generator.asked)
+
+
+def test_a_walk_that_cannot_end_yet_goes_on(setting):
+    gait, _, _, region = setting
+    generator = FromHere(gait)
+    transition = Transition(gait, generator)
+    setting = gait, generator, transition, region
+    tick(setting, FAST)
+    generator.least = 2.0 * transition.landing.x
+    tick(setting, gait._planner.still, moving=False)
+    assert transition.moving
+
+
+def test_without_a_plan_to_carry_on_the_wanted_one_is_taken(setting):
+    gait, generator, transition, _ = setting
+    tick(setting, SLOW)
+    generator.reach, generator.lost = -1.0, True
+    tick(setting, FAST, timing=Timing(20, 80, 0.03))
+    assert transition.share == 1.0
+    assert transition.landing.x == pytest.approx(0.3 * TIME)
+    assert gait.timing == Timing(20, 80, 0.03)
+
+
+def swinging(setting):
+    gait = setting[0]
+    while gait.swing_phase < 0.6:
+        tick(setting, SLOW)
+        gait.aim(setting[2].landing)
+        gait.advance(moving=True)
+    return gait
+
+
+def test_a_foot_that_has_met_the_floor_is_where_it_is(setting):
+    gait, _, transition, _ = setting
+    swinging(setting)
+    gait.touch_down()
+    tick(setting, FAST)
+    assert transition.landing == gait.landing
+
+
+def test_while_the_body_is_caught_the_plan_keeps_its_own_landing(setting):
+    gait, _, transition, _ = setting
+    swinging(setting)
+    kept = transition.landing
+    gait.aim(Footstep(False, kept.x + 0.01, kept.y, 0.0))
+    gait.touch_down()
+    tick(setting, SLOW, caught=True)
+    assert transition.landing == kept

@@ -1,0 +1,62 @@
+"""Rate and acceleration of the head."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from walking.body import head_kernel
+from walking.command import HeadTarget
+from walking.parameters import CONTROL_PERIOD, HeadParameters
+from walking.servos.head import Head
+
+LIMITS = ((-1.57, 1.57), (-1.05, 0.35))
+PARAMETERS = HeadParameters()
+
+
+def follow(targets):
+    head = Head(0.0, 0.0, LIMITS, PARAMETERS)
+    return np.array([(0.0, 0.0), *(head.advance(target) for target in targets)])
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.integers(1, 60)),
+        min_size=1,
+        max_size=8,
+    )
+)
+def test_limits_hold_for_any_targets(moves):
+    path = follow([HeadTarget(pan, tilt) for pan, tilt, n in moves for _ in range(n)])
+    rates = np.diff(path, axis=0) / CONTROL_PERIOD
+    changes = np.diff(np.vstack([np.zeros(2), rates]), axis=0) / CONTROL_PERIOD
+    assert np.abs(rates).max() <= PARAMETERS.rate + 1e-9
+    assert np.abs(changes).max() <= PARAMETERS.acceleration + 1e-6
+    assert np.abs(path[:, 0]).max() <= 1.58
+    assert path[:, 1].max() <= 0.36
+
+
+def test_a_saccade_arrives_without_overshoot_in_minimum_time():
+    path = follow([HeadTarget(1.2, -0.4)] * 80)
+    assert path[-1] == pytest.approx((1.2, -0.4), abs=1e-9)
+    assert path[:, 0].max() <= 1.2 + 1e-9
+    # Trapezoid: distance / rate + rate / acceleration.
+    arrival = np.argmax(path[:, 0] > 1.2 - 1e-3) * CONTROL_PERIOD
+    assert arrival == pytest.approx(1.2 / 6.0 + 6.0 / 60.0, abs=0.02)
+
+
+def test_left_and_right_mirror():
+    left = follow([HeadTarget(0.7, 0.1)] * 30)
+    right = follow([HeadTarget(-0.7, 0.1)] * 30)
+    np.testing.assert_allclose(left[:, 0], -right[:, 0])
+
+
+@given(st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6))
+def test_compiled_it_is_what_it_says(plainly, drawn):
+    outcomes, limits = [], np.array(LIMITS)
+    law = np.array([6.0, 60.0, CONTROL_PERIOD])
+    for call in (head_kernel.advance, lambda *a: plainly(head_kernel, "advance", *a)):
+        position, velocity = np.array(drawn[:2]), np.array(drawn[2:4])
+        told = call(position, velocity, tuple(drawn[4:]), limits, law)
+        outcomes.append([*told, *position, *velocity])
+    assert outcomes[0] == outcomes[1]

@@ -1,0 +1,19 @@
+"""Touch-down of a swinging foot."""
+
+from walking.parameters import EstimatorParameters
+from walking.servos.touch_down import TouchDown
+
+PARAMETERS = EstimatorParameters()
+
+
+def test_touch_down_needs_the_phase_the_force_and_the_duration():
+    touch = TouchDown(PARAMETERS)
+    assert not touch.update(0.3, 50.0)
+    assert not touch.update(0.7, 50.0)
+    assert touch.update(0.72, 50.0)
+    assert not touch.update(0.74, 1.0)
+    assert not touch.update(0.76, 50.0)
+
+
+def test_one_touch_is_none():
+    assert not TouchDown(PARAMETERS).update(0.7, 50.0)

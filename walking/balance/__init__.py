@@ -1,0 +1,1 @@
+"""Balance: what the ankles, the pattern and the next foothold do against a fall."""

@@ -1,0 +1,1 @@
+"""The body: its numbers, its kinematics, and what its sensors tell of it."""

@@ -1,0 +1,124 @@
+"""What the body really does: attitude, feet, odometry, and the error against the plan."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from walking.body import estimation_kernel
+from walking.body.estimation_kernel import FOUND, LOAD, Plan
+from walking.body.measurement import BodyMeasurement, body_of
+from walking.body.odometry import LegOdometry
+from walking.body.robot_model import RobotModel
+from walking.body.steady_gains import steady_gains
+from walking.parameters import CONTROL_PERIOD, GRAVITY, EstimatorParameters
+from walking.sensing import BodySensors
+
+Array = NDArray[np.float64]
+Point = tuple[float, float]
+
+LIGHT_LOAD = 0.074  # noise of a foot's pads stays below this share of the weight [1]
+
+
+class Estimation:
+    """Filters the sensors, and compares the body with what it was meant to do.
+
+    Args:
+        robot: dimensions and masses.
+        omega: of the pendulum [1/s].
+        parameters: noise levels.
+        odometry: dead reckoning, brought up to date.
+
+    Attributes:
+        seen: what the last tick has seen, see `estimation_kernel.observe` (24,).
+        tilt: roll and pitch of the trunk, filtered; None before the first tick [rad].
+        dcm_error: of the body against the plan [m].
+        pressure_error: centre of pressure less planned ZMP, forward and left; none in the air [m].
+        pose: by odometry (x, y, heading) [m, m, rad].
+    """
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        omega: float,
+        parameters: EstimatorParameters,
+        odometry: LegOdometry,
+    ) -> None:
+        self._robot = robot
+        self._odometry = odometry
+        self._filter, self._error = np.zeros(3), np.zeros(5)
+        self._error[4] = -1.0
+        sole, gains = robot.sole, steady_gains(omega, parameters)
+        light = LIGHT_LOAD * robot.mass * GRAVITY
+        body = parameters.tilt_gain, light, sole.centre, sole.half_length, sole.half_width
+        self._body = np.array(body)
+        self._gains = np.array([gains.position, gains.velocity, omega])
+        self.seen = np.zeros(FOUND)
+        self.tilt: Point | None = None
+        self.dcm_error: Point = (0.0, 0.0)
+        self.pressure_error: Point = (0.0, 0.0)
+        self.pose = (0.0, 0.0, 0.0)
+
+    @property
+    def body(self) -> BodyMeasurement | None:
+        """Of the last tick, None before the first."""
+        return None if self.tilt is None else body_of(self.seen.tolist())
+
+    @property
+    def com_error(self) -> tuple[float, float, float, float]:
+        """Measured less planned mass centre and its rate, x, y [m], vx, vy [m/s]."""
+        x, y, vx, vy, _ = self._error.tolist()
+        return x, y, vx, vy
+
+    def load(self, foot: int) -> float:
+        """Load under the left (0) or the right foot (1) [N]."""
+        return float(self.seen[LOAD + 5 * foot])
+
+    def observe(self, sensors: BodySensors) -> None:
+        """A tick in which there is no plan: only the body is seen, and its tilt filtered."""
+        robot = self._robot
+        self.tilt = estimation_kernel.observe(
+            sensors.joint_position,
+            sensors.foot_force,
+            sensors.orientation,
+            sensors.gyro,
+            robot.com(sensors.joint_position),
+            self._filter,
+            robot.leg_rows,
+            self._body,
+            CONTROL_PERIOD,
+            self.seen,
+        )
+
+    def update(self, sensors: BodySensors, feet: Array, plan: Plan, *, stepping: bool) -> Point:
+        """One tick of a walk.
+
+        Args:
+            sensors: read at its start.
+            feet: their references, see `walking.gait.swing_foot_kernel` (2, 10).
+            plan: of the tick before, see `estimation_kernel.Plan`.
+            stepping: whether the feet leave the floor.
+
+        Returns:
+            roll and pitch of the trunk [rad].
+        """
+        robot, odometry = self._robot, self._odometry
+        tilt, self.dcm_error, self.pressure_error, self.pose = estimation_kernel.estimate(
+            sensors.joint_position,
+            sensors.foot_force,
+            sensors.orientation,
+            sensors.gyro,
+            robot.com(sensors.joint_position),
+            self._filter,
+            odometry.state,
+            self._error,
+            robot.leg_rows,
+            self._body,
+            odometry.growth,
+            self._gains,
+            feet,
+            plan,
+            stepping,
+            CONTROL_PERIOD,
+            self.seen,
+        )
+        self.tilt = tilt
+        return tilt

@@ -1,0 +1,349 @@
+"""The robot's numbers, read by Pinocchio from the same MJCF file as the simulator."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import asin, atan2, sqrt
+from os import PathLike, fspath
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from walking.body import head_kernel
+from walking.body.joints import HEAD, HEAD_JOINTS, JOINT_NAMES, LEFT_LEG, RIGHT_LEG
+from walking.body.leg_kinematics import FootPose, LegDimensions, foot_pose, leg_angles
+from walking.parameters import GRAVITY
+from walking.yardsticks import Yardsticks
+
+Array = NDArray[np.float64]
+
+READY = "walk_ready"
+BENT = 5.0 / 6.0  # height of the hips with the knees bent for a walk, as a share of the leg
+SMALL = 1e-5  # step of a difference quotient [m]
+SERVOS = ("position", "general")  # elements of MJCF that can be a position servo
+FITS = 1e-5  # error of a foot's pose that is rounding [m, rad]
+# Columns are the camera's right, down and forward in the frame of the head, which looks along x.
+R_HC = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
+
+@dataclass(frozen=True, slots=True)
+class Sole:
+    """Rectangle of a sole in the foot frame.
+
+    Attributes:
+        centre: middle of the sole ahead of the ankle [m].
+        half_length: half of its length [m].
+        half_width: half of its width [m].
+    """
+
+    centre: float
+    half_length: float
+    half_width: float
+
+
+class RobotModel:
+    """Dimensions, masses, limits and kinematics of the robot.
+
+    Args:
+        model: Pinocchio model with a free root and the joints of ``JOINT_NAMES``.
+        stiffness: of each servo (26,) [N m/rad].
+        servo_damping: of each servo (26,) [N m s/rad].
+
+    Attributes:
+        mass: total mass [kg].
+        legs: dimensions of the left and of the right leg.
+        leg_rows: the same as compiled code has it (2, 6).
+        sole: rectangle of either sole.
+        ready: joint angles of the ready posture (26,) [rad].
+        motion: position, velocity and acceleration of the level base and the joints as Pinocchio
+            orders them, to be set for `forces`.
+        indices: of the joints in its position and in its velocity (26,).
+        lower, upper: joint limits (26,) [rad].
+        stiffness: of each servo (26,) [N m/rad].
+        damping: of each servo with its joint (26,) [N m s/rad].
+
+    Raises:
+        ValueError: a joint, frame or the ready posture is missing, the soles differ, or a leg
+            has other axes than `leg_kinematics`, or the head than `head_kernel`.
+    """
+
+    def __init__(self, model: Any, stiffness: Array, servo_damping: Array) -> None:
+        missing = [name for name in JOINT_NAMES if not model.existJointName(name)]
+        if missing:
+            raise ValueError(f"the robot model lacks the joints {', '.join(missing)}")
+        self._model = model
+        self._data = model.createData()
+        ids = [model.getJointId(name) for name in JOINT_NAMES]
+        self._q_index = np.array([model.joints[i].idx_q for i in ids])
+        self._v_index = np.array([model.joints[i].idx_v for i in ids])
+        self._q = pin.neutral(model)
+        self.motion = self._q, np.zeros(model.nv), np.zeros(model.nv)
+        self.indices = self._q_index, self._v_index
+        camera = model.frames[self._frame("camera")].placement
+        places = [*map(self._placement, HEAD_JOINTS), camera.translation.tolist()]
+        self._head = np.array(places), camera.rotation @ R_HC
+        self.mass = float(sum(inertia.mass for inertia in model.inertias))
+        self.legs = (self._leg("l"), self._leg("r"))
+        self.leg_rows = np.array([leg.row for leg in self.legs])
+        self.sole, right = self._sole("l"), self._sole("r")
+        if self.sole != right:
+            raise ValueError(f"the soles of the robot model differ: {self.sole} and {right}")
+        reference = {e.key(): np.array(e.data()) for e in model.referenceConfigurations}
+        if READY not in reference:
+            raise ValueError(f"the robot model lacks the keyframe {READY!r}")
+        self.ready: Array = reference[READY][self._q_index]
+        self.lower: Array = np.array(model.lowerPositionLimit)[self._q_index]
+        self.upper: Array = np.array(model.upperPositionLimit)[self._q_index]
+        self.stiffness = stiffness
+        self.damping: Array = servo_damping + np.array(model.damping)[self._v_index]
+        self._check_legs()
+        self._check_head()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but Pinocchio's work space, which holds nothing from one call to the next."""
+        state = self.__dict__.copy()
+        del state["_data"]
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._data = self._model.createData()
+
+    @classmethod
+    def from_mjcf(cls, path: str | PathLike[str]) -> RobotModel:
+        """Read a robot from an MJCF file.
+
+        The file has, by their names, the joints of ``JOINT_NAMES``, each with a position
+        servo; sites ``l_foot`` and ``r_foot`` on the floor below the ankles,
+        ``l_sole_fl`` … ``r_sole_br`` in the middle of each quarter of a sole, and
+        ``camera``; and the keyframe ``walk_ready``. Everything else is its own choice.
+
+        Raises:
+            ValueError: something the library needs is missing in the file.
+        """
+        model = pin.buildModelFromMJCF(fspath(path))
+        gains = _servo_gains(fspath(path))
+        missing = [name for name in JOINT_NAMES if name not in gains]
+        if missing:
+            raise ValueError(f"{fspath(path)} has no position servo for {', '.join(missing)}")
+        ordered = np.array([gains[name] for name in JOINT_NAMES])
+        return cls(model, ordered[:, 0], ordered[:, 1])
+
+    def com(self, joint_position: Array) -> Array:
+        """Centre of mass in the base frame (3,) [m] for joint angles (26,) [rad]."""
+        q = self._q
+        q[self._q_index] = joint_position
+        com: Array = pin.centerOfMass(self._model, self._data, q, False)
+        return com
+
+    def inverse_dynamics(
+        self,
+        position: Array,
+        velocity: Array,
+        acceleration: Array,
+        base_acceleration: tuple[float, float],
+    ) -> tuple[Array, Array]:
+        """What a motion of the joints asks of joints and base, nothing touching the feet.
+
+        Args:
+            position: joint angles (26,) [rad].
+            velocity: their rates (26,) [rad/s].
+            acceleration: their accelerations (26,) [rad/s²].
+            base_acceleration: of the level base, forward and left [m/s²].
+
+        Returns:
+            torque of each joint, gravity included (26,) [N m]; force [N] and moment [N m] at the
+            base, in its frame and about its origin (6,).
+        """
+        q, v, a = self.motion
+        q[self._q_index] = position
+        v[self._v_index] = velocity
+        a[self._v_index] = acceleration
+        a[0], a[1] = base_acceleration
+        forces = self.forces()
+        joints: Array = forces[self._v_index]
+        base: Array = forces[:6].copy()
+        return joints, base
+
+    def forces(self) -> Array:
+        """Generalised forces that `motion` takes, nothing touching the feet; the base's first."""
+        forces: Array = pin.rnea(self._model, self._data, *self.motion)
+        return forces
+
+    def moved_com(self) -> tuple[float, float]:
+        """Centre of mass in the base frame, x, y [m], for the joint angles of the last `forces`."""
+        x, y, _ = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
+        return x, y
+
+    def pendulum_height(self) -> float:
+        """Height of the pendulum that the robot is for its base [m].
+
+        Both feet on the floor and the knees bent, a base that accelerates by a takes the legs
+        along by part of that only; the floor's moment is that of the whole mass accelerated
+        by a at this height.
+        """
+        q = self.ready.copy()
+        rest, motion = np.zeros_like(q), np.zeros_like(q)
+        for leg, part in zip(self.legs, (LEFT_LEG, RIGHT_LEG), strict=True):
+            height = BENT * leg.length - leg.hip_z
+            foot = FootPose(leg.hip_x, leg.hip_y, -height, 0.0, 0.0, 0.0)
+            q[part] = leg_angles(leg, foot)[0]
+            ahead, behind = (
+                leg_angles(leg, FootPose(foot.x + way, foot.y, foot.z, 0.0, 0.0, 0.0))[0]
+                for way in (-SMALL, SMALL)
+            )
+            motion[part] = (np.array(ahead) - behind) / (2.0 * SMALL)
+        _, still = self.inverse_dynamics(q, rest, rest, (0.0, 0.0))
+        _, moved = self.inverse_dynamics(q, rest, motion, (1.0, 0.0))
+        force, moment = (moved - still)[[0, 4]].tolist()
+        return float((moment + height * force) / self.mass)
+
+    def yardsticks(self) -> Yardsticks:
+        """The measures that a walk goes with.
+
+        They have six digits: no more is known of a robot, and the rounding of a file's reader
+        shall not alter a walk.
+        """
+        leg, height = self.legs[0], self.pendulum_height()
+        weight = self.mass * GRAVITY
+        stiffness = 0.5 * float(self.stiffness[4] + self.stiffness[5])
+        exact = (
+            leg.length,
+            0.5 * (leg.hip_y - self.legs[1].hip_y),
+            self.sole.half_width,
+            sqrt(height / GRAVITY),
+            weight,
+            weight * height / stiffness,
+        )
+        return Yardsticks(*(float(f"{measure:.6g}") for measure in exact))
+
+    def camera_pose(self, joint_position: Array) -> tuple[Array, Array]:
+        """Rotation R_BC (3, 3) and position p_BC (3,) [m] of the head camera."""
+        pan, tilt = joint_position[HEAD].tolist()
+        rotation, position = np.empty((3, 3)), np.empty(3)
+        head_kernel.camera_pose(pan, tilt, *self._head, rotation, position)
+        return rotation, position
+
+    def frame_pose(self, name: str, joint_position: Array) -> tuple[Array, Array]:
+        """Rotation (3, 3) and position (3,) [m] of a named frame in the base frame.
+
+        Raises:
+            ValueError: there is no such frame.
+        """
+        q = self._q
+        q[self._q_index] = joint_position
+        pin.forwardKinematics(self._model, self._data, q)
+        placement = pin.updateFramePlacement(self._model, self._data, self._frame(name))
+        return placement.rotation.copy(), placement.translation.copy()
+
+    def head_limits(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Lower and upper limit of pan and of tilt [rad]."""
+        (pan_low, tilt_low), (pan_high, tilt_high) = (
+            self.lower[HEAD].tolist(),
+            self.upper[HEAD].tolist(),
+        )
+        return (pan_low, pan_high), (tilt_low, tilt_high)
+
+    def _frame(self, name: str) -> int:
+        if not self._model.existFrame(name):
+            raise ValueError(f"the robot model lacks the frame {name!r}")
+        return int(self._model.getFrameId(name))
+
+    def _placement(self, joint: str) -> list[float]:
+        place: list[float] = self._model.jointPlacements[
+            self._model.getJointId(joint)
+        ].translation.tolist()
+        return place
+
+    def _check_legs(self) -> None:
+        """The closed form of the legs must be what the model says."""
+        q = np.zeros_like(self.ready)
+        bend = np.array([0.2, 0.3, -0.5, 0.9, -0.4, 0.1])
+        for leg, part, side in zip(self.legs, (LEFT_LEG, RIGHT_LEG), "lr", strict=True):
+            q[part] = bend
+            a, b, c, d, e, f = bend.tolist()
+            foot = foot_pose(leg, (a, b, c, d, e, f))
+            R, p = self.frame_pose(f"{side}_foot", q)
+            missed = [*(p - (foot.x, foot.y, foot.z)), atan2(R[1, 0], R[0, 0]) - foot.yaw]
+            missed += [-asin(R[2, 0]) - foot.pitch, atan2(R[2, 1], R[2, 2]) - foot.roll]
+            if max(map(abs, missed)) > FITS:
+                raise ValueError(
+                    f"the leg {side!r} of the robot model is none with hip yaw, roll and pitch "
+                    "through one point, a knee and ankle pitch and roll through another one "
+                    "straight below"
+                )
+
+    def _check_head(self) -> None:
+        """So must be that of the head."""
+        q = np.zeros_like(self.ready)
+        q[HEAD] = 0.4, 0.3
+        R, p = self.frame_pose("camera", q)
+        R_BC, p_BC = self.camera_pose(q)
+        if max(abs(R @ R_HC - R_BC).max(), abs(p - p_BC).max()) > FITS:
+            raise ValueError(
+                "the head of the robot model is none that pans to the left on the base and then "
+                "tilts upwards"
+            )
+
+    def _leg(self, side: str) -> LegDimensions:
+        hip = self._placement(f"{side}_hip_yaw")
+        foot = self._model.frames[self._frame(f"{side}_foot")].placement.translation.tolist()
+        return LegDimensions(
+            hip_x=hip[0],
+            hip_y=hip[1],
+            hip_z=hip[2],
+            thigh=-self._placement(f"{side}_knee")[2],
+            shank=-self._placement(f"{side}_ankle_pitch")[2],
+            ankle_height=-foot[2],
+        )
+
+    def _sole(self, side: str) -> Sole:
+        # The four pads tile the sole, so their centres lie at its quarter points.
+        pads = [
+            self._model.frames[self._frame(f"{side}_sole_{pad}")].placement.translation.tolist()
+            for pad in ("fl", "fr", "bl", "br")
+        ]
+        return Sole(
+            centre=0.5 * (pads[0][0] + pads[2][0]),
+            half_length=pads[0][0] - pads[2][0],
+            half_width=pads[0][1] - pads[1][1],
+        )
+
+
+def _servo_gains(path: str) -> dict[str, tuple[float, float]]:
+    """Stiffness and damping of every position servo, by joint; Pinocchio does not read them.
+
+    MuJoCo saves a position servo as a general actuator with affine bias; both are understood.
+    """
+    root = ElementTree.parse(path).getroot()
+    defaults: dict[tuple[str, str], dict[str, str]] = {}
+
+    def collect(element: ElementTree.Element, inherited: dict[str, dict[str, str]]) -> None:
+        values = dict(inherited)
+        for kind in SERVOS:
+            own = element.find(kind)
+            values[kind] = {**inherited[kind], **(own.attrib if own is not None else {})}
+            defaults[element.get("class", "main"), kind] = values[kind]
+        for child in element.findall("default"):
+            collect(child, values)
+
+    for element in root.findall("default"):
+        collect(element, {kind: {} for kind in SERVOS})
+    gains = {}
+    for kind in SERVOS:
+        for servo in root.iterfind(f"actuator/{kind}"):
+            name = servo.get("class", "main")
+            values = {**defaults.get((name, kind), {}), **servo.attrib}
+            if kind == "position":
+                gain = float(values.get("kp", "1")), float(values.get("kv", "0"))
+            elif values.get("biastype") == "affine":
+                bias = [float(value) for value in values["biasprm"].split()]
+                gain = -bias[1], -bias[2] if len(bias) > 2 else 0.0
+            else:
+                continue
+            if "joint" in values:
+                gains[values["joint"]] = gain
+    return gains

@@ -1,0 +1,1 @@
+"""Footsteps: commands become footholds."""

@@ -1,0 +1,1 @@
+"""The gait: which foot carries, and how the other swings."""

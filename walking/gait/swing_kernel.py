@@ -1,0 +1,184 @@
+"""The reaction of the swinging legs on the pelvis, compiled; see `walking.gait.swing_reaction`."""
+
+from math import cos, exp, sin
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Point = tuple[float, float]
+Vector = tuple[float, float, float]
+Foothold = tuple[float, float, float, float]
+"""x, y [m], yaw [rad], and 1 if it is a left one, 0 if not."""
+
+Feet = tuple[Foothold, Foothold, Foothold]
+"""The foot that carries in this footstep; where the other foot swings from; where it is about to
+land."""
+
+Spot = tuple[float, float]
+"""Where the ZMP is meant to be under a foot: forward and inward of its origin [m]."""
+
+SWING = 10  # numbers of a swing
+
+
+@njit(cache=True)
+def profile(ticks: int, ramp: tuple[float, float, float], period: float) -> Array:
+    """A swing over a unit distance and height, tick by tick.
+
+    Args:
+        ticks: from lift to landing [1].
+        ramp: growth of the DCM over a tick, and weights of the ZMP at its start and its end, see
+            `RampCoefficients` [1].
+        period: of control [s].
+
+    Returns:
+        at every tick ∫ ω e^{-ωs} over the rest of the swing of the accelerations forward, upward,
+        and upward times the share of the distance made, linear from tick to tick; then those three
+        themselves (ticks + 1, 6) [1/s²].
+    """
+    growth, first, last = ramp
+    table = np.zeros((ticks + 1, 6))
+    square = (ticks * period) ** 2
+    for k in range(ticks + 1):
+        u = k / ticks
+        rest = 1.0 - u
+        moved = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+        # Of the height 64 u³ (1 - u)³.
+        up = 384.0 * u * rest * (rest * rest - 3.0 * u * rest + u * u) / square
+        table[k, 3] = 60.0 * u * rest * (rest - u) / square
+        table[k, 4] = up
+        table[k, 5] = up * moved
+    for k in range(ticks - 1, -1, -1):
+        for column in range(3):
+            now, then = table[k, 3 + column], table[k + 1, 3 + column]
+            table[k, column] = (table[k + 1, column] + first * now + last * then) / growth
+    return table
+
+
+@njit(cache=True)
+def react(
+    feet: Feet,
+    steps: Array,
+    now: tuple[int, float, bool],
+    later: tuple[int, int, float],
+    spot: Spot,
+    first: Array,
+    others: Array,
+    law: Array,
+    state: Array,
+) -> tuple[Point, Point]:
+    """One tick of the pelvis.
+
+    Args:
+        feet: see `swings`.
+        steps: see `swings`.
+        now: see `swings`.
+        later: see `swings`.
+        spot: see `swings`.
+        first: profile of the first swing (ticks + 1, 6).
+        others: profile of the others (ticks + 1, 6).
+        law: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg; ω [1/s], control period [s]
+            (5,).
+        state: offset of the pelvis x, y, and ξ x, y, brought up to date (4,) [m].
+
+    Returns:
+        offset x, y [m], and its acceleration x, y [m/s²].
+    """
+    table = swings(feet, steps, now, later, spot)
+    w, period, reaction = law[3], law[4], (law[0], law[1], law[2])
+    x = y = now_x = now_y = 0.0
+    for k in range(table.shape[0]):
+        swing = table[k]
+        moment = others[0]
+        if k == 0:
+            moment = first[min(first.shape[0] - 1, max(0, -int(swing[0])))]
+        dx, dy = _moved(swing, reaction, moment[0], moment[1], moment[2])
+        decay = exp(-w * period * swing[0]) if swing[0] > 0.0 else 1.0
+        x -= decay * dx
+        y -= decay * dy
+        if k == 0 and swing[0] <= 0.0:
+            now_x, now_y = _moved(swing, reaction, moment[3], moment[4], moment[5])
+    share = 1.0 - exp(-w * period)
+    cx = state[0] + share * (0.5 * (state[2] + x) - state[0])
+    cy = state[1] + share * (0.5 * (state[3] + y) - state[1])
+    state[0], state[1], state[2], state[3] = cx, cy, x, y
+    return (cx, cy), (w * w * (cx + now_x), w * w * (cy + now_y))
+
+
+@njit(cache=True)
+def swings(
+    feet: Feet,
+    steps: Array,
+    now: tuple[int, float, bool],
+    later: tuple[int, int, float],
+    spot: Spot,
+) -> Array:
+    """Swings under way and to come.
+
+    Args:
+        feet: see `Feet`.
+        steps: footholds to come, that of this footstep the first (n, 4).
+        now: begin in ticks from now and lift [m] of this footstep's swing, and whether there is
+            one.
+        later: begin in ticks from now of the swing after that, ticks from one to the next, lift
+            [m].
+        spot: of the ZMP under a foot.
+
+    Returns:
+        a row for each, the next one first: control ticks until the foot lifts, negative while it
+        is in the air | height at mid-swing [m] | x, y [m], yaw [rad] of where the foot comes from
+        | the same of where it goes to | ZMP of the support foot, x, y [m] (m, 10).
+    """
+    support, origin, landing = feet
+    table = np.empty((steps.shape[0], SWING))
+    row = 0
+    if now[2]:
+        _swing(table[row], now[0], now[1], origin, landing, _under(support, spot))
+        row += 1
+    begin = later[0]
+    for k in range(1, steps.shape[0]):
+        step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
+        _swing(table[row], begin, later[2], support, step, _under(landing, spot))
+        support, landing = landing, step
+        begin += later[1]
+        row += 1
+    return table[:row]
+
+
+@njit(cache=True)
+def _moved(
+    swing: Array, reaction: Vector, forward: float, up: float, both: float
+) -> tuple[float, float]:
+    """Move of the ZMP, `both` being the move upwards weighted by the way made [m]."""
+    thrust, weight, knee = reaction[0], reaction[1] * swing[1], reaction[2] * swing[1] * up
+    yaw = 0.5 * (swing[4] + swing[7])
+    dx, dy = swing[5] - swing[2], swing[6] - swing[3]
+    return (
+        weight * (up * (swing[2] - swing[8]) + both * dx) - thrust * forward * dx - knee * cos(yaw),
+        weight * (up * (swing[3] - swing[9]) + both * dy) - thrust * forward * dy - knee * sin(yaw),
+    )
+
+
+@njit(cache=True)
+def _under(foot: Foothold, spot: Spot) -> tuple[float, float]:
+    """ZMP under a foot that carries alone [m]."""
+    forward = spot[0]
+    inward = -spot[1] if foot[3] > 0.0 else spot[1]
+    c, s = cos(foot[2]), sin(foot[2])
+    return foot[0] + c * forward - s * inward, foot[1] + s * forward + c * inward
+
+
+@njit(cache=True)
+def _swing(
+    row: Array,
+    begin: int,
+    lift: float,
+    origin: Foothold,
+    landing: Foothold,
+    zmp: tuple[float, float],
+) -> None:
+    row[0], row[1] = begin, lift
+    for k in range(3):
+        row[2 + k], row[5 + k] = origin[k], landing[k]
+    row[8], row[9] = zmp

@@ -1,0 +1,1 @@
+"""Getting up: from lying to standing."""

@@ -1,0 +1,82 @@
+"""The motions that bring HSR-VIII from lying to a squat, chosen in full physics.
+
+From the front. The arms reach out overhead and push the chest up while the legs fold; the hip
+flexes by no more than 97°, so that folded legs alone hold the trunk up: the robot sits on its
+heels with the mass centre 60 mm behind the knees, steady without the arms. Leaning back it tucks
+the toes under, rolls back over them onto its soles and catches itself in a squat. Only the push
+asks all of the arms, 1.5 N·m in the shoulders.
+
+From the back. A leg swings across and takes the trunk over to the front.
+
+``scripts/getup_study.py`` measures what they are worth.
+"""
+
+from dataclasses import dataclass
+
+from walking.get_up.key_posture import KeyPosture, arm, leg, symmetric
+
+POINTED = 0.9  # ankle with the instep on the floor [rad]
+TUCKED = -1.2  # ankle with the toes under the heel [rad]
+FLEXED = -1.7  # hip, all the way [rad]
+FOLDED = 2.3  # knee, all the way [rad]
+
+
+@dataclass(frozen=True, slots=True)
+class Motions:
+    """Key postures one after the other.
+
+    Attributes:
+        rise: from the front to a squat.
+        roll: from the back over the left side to the front.
+        from_side: index of the posture of `roll` with which it begins on the left side.
+    """
+
+    rise: tuple[KeyPosture, ...]
+    roll: tuple[KeyPosture, ...]
+    from_side: int
+
+
+_RISE = (
+    symmetric("arms apart", leg(ankle=POINTED), arm(0.0, 1.57), 0.4),
+    symmetric("arms turned", leg(ankle=POINTED), arm(-2.6, 1.57), 0.41),
+    symmetric("arms overhead", leg(-1.0, 2.0, POINTED), arm(-2.6, 0.2), 0.5, 0.1),
+    symmetric(
+        "push up",
+        leg(FLEXED, FOLDED, POINTED),
+        arm(-0.3, 0.1),
+        0.4,
+        0.4,
+        until=1.2,
+        pitch=(0.0, 1.5),
+    ),
+    symmetric("on heels", leg(-0.75, FOLDED, POINTED), arm(-0.3, 0.3), 0.4, 0.6, pitch=(-0.4, 0.4)),
+    symmetric(
+        "toes tucked", leg(0.3, FOLDED, TUCKED), arm(-0.3, 0.3), 0.5, 0.3, pitch=(-1.0, -0.3)
+    ),
+    symmetric("roll back", leg(0.43, FOLDED, TUCKED), arm(-0.15, 0.3), 0.33, 0.2, until=-0.65),
+    symmetric("squat", leg(-1.45, FOLDED, -0.94), arm(-1.9, 0.3), 0.35, 0.25, pitch=(-0.6, 1.0)),
+)
+
+_TURNED_OVER = (leg(0.7, 0.45, yaw=-0.9, roll=0.25), leg(-0.6, 1.85, yaw=-0.9, roll=-0.5))
+_DOWN_ARM, _LIFTED_ARM, _CROSSING_ARM = arm(-2.6, 0.1), arm(-1.5, 0.3), arm(-1.5, -0.3, -0.5)
+
+_ROLL = (
+    KeyPosture(
+        "leg drawn up",
+        (leg(0.3, 0.0, yaw=0.9, roll=-0.5), leg(-1.7, 1.05, yaw=0.55)),
+        (_DOWN_ARM, _LIFTED_ARM),
+        0.43,
+    ),
+    KeyPosture(
+        "leg across",
+        (leg(0.7, 0.35, yaw=0.9), leg(-1.0, 0.5, yaw=-0.75, roll=-0.15)),
+        (_DOWN_ARM, _CROSSING_ARM),
+        0.45,
+        0.27,
+    ),
+    KeyPosture("turned over", _TURNED_OVER, (_DOWN_ARM, _CROSSING_ARM), 0.73, 0.3),
+    KeyPosture("arms out", _TURNED_OVER, (arm(-2.6, 1.57), arm(-1.5, 1.57)), 0.4, 0.1),
+    symmetric("legs apart", leg(roll=0.6), arm(-2.6, 1.57), 0.8, 0.1),
+)
+
+MOTIONS = Motions(rise=_RISE, roll=_ROLL, from_side=1)

@@ -1,0 +1,62 @@
+"""Joint set-points on their way from one posture to the next."""
+
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from walking.body.robot_model import RobotModel
+from walking.gait.minimum_jerk import PEAK, minimum_jerk
+from walking.parameters import CONTROL_PERIOD
+
+Array = NDArray[np.float64]
+
+
+class PostureTrack:
+    """Moves all joints together, within their limits and no faster than a servo turns.
+
+    Args:
+        robot: limits of the joints.
+        speed: fastest turn of any joint [rad/s].
+        angles: where the joints start (26,) [rad].
+
+    Attributes:
+        angles: present set-points (26,) [rad].
+    """
+
+    def __init__(self, robot: RobotModel, speed: float, angles: Array) -> None:
+        self._lower, self._upper = robot.lower, robot.upper
+        self._speed = speed
+        self.angles = self._within(angles)
+        self._origin = self._goal = self.angles
+        self._ticks, self._tick, self._last = 1, 1, 1
+
+    @property
+    def done(self) -> bool:
+        """Whether the posture has been reached and held."""
+        return self._tick >= self._last
+
+    def aim(self, angles: Array, time: float, hold: float = 0.0) -> None:
+        """Set out for a posture.
+
+        Args:
+            angles: of it (26,); cut off at the joints' limits [rad].
+            time: of the motion, longer if a joint would turn too fast [s].
+            hold: time to stay in it [s].
+        """
+        self._origin, self._goal = self.angles, self._within(angles)
+        farthest = float(np.abs(self._goal - self._origin).max())
+        time = max(time, PEAK * farthest / self._speed, CONTROL_PERIOD)
+        self._ticks, self._tick = ceil(time / CONTROL_PERIOD), 0
+        self._last = self._ticks + round(hold / CONTROL_PERIOD)
+
+    def advance(self) -> Array:
+        """Set-points of the next tick (26,) [rad]."""
+        self._tick += 1
+        share = minimum_jerk(self._tick / self._ticks)
+        self.angles = self._origin + share * (self._goal - self._origin)
+        return self.angles
+
+    def _within(self, angles: Array) -> Array:
+        within: Array = np.clip(angles, self._lower, self._upper)
+        return within

@@ -1,0 +1,19 @@
+"""The choice of the pattern generator."""
+
+from walking.body.robot_model import Sole
+from walking.parameters import PatternParameters
+from walking.pattern.lipm import Lipm
+from walking.pattern.paper_pattern import PaperGenerator
+from walking.pattern.pattern import DcmGenerator, PatternGenerator, PreviewGenerator
+from walking.pattern.robust_pattern import RobustGenerator
+
+
+def make_generator(lipm: Lipm, parameters: PatternParameters, sole: Sole) -> PatternGenerator:
+    """The generator that the parameters name."""
+    if parameters.generator == "preview":
+        return PreviewGenerator(lipm, parameters)
+    if parameters.generator == "paper":
+        return PaperGenerator(lipm, parameters)
+    if parameters.generator == "robust":
+        return RobustGenerator(lipm, parameters, sole)
+    return DcmGenerator(lipm, parameters)

@@ -1,0 +1,1 @@
+"""Set-points: pattern and feet become joint angles."""

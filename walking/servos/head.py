@@ -1,0 +1,34 @@
+"""The head follows its target as fast as its rate and acceleration limits allow."""
+
+import numpy as np
+
+from walking.body import head_kernel
+from walking.command import HeadTarget
+from walking.parameters import CONTROL_PERIOD, HeadParameters
+
+
+class Head:
+    """Pan and tilt.
+
+    Args:
+        pan, tilt: starting angles [rad].
+        limits: lower and upper limit of pan and of tilt [rad].
+        parameters: rate and acceleration limits.
+    """
+
+    def __init__(
+        self,
+        pan: float,
+        tilt: float,
+        limits: tuple[tuple[float, float], tuple[float, float]],
+        parameters: HeadParameters,
+    ) -> None:
+        self._position, self._velocity = np.array([pan, tilt]), np.zeros(2)
+        self._limits = np.array(limits)
+        self._law = np.array([parameters.rate, parameters.acceleration, CONTROL_PERIOD])
+
+    def advance(self, target: HeadTarget) -> tuple[float, float]:
+        """Set-points of pan and tilt of this tick [rad]."""
+        return head_kernel.advance(
+            self._position, self._velocity, (target.pan, target.tilt), self._limits, self._law
+        )

@@ -1,0 +1,76 @@
+"""From references of pelvis and feet to joint angles and feed-forward."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from walking.body import leg_kernel
+from walking.body.leg_kernel import Vector
+from walking.body.leg_kinematics import foot_pose
+from walking.body.robot_model import RobotModel
+from walking.gait.gait import Gait
+from walking.parameters import WalkingParameters
+from walking.state import Footstep
+
+Array = NDArray[np.float64]
+Point = tuple[float, float]
+
+
+class Posture:
+    """Joint angles of the whole body.
+
+    Args:
+        robot: dimensions.
+        parameters: heights, arms, tilt compensation.
+    """
+
+    def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
+        arms, ahead = parameters.arms, float(robot.com(robot.ready)[0])
+        self._build = np.array([ahead, arms.swing, arms.limit])
+        self._ahead = ahead
+        self._ready = robot.ready
+        self._legs = robot.leg_rows
+        p = parameters.stabilizer
+        height = parameters.pattern.pelvis_height - robot.legs[0].hip_z
+        law = p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, height
+        self._law = np.array(law)
+        self._tilt = np.zeros((2, 2))
+
+    def pelvis(self, gait: Gait, com: Point) -> Vector:
+        """Pelvis x, y [m] and heading [rad] that put its constant offset point on the pendulum."""
+        return leg_kernel.pelvis_of(gait.feet, com, self._ahead)
+
+    def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Vector]:
+        """Joint angles (26,) [rad], and the pelvis that goes with them, x, y [m], heading [rad].
+
+        Args:
+            gait: feet.
+            com: where the pelvis's constant offset point is meant to be, in the plan frame [m].
+            tilt: measured roll and pitch of the trunk [rad].
+            head: pan and tilt [rad].
+        """
+        position = self._ready.copy()
+        pelvis = leg_kernel.pose(
+            position,
+            self._tilt,
+            gait.feet,
+            (gait.support, gait.swing if gait.flying else -1),
+            com,
+            head,
+            tilt,
+            self._law,
+            self._build,
+            self._legs,
+        )
+        return position, pelvis
+
+
+def ready_stance(robot: RobotModel) -> tuple[Footstep, Footstep]:
+    """Feet of the ready posture; the plan frame has its origin under the hips."""
+    a, b, c, d, e, f = robot.ready[:6].tolist()
+    left = foot_pose(robot.legs[0], (a, b, c, d, e, f))
+    a, b, c, d, e, f = robot.ready[6:12].tolist()
+    right = foot_pose(robot.legs[1], (a, b, c, d, e, f))
+    return (
+        Footstep(left=True, x=left.x, y=left.y, yaw=left.yaw),
+        Footstep(left=False, x=right.x, y=right.y, yaw=right.yaw),
+    )

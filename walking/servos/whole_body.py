@@ -1,0 +1,105 @@
+"""The whole body: the joint targets that make it follow pendulum and feet."""
+
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from walking.body.robot_model import RobotModel
+from walking.gait.gait import Gait
+from walking.gait.swing_reaction import SwingCompensation, leg_reaction
+from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.pattern.lipm import Lipm
+from walking.pattern.pattern import PendulumState
+from walking.servos.feedforward import FeedForward
+from walking.servos.posture import Posture
+from walking.targets import JointTargets
+
+Array = NDArray[np.float64]
+Point = tuple[float, float]
+
+
+class WholeBody:
+    """Carries the pelvis with the pendulum and makes joint targets of it.
+
+    Args:
+        robot: the robot's numbers.
+        parameters: of the engine.
+        lipm: pendulum.
+        gait: where the feet are meant to be.
+        pendulum: where the mass centre is meant to be.
+
+    Attributes:
+        pelvis: of the last tick, x, y [m], heading [rad] in the plan frame.
+        turn_rate: planned, of the trunk [rad/s].
+        com: mass centre of the last tick's posture in the base frame, x, y [m].
+        compensation: motion of the pelvis against the swinging legs.
+    """
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        parameters: WalkingParameters,
+        *,
+        lipm: Lipm,
+        gait: Gait,
+        pendulum: PendulumState,
+    ) -> None:
+        self._robot = robot
+        self._w2 = lipm.omega**2
+        self._gait = gait
+        self._pendulum = pendulum
+        self._posture = Posture(robot, parameters)
+        base = parameters.pattern.pelvis_height - robot.legs[0].hip_z
+        self._feedforward = FeedForward(robot, parameters.stabilizer, base)
+        self.compensation = SwingCompensation(lipm, leg_reaction(robot, base, parameters.gait.lift))
+        self.pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
+        self.turn_rate = 0.0
+        x, y, _ = robot.com(robot.ready).tolist()
+        self.com: Point = x, y
+
+    def follow(
+        self,
+        tilt: Point,
+        gyro: Array,
+        zmp: Point,
+        zmp_shift: Point,
+        right_load: float,
+        *,
+        head: Point,
+        offset: Point,
+    ) -> JointTargets:
+        """One tick.
+
+        Args:
+            tilt: measured roll and pitch of the trunk [rad].
+            gyro: its angular velocity (3,) [rad/s].
+            zmp: planned [m].
+            zmp_shift: by how much the ankles move the ZMP [m].
+            right_load: planned share of the weight on the right foot [1].
+            head: pan and tilt [rad].
+            offset: of the body from the pendulum, forward and left [m].
+        """
+        gait, pendulum = self._gait, self._pendulum
+        before = self.pelvis[2]
+        compensation = self.compensation
+        compensation.advance(gait.swings())
+        (ox, oy), (ex, ey) = compensation.offset, compensation.acceleration
+        c, s = cos(before), sin(before)
+        ox += c * offset[0] - s * offset[1]
+        oy += s * offset[0] + c * offset[1]
+        position, pelvis = self._posture.joints(
+            gait, (pendulum.x + ox, pendulum.y + oy), tilt, head
+        )
+        self.pelvis, self.turn_rate = pelvis, (pelvis[2] - before) / CONTROL_PERIOD
+        w2, (left, right) = self._w2, gait.footholds
+        set_points = self._feedforward.offsets(
+            position,
+            pelvis,
+            gait.spots,
+            right_load,
+            (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),
+            balance=((left.yaw, right.yaw), zmp_shift, gyro),
+        )
+        self.com = self._robot.moved_com()
+        return JointTargets(position=position, offset=set_points)
