@@ -5,13 +5,13 @@ import numpy as np
 
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
-from hsr8.world.assembly import Optics, assemble
-from hsr8.world.body import Body
-from hsr8.world.kinematic import KinematicBody
-from hsr8.world.layout import Layout
-from hsr8.world.models import reading_models
-from hsr8.world.physics import CONTROL_PERIOD, PhysicsBody
-from hsr8.world.pushes import schedule
+from hsr8.world.body.body import Body
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.body.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.body.pushes import schedule
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.assembly import Optics, assemble
+from hsr8.world.model.models import reading_models
 
 
 def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:

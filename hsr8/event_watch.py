@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.scenario.fault import Fault
-from hsr8.world.episodes import Episodes
-from hsr8.world.falls import Falls
-from hsr8.world.truth import Truth
+from hsr8.world.truth.episodes import Episodes
+from hsr8.world.truth.falls import Falls
+from hsr8.world.truth.truth import Truth
 
 INSTANT = 1e-6  # times nearer to one another are the same [s]
 

@@ -12,7 +12,10 @@ from pathlib import Path
 
 VARIABLE = "NUMBA_CACHE_DIR"
 FOLDERS = (
-    "hsr8/world",
+    "hsr8/world/body",
+    "hsr8/world/camera",
+    "hsr8/world/field",
+    "hsr8/world/truth",
     "navigation/belief",
     "navigation/motion",
     "vision",

@@ -18,16 +18,16 @@ from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_robot, head_camera
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
-from hsr8.world.analytic import AnalyticCamera
-from hsr8.world.camera import RenderedCamera
-from hsr8.world.camera_faults import CameraFaults
-from hsr8.world.camera_feed import CameraFeed, Picture
-from hsr8.world.generator import draw_layout
-from hsr8.world.index import ModelIndex
-from hsr8.world.physics import CONTROL_PERIOD
-from hsr8.world.sensor_faults import SensorFaults
-from hsr8.world.servo_faults import ServoFaults
-from hsr8.world.truth import Truth
+from hsr8.world.body.physics import CONTROL_PERIOD
+from hsr8.world.body.sensor_faults import SensorFaults
+from hsr8.world.body.servo_faults import ServoFaults
+from hsr8.world.camera.analytic import AnalyticCamera
+from hsr8.world.camera.faults import CameraFaults
+from hsr8.world.camera.feed import CameraFeed, Picture
+from hsr8.world.camera.rendered import RenderedCamera
+from hsr8.world.field.generator import draw_layout
+from hsr8.world.model.index import ModelIndex
+from hsr8.world.truth.truth import Truth
 from walking.state import Phase
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]

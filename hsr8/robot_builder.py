@@ -13,8 +13,8 @@ from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
 from hsr8.seeds import named_rng
-from hsr8.world.layout import Layout
-from hsr8.world.models import models_dir, reading_models
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.models import models_dir, reading_models
 from navigation.belief.estimator import Estimator
 from navigation.gaze.planner import GazePlanner
 from navigation.mission import Mission

@@ -38,7 +38,7 @@ MODULES = (
     "hsr8.evaluation.walk_metrics",
     "hsr8.evaluation.track_metrics",
 )
-OUTSIDE = ("hsr8.world.camera", "hsr8.world.models")  # they open files or OpenGL
+OUTSIDE = ("hsr8.world.camera.rendered", "hsr8.world.model.models")  # they open files or OpenGL
 NAMES = {
     "_codecs": ("encode",),
     "array": ("array", "_array_reconstructor"),

@@ -21,7 +21,7 @@ from hsr8.robot_builder import build_estimator
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
-from hsr8.world.generator import draw_layout
+from hsr8.world.field.generator import draw_layout
 
 import numpy as np
 import tyro

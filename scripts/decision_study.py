@@ -19,7 +19,7 @@ from typing import Annotated, Literal
 from hsr8.evaluation.wilson import wilson
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
-from hsr8.world.generator import draw_layout
+from hsr8.world.field.generator import draw_layout
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.belief.estimator import Estimator

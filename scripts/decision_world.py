@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import cos, pi, sin
 
-from hsr8.world.layout import Layout
+from hsr8.world.field.layout import Layout
 from navigation.belief.belief import Belief, Motion, Track
 from navigation.decision import SpeedLimits
 

@@ -20,7 +20,7 @@ from hsr8.recorder.record import FrameRecord, Listener, TickRecord
 from hsr8.render.png import write_png
 from hsr8.render.top_down import TopDown
 from hsr8.scenario.loader import load
-from hsr8.world.truth import Contact, Truth
+from hsr8.world.truth.truth import Contact, Truth
 from navigation.angles import wrap
 from navigation.belief.belief import Motion, Track
 

@@ -27,7 +27,7 @@ from hsr8.loop import Simulation
 from hsr8.recorder import run_folder
 from hsr8.recorder.log_reader import decode
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load, loads
-from hsr8.world import models
+from hsr8.world.model import models
 from vision.colour import COLOUR_CLASSES, ColourTable
 from vision.colour_file import load_table, save_table
 from vision.errors import VisionError

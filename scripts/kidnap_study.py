@@ -19,7 +19,7 @@ from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
-from hsr8.world.generator import draw_layout
+from hsr8.world.field.generator import draw_layout
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.belief.estimator import Estimator

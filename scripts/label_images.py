@@ -13,10 +13,10 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 from hsr8.cli.colours import MASK, mask_colours
 from hsr8.scenario.loader import load
 from hsr8.seeds import named_rng
-from hsr8.world.assembly import HEAD_CAMERA, Optics, assemble
-from hsr8.world.camera import RenderedCamera
-from hsr8.world.generator import draw_layout
-from hsr8.world.kinematic import KinematicBody
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.camera.rendered import RenderedCamera
+from hsr8.world.field.generator import draw_layout
+from hsr8.world.model.assembly import HEAD_CAMERA, Optics, assemble
 
 import cv2
 import mujoco

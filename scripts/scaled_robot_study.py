@@ -16,7 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from hsr8.world.scaled_model import scale_robot
+from hsr8.world.model.scaled_model import scale_robot
 from walking.body.joints import LEG_JOINTS
 from walking.body.leg_kinematics import FootPose, leg_angles
 from walking.body.robot_model import READY, RobotModel

@@ -15,8 +15,8 @@ from hsr8.recorder.walking_table import WalkingTable
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
-from hsr8.world.generator import draw_layout
-from hsr8.world.layout import Layout
+from hsr8.world.field.generator import draw_layout
+from hsr8.world.field.layout import Layout
 from navigation.belief.belief import Motion, Track
 from navigation.motion.extended_radius import extended_radius
 from navigation.obstacle_set import ObstacleSet

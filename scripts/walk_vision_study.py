@@ -17,7 +17,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
-from hsr8.world.assembly import HEAD_CAMERA
+from hsr8.world.model.assembly import HEAD_CAMERA
 from vision.camera import PinholeCamera
 
 import mujoco

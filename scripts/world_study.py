@@ -9,15 +9,15 @@ pace, blind. A world that it crosses without a contact asks nothing of navigatio
 import argparse
 from time import perf_counter
 
+from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.world import ROBOT_RADIUS
-from hsr8.world.certificate import least_clearance, straight_length
-from hsr8.world.encounter import NominalWalk
-from hsr8.world.generator import draw_world
-from hsr8.world.layout import Layout
-from hsr8.world.plan_view import PlanView
+from hsr8.world.field.certificate import least_clearance, straight_length
+from hsr8.world.field.encounter import NominalWalk
+from hsr8.world.field.generator import draw_world
+from hsr8.world.field.layout import Layout
 
 import numpy as np
 from study_page import RESULTS, add_seeds, command_line, environment

@@ -13,17 +13,17 @@ from hsr8.cli.options import Check
 from hsr8.cli.picture import require_png
 from hsr8.errors import UsageError
 from hsr8.own_file import require_own
+from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
 from hsr8.scenario.command import Command
 from hsr8.scenario.disturbance import RandomPushes
 from hsr8.scenario.loader import load
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
-from hsr8.world.certificate import Certificate, least_clearance, straight_length
-from hsr8.world.generator import FairWorld, draw_world
-from hsr8.world.layout import Layout
-from hsr8.world.motion import pace
-from hsr8.world.plan_view import PlanView
+from hsr8.world.field.certificate import Certificate, least_clearance, straight_length
+from hsr8.world.field.generator import FairWorld, draw_world
+from hsr8.world.field.layout import Layout
+from hsr8.world.field.motion import pace
 
 Summary = dict[str, object]
 

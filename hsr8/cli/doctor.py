@@ -18,7 +18,7 @@ from hsr8.gl import APT_LINE, ASKED, BACKENDS, VULKAN_LINE, is_software
 from hsr8.recorder import atomic
 from hsr8.recorder.manifest import versions
 from hsr8.version import VERSION
-from hsr8.world.models import models_dir
+from hsr8.world.model.models import models_dir
 
 PROBE_LIMIT = 60.0  # an OpenGL that needs longer hangs [s]
 VULKAN_FOLDERS = ("/usr/share", "/usr/local/share", "/etc")

@@ -11,7 +11,7 @@ from hsr8.errors import UsageError
 from hsr8.recorder import atomic
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
-from hsr8.world.generator import draw_layout
+from hsr8.world.field.generator import draw_layout
 
 
 def main(options: Run) -> int:

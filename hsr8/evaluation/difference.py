@@ -15,8 +15,8 @@ from hsr8.recorder.fingerprints import CHANNELS, DECISIONS
 from hsr8.recorder.measurements import Measured, read_measurements
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import Block, read_tape
-from hsr8.world.models import models_dir
-from hsr8.world.physics import CONTROL_PERIOD
+from hsr8.world.body.physics import CONTROL_PERIOD
+from hsr8.world.model.models import models_dir
 from walking.body.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]

@@ -12,10 +12,10 @@ from hsr8.evaluation.track_metrics import TrackMetrics
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.block import Block
 from hsr8.recorder.record import FrameRecord, Listener, TickRecord
-from hsr8.world.episodes import Episodes
-from hsr8.world.falls import Falls
-from hsr8.world.layout import Layout
-from hsr8.world.truth import Truth
+from hsr8.world.field.layout import Layout
+from hsr8.world.truth.episodes import Episodes
+from hsr8.world.truth.falls import Falls
+from hsr8.world.truth.truth import Truth
 from navigation.angles import wrap
 
 Array = NDArray[np.float64]

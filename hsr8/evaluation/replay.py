@@ -21,8 +21,8 @@ from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import HASH, Block, read_tape
 from hsr8.robot_builder import build_decisions, build_estimator, build_script
 from hsr8.seeds import named_rng
-from hsr8.world.generator import draw_layout
-from hsr8.world.physics import CONTROL_PERIOD
+from hsr8.world.body.physics import CONTROL_PERIOD
+from hsr8.world.field.generator import draw_layout
 from walking.body.joints import JOINT_NAMES
 from walking.targets import JointTargets
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder.record import FrameRecord
-from hsr8.world.layout import Obstacle
-from hsr8.world.truth import Truth
+from hsr8.world.field.layout import Obstacle
+from hsr8.world.truth.truth import Truth
 from navigation.belief.belief import Motion, Track
 
 Array = NDArray[np.float64]

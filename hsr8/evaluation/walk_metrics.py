@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_tally import WalkTally
-from hsr8.world.saturation import Saturation, SaturationWatch
+from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
 from walking.body.joints import JOINT_NAMES
 

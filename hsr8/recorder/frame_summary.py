@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder.record import FrameRecord
-from hsr8.world.truth import Truth
+from hsr8.world.truth.truth import Truth
 from navigation.belief.belief import Track
 
 _MOTIONS = ("static", "moving", "unknown")

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import Decided, Now
 from hsr8.recorder.walk_tally import WalkTally
-from hsr8.world.truth import Truth
+from hsr8.world.truth.truth import Truth
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import Frame

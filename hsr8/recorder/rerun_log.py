@@ -26,7 +26,7 @@ from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_layer import WalkLayer
 from hsr8.recorder.walking_table import OdometryToWorld
 from hsr8.recorder.writing import refusal
-from hsr8.world.layout import Layout
+from hsr8.world.field.layout import Layout
 from navigation.parameters.gaze import GazeParameters
 
 Array = NDArray[np.float64]

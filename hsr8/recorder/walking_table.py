@@ -19,8 +19,8 @@ from hsr8.errors import UsageError
 from hsr8.recorder.block import Block
 from hsr8.recorder.headed_file import HeadedWriter, read_headed
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.world.index import ModelIndex
-from hsr8.world.truth import Truth
+from hsr8.world.model.index import ModelIndex
+from hsr8.world.truth.truth import Truth
 from walking.admission import Limit
 from walking.body.joints import JOINT_NAMES
 from walking.state import Phase, WalkingState

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.render.canvas import Image
 from hsr8.render.eye_overlay import EyeOverlay
 from hsr8.render.gaze_panel import GazePanel
 from hsr8.render.lettering import size_of, width_of, write
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TopDown
 from hsr8.scenario.schema import Scenario
-from hsr8.world.canvas import Image
-from hsr8.world.layout import Layout
+from hsr8.world.field.layout import Layout
 
 Array = NDArray[np.float64]
 Size = tuple[int, int]

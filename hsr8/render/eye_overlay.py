@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.frame_summary import Blob, FrameSummary
+from hsr8.render.canvas import Colour, Image
 from hsr8.render.lettering import size_of, width_of, write
-from hsr8.world.canvas import Colour, Image
 
 Array = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom [pixel]

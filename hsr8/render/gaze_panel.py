@@ -7,8 +7,8 @@ import numpy as np
 
 from hsr8.recorder import palette
 from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.render.canvas import Image
 from hsr8.render.lettering import size_of, write
-from hsr8.world.canvas import Image
 
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)

@@ -5,7 +5,7 @@ from typing import Literal
 
 import cv2
 
-from hsr8.world.canvas import Colour, Image
+from hsr8.render.canvas import Colour, Image
 
 Side = Literal["left", "middle", "right"]
 

@@ -19,7 +19,7 @@ from hsr8.render.segments import Segments, join
 from hsr8.render.stage import Image
 from hsr8.render.video import VideoWriter
 from hsr8.version import VERSION
-from hsr8.world.generator import draw_layout
+from hsr8.world.field.generator import draw_layout
 
 Array = NDArray[np.float64]
 Tell = Callable[[int, int], None]

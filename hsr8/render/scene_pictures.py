@@ -20,8 +20,8 @@ from hsr8.render.stage import Image, Stage
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
 from hsr8.scenario.schema import Scenario
-from hsr8.world.assembly import HEAD_CAMERA, Optics, Quality
-from hsr8.world.layout import Layout
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.assembly import HEAD_CAMERA, Optics, Quality
 
 Array = NDArray[np.float64]
 

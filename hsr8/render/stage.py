@@ -11,8 +11,8 @@ from hsr8.errors import UsageError
 from hsr8.gl import require_gl
 from hsr8.render.push_arrows import Arrow
 from hsr8.suggestion import suggestion
-from hsr8.world.assembly import Optics, Quality, assemble
-from hsr8.world.layout import Layout
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.assembly import Optics, Quality, assemble
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

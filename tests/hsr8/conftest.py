@@ -9,10 +9,10 @@ import pytest
 from hsr8.decisions import Decided, Now
 from hsr8.recorder.record import FrameRecord, TickRecord
 from hsr8.recorder.walk_tally import WalkTally
-from hsr8.world.assembly import Optics, assemble
-from hsr8.world.layout import Beacon, Layout, Obstacle
-from hsr8.world.motion import Shuttle
-from hsr8.world.truth import Contact, Truth
+from hsr8.world.field.layout import Beacon, Layout, Obstacle
+from hsr8.world.field.motion import Shuttle
+from hsr8.world.model.assembly import Optics, assemble
+from hsr8.world.truth.truth import Contact, Truth
 from navigation.belief.belief import Belief, Motion, Track
 from navigation.belief.local_map import LocalMap
 from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObstacle

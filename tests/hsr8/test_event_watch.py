@@ -1,7 +1,7 @@
 import numpy as np
 
 from hsr8.event_watch import EventWatch
-from hsr8.world.truth import Contact, Truth
+from hsr8.world.truth.truth import Contact, Truth
 
 
 def truth_with(time, *obstacles):

@@ -8,7 +8,7 @@ from hsr8.errors import UsageError
 from hsr8.own_decisions import OwnGaze, OwnPlanner
 from hsr8.robot_builder import field_of_view, head_camera, known_beacons
 from hsr8.seeds import named_rng
-from hsr8.world.generator import draw_layout
+from hsr8.world.field.generator import draw_layout
 from navigation.decision import GazeDecision, MotionDecision
 from navigation.gaze.planner import GazePlanner
 from navigation.peers.choice import build_planner

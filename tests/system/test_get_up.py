@@ -8,7 +8,7 @@ import pytest
 
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
-from hsr8.world.models import models_dir
+from hsr8.world.model.models import models_dir
 from walking.body.robot_model import RobotModel
 from walking.get_up.get_up import GetUp, Outcome
 from walking.get_up.key_posture import STRAIGHT

@@ -7,7 +7,7 @@ import pytest
 
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
-from hsr8.world.truth import Truth
+from hsr8.world.truth.truth import Truth
 
 REFEREE = {"fallen", "contacts", "pushes", "time"}  # what ends a run and what is told as an event
 

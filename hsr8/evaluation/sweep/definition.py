@@ -15,7 +15,7 @@ from hsr8.errors import ScenarioError
 from hsr8.recorder.manifest import versions
 from hsr8.scenario.loader import dump, loads
 from hsr8.version import VERSION
-from hsr8.world.models import models_dir
+from hsr8.world.model.models import models_dir
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
 # Folders of hsr8 that do not shape a result.

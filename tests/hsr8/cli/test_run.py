@@ -136,7 +136,7 @@ def test_a_diverged_run_is_told_and_recorded(tmp_path, monkeypatch, capsys):
     def diverging(self):
         raise SimulationDiverged("the physics diverged at tick 12")
 
-    monkeypatch.setattr("hsr8.world.kinematic.KinematicBody.truth", diverging)
+    monkeypatch.setattr("hsr8.world.body.kinematic.KinematicBody.truth", diverging)
     assert _run(tmp_path, "--json") == 3
     printed = capsys.readouterr()
     assert "tick 12" in printed.err
@@ -148,7 +148,7 @@ def test_a_mistake_of_ours_leaves_its_traceback_in_the_run_folder(tmp_path, monk
     def broken(self):
         raise ZeroDivisionError("oh no")
 
-    monkeypatch.setattr("hsr8.world.kinematic.KinematicBody.truth", broken)
+    monkeypatch.setattr("hsr8.world.body.kinematic.KinematicBody.truth", broken)
     assert _run(tmp_path, "--json") == 3
     printed = capsys.readouterr()
     assert printed.out == ""

@@ -7,8 +7,8 @@ import pytest
 
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.walk_tally import WalkTally
-from hsr8.world.saturation import Saturation
-from hsr8.world.truth import PushActing
+from hsr8.world.truth.saturation import Saturation
+from hsr8.world.truth.truth import PushActing
 from walking.admission import Limit
 from walking.command import VelocityCommand
 from walking.state import Phase

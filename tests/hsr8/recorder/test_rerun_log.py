@@ -15,7 +15,7 @@ from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.log_reader import Log
 from hsr8.recorder.rerun_log import PATIENCE, RerunLog
-from hsr8.world.truth import PushActing
+from hsr8.world.truth.truth import PushActing
 from navigation.belief.belief import Particles
 from navigation.parameters.gaze import GazeParameters
 from walking.admission import AdmissionReport, Limit

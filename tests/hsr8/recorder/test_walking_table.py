@@ -12,8 +12,8 @@ from hsr8.recorder.walking_table import (
     _row_type,
     read_walking_table,
 )
-from hsr8.world.index import ModelIndex
-from hsr8.world.truth import PushActing
+from hsr8.world.model.index import ModelIndex
+from hsr8.world.truth.truth import PushActing
 from walking.admission import AdmissionReport, Limit
 from walking.command import VelocityCommand
 from walking.state import Odometry

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.assembly import Optics, assemble
-from hsr8.world.kinematic import KinematicBody
-from hsr8.world.layout import Layout, Obstacle, standard_beacons
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.field.layout import Layout, Obstacle, standard_beacons
+from hsr8.world.model.assembly import Optics, assemble
 
 BEACONS = standard_beacons((5.0, 5.0))
 

@@ -8,12 +8,12 @@ import pytest
 
 from hsr8.scenario.loader import load
 from hsr8.scenario.world import ROBOT_RADIUS
-from hsr8.world import fairness
-from hsr8.world.attempt import Attempt, CrowdedError
-from hsr8.world.encounter import NominalWalk
-from hsr8.world.motion import Circle, Shuttle
-from hsr8.world.passage import Passage
-from hsr8.world.wander import Wander
+from hsr8.world.field import fairness
+from hsr8.world.field.attempt import Attempt, CrowdedError
+from hsr8.world.field.encounter import NominalWalk
+from hsr8.world.field.motion import Circle, Shuttle
+from hsr8.world.field.passage import Passage
+from hsr8.world.field.wander import Wander
 
 FAMILIES = (
     "course",

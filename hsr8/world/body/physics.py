@@ -1,0 +1,193 @@
+"""The full body: MuJoCo physics, two steps a control tick."""
+
+from collections.abc import Sequence
+from math import isfinite
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import SimulationDiverged
+from hsr8.scenario.fault import Fault
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.pushes import Pusher, ScheduledPush
+from hsr8.world.body.sensors import SensorSuite
+from hsr8.world.body.surroundings import Surroundings
+from hsr8.world.body.world_faults import WorldFaults
+from hsr8.world.field.layout import Layout
+from hsr8.world.model.models import reading_models
+from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product, up_component
+from hsr8.world.truth.saturation import SaturationWatch
+from hsr8.world.truth.truth import Truth
+from walking.body.joints import JOINT_NAMES
+from walking.sensing import BodySensors
+from walking.targets import JointTargets
+
+Array = NDArray[np.float64]
+
+CONTROL_PERIOD = 0.005  # Yoo & Kim: the walking pattern is recomputed every 5 ms [s]
+FALLEN_SHARE = 0.64  # a pelvis below this share of its height when ready lies [1]
+FALLEN_TILT = 0.5  # cosine of the tilt beyond which the robot has fallen [1]
+
+
+@reading_models()
+def place_robot(model: mujoco.MjModel, data: mujoco.MjData, start: Array) -> None:
+    """Set the robot to ``walk_ready`` at x, y, heading `start` (3,) [m, m, rad].
+
+    Raises:
+        ModelError: it has no such keyframe.
+    """
+    mujoco.mj_resetDataKeyframe(model, data, model.key("walk_ready").id)
+    root = int(model.joint("root").qposadr[0])
+    x, y, yaw = np.asarray(start, float).tolist()
+    data.qpos[root : root + 2] = x, y
+    data.qpos[root + 3 : root + 7] = quaternion_product(
+        quaternion_from_yaw(yaw), data.qpos[root + 3 : root + 7]
+    )
+
+
+class PhysicsBody:
+    """The robot in full physics.
+
+    Args:
+        model: compiled world.
+        layout: what stands and moves in it.
+        noise: sensor noise.
+        rng: generator of the sensors.
+        pushes: what disturbs it, in the order in which it begins.
+        faults: what fails in body and world.
+
+    Raises:
+        ValueError: the control period is no multiple of the physics step.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        layout: Layout,
+        noise: SensorNoise,
+        rng: np.random.Generator,
+        *,
+        pushes: Sequence[ScheduledPush] = (),
+        faults: Sequence[Fault] = (),
+    ) -> None:
+        self.model = model
+        self.data = mujoco.MjData(model)
+        self._around = Surroundings(model, layout)
+        self._index = self._around.index
+        self._pusher = Pusher(model, pushes, CONTROL_PERIOD)
+        self._faults = WorldFaults(model, self._index, faults)
+        self._saturation = SaturationWatch(model, self._index)
+        self._suite = SensorSuite(noise, rng, CONTROL_PERIOD)
+        self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
+        if abs(self._substeps * model.opt.timestep - CONTROL_PERIOD) > 1e-9:
+            raise ValueError(
+                f"the control period {CONTROL_PERIOD} s is no multiple of the physics step "
+                f"{model.opt.timestep} s"
+            )
+        self._substep = 0
+        self._timestep = float(model.opt.timestep)
+        self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
+        place_robot(model, self.data, np.array(layout.start))
+        self._lying = FALLEN_SHARE * float(self.data.qpos[self._index.root_qpos + 2])
+        self._around.move(self.data, 0.0)
+        # Warnings are counted and raised by `apply`; MuJoCo shall not write a file of its own.
+        mujoco.set_mju_user_warning(lambda _message: None)
+        mujoco.mj_forward(model, self.data)
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self._substep * self._timestep
+
+    def sense(self) -> BodySensors:
+        """Read encoders, IMU and foot pads."""
+        data, index = self.data, self._index
+        root, dof = index.root_qpos, index.root_dof
+        return self._suite.read(
+            joint_position=data.qpos[index.joint_qpos],
+            joint_velocity=data.qvel[index.joint_dof],
+            gyro=data.qvel[dof + 3 : dof + 6],
+            accelerometer=data.sensordata[index.accelerometer],
+            orientation=data.qpos[root + 3 : root + 7],
+            foot_force=data.sensordata[index.foot_force],
+        )
+
+    def set_points(self, targets: JointTargets) -> Array:
+        """What the servos are told (26,) [rad]."""
+        return targets.position + targets.offset
+
+    def apply(self, targets: JointTargets) -> None:
+        """Send the set-points and advance one control tick.
+
+        Raises:
+            SimulationDiverged: MuJoCo warned or the state is no longer finite.
+        """
+        model, data, around = self.model, self.data, self._around
+        data.ctrl[self._index.actuators] = self.set_points(targets)
+        root = self._index.root_qpos
+        tick = self._substep // self._substeps
+        self._faults.act(model, data, tick)
+        if self._pusher.busy(tick):
+            # Whether a camera has brought the poses up to date must not matter.
+            mujoco.mj_kinematics(model, data)
+            self._pusher.act(data, tick, heading(data.qpos[root + 3 : root + 7]))
+        for _ in range(self._substeps):
+            around.step(data, self._substep)
+            mujoco.mj_step(model, data)
+            self._substep += 1
+        around.watch.watch(data)
+        self._saturation.watch(data)
+        self._guard()
+
+    def update_kinematics(self) -> None:
+        """Bring geom, camera and light poses up to date; the state stays as it is."""
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def truth(self) -> Truth:
+        """State of the world now."""
+        data, index = self.data, self._index
+        root = index.root_qpos
+        qpos = data.qpos.copy()
+        quaternion = qpos[root + 3 : root + 7]
+        x, y, z = qpos[root : root + 3].tolist()
+        robot = np.array([x, y, heading(quaternion)])
+        load, pressure = self._around.watch.feet(data)
+        return Truth(
+            time=self.time,
+            qpos=qpos,
+            robot=robot,
+            obstacle_positions=self._around.placed(data),
+            obstacle_velocities=self._around.velocities(self.time),
+            contacts=self._around.watch.take(),
+            clearance=self._around.watch.clearance(data),
+            joint_torque=data.actuator_force[index.actuators],
+            foot_force=load,
+            zmp=pressure,
+            fallen=z < self._lying or up_component(quaternion) < FALLEN_TILT,
+            pushes=self._pusher.take(),
+            saturation=self._saturation,
+        )
+
+    def state_bytes(self) -> bytes:
+        """MuJoCo's integration state."""
+        mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        return self._state.tobytes()
+
+    def _guard(self) -> None:
+        # A sum of squares is finite only if all of its terms are.
+        qacc = self.data.qacc
+        if isfinite(qacc.dot(qacc)) and not any(self.data.warning.number.tolist()):
+            return
+        speeds = np.abs(self.data.qvel)
+        dof = int(np.argmax(np.where(np.isfinite(speeds), speeds, np.inf)))
+        body = self.model.body(self.model.dof_bodyid[dof]).name
+        worst = int(np.argmax(np.abs(self.data.ctrl[self._index.actuators])))
+        raise SimulationDiverged(
+            f"the physics diverged at tick {round(self.time / CONTROL_PERIOD)} "
+            f"(t = {self.time:.3f} s): body {body!r} moves at {speeds[dof]:.3g} rad/s or m/s; "
+            f"largest set-point of the last command: {JOINT_NAMES[worst]} at "
+            f"{self.data.ctrl[self._index.actuators[worst]]:.3f} rad"
+        )

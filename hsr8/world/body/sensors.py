@@ -1,0 +1,88 @@
+"""Sensor noise: what stands between the true state of the body and what the robot feels."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.sensor_kernel import ATTITUDE, ERRORS, FORCE, GYRO, PADS, RATE, reading
+from walking.sensing import BodySensors
+
+Array = NDArray[np.float64]
+
+BLOCK = 200  # readings whose errors are drawn at a time
+
+
+class SensorSuite:
+    """Adds seeded noise to true readings; one instance a run.
+
+    Args:
+        noise: magnitudes.
+        rng: generator of this subsystem.
+        period: control tick [s].
+    """
+
+    def __init__(self, noise: SensorNoise, rng: np.random.Generator, period: float) -> None:
+        self._tilt_bias = noise.roll_bias, noise.pitch_bias
+        self._gyro_bias = float(noise.gyro_bias)
+        self._rng = rng
+        self._bias_step = noise.gyro_bias * period
+        self._yaw_drift = 0.0  # at the last of the errors drawn
+        self._gain = 1.0 + noise.foot_force_gain * rng.standard_normal((2, 4))
+        widths = (26, 26, 3, 3, 8, 1, 1, 1)
+        sigmas = (
+            noise.encoder,
+            noise.encoder_rate,
+            noise.gyro,
+            noise.accelerometer,
+            noise.foot_force,
+            noise.tilt,
+            noise.tilt,
+            noise.yaw_drift * float(np.sqrt(period)),
+        )
+        self._sigma = np.repeat(sigmas, widths)
+        self._errors = np.zeros((0, ERRORS))  # of the readings to come
+        self._read = 0
+
+    def read(
+        self,
+        *,
+        joint_position: Array,
+        joint_velocity: Array,
+        gyro: Array,
+        accelerometer: Array,
+        orientation: Array,
+        foot_force: Array,
+    ) -> BodySensors:
+        """Turn true values (units as in ``BodySensors``) into one noisy reading."""
+        if self._read == len(self._errors):
+            self._draw()
+        error = self._errors[self._read]
+        self._read += 1
+        read = reading(
+            joint_position,
+            joint_velocity,
+            gyro,
+            accelerometer,
+            orientation,
+            foot_force,
+            error,
+            self._gain,
+            self._gyro_bias,
+        )
+        return BodySensors(
+            joint_position=read[:RATE],
+            joint_velocity=read[RATE:GYRO],
+            gyro=read[GYRO:FORCE],
+            accelerometer=read[FORCE:PADS],
+            orientation=read[ATTITUDE:],
+            foot_force=read[PADS:ATTITUDE].reshape(2, 4),
+        )
+
+    def _draw(self) -> None:
+        """Draw the errors of the next readings."""
+        errors = self._sigma * self._rng.standard_normal((BLOCK, ERRORS))
+        errors[:, ATTITUDE : ATTITUDE + 2] += self._tilt_bias
+        steps = errors[:, ATTITUDE + 2] + self._bias_step
+        errors[:, ATTITUDE + 2] = np.cumsum([self._yaw_drift, *steps])[1:]
+        self._yaw_drift = float(errors[-1, ATTITUDE + 2])
+        self._errors, self._read = errors, 0

@@ -1,0 +1,1 @@
+"""The head camera: rendered, or geometry alone, with what spoils its images."""

@@ -1,0 +1,326 @@
+"""One attempt at a world: things are drawn one after the other, each where it is fair."""
+
+from collections.abc import Callable, Sequence
+from math import cos, pi, radians, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.scenario.mission import Course, Points, Tour
+from hsr8.scenario.schema import Scenario
+from hsr8.world.field.encounter import NominalWalk, course_to, passage_through
+from hsr8.world.field.fairness import (
+    LANE_TO_GOAL,
+    LANE_TO_LANE,
+    LANE_TO_STATIC,
+    OBSTACLE_TO_RIM,
+    POINT_TO_RIM,
+    POINT_TO_STATIC,
+    START_TO_MOVER,
+    START_TO_STATIC,
+    START_TURN,
+    STATIC_GAP,
+)
+from hsr8.world.field.lane import Lane, apart_at_all_times, distance, motion_law
+from hsr8.world.field.layout import (
+    OBSTACLE_HEIGHT,
+    Beacon,
+    Layout,
+    Obstacle,
+    standard_beacons,
+    with_first_moved,
+)
+from hsr8.world.field.motion import Circle, MotionLaw, Shuttle
+from hsr8.world.field.passage import Passage
+from hsr8.world.field.wander import draw_wander
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Point = tuple[float, float]
+
+COLOURS = ("red", "green", "blue", "violet")
+BATCH = 64  # candidates drawn at a time
+TRIES = 30  # batches for one thing
+LANE_TRIES = 300  # for one mover
+BESIDE_ROUTE = 0.30  # a lane between walls has its middle so near the route, along x and y [m]
+
+
+class CrowdedError(Exception):
+    """One thing finds no place in this attempt."""
+
+
+class Attempt:
+    """Draws one world.
+
+    Args:
+        scenario: what is asked for.
+        rng: draws everything.
+
+    Attributes:
+        tried: lanes that were tried for movers, encounters not counted [1].
+    """
+
+    def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:
+        self._scenario = scenario
+        self._world = scenario.world
+        self._rng = rng
+        self.tried = 0
+        self._half = 0.5 * np.asarray(scenario.world.size)
+        self._static: list[Obstacle] = []
+        self._lanes: list[Lane] = []
+
+    def layout(self) -> Layout:
+        """Lanes first, for they need most room; then what stands, the start and the points.
+
+        Collision courses come last, for they depend on all of it.
+
+        Raises:
+            CrowdedError: something finds no place.
+        """
+        world = self._world
+        start = self._scenario.robot.start.position
+        points = self._given_points()
+        self._lanes = [Lane.of(motion_law(m), m.radius, m.colour) for m in world.mover]
+        self._static = [
+            Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.colour) for o in world.obstacle
+        ]
+        for row in world.row:
+            for k, place in enumerate(row.positions()):
+                # Neighbours differ in colour, so that vision can tell them apart.
+                colour = COLOURS[k % len(COLOURS)]
+                self._static.append(Obstacle(place, row.radius, OBSTACLE_HEIGHT, colour))
+        for _ in range(world.n_moving):
+            self._lanes.append(self._draw_mover(start, points))
+        self._draw_static(start, points)
+        if start is None:
+            start = self._draw_point("the start", self._start_clear)
+        if points is None:
+            points = self._draw_points(start)
+        self._draw_encounters(start, points)
+        return Layout(
+            field_size=world.size,
+            obstacles=(*self._static, *(lane.obstacle for lane in self._lanes)),
+            beacons=self._beacons(),
+            start=(*start, self._start_heading(start, points)),
+            waypoints=np.array(points, dtype=float).reshape(-1, 2),
+            goal_heading=self._goal_heading(),
+            endless=self._is_endless(),
+        )
+
+    def _beacons(self) -> tuple[Beacon, ...]:
+        world = self._world
+        if not world.beacons:
+            return ()
+        return with_first_moved(standard_beacons(world.size), world.moved_beacon)
+
+    def _given_points(self) -> list[Point] | None:
+        mission = self._scenario.mission
+        if isinstance(mission, Points):
+            return list(mission.points)
+        return None if isinstance(mission, Tour | Course) else []
+
+    def _is_endless(self) -> bool:
+        mission = self._scenario.mission
+        return isinstance(mission, Tour) or (isinstance(mission, Points) and mission.endless)
+
+    def _has_goal(self) -> bool:
+        return isinstance(self._scenario.mission, Course | Points) and not self._is_endless()
+
+    def _goal_heading(self) -> float | None:
+        mission = self._scenario.mission
+        if isinstance(mission, Course | Points) and mission.goal_heading_deg is not None:
+            return radians(mission.goal_heading_deg)
+        return float(self._rng.uniform(-pi, pi)) if isinstance(mission, Course) else None
+
+    def _start_heading(self, start: Point, points: Sequence[Point]) -> float:
+        given = self._scenario.robot.start.heading_deg
+        if given is not None:
+            return radians(given)
+        turn = float(self._rng.uniform(-1.0, 1.0))
+        if not points:
+            return turn * pi
+        ahead = float(np.arctan2(points[0][1] - start[1], points[0][0] - start[0]))
+        return float(np.angle(np.exp(1j * (ahead + turn * START_TURN))))
+
+    def _draw_static(self, start: Point | None, points: Sequence[Point] | None) -> None:
+        for _ in range(self._world.n_static):
+            radius = self._radius()
+
+            def clear(p: Array, radius: float = radius) -> Mask:
+                free: Mask = self._static_gap(p) - radius >= STATIC_GAP
+                if start is not None:
+                    free &= distance(p, [start]) - radius >= START_TO_STATIC
+                if points:
+                    free &= distance(p, points) - radius >= POINT_TO_STATIC
+                for lane in self._lanes:
+                    gap = distance(p, lane.path) - radius - lane.obstacle.radius
+                    free &= gap >= LANE_TO_STATIC
+                return free
+
+            room = radius + OBSTACLE_TO_RIM
+            position = self._draw_point("static obstacles", clear, room)
+            self._static.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._colour()))
+
+    def _draw_points(self, start: Point) -> list[Point]:
+        """Via points of a tour, or via points and goal of a course."""
+        mission = self._scenario.mission
+        assert isinstance(mission, Tour | Course)
+        shortest, longest = mission.leg
+        course = isinstance(mission, Course)
+        points: list[Point] = []
+        for k in range(mission.via_points + course):
+            last = points[-1] if points else start
+            # A tour comes back to the same places; a course never does.
+            apart = [start, *points] if course else [last]
+
+            is_goal = course and k == mission.via_points
+
+            def clear(
+                p: Array, last: Point = last, apart: list[Point] = apart, is_goal: bool = is_goal
+            ) -> Mask:
+                free: Mask = self._static_gap(p) >= POINT_TO_STATIC
+                free &= distance(p, apart) >= shortest
+                free &= distance(p, [last]) <= longest
+                if is_goal:
+                    for lane in self._lanes:
+                        gap = distance(p, lane.ends) - lane.obstacle.radius
+                        free &= gap >= LANE_TO_GOAL
+                return free
+
+            points.append(self._draw_point("via points", clear))
+        return points
+
+    def _draw_mover(self, start: Point | None, points: Sequence[Point] | None) -> Lane:
+        goal = points[-1] if points and self._has_goal() else None
+        route = [start, *points] if start is not None and points else []
+        for _ in range(LANE_TRIES):
+            self.tried += 1
+            law = self._draw_law(route)
+            if law is None:
+                continue
+            lane = Lane.of(law, self._radius(), self._colour())
+            if self._lane_clear(lane, start, goal):
+                return lane
+        raise CrowdedError("moving obstacles")
+
+    def _draw_law(self, route: Sequence[Point]) -> MotionLaw | None:
+        rng, world = self._rng, self._world
+        x, y = rng.uniform(-self._half, self._half).tolist()
+        if world.row and route:
+            # Between walls a mover is of use only where the robot comes.
+            walk = NominalWalk(route, 1.0)
+            (along_x, along_y), _ = walk.at(walk.duration * float(rng.random()))
+            x = along_x + float(rng.uniform(-BESIDE_ROUTE, BESIDE_ROUTE))
+            y = along_y + float(rng.uniform(-BESIDE_ROUTE, BESIDE_ROUTE))
+        centre = (x, y)
+        angle = float(rng.uniform(-pi, pi))
+        length = float(rng.uniform(*world.lane))
+        speed = float(rng.uniform(*world.speed_ratio)) * self._scenario.robot.speed.forward
+        kind = world.motions[int(rng.integers(len(world.motions)))]
+        if kind == "circle":
+            sense = 1.0 if rng.random() < 0.5 else -1.0
+            return Circle(centre, 0.5 * length, sense * speed, angle)
+        if kind == "wander":
+            return draw_wander(rng, centre, length, speed)
+        dx, dy = 0.5 * length * cos(angle), 0.5 * length * sin(angle)
+        return Shuttle(
+            (centre[0] - dx, centre[1] - dy),
+            (centre[0] + dx, centre[1] + dy),
+            speed,
+            offset=float(rng.uniform(0.0, 2.0 * length)),
+        )
+
+    def _lane_clear(self, lane: Lane, start: Point | None, goal: Point | None) -> bool:
+        radius = lane.obstacle.radius
+        if (np.abs(lane.path) > self._half - radius - OBSTACLE_TO_RIM).any():
+            return False
+        if (self._static_gap(lane.path) - radius < LANE_TO_STATIC).any():
+            return False
+        at_first = np.array([lane.obstacle.position])
+        if start is not None and distance(at_first, [start])[0] - radius < START_TO_MOVER:
+            return False
+        if goal is not None and (distance(lane.ends, [goal]) - radius < LANE_TO_GOAL).any():
+            return False
+        return all(self._lanes_clear(lane, other) for other in self._lanes)
+
+    def _lanes_clear(self, lane: Lane, other: Lane) -> bool:
+        """Lanes do not touch; where they may cross, the movers are never there together."""
+        room = LANE_TO_LANE + lane.obstacle.radius + other.obstacle.radius
+        if (distance(lane.path, other.path) >= room).all():
+            return True
+        return (lane.crosses or other.crosses) and apart_at_all_times(lane, other, room)
+
+    def _draw_encounters(self, start: Point, points: Sequence[Point]) -> None:
+        encounters = self._world.encounters
+        if encounters.n == 0 or not points:
+            return
+        top_speed = self._scenario.robot.speed.forward
+        walk = NominalWalk([start, *points], encounters.pace * top_speed)
+        share = walk.duration / encounters.n
+        for k in range(encounters.n):
+            for _ in range(LANE_TRIES):
+                time = share * (k + float(self._rng.random()))
+                speed = top_speed * float(self._rng.uniform(*encounters.speed_ratio))
+                bearing = radians(float(self._rng.uniform(*encounters.bearing_deg)))
+                side = 1.0 if self._rng.random() < 0.5 else -1.0
+                radius = self._radius()
+                place, velocity = walk.at(time)
+                course = course_to(velocity, speed, side * bearing)
+                if course is None:
+                    continue
+                reach_x, reach_y = (self._half - radius - 2.0 * OBSTACLE_TO_RIM).tolist()
+                law = passage_through(place, course, time, (reach_x, reach_y))
+                if law is None or _startles(law, walk, radius):
+                    continue
+                lane = Lane.of(law, radius, self._colour())
+                # It stays where it arrives, which must be out of everybody's way.
+                apart = distance(lane.ends, points) - radius
+                if (apart >= LANE_TO_GOAL).all() and self._lane_clear(lane, start, None):
+                    self._lanes.append(lane)
+                    break
+            else:
+                raise CrowdedError("movers on collision courses")
+
+    def _start_clear(self, p: Array) -> Mask:
+        free: Mask = self._static_gap(p) >= START_TO_STATIC
+        for lane in self._lanes:
+            gap = distance(p, [lane.obstacle.position]) - lane.obstacle.radius
+            free &= gap >= START_TO_MOVER
+        return free
+
+    def _draw_point(
+        self, what: str, clear: Callable[[Array], Mask], room: float = POINT_TO_RIM
+    ) -> Point:
+        reach = self._half - room
+        if (reach <= 0.0).any():
+            raise CrowdedError(what)
+        for _ in range(TRIES):
+            candidates = self._rng.uniform(-reach, reach, (BATCH, 2))
+            free = np.flatnonzero(clear(candidates))
+            if len(free):
+                x, y = candidates[free[0]].tolist()
+                return x, y
+        raise CrowdedError(what)
+
+    def _static_gap(self, p: Array) -> Array:
+        """Distance of points (n, 2) to the nearest surface of a static obstacle (n,)."""
+        if not self._static:
+            return np.full(len(p), np.inf)
+        centres = np.array([o.position for o in self._static])
+        radii = np.array([o.radius for o in self._static])
+        gaps = np.hypot(*(p[:, None] - centres[None]).transpose(2, 0, 1)) - radii
+        nearest: Array = gaps.min(axis=1)
+        return nearest
+
+    def _radius(self) -> float:
+        return float(self._rng.uniform(*self._world.radius))
+
+    def _colour(self) -> str:
+        return COLOURS[int(self._rng.integers(len(COLOURS)))]
+
+
+def _startles(law: Passage, walk: NominalWalk, radius: float) -> bool:
+    """Whether a mover of some `radius` [m] sets off right beside the robot as it walks by."""
+    (x, y), _ = walk.at(law.depart)
+    gap = float(distance(np.array([law.start]), [(x, y)])[0]) - radius
+    return law.depart > 0.0 and gap < START_TO_MOVER

@@ -1,0 +1,243 @@
+"""Builds the MuJoCo model of a world: robot, floor, lights, obstacles, beacons.
+
+The same world is compiled in two qualities that share joints, sensors and state:
+``vision`` is cheap and matt, for the robot's own camera; ``show`` is for people. What
+does not depend on the layout lies in ``models/field/``.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import hypot
+from typing import Any, Literal
+
+import mujoco
+import numpy as np
+
+from hsr8.scenario.fault import Bump
+from hsr8.world.field.layout import Beacon, Layout, Obstacle
+from hsr8.world.model.model_check import require_sound
+from hsr8.world.model.models import models_dir, reading_models
+from vision.colour import COLOUR_CLASSES
+
+Quality = Literal["vision", "show"]
+
+RIM = 0.02  # half width of the line round the field [m]
+PAINT = 0.0005  # height of what is painted on the floor [m]
+STRIPE = 0.010  # half height of the stripe that marks a mover, for people only [m]
+BRIGHTER = 0.7  # exponent of colours for people; vision's own are deep so that it tells them apart
+APRON = 1.5  # distance of the walls the robot sees from the rim of the field [m]
+WALL_HEIGHT = 4.0  # [m]
+SHADOW_SIZE = 2048  # resolution of the shadows the robot sees [texel]
+USUAL_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
+HEAD_CAMERA = "egocentric"
+
+_SOLID: dict[str, Any] = {
+    "contype": 3,
+    "conaffinity": 1,
+    "friction": [0.8, 0.01, 0.001],
+    "solref": [0.01, 1.0],
+    "solimp": [0.9, 0.95, 0.001, 0.5, 2.0],
+}
+_SEEN_ONLY: dict[str, Any] = {"contype": 0, "conaffinity": 0, "mass": 0.0}
+
+
+@dataclass(frozen=True, slots=True)
+class Optics:
+    """What rendering needs to know.
+
+    Attributes:
+        width, height: of the offscreen buffer [pixel].
+        vertical_fov: of the head camera [rad].
+        brightness: of all lights, 1 is normal.
+        shadows: the robot's camera sees cast shadows.
+    """
+
+    width: int = 320
+    height: int = 240
+    vertical_fov: float = float(np.radians(70.0))
+    brightness: float = 1.0
+    shadows: bool = False
+
+
+@reading_models()
+def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel:
+    """Compile the world of `layout`.
+
+    Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00``
+    ..., beacons are ``beacon_<top>_<bottom>``, bumps are geoms ``bump_00`` ... of the world.
+    For people there are the cameras ``top`` and ``corner`` beside those of the robot.
+
+    Raises:
+        ModelError: the files will not do.
+    """
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "field" / f"{quality}.xml"))
+    spec.modelname = f"hsr8_{quality}"
+    spec.visual.global_.offwidth = optics.width
+    spec.visual.global_.offheight = optics.height
+    _set_lights(spec, optics.brightness, max(layout.field_size))
+    if quality == "vision" and optics.shadows:
+        _cast_shadows(spec, max(layout.field_size))
+    camera = _part(spec.camera, HEAD_CAMERA)
+    camera.fovy = float(np.degrees(optics.vertical_fov))
+    camera.resolution = [optics.width, optics.height]
+    _add_rim(spec, layout.field_size)
+    if quality == "vision":
+        _add_room(spec, layout.field_size)
+    _add_cameras(spec, layout.field_size)
+    for i, obstacle in enumerate(layout.static):
+        _add_obstacle(spec, f"obstacle_{i:02d}", obstacle, quality)
+    for i, mover in enumerate(layout.movers):
+        _add_obstacle(spec, f"mover_{i:02d}", mover, quality)
+    for beacon in layout.beacons:
+        _add_beacon(spec, beacon, quality)
+    for i, bump in enumerate(layout.bumps):
+        _add_bump(spec, f"bump_{i:02d}", bump)
+    model = spec.compile()
+    require_sound(model)
+    return model
+
+
+def _part(find: Callable[[str], Any], name: str) -> Any:
+    found = find(name)
+    if found is None:
+        raise ValueError(f"there is no {find.__name__} {name!r}")
+    return found
+
+
+def _set_lights(spec: mujoco.MjSpec, brightness: float, side: float) -> None:
+    """Dim the lights, and raise them over a field larger than the usual one."""
+    head = spec.visual.headlight
+    head.ambient = brightness * np.asarray(head.ambient)
+    head.diffuse = brightness * np.asarray(head.diffuse)
+    for light in spec.lights:
+        light.diffuse = brightness * np.asarray(light.diffuse)
+        light.pos = max(1.0, side / USUAL_SIDE) * np.asarray(light.pos)
+
+
+def _cast_shadows(spec: mujoco.MjSpec, side: float) -> None:
+    """Let the sun cast shadows on the whole field."""
+    spec.visual.quality.shadowsize = SHADOW_SIZE
+    spec.visual.map.shadowclip = (0.5 * side + APRON) / spec.stat.extent
+    _part(spec.light, "sun").castshadow = True
+
+
+def _add_rim(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+    """The line round the field."""
+    x, y = (0.5 * side for side in field_size)
+    for name, place, half in (
+        ("front", (x, 0.0), (RIM, y + RIM)),
+        ("back", (-x, 0.0), (RIM, y + RIM)),
+        ("left", (0.0, y), (x - RIM, RIM)),
+        ("right", (0.0, -y), (x - RIM, RIM)),
+    ):
+        spec.worldbody.add_geom(
+            name=f"rim_{name}",
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            pos=[*place, 0.0],
+            size=[*half, PAINT],
+            material="line",
+            **_SEEN_ONLY,
+        )
+
+
+def _add_room(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+    """A plain room around the field, so that the robot does not look into the void.
+
+    The floor is drawn inside it only: a plane drawn without end costs more than all the
+    rest of an image. To touch, every plane is endless.
+    """
+    x, y = (0.5 * side + APRON for side in field_size)
+    _part(spec.geom, "floor").size = [x, y, 1.0]
+    for name, place, half in (
+        ("front", (x, 0.0), (0.01, y)),
+        ("back", (-x, 0.0), (0.01, y)),
+        ("left", (0.0, y), (x, 0.01)),
+        ("right", (0.0, -y), (x, 0.01)),
+    ):
+        spec.worldbody.add_geom(
+            name=f"wall_{name}",
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            pos=[*place, 0.5 * WALL_HEIGHT],
+            size=[*half, 0.5 * WALL_HEIGHT],
+            material="wall",
+            **_SEEN_ONLY,
+        )
+
+
+def _add_cameras(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+    size = max(field_size)
+    spec.worldbody.add_camera(
+        name="top", pos=[0.0, 0.0, 1.55 * size], xyaxes=[0, -1, 0, 1, 0, 0], fovy=45.0
+    )
+    # From a corner, looking at the middle of the field.
+    place = np.array([-0.80, -0.80, 0.62]) * size
+    away = place / np.linalg.norm(place)
+    right = np.array([-away[1], away[0], 0.0]) / hypot(away[0], away[1])
+    spec.worldbody.add_camera(
+        name="corner", pos=place, xyaxes=[*right, *np.cross(away, right)], fovy=40.0
+    )
+
+
+def _paint(spec: mujoco.MjSpec, colour: str, quality: Quality) -> str:
+    """Name of the material of a colour class, made when first asked for."""
+    name = f"paint_{colour}"
+    if spec.material(name) is None:
+        rgb = np.asarray(COLOUR_CLASSES[colour].rgb)
+        if quality == "show":
+            rgb = rgb**BRIGHTER
+        material = spec.add_material(name=name, rgba=[*rgb, 1.0])
+        material.specular = 0.0 if quality == "vision" else 0.25
+        material.shininess = 0.0 if quality == "vision" else 0.4
+        material.reflectance = 0.0
+    return name
+
+
+def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Quality) -> None:
+    moves = obstacle.motion is not None
+    body = spec.worldbody.add_body(
+        name=name, pos=[*obstacle.position, 0.5 * obstacle.height], mocap=moves
+    )
+    body.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        size=[obstacle.radius, 0.5 * obstacle.height, 0.0],
+        material=_paint(spec, obstacle.colour, quality),
+        **_SOLID,
+    )
+    if moves and quality == "show":
+        body.add_geom(
+            name=f"{name}_stripe",
+            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+            pos=[0.0, 0.0, 0.5 * obstacle.height - 4.0 * STRIPE],
+            size=[obstacle.radius + 0.001, STRIPE, 0.0],
+            material="stripe",
+            **_SEEN_ONLY,
+        )
+
+
+def _add_beacon(spec: mujoco.MjSpec, beacon: Beacon, quality: Quality) -> None:
+    quarter = 0.25 * beacon.height
+    name = f"beacon_{beacon.top}_{beacon.bottom}"
+    body = spec.worldbody.add_body(name=name, pos=[*beacon.position, 0.0])
+    for half, colour, z in (("bottom", beacon.bottom, quarter), ("top", beacon.top, 3 * quarter)):
+        body.add_geom(
+            name=f"{name}_{half}",
+            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+            pos=[0.0, 0.0, z],
+            size=[beacon.radius, quarter, 0.0],
+            material=_paint(spec, colour, quality),
+            **_SOLID,
+        )
+
+
+def _add_bump(spec: mujoco.MjSpec, name: str, bump: Bump) -> None:
+    """A disc that sticks out of the floor, drawn as the rim is; it can be touched while it acts."""
+    spec.worldbody.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        pos=[*bump.place, 0.0],
+        size=[bump.radius, bump.size, 0.0],
+        material="line",
+        condim=4,
+        **_SOLID,
+    )

@@ -1,0 +1,106 @@
+"""Names of the model resolved once, so that nothing looks them up inside the loop."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.world.model.models import reading_models
+from walking.body.joints import JOINT_NAMES
+
+Ints = NDArray[np.intp]
+
+PADS = ("fl", "fr", "bl", "br")
+
+
+@dataclass(frozen=True, slots=True)
+class ModelIndex:
+    """Addresses of everything the simulator touches in one compiled model.
+
+    Attributes:
+        root_qpos, root_dof: where the free joint of the robot starts.
+        joint_qpos, joint_dof: addresses of the joints in the order of ``JOINT_NAMES`` (26,).
+        actuators: addresses of the actuators in the same order (26,).
+        foot_force: sensor addresses, left and right foot by pad (2, 4).
+        accelerometer: sensor addresses (3,).
+        foot_sites: site ids of the left and the right foot.
+        foot_geoms: geom ids of the left and the right sole.
+        floor: geom id of the floor.
+        bumps: geom ids of what lies on the floor.
+        base_body: body id of ``base_link``.
+        robot_geoms: ids of the robot's colliding geoms.
+        obstacle_of_geom: number of the obstacle or, after all obstacles, of the beacon of every
+            geom, -1 for anything else (ngeom,).
+        obstacle_geoms: geom id of every obstacle, layout order.
+        beacon_geoms: geom ids of the lower and upper half of every beacon, layout order (n, 2).
+        mover_mocap: mocap index of every mover, layout order.
+    """
+
+    root_qpos: int
+    root_dof: int
+    joint_qpos: Ints
+    joint_dof: Ints
+    actuators: Ints
+    foot_force: Ints
+    accelerometer: Ints
+    foot_sites: tuple[int, int]
+    foot_geoms: tuple[int, int]
+    floor: int
+    bumps: tuple[int, ...]
+    base_body: int
+    robot_geoms: Ints
+    obstacle_of_geom: Ints
+    obstacle_geoms: Ints
+    beacon_geoms: Ints
+    mover_mocap: Ints
+
+    @classmethod
+    @reading_models()
+    def of(cls, model: mujoco.MjModel, n_static: int, n_moving: int) -> "ModelIndex":
+        """Resolve the names in `model`, which holds so many static and moving obstacles.
+
+        Raises:
+            ModelError: the robot lacks one of them.
+        """
+        joints = [model.joint(name) for name in JOINT_NAMES]
+        base = model.body("base_link").id
+        root = model.joint("root")
+        obstacle_names = [
+            *(f"obstacle_{i:02d}" for i in range(n_static)),
+            *(f"mover_{i:02d}" for i in range(n_moving)),
+        ]
+        bodies = [model.body(name) for name in obstacle_names]
+        obstacle_geoms = np.array([int(b.geomadr[0]) for b in bodies], dtype=np.intp)
+        obstacle_of_geom = np.full(model.ngeom, -1, dtype=np.intp)
+        obstacle_of_geom[obstacle_geoms] = np.arange(len(bodies))
+        posts = [b for b in map(model.body, range(model.nbody)) if b.name.startswith("beacon_")]
+        lower = np.array([int(b.geomadr[0]) for b in posts], dtype=np.intp)
+        beacon_geoms = lower[:, None] + np.arange(2)
+        obstacle_of_geom[beacon_geoms] = len(bodies) + np.arange(len(posts))[:, None]
+        collides = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+        on_robot = np.array([model.body_rootid[b] == base for b in model.geom_bodyid])
+        return cls(
+            root_qpos=int(root.qposadr[0]),
+            root_dof=int(root.dofadr[0]),
+            joint_qpos=np.array([j.qposadr[0] for j in joints], dtype=np.intp),
+            joint_dof=np.array([j.dofadr[0] for j in joints], dtype=np.intp),
+            actuators=np.array(
+                [model.actuator(f"{name}_act").id for name in JOINT_NAMES], dtype=np.intp
+            ),
+            foot_force=np.array(
+                [[model.sensor(f"{s}_sole_{p}_force").adr[0] for p in PADS] for s in "lr"],
+                dtype=np.intp,
+            ),
+            accelerometer=np.arange(3, dtype=np.intp) + model.sensor("imu_accelerometer").adr[0],
+            foot_sites=(model.site("l_foot").id, model.site("r_foot").id),
+            foot_geoms=(model.geom("l_sole").id, model.geom("r_sole").id),
+            floor=model.geom("floor").id,
+            bumps=tuple(g for g in range(model.ngeom) if model.geom(g).name.startswith("bump_")),
+            base_body=base,
+            robot_geoms=np.flatnonzero(collides & on_robot),
+            obstacle_of_geom=obstacle_of_geom,
+            obstacle_geoms=obstacle_geoms,
+            beacon_geoms=beacon_geoms,
+            mover_mocap=np.array([int(b.mocapid[0]) for b in bodies[n_static:]], dtype=np.intp),
+        )

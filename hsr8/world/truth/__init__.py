@@ -1,0 +1,1 @@
+"""Ground truth: it leaves the world towards recorder and metrics only."""

@@ -1,0 +1,103 @@
+"""Ground truth of one instant: it leaves the world towards recorder and metrics only."""
+
+from dataclasses import dataclass
+from math import degrees, hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.world.truth.saturation import SaturationWatch
+from walking.value import value
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """The robot touches an obstacle or a beacon.
+
+    Attributes:
+        obstacle: number of what it touches: the layout's obstacles, after them its beacons.
+        name: of what it touches, in words.
+        moving: whether that is a mover.
+        robot_geom: name of the robot's geom.
+        force: normal force [N].
+        closing: the robot's own motion closes the gap.
+    """
+
+    obstacle: int
+    name: str
+    moving: bool
+    robot_geom: str
+    force: float
+    closing: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PushActing:
+    """The world pushes the robot.
+
+    Attributes:
+        number: of the push in its run.
+        begin: when it began [s].
+        duration: how long it lasts in all [s].
+        body: name of the pushed body.
+        direction: from the robot's forward when it began, counter-clockwise [rad].
+        point: where it acted last in W (3,) [m].
+        force: in W (3,) [N].
+    """
+
+    number: int
+    begin: float
+    duration: float
+    body: str
+    direction: float
+    point: Array
+    force: Array
+
+    @property
+    def impulse(self) -> float:
+        """Force times duration [N s]."""
+        return hypot(*self.force.tolist()) * self.duration
+
+    def text(self) -> str:
+        """The push in words."""
+        return (
+            f"{self.impulse:.2f} N s in {1000 * self.duration:.0f} ms on {self.body}, to "
+            f"{degrees(self.direction):.0f} deg from forward"
+        )
+
+
+@value
+class Truth:
+    """State of the world at one instant.
+
+    Attributes:
+        time: simulated time [s].
+        qpos: generalised position of the robot, MuJoCo order (nq,).
+        robot: x, y, heading of the robot frame R in W (3,) [m, m, rad].
+        obstacle_positions: axes of all obstacles, layout order (n, 2) [m].
+        obstacle_velocities: (n, 2) [m/s].
+        contacts: everything touched since the previous record.
+        clearance: distance from the robot's body to the nearest obstacle or beacon [m].
+        joint_torque: (26,) [N m].
+        foot_force: true normal force under the left and right foot (2,) [N].
+        zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.
+        fallen: whether the robot lies.
+        pushes: those that acted since the previous record.
+        saturation: of the servos, since the start; it counts on. A body without dynamics has none.
+    """
+
+    time: float
+    qpos: Array
+    robot: Array
+    obstacle_positions: Array
+    obstacle_velocities: Array
+    contacts: tuple[Contact, ...]
+    clearance: float
+    joint_torque: Array
+    foot_force: Array
+    zmp: Array
+    fallen: bool
+    pushes: tuple[PushActing, ...] = ()
+    saturation: SaturationWatch | None = None

@@ -1,0 +1,106 @@
+import numpy as np
+import pytest
+
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.field.layout import Obstacle, standard_beacons
+from hsr8.world.model.models import models_dir
+from walking.body.robot_model import RobotModel
+from walking.command import HeadTarget, VelocityCommand
+from walking.engine import WalkingEngine
+from walking.parameters import WalkingParameters
+from walking.targets import JointTargets
+
+
+@pytest.fixture(scope="module")
+def robot_model():
+    return RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
+
+
+def body_in(world, noise, *obstacles, seed=0, **details):
+    layout, model = world(*obstacles, **details)
+    return KinematicBody(model, layout, noise, np.random.default_rng(seed))
+
+
+def walk(body, robot_model, command, seconds):
+    engine = WalkingEngine(robot_model, WalkingParameters())
+    for _ in range(round(seconds / 0.005)):
+        body.apply(engine.step(body.sense(), command, HeadTarget()))
+    return engine
+
+
+def test_it_starts_where_the_layout_says(world, silent):
+    truth = body_in(world, silent, start=(0.7, -0.4, 2.0)).truth()
+    assert np.allclose(truth.robot, (0.7, -0.4, 2.0), atol=1e-6)
+
+
+def test_joints_follow_their_targets_and_the_stance_foot_stays(world, silent):
+    body = body_in(world, silent)
+    position = body.sense().joint_position.copy()
+    foot = body.data.site("l_foot").xpos.copy()
+    for k in range(20):
+        position[2] -= 0.001  # both hips bend: the trunk moves, the planted foot does not
+        position[8] -= 0.001
+        body.apply(JointTargets(position=position.copy(), offset=np.full(26, 0.3)))
+        assert np.allclose(body.sense().joint_position, position)
+        body.update_kinematics()
+        assert np.allclose(body.data.site("l_foot").xpos[:2], foot[:2], atol=1e-9), k
+        assert abs(body.data.site("l_foot").xpos[2]) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        (VelocityCommand(0.15, 0.0, 0.0), (0.15, 0.0, 0.0)),
+        (VelocityCommand(0.0, 0.06, 0.0), (0.0, 0.06, 0.0)),
+        (VelocityCommand(0.0, 0.0, 0.5), (0.0, 0.0, 0.5)),
+    ],
+)
+def test_it_walks_at_the_commanded_velocity(world, silent, robot_model, command, expected):
+    body = body_in(world, silent)
+    walked = 3.4  # ten footsteps
+    running = WalkingEngine(robot_model, WalkingParameters())
+    poses = []
+    for k in range(round((2.04 + walked) / 0.005)):
+        body.apply(running.step(body.sense(), command, HeadTarget()))
+        if k + 1 in (round(2.04 / 0.005), round((2.04 + walked) / 0.005)):
+            poses.append(body.truth().robot)
+    rate = (poses[1] - poses[0]) / walked
+    assert np.allclose(rate, expected, atol=0.02)
+
+
+def test_same_seed_same_walk(world, robot_model):
+    def end(seed):
+        body = body_in(world, SensorNoise(), seed=seed)
+        walk(body, robot_model, VelocityCommand(0.1, 0.0, 0.3), 1.5)
+        return body.state_bytes()
+
+    assert end(4) == end(4)
+    assert end(4) != end(5)
+
+
+def test_touching_an_obstacle_is_noticed_though_nothing_stops_it(world, silent, robot_model):
+    body = body_in(world, silent, Obstacle((0.30, 0.0), 0.10, 0.3, "blue"))
+    contacts = []
+    engine = WalkingEngine(robot_model, WalkingParameters())
+    for _ in range(500):
+        body.apply(engine.step(body.sense(), VelocityCommand(0.15, 0.0, 0.0), HeadTarget()))
+        contacts += body.truth().contacts
+    assert {c.obstacle for c in contacts} == {0}
+    assert not any(c.moving for c in contacts)
+    assert any(c.closing for c in contacts)  # it walked into it
+    assert body.truth().robot[0] > 0.2
+
+
+def test_touching_a_beacon_is_noticed_too(world, silent, robot_model):
+    beacon = standard_beacons((5.0, 5.0))[0]
+    x, y = beacon.position
+    body = body_in(world, silent, start=(x - 0.30, y, 0.0))
+    contacts = []
+    engine = WalkingEngine(robot_model, WalkingParameters())
+    for _ in range(500):
+        body.apply(engine.step(body.sense(), VelocityCommand(0.15, 0.0, 0.0), HeadTarget()))
+        contacts += body.truth().contacts
+    assert {(c.obstacle, c.name) for c in contacts} == {(0, f"beacon {beacon.name}")}
+    assert any(c.closing for c in contacts)
+    assert body.truth().clearance < 0.0

@@ -1,0 +1,125 @@
+import numpy as np
+import pytest
+
+from hsr8.errors import SimulationDiverged
+from hsr8.scenario.sensor_noise import SensorNoise
+from hsr8.world.body.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.field.layout import Obstacle, standard_beacons
+from hsr8.world.field.motion import Line, Shuttle
+from walking.targets import JointTargets
+
+
+def body_in(world, noise, *obstacles, seed=0, **details):
+    layout, model = world(*obstacles, **details)
+    return PhysicsBody(model, layout, noise, np.random.default_rng(seed))
+
+
+def hold(body):
+    """Targets that keep the posture the body starts in."""
+    return JointTargets(position=body.sense().joint_position, offset=np.zeros(26))
+
+
+def test_it_starts_where_the_layout_says(world, silent):
+    truth = body_in(world, silent, start=(0.7, -0.4, 2.0)).truth()
+    assert np.allclose(truth.robot, (0.7, -0.4, 2.0), atol=1e-9)
+
+
+def test_it_stands_and_the_feet_carry_its_weight(world, silent):
+    body = body_in(world, silent)
+    targets = hold(body)
+    for _ in range(200):
+        body.apply(targets)
+    truth = body.truth()
+    assert not truth.fallen
+    assert np.isclose(truth.foot_force.sum(), 5.5 * 9.81, rtol=0.05)
+    assert np.isclose(body.sense().foot_force.sum(), 5.5 * 9.81, rtol=0.05)
+    assert np.hypot(*truth.robot[:2]) < 0.02
+    assert abs(truth.zmp[1]) < 0.02
+
+
+@pytest.mark.parametrize("ticks", [1, 37])
+def test_movers_are_where_their_law_puts_them(world, silent, ticks):
+    law = Shuttle((1.5, -1.0), (1.5, 1.0), 0.13)
+    body = body_in(world, silent, Obstacle(law.start, 0.08, 0.3, "red", law))
+    targets = hold(body)
+    for _ in range(ticks):
+        body.apply(targets)
+    mover = body.data.mocap_pos[0, :2]
+    assert np.allclose(mover, body.truth().obstacle_positions[0], atol=1e-12)
+    assert np.isclose(mover[1], -1.0 + 0.13 * ticks * CONTROL_PERIOD, atol=1e-12)
+
+
+def test_a_mover_is_solid_and_its_contact_is_told_once(world, silent):
+    law = Line((0.30, 0.0), (-0.5, 0.0))
+    body = body_in(world, silent, Obstacle(law.start, 0.08, 0.3, "red", law))
+    targets = hold(body)
+    contacts = []
+    for _ in range(160):
+        body.apply(targets)
+        contacts += body.truth().contacts
+    assert contacts
+    assert all(c.obstacle == 0 and c.moving for c in contacts)
+    assert body.truth().robot[0] < -0.02  # it was pushed back
+
+
+def test_clearance_is_the_gap_to_the_body(world, silent):
+    near = body_in(world, silent, Obstacle((0.0, 0.40), 0.10, 0.3, "green")).truth().clearance
+    far = body_in(world, silent, Obstacle((0.0, 0.45), 0.10, 0.3, "green")).truth().clearance
+    assert 0.1 < near < 0.3
+    assert np.isclose(far - near, 0.05, atol=1e-3)
+
+
+def test_a_beacon_is_solid_and_its_contact_is_told(world, silent):
+    beacon = standard_beacons((5.0, 5.0))[0]
+    x, y = beacon.position
+    body = body_in(world, silent, start=(x - 0.11, y, 0.0))
+    targets = hold(body)
+    contacts = []
+    for _ in range(80):
+        body.apply(targets)
+        contacts += body.truth().contacts
+    assert {(c.obstacle, c.name) for c in contacts} == {(0, f"beacon {beacon.name}")}
+    assert max(c.force for c in contacts) > 1.0
+    assert body.truth().robot[0] < x - 0.112  # it was pushed back
+
+
+def test_without_obstacles_and_beacons_clearance_is_infinite(world, silent):
+    assert body_in(world, silent, beacons=()).truth().clearance == np.inf
+
+
+def test_same_seed_same_state(world):
+    def run(seed):
+        body = body_in(world, SensorNoise(), seed=seed)
+        for _ in range(20):
+            body.apply(JointTargets(position=body.sense().joint_position, offset=np.zeros(26)))
+        return body.state_bytes()
+
+    assert run(1) == run(1)
+    assert run(1) != run(2)
+
+
+def test_truth_is_a_snapshot(world, silent):
+    body = body_in(world, silent)
+    before = body.truth()
+    qpos = before.qpos.copy()
+    targets = hold(body)
+    for _ in range(40):
+        body.apply(targets)
+    assert np.array_equal(before.qpos, qpos)
+
+
+def test_divergence_names_tick_and_body_and_command(world, silent):
+    body = body_in(world, silent)
+    targets = hold(body)
+    for _ in range(3):
+        body.apply(targets)
+    body.data.qvel[8] = np.nan
+    with pytest.raises(SimulationDiverged, match=r"tick 4 .*body '\w+'.*last command: \w+"):
+        body.apply(targets)
+
+
+def test_a_physics_step_that_does_not_divide_the_tick_is_refused(world, silent):
+    layout, model = world()
+    model.opt.timestep = 0.003
+    with pytest.raises(ValueError, match="no multiple"):
+        PhysicsBody(model, layout, silent, np.random.default_rng(0))

@@ -1,0 +1,96 @@
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from hsr8.scenario.fault import (
+    EncoderFrozen,
+    EncoderOffset,
+    FootDead,
+    FootGain,
+    ImuFrozen,
+    ImuTilt,
+    ImuTurn,
+)
+from hsr8.world.body.sensor_faults import SensorFaults
+from hsr8.world.rotation import heading, quaternion_from_yaw
+from walking.sensing import BodySensors
+
+KNEE = 3
+
+
+def reading(k=0, yaw=0.3):
+    """A reading whose every number depends on `k`."""
+    rng = np.random.default_rng(k)
+    return BodySensors(
+        joint_position=rng.normal(size=26),
+        joint_velocity=rng.normal(size=26),
+        gyro=rng.normal(size=3),
+        accelerometer=rng.normal(size=3),
+        orientation=quaternion_from_yaw(yaw),
+        foot_force=rng.uniform(1.0, 2.0, (2, 4)),
+    )
+
+
+def changed(a, b):
+    """Names of what differs."""
+    return {f.name for f in fields(a) if not np.array_equal(getattr(a, f.name), getattr(b, f.name))}
+
+
+def pitch(quaternion):
+    w, x, y, z = quaternion
+    return np.arcsin(2.0 * (w * y - z * x))
+
+
+@pytest.mark.parametrize(
+    ("fault", "spoils"),
+    [
+        (ImuTilt(kind="imu-tilt", size=0.1), {"orientation"}),
+        (ImuTurn(kind="imu-turn", size=0.1), {"gyro", "orientation"}),
+        (ImuTurn(kind="imu-turn", size=0.1, axis="roll"), {"gyro"}),
+        (ImuFrozen(kind="imu-frozen"), {"gyro", "accelerometer", "orientation"}),
+        (EncoderOffset(kind="encoder-offset", size=0.1), {"joint_position"}),
+        (EncoderFrozen(kind="encoder-frozen"), {"joint_position", "joint_velocity"}),
+        (FootDead(kind="foot-dead"), {"foot_force"}),
+        (FootGain(kind="foot-gain", size=2.0), {"foot_force"}),
+    ],
+    ids=lambda value: getattr(value, "kind", ""),
+)
+def test_a_fault_spoils_its_own_sensor_while_it_acts_and_nothing_else(fault, spoils):
+    timed = fault.model_copy(update={"start": 0.01, "duration": 0.015})
+    faults, seen = SensorFaults([timed]), []
+    for tick in range(7):
+        true = reading(tick, yaw=0.1 * tick)
+        told = faults.spoil(true, tick)
+        seen.append(changed(true, told))
+        assert changed(true, reading(tick, yaw=0.1 * tick)) == set()  # it was not written into
+    assert seen[:2] == [set(), set()]
+    assert set().union(*seen[2:5]) == spoils
+    left = {"orientation"} if "orientation" in spoils and fault.kind == "imu-turn" else set()
+    assert seen[5:] == [left, left]  # what has been turned stays turned
+
+
+def test_sizes_are_what_they_say():
+    true = reading()
+    told = SensorFaults([ImuTilt(kind="imu-tilt", size=0.1)]).spoil(true, 0)
+    assert pitch(told.orientation) == pytest.approx(0.1, abs=1e-3)
+    told = SensorFaults([EncoderOffset(kind="encoder-offset", size=0.1, joint="l_knee")])
+    difference = told.spoil(true, 0).joint_position - true.joint_position
+    assert difference[KNEE] == pytest.approx(0.1)
+    assert np.count_nonzero(difference) == 1
+    told = SensorFaults([FootGain(kind="foot-gain", size=2.0, foot="right")]).spoil(true, 0)
+    assert np.allclose(told.foot_force, true.foot_force * [[1.0], [2.0]])
+    turning = SensorFaults([ImuTurn(kind="imu-turn", size=0.2)])
+    for tick in range(100):
+        told = turning.spoil(true, tick)
+    assert heading(told.orientation) - heading(true.orientation) == pytest.approx(0.1)
+    assert told.gyro[2] - true.gyro[2] == pytest.approx(0.2)
+
+
+def test_what_is_frozen_is_the_first_reading_of_its_time():
+    faults = SensorFaults([EncoderFrozen(kind="encoder-frozen", start=0.01, joint="l_knee")])
+    told = [faults.spoil(reading(tick), tick) for tick in range(5)]
+    for late in told[2:]:
+        assert late.joint_position[KNEE] == reading(2).joint_position[KNEE]
+        assert late.joint_velocity[KNEE] == 0.0
+    assert told[4].joint_position[0] == reading(4).joint_position[0]

@@ -1,0 +1,133 @@
+import numpy as np
+import pytest
+
+from hsr8.scenario.camera import Camera
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.camera.analytic import AnalyticCamera
+from hsr8.world.field.layout import Obstacle
+from vision.camera import PinholeCamera
+
+AHEAD = Camera()
+CAMERA = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
+
+
+@pytest.fixture
+def see(world, silent):
+    """Detections over many frames of a robot that looks down a little."""
+
+    def make(*obstacles, start=(0.0, 0.0, 0.0), frames=60, tilt=-0.35, settings=AHEAD):
+        layout, model = world(*obstacles, start=start)
+        body = KinematicBody(model, layout, silent, np.random.default_rng(0))
+        body.data.joint("head_tilt").qpos[0] = tilt
+        camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1), settings)
+        return [camera.capture(body) for _ in range(frames)]
+
+    return make
+
+
+def obstacles_in(frames):
+    return [d for frame in frames for d in frame if d.kind == "obstacle"]
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (1.0, -0.5, 2.2)])
+@pytest.mark.parametrize("place", [(1.0, 0.0), (1.5, 0.6), (0.8, -0.3)])
+def test_detections_are_unbiased_in_the_robot_frame(see, start, place):
+    x, y, yaw = start
+    c, s = np.cos(yaw), np.sin(yaw)
+    there = (x + c * place[0] - s * place[1], y + s * place[0] + c * place[1])
+    found = obstacles_in(see(Obstacle(there, 0.08, 0.3, "red"), start=start, frames=200))
+    assert len(found) > 180
+    errors = np.array(
+        [
+            (
+                d.distance - np.hypot(*place),
+                d.bearing - np.arctan2(place[1], place[0]),
+                d.radius - 0.08,
+            )
+            for d in found
+        ]
+    )
+    sigma = errors.std(axis=0)
+    assert np.all(np.abs(errors.mean(axis=0)) < 4 * sigma / np.sqrt(len(found)) + 1e-6)
+
+
+@pytest.mark.parametrize("hidden", [False, True])
+def test_covariance_is_honest(see, hidden):
+    """Of a thing seen whole as of one partly behind another."""
+    things = [Obstacle((1.4, 0.18), 0.1, 0.3, "red")]
+    things += [Obstacle((0.8, 0.0), 0.1, 0.3, "green")] if hidden else []
+    found = [d for d in obstacles_in(see(*things, frames=400)) if d.label == "red"]
+    truth = np.array([np.hypot(1.4, 0.18), np.arctan2(0.18, 1.4)])
+    nees = [
+        (e := np.array([d.distance, d.bearing]) - truth) @ np.linalg.solve(d.covariance, e) / 2
+        for d in found
+    ]
+    assert {d.occluded for d in found} == {hidden}
+    assert 0.8 < np.mean(nees) < 1.2
+    off = [(d.radius - 0.1) / d.radius_sigma for d in found]
+    assert 0.9 < np.std(off) < 1.1
+
+
+def test_what_is_seen_in_part_is_located_worse(see):
+    near, far = Obstacle((0.8, 0.0), 0.1, 0.3, "green"), Obstacle((1.4, 0.18), 0.1, 0.3, "red")
+    (whole,) = obstacles_in(see(far, frames=1))
+    (part,) = (d for d in obstacles_in(see(near, far, frames=1)) if d.label == "red")
+    assert (np.diag(part.covariance) > 2.0 * np.diag(whole.covariance)).all()
+    assert part.radius_sigma > 2.0 * whole.radius_sigma
+
+
+def test_what_is_behind_another_or_behind_the_robot_is_not_seen(see):
+    frames = see(
+        Obstacle((0.8, 0.0), 0.12, 0.3, "red"),
+        Obstacle((1.4, 0.0), 0.05, 0.3, "green"),
+        Obstacle((-1.0, 0.0), 0.1, 0.3, "blue"),
+    )
+    assert {d.label for d in obstacles_in(frames)} == {"red"}
+
+
+def test_a_thing_partly_hidden_is_flagged(see):
+    frames = see(Obstacle((0.8, 0.0), 0.10, 0.3, "red"), Obstacle((1.4, 0.18), 0.10, 0.3, "green"))
+    flags = {d.label: d.occluded for d in obstacles_in(frames)}
+    assert flags == {"red": False, "green": True}
+
+
+def test_a_thing_at_the_border_is_flagged(see):
+    frames = see(Obstacle((0.6, 0.55), 0.12, 0.3, "red"))
+    found = obstacles_in(frames)
+    assert found
+    assert all(d.cut for d in found)
+
+
+def test_beacons_carry_their_names(see):
+    names = {d.label for frame in see(tilt=0.1) for d in frame if d.kind == "beacon"}
+    assert names
+    assert all(name.count("/") == 1 for name in names)
+
+
+def test_far_things_are_not_reported(see):
+    assert obstacles_in(see(Obstacle((4.4, 0.0), 0.1, 0.3, "red")))
+    assert not obstacles_in(see(Obstacle((4.6, 0.0), 0.1, 0.3, "red")))
+
+
+@pytest.mark.parametrize("bearing", np.radians([0.0, 100.0, -160.0, 180.0]))
+def test_an_all_round_camera_sees_in_every_direction_with_the_noise_of_any(see, bearing):
+    place = (1.2 * np.cos(bearing), 1.2 * np.sin(bearing))
+    thing = Obstacle(place, 0.08, 0.3, "red")
+    frames = see(thing, frames=100, settings=Camera(source="all-round"))
+    found = obstacles_in(frames)
+    assert len(found) > 85
+    for d in found:
+        assert 0 <= d.box[0] < d.box[2] <= CAMERA.width
+        assert 0 <= d.box[1] < d.box[3] <= CAMERA.height
+        assert not d.cut
+    off = [np.angle(np.exp(1j * (d.bearing - bearing))) / d.covariance[1, 1] ** 0.5 for d in found]
+    assert 0.7 < np.std(off) < 1.4
+    (ahead,) = {d.covariance[1, 1] for d in obstacles_in(see(Obstacle((1.2, 0), 0.08, 0.3, "red")))}
+    assert found[0].covariance[1, 1] == pytest.approx(ahead)
+
+
+def test_what_stands_behind_another_stays_hidden_all_around(see):
+    near = Obstacle((-0.8, 0.0), 0.12, 0.3, "red")
+    behind = Obstacle((-1.6, 0.0), 0.08, 0.3, "blue")
+    found = obstacles_in(see(near, behind, settings=Camera(source="all-round")))
+    assert {d.label for d in found} == {"red"}

@@ -1,0 +1,51 @@
+import mujoco
+import numpy as np
+import pytest
+
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.camera.frustum import Frustum
+from hsr8.world.field.layout import Obstacle
+
+RING = [
+    Obstacle((1.2 * np.cos(angle), 1.2 * np.sin(angle)), 0.08, 0.3, "red")
+    for angle in np.radians(np.arange(0, 360, 30))
+]
+SHAPE = (60, 80)
+
+
+@pytest.fixture
+def body(world, silent):
+    layout, model = world(*RING)
+    return KinematicBody(model, layout, silent, np.random.default_rng(0))
+
+
+def look(body, pan, tilt):
+    body.data.joint("head_pan").qpos[0] = pan
+    body.data.joint("head_tilt").qpos[0] = tilt
+    body.update_kinematics()
+
+
+def test_it_misses_what_is_behind_and_beside_but_not_what_is_ahead(body):
+    frustum = Frustum(body.model, "egocentric", 4.0 / 3.0)
+    look(body, 0.0, -0.2)
+    missed = frustum.misses(body.data)
+    names = {body.model.geom(geom).name for geom in np.flatnonzero(missed)}
+    assert {"obstacle_06", "obstacle_03", "obstacle_09", "l_sole_visual"} <= names
+    assert not {"obstacle_00", "obstacle_01", "obstacle_11", "floor"} & names
+
+
+@pytest.mark.gl
+def test_without_what_it_misses_every_picture_is_the_same(body):
+    model, rng = body.model, np.random.default_rng(1)
+    frustum, usual = Frustum(model, "egocentric", SHAPE[1] / SHAPE[0]), model.geom_group.copy()
+    with mujoco.Renderer(model, *SHAPE) as renderer:
+        for pan, tilt in rng.uniform((-1.5, -1.0), (1.5, 0.3), (12, 2)):
+            look(body, pan, tilt)
+            missed = frustum.misses(body.data)
+            assert missed.any()
+            images = []
+            for groups in (usual, np.where(missed, 5, usual)):
+                model.geom_group[:] = groups
+                renderer.update_scene(body.data, camera="egocentric")
+                images.append(renderer.render())
+            assert np.array_equal(*images)

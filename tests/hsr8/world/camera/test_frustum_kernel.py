@@ -1,0 +1,40 @@
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from hsr8.world.camera.frustum_kernel import misses
+
+RNG = np.random.default_rng(0)
+NORMALS = np.array([[-0.8, 0, -0.6], [0.8, 0, -0.6], [0, -0.9, -0.4], [0, 0.9, -0.4], [0, 0, -1]])
+
+
+def scene(things=60, boxes=5):
+    rotation = Rotation.random(random_state=RNG.integers(1 << 30)).as_matrix()
+    places, eye = RNG.normal(0.0, 2.0, (things, 3)), RNG.normal(0.0, 1.0, 3)
+    reach = RNG.uniform(0.0, 1.0, things)
+    chosen = RNG.choice(things, boxes, replace=False)
+    reach[chosen] = np.inf
+    halves = RNG.uniform(0.0, 1.5, (boxes, 3))
+    return places, eye, rotation.ravel(), NORMALS, reach, chosen.astype(np.intp), halves
+
+
+@pytest.mark.parametrize("_", range(5))
+def test_compiled_and_plain_agree_and_do_what_matrices_say(_):
+    places, eye, rotation, normals, reach, boxes, halves = given = scene()
+    missed = misses(*given)
+    assert np.array_equal(missed, misses.py_func(*given))
+    inward = rotation.reshape(3, 3) @ normals.T
+    depth = (places - eye) @ inward
+    wanted = (depth < -reach[:, None]).any(axis=1)
+    wanted[boxes] = (depth[boxes] < -(halves @ np.abs(inward))).any(axis=1)
+    assert np.array_equal(missed, wanted)
+    assert missed.any()
+
+
+def test_a_corner_of_a_box_that_reaches_in_is_not_missed():
+    places, eye, rotation, normals, reach, boxes, halves = scene()
+    corners = np.stack(np.meshgrid(*[[-1, 1]] * 3), -1).reshape(-1, 3)
+    inside = (places[boxes] - eye)[:, None] + corners * halves[:, None]
+    within = (inside @ (rotation.reshape(3, 3) @ normals.T) >= 0.0).all(axis=2).any(axis=1)
+    missed = misses(places, eye, rotation, normals, reach, boxes, halves)[boxes]
+    assert not (missed & within).any()

@@ -1,0 +1,99 @@
+from contextlib import closing
+from copy import copy
+
+import cv2
+import numpy as np
+import pytest
+
+from hsr8.scenario.camera import Camera, CameraNoise
+from hsr8.world.body.kinematic import KinematicBody
+from hsr8.world.body.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.camera.rendered import RenderedCamera, turning
+from vision.camera import CameraPose, PinholeCamera
+from vision.detector import Detector
+from vision.parameters import VisionParameters
+from walking.body.joints import JOINT_NAMES
+from walking.targets import JointTargets
+
+CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))
+pytestmark = pytest.mark.gl
+
+
+def test_an_image_shows_the_world_as_it_is_now(body):
+    with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
+        before = camera.capture(body).image()
+        again = camera.capture(body).image()
+        body.data.joint("head_pan").qpos[0] = 0.5
+        turned = camera.capture(body).image()
+    assert before.shape == (240, 320, 3)
+    assert before.dtype == np.uint8
+    assert np.array_equal(before, again)
+    assert not np.array_equal(before, turned)
+
+
+def test_vision_finds_the_obstacle_where_it_stands(body):
+    with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
+        image = camera.capture(body).image()
+    fixed = body.data.camera("egocentric")
+    rotation = fixed.xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
+    pinhole = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
+    found = Detector(pinhole, VisionParameters()).detect(
+        image, CameraPose(rotation=rotation, position=fixed.xpos.copy(), tilt_sigma=0.005)
+    )
+    red = [d for d in found if d.label == "red"]
+    assert len(red) == 1
+    assert np.isclose(red[0].distance, np.hypot(1.0, 0.2), atol=0.02)
+    assert np.isclose(red[0].bearing, np.arctan2(0.2, 1.0), atol=0.01)
+    assert np.isclose(red[0].radius, 0.08, atol=0.005)
+
+
+@pytest.mark.parametrize("read_at_once", [True, False])
+def test_images_are_spoilt_in_turn_whether_or_not_somebody_reads_them(body, read_at_once):
+    settings = Camera(noise=CameraNoise(pixel=3.0, exposure=0.1))
+
+    def third(*read):
+        model = copy(body.model)  # whose lights a camera dims
+        with closing(RenderedCamera(model, settings, np.random.default_rng(1))) as camera:
+            for at_once in read:
+                exposure = camera.capture(body)
+                if at_once:
+                    exposure.image()
+            return exposure.image()
+
+    assert np.array_equal(third(read_at_once, False, True), third(True, True, True))
+
+
+def attitude(body):
+    body.update_kinematics()
+    return body.data.camera("egocentric").xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
+
+
+@pytest.mark.parametrize("kind", [KinematicBody, PhysicsBody])
+def test_the_camera_turns_as_its_attitude_does(world, silent, kind):
+    layout, model = world()
+    body = kind(model, layout, silent, np.random.default_rng(0))
+    position = body.sense().joint_position.copy()
+    pan, tilt, hip = (JOINT_NAMES.index(n) for n in ("head_pan", "head_tilt", "l_hip_yaw"))
+    for _ in range(20):
+        position[pan] += 0.01
+        position[tilt] -= 0.004
+        position[hip] += 0.001  # the foot stays, so the trunk turns
+        before = attitude(body)
+        body.apply(JointTargets(position=position.copy(), offset=np.zeros(26)))
+        after = attitude(body)
+        rate = turning(body.model, body.data)
+    mean = cv2.Rodrigues(before.T @ after)[0].ravel() / CONTROL_PERIOD
+    assert np.linalg.norm(mean) > 1.5
+    assert rate == pytest.approx(mean, abs=0.06)
+
+
+@pytest.mark.parametrize("shutter", [0.0, 10.0])
+def test_only_a_turning_camera_with_an_open_shutter_smears(body, shutter):
+    settings = CLEAN.model_copy(update={"shutter_ms": shutter})
+    with closing(RenderedCamera(body.model, settings, np.random.default_rng(0))) as camera:
+        still = camera.capture(body).image()
+        body.data.joint("head_pan").qvel[0] = 5.0
+        turned = camera.capture(body).image()
+    with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
+        assert np.array_equal(still, camera.capture(body).image())
+    assert np.array_equal(still, turned) == (shutter == 0.0)

@@ -1,0 +1,43 @@
+import itertools
+
+import numpy as np
+import pytest
+
+from hsr8.world.field.layout import (
+    BEACON_COLOURS,
+    BEACON_OFFSET,
+    standard_beacons,
+    with_first_moved,
+)
+
+
+@pytest.mark.parametrize("size", [(5.0, 5.0), (4.0, 2.0), (3.0, 9.0)])
+def test_beacons_stand_on_the_rectangle_around_the_field(size):
+    half = 0.5 * np.asarray(size) + BEACON_OFFSET
+    for beacon in standard_beacons(size):
+        share = np.abs(beacon.position) / half
+        assert share.max() == pytest.approx(1.0, abs=1e-3)
+
+
+def test_every_ordered_pair_of_colours_is_one_beacon():
+    beacons = standard_beacons((5.0, 5.0))
+    pairs = {(b.top, b.bottom) for b in beacons}
+    assert pairs == set(itertools.permutations(BEACON_COLOURS, 2))
+    assert [b.name for b in beacons] == [f"{b.top}/{b.bottom}" for b in beacons]
+
+
+def test_beacons_of_the_same_two_colours_are_far_apart():
+    by_name = {b.name: np.asarray(b.position) for b in standard_beacons((5.0, 5.0))}
+    for beacon in standard_beacons((5.0, 5.0)):
+        twin = by_name[f"{beacon.bottom}/{beacon.top}"]
+        assert np.linalg.norm(twin - beacon.position) > 5.0
+
+
+def test_a_moved_beacon_is_where_it_is_and_not_where_it_is_known():
+    beacons = standard_beacons((5.0, 5.0))
+    first, *others = with_first_moved(beacons, 0.5)
+    assert first.believed == beacons[0].position
+    assert np.hypot(*np.subtract(first.position, first.believed)) == pytest.approx(0.5)
+    assert np.dot(np.subtract(first.position, first.believed), first.believed) == pytest.approx(0)
+    assert tuple(others) == beacons[1:]
+    assert all(b.believed == b.position for b in others)

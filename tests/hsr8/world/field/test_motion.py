@@ -1,0 +1,135 @@
+from math import hypot, pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.world.field.motion import Appearing, Circle, Line, Movers, Shuttle, Still, pace
+from hsr8.world.field.passage import Passage
+from hsr8.world.field.wander import Wander, draw_wander
+
+coordinate = st.floats(-3.0, 3.0)
+point = st.tuples(coordinate, coordinate)
+speed = st.floats(0.02, 0.5)
+times = st.floats(0.0, 600.0)
+
+
+@st.composite
+def shuttles(draw):
+    start, way = draw(point), draw(st.floats(-pi, pi))
+    length = draw(st.floats(0.3, 3.0))
+    end = (start[0] + length * np.cos(way), start[1] + length * np.sin(way))
+    return Shuttle(start, (float(end[0]), float(end[1])), draw(speed), draw(st.floats(0.0, 6.0)))
+
+
+circles = st.builds(
+    Circle,
+    point,
+    st.floats(0.2, 2.0),
+    speed.flatmap(lambda v: st.sampled_from([v, -v])),
+    coordinate,
+)
+passages = st.builds(
+    lambda shuttle, depart: Passage(shuttle.start, shuttle.end, shuttle.speed, depart),
+    shuttles(),
+    st.floats(0.0, 60.0),
+)
+wanders = st.builds(
+    lambda seed, centre, pace: draw_wander(np.random.default_rng(seed), centre, 1.5, pace),
+    st.integers(0, 99),
+    point,
+    speed,
+)
+laws = st.one_of(
+    passages, wanders, shuttles(), circles, st.builds(Line, point, point), st.builds(Still, point)
+)
+
+
+@given(st.lists(laws, max_size=6), times)
+def test_all_together_are_each_alone(chosen, time):
+    movers = Movers(tuple(chosen))
+    positions = np.array([law.position(time) for law in chosen]).reshape(-1, 2)
+    velocities = np.array([law.velocity(time) for law in chosen]).reshape(-1, 2)
+    # A shuttle at its very end may have turned in one evaluation and not in the other.
+    turning = [
+        isinstance(law, Shuttle) and min(_to_end(law, time), law.length - _to_end(law, time)) < 1e-9
+        for law in chosen
+    ]
+    assert movers.positions(time) == pytest.approx(positions, abs=1e-9)
+    keep = ~np.array(turning, dtype=bool)
+    assert movers.velocities(time)[keep] == pytest.approx(velocities[keep], abs=1e-9)
+
+
+@given(st.lists(laws, max_size=6), st.lists(times, min_size=1, max_size=4))
+def test_many_times_at_once_are_each_alone(chosen, instants):
+    movers = Movers(tuple(chosen))
+    together = movers.positions(np.array(instants))
+    assert np.array_equal(together, np.array([movers.positions(time) for time in instants]))
+
+
+@given(laws, times)
+def test_velocity_is_the_slope_of_position(law, time):
+    step = 1e-5
+    if _bends_within(law, time, step):
+        return
+    before, after = np.array(law.position(time)), np.array(law.position(time + step))
+    assert (after - before) / step == pytest.approx(np.array(law.velocity(time)), abs=1e-4)
+
+
+@given(shuttles(), times)
+def test_shuttle_stays_in_its_lane_at_its_speed(law, time):
+    assert 0.0 <= _to_end(law, time) <= law.length + 1e-9
+    assert hypot(*law.velocity(time)) == pytest.approx(law.speed)
+
+
+@given(shuttles(), times)
+def test_shuttle_comes_back_after_there_and_back(law, time):
+    period = 2.0 * law.length / law.speed
+    assert law.position(time + period) == pytest.approx(law.position(time), abs=1e-8)
+
+
+@given(circles, times)
+def test_circle_stays_on_its_rim(law, time):
+    x, y = law.position(time)
+    assert hypot(x - law.centre[0], y - law.centre[1]) == pytest.approx(law.radius)
+    assert hypot(*law.velocity(time)) == pytest.approx(abs(law.speed))
+
+
+def test_shuttle_turns_about_at_the_ends():
+    law = Shuttle((0.0, 0.0), (1.0, 0.0), 0.1)
+    assert law.position(10.0) == pytest.approx((1.0, 0.0))
+    assert law.velocity(9.99) == pytest.approx((0.1, 0.0))
+    assert law.velocity(10.01) == pytest.approx((-0.1, 0.0))
+    assert law.velocity(20.01) == pytest.approx((0.1, 0.0))
+
+
+def test_no_movers_are_no_rows():
+    assert Movers(()).positions(1.0).shape == (0, 2)
+    assert Movers(()).velocities(1.0).shape == (0, 2)
+
+
+def _bends_within(law, time: float, step: float) -> bool:
+    """Whether the velocity jumps soon after `time`."""
+    if isinstance(law, Shuttle):
+        room = min(_to_end(law, time), law.length - _to_end(law, time))
+        return room < 2.0 * law.speed * step
+    if isinstance(law, Passage):
+        jumps = (law.depart, law.depart + law.length / law.speed)
+        return any(abs(jump - time) < 2.0 * step for jump in jumps)
+    if isinstance(law, Wander):
+        return law.velocity(time) != law.velocity(time + step)
+    return False
+
+
+def _to_end(law: Shuttle, time: float) -> float:
+    """Distance from the start of the lane."""
+    x, y = law.position(time)
+    return hypot(x - law.start[0], y - law.start[1])
+
+
+@given(laws, times)
+def test_a_mover_goes_at_its_pace_or_rests(law, time):
+    speed = hypot(*law.velocity(time))
+    assert speed == pytest.approx(pace(law)) or speed == 0.0
+    assert pace(Appearing(law, time)) == pace(law)

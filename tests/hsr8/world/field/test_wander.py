@@ -1,0 +1,59 @@
+from math import hypot
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.world.field.wander import BEND, CORNERS, draw_wander
+
+EXTENT = 1.4
+LAWS = [draw_wander(np.random.default_rng(k), (0.5, -0.2), EXTENT, 0.12) for k in range(12)]
+laws = st.sampled_from(LAWS)
+times = st.floats(0.0, 600.0)
+
+
+@given(laws, times)
+def test_the_speed_is_constant(law, time):
+    assert hypot(*law.velocity(time)) == pytest.approx(0.12, rel=1e-4)
+
+
+@given(laws, times)
+def test_it_comes_back_after_once_round(law, time):
+    assert law.position(time + law.length / law.speed) == pytest.approx(law.position(time))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_track_fills_its_box_and_no_more(law):
+    track = np.array(law.track)
+    extent = np.ptp(track, axis=0)
+    assert extent.max() == pytest.approx(EXTENT, abs=0.01)
+    assert 0.5 * (track.max(axis=0) + track.min(axis=0)) == pytest.approx((0.5, -0.2), abs=0.01)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_track_bends_gently(law):
+    sides = np.diff(np.array([*law.track, *law.track[:2]]), axis=0)
+    heading = np.unwrap(np.arctan2(sides[:, 1], sides[:, 0]))
+    turns = np.abs(np.diff(heading))
+    assert len(law.track) == CORNERS
+    # The track was looked at in a few places, and a polygon turns at its corners only.
+    assert turns.max() <= 1.3 * law.side / BEND
+
+
+def test_tracks_bend_to_both_sides():
+    for law in LAWS:
+        sides = np.diff(np.array([*law.track, *law.track[:2]]), axis=0)
+        cross = sides[:-1, 0] * sides[1:, 1] - sides[:-1, 1] * sides[1:, 0]
+        if (cross > 0).any() and (cross < 0).any():
+            return
+    pytest.fail("every track is convex")
+
+
+def test_an_extent_too_small_for_the_bends_has_no_track():
+    assert draw_wander(np.random.default_rng(0), (0.0, 0.0), 0.1, 0.1) is None
+
+
+def test_the_same_seed_gives_the_same_track():
+    again = draw_wander(np.random.default_rng(3), (0.5, -0.2), EXTENT, 0.12)
+    assert again == LAWS[3]
