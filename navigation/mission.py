@@ -57,8 +57,10 @@ class Mission:
         """Advance the mission by the believed `pose` (3,) [m, m, rad] and say what to do."""
         x, y, heading = pose.tolist()
         if not self._done:
-            while self._pass_via(x, y):
-                pass
+            # Each point once at most: a tour may lie within reach as a whole.
+            for _ in self._points:
+                if not self._pass_via(x, y):
+                    break
             if self._at_goal_point():
                 self._approach_goal(x, y, heading)
         return self._task(x, y)

@@ -13,9 +13,23 @@ from hsr8.scenario.section import Point
 from hsr8.scenario.toml_lines import Path
 from hsr8.scenario.world import ROBOT_RADIUS, CircleMover, Mover, ShuttleMover
 from vision.errors import VisionError
+from walking.yardsticks import HSR_VIII
 
 MOST_CELLS = 1000
 """Largest side of the local map, which every frame goes through [cells]."""
+
+# Section, and two of its keys of which the first is the lesser.
+BELOW: tuple[tuple[Path, str, str], ...] = (
+    (("vision",), "min_radius", "max_radius"),
+    (("walking", "gait"), "swing_start", "swing_end"),
+    (("walking", "stabilizer"), "calm_error", "shaken_error"),
+)
+NOT_ABOVE: tuple[tuple[Path, str, str], ...] = (
+    (("navigation", "mission"), "r_goal", "r_release"),
+    (("navigation", "univector"), "side_clear", "side_set"),
+    (("navigation", "evaluation"), "d_nm", "d_fm"),
+)
+MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
 
 
 def check(scenario: Scenario) -> list[Problem]:
@@ -23,7 +37,8 @@ def check(scenario: Scenario) -> list[Problem]:
     return [
         *_speeds(scenario),
         *_colours(scenario),
-        *_radii(scenario),
+        *_ordered(scenario),
+        *_sole(scenario),
         *_local_map(scenario),
         *magnitudes(scenario),
         *_mission(scenario),
@@ -60,10 +75,34 @@ def _colours(scenario: Scenario) -> Iterator[Problem]:
         yield Problem(("vision", "colour_table"), str(error))
 
 
-def _radii(scenario: Scenario) -> Iterator[Problem]:
-    least, most = scenario.vision.min_radius, scenario.vision.max_radius
-    if least >= most:
-        yield Problem(("vision", "min_radius"), f"{least:g} must be below max_radius = {most:g}")
+def _ordered(scenario: Scenario) -> Iterator[Problem]:
+    """What begins does so before it ends, what is let go was held."""
+    for section, lower, upper in BELOW:
+        low, high = _bounds(scenario, section, lower, upper)
+        if low >= high:
+            yield Problem((*section, lower), f"{low:g} must be below {upper} = {high:g}")
+    for section, lower, upper in NOT_ABOVE:
+        low, high = _bounds(scenario, section, lower, upper)
+        if low > high:
+            yield Problem((*section, lower), f"{low:g} must not be above {upper} = {high:g}")
+
+
+def _bounds(scenario: Scenario, section: Path, lower: str, upper: str) -> tuple[float, float]:
+    part: object = scenario
+    for key in section:
+        part = getattr(part, str(key))
+    return getattr(part, lower), getattr(part, upper)
+
+
+def _sole(scenario: Scenario) -> Iterator[Problem]:
+    """Of a sole something is left within its margin."""
+    for section, margin in MARGINS:
+        kept = getattr(getattr(scenario.walking, section), margin)
+        if kept >= HSR_VIII.sole:
+            yield Problem(
+                ("walking", section, margin),
+                f"{kept:g} must be below half the width of a sole, {HSR_VIII.sole:g}",
+            )
 
 
 def _local_map(scenario: Scenario) -> Iterator[Problem]:

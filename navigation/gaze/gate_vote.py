@@ -11,7 +11,7 @@ from navigation.parameters.navigation import NavigationParameters
 def gate_vote(
     belief: Belief, way: float, height: float, weight: float, parameters: NavigationParameters
 ) -> list[Votes]:
-    """A vote for the ground that holds the robot up, if there is some.
+    """A vote for the ground that holds the robot up; none where the gate is off or lets it pass.
 
     Args:
         belief: what the robot believes.
@@ -21,6 +21,8 @@ def gate_vote(
         parameters: of the decisions.
     """
     g, p = parameters.gate, parameters.gaze
+    if not g.enabled:
+        return []
     points = gate_points(belief.pose, float(belief.pose[2]) + way, g)
     if float(np.min(belief.local_map.confidence_at(points))) >= g.confidence:
         return []

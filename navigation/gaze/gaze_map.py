@@ -70,9 +70,9 @@ class GazeGrid:
             half_tilt: half height of a box [rad].
         """
         self._step = step
-        columns = round(pan_limit / step)
+        columns = int(pan_limit / step + _FLAT)
         self.pan: Array = step * np.arange(-columns, columns + 1, dtype=np.float64)
-        rows = round((tilt_max - tilt_min) / step) + 1
+        rows = int((tilt_max - tilt_min) / step + _FLAT) + 1
         self.tilt: Array = tilt_min + step * np.arange(rows, dtype=np.float64)
         self.half_pan = half_pan
         self.half_tilt = half_tilt

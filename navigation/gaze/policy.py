@@ -73,21 +73,24 @@ class VotingGaze:
         Args:
             votes: cast in a moment.
             grid: cells of the gaze map.
-            switch_ratio: gain in the gaze map that moves the gaze.
+            switch_ratio: gain in the gaze map that moves the gaze, at least 1.
         """
         self.votes = votes
         self._grid = grid
         self._ratio = switch_ratio
 
     def aim(self, moment: Moment, gaze_map: Array, now: Gaze) -> Gaze:
-        """The highest centre, or `now` if that sees about as much."""
-        if float(gaze_map.max()) > self._ratio * self._grid.value_at(gaze_map, *now):
+        """The highest centre, or `now` if that sees about as much.
+
+        At a ratio of 1 it is always the highest centre, as printed.
+        """
+        if float(gaze_map.max()) >= self._ratio * self._grid.value_at(gaze_map, *now):
             return self._grid.highest_centre(gaze_map, *now)
         return now
 
 
 class FixedGaze:
-    """Looks ahead and never moves; the map it does not listen to is the paper's."""
+    """Looks ahead and never moves. The map of (6) is still computed, for the log only."""
 
     steady = True
 
@@ -105,7 +108,7 @@ class FixedGaze:
 
 
 class SweepGaze(FixedGaze):
-    """Swings from side to side by the clock; the map it does not listen to is the paper's."""
+    """Swings from side to side by the clock. The map of (6) is computed for the log only."""
 
     steady = False
 

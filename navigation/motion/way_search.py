@@ -49,13 +49,18 @@ def way_point(
 def shortest_way(
     position: Array, target: Array, centres: Array, radii: Array, parameters: WaySearchParameters
 ) -> Array:
-    """Cell centres from the robot to the destination (m, 2) [m]; none if there is no way."""
+    """Cell centres from the robot to the destination (m, 2) [m].
+
+    None if there is no way, or both are in one cell.
+    """
     p = parameters
     low = np.minimum(position, target) - p.around
     shape = [ceil(side / p.cell) for side in (np.maximum(position, target) + p.around - low)]
     rows, columns = np.indices(shape)
     points = low + p.cell * (np.stack([rows.ravel(), columns.ravel()], axis=1) + 0.5)
     start, end = (int(np.argmin(np.hypot(*(points - place).T))) for place in (position, target))
+    if start == end:
+        return np.zeros((0, 2))
     offset = points[:, None] - centres
     open_ = ~np.any(np.hypot(offset[..., 0], offset[..., 1]) < radii, axis=1)
     open_[[start, end]] = True
@@ -89,9 +94,9 @@ def _neighbours(number: Cells, step: tuple[int, int]) -> tuple[Cells, Cells]:
 
 
 def _free(start: Array, end: Array, centres: Array, radii: Array) -> bool:
-    """Whether the straight way from `start` to `end` leaves no obstacle's room narrower.
+    """Whether the segment from `start` to `end` stays outside every radius.
 
-    A start inside a radius may leave it.
+    From inside one it may lead straight out.
     """
     along = end - start
     square = float(along @ along)

@@ -32,6 +32,11 @@ def test_a_point_is_passed_within_its_radius_only():
     assert mission.update(at(0.0, p.r_via - 0.001)).index == 1
 
 
+def test_a_tour_within_reach_is_walked_once_round_at_each_update():
+    mission = Mission(0.1 * SQUARE, None, True, MissionParameters(r_via=0.5))
+    assert [mission.update(at(0.0, 0.0)).index for _ in range(3)] == [4, 8, 12]
+
+
 def test_goal_is_reached_then_turned_at_then_done_for_good():
     p = MissionParameters()
     mission = Mission(np.array([[1.0, 0.0]]), pi / 2, False, p)

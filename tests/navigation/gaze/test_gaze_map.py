@@ -8,12 +8,12 @@ from navigation.gaze.gaze_map import GazeGrid, Votes
 STEP = pi / 36
 
 
-def grid(half_pan=0.75, half_tilt=0.6):
+def grid(half_pan=0.75, half_tilt=0.6, *, step=STEP):
     return GazeGrid(
         pan_limit=pi / 2,
         tilt_min=-pi / 3,
         tilt_max=pi / 9,
-        step=STEP,
+        step=step,
         half_pan=half_pan,
         half_tilt=half_tilt,
     )
@@ -28,6 +28,15 @@ def test_the_grid_covers_the_head():
     assert (len(g.tilt), len(g.pan)) == (17, 37)
     assert g.pan[0] == pytest.approx(-pi / 2)
     assert g.tilt[-1] == pytest.approx(pi / 9)
+
+
+@pytest.mark.parametrize("step", np.linspace(0.03, 0.5, 24))
+def test_every_cell_is_within_the_head_s_limits_and_none_is_left_out(step):
+    g = grid(step=step)
+    assert pi / 2 - step < g.pan[-1] <= pi / 2 + 1e-9
+    assert g.pan[0] == -g.pan[-1]
+    assert g.tilt[0] == -pi / 3
+    assert pi / 9 - step < g.tilt[-1] <= pi / 9 + 1e-9
 
 
 def test_a_vote_counts_in_its_box_only():

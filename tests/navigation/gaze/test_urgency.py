@@ -52,3 +52,7 @@ def test_ground_that_holds_the_robot_up_votes(belief, task):
         strong = v.value > 0.0
         assert v.value[strong].tolist() == values
         assert v.pan[strong] == pytest.approx([0.3] * len(values))
+    off = replace(calm, gate=replace(calm.gate, enabled=False))
+    scene = gaze_scene(unseen, None, SAMPLES, NO_BEACONS, off)
+    v = urgency_votes(scene, unseen, task(), way=0.3, speed=0.2, parameters=off)
+    assert not np.any(v.value > 0.0)

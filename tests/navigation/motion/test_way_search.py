@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,13 @@ def test_the_way_point_is_visible_in_reach_and_leads_round():
         place = place + 0.1 * step / max(0.1, np.hypot(*step))
         assert np.hypot(*(place - WALL).T).min() > 0.25 - 1e-9
     assert place == pytest.approx(GOAL, abs=0.01)
+
+
+def test_a_blocked_destination_in_the_robot_s_cell_leaves_the_task():
+    p, target = replace(P, around=0.95), START + [0.01, 0.0]
+    blocking, radius = target[None] + [0.05, 0.0], np.array([0.055])
+    assert shortest_way(START, target, blocking, radius, p).shape == (0, 2)
+    assert way_point(START, target, blocking, radius, p) is target
 
 
 def test_a_mirrored_wall_mirrors_the_length_of_the_way():
