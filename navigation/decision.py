@@ -2,6 +2,7 @@
 
 import dataclasses
 from dataclasses import dataclass
+from math import hypot
 from typing import Protocol
 
 import numpy as np
@@ -29,6 +30,11 @@ class SpeedLimits:
     turn: float
     acceleration: float
     footstep: float
+
+    @property
+    def fastest(self) -> float:
+        """Largest speed in any direction [m/s]."""
+        return hypot(max(self.forward, self.backward), self.lateral)
 
 
 @value

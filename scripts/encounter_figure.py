@@ -6,7 +6,7 @@ from math import atan2, cos, hypot, inf, isfinite, sin
 from hsr8.recorder.record import FrameRecord
 from hsr8.render.walk_panels import INK
 from navigation.motion.collision_band import Encounter, free_intervals
-from navigation.motion.virtual_obstacle import foot_velocity, path_point
+from navigation.motion.virtual_obstacle import PathPoint, path_point
 
 import numpy as np
 from figure_style import (
@@ -160,13 +160,21 @@ def _virtual(axes: Axes, shown: Case) -> None:
                   xytext=(-6, 46),
                   textcoords="offset points", fontsize=7.5, color=VIRTUAL,
                   arrowprops={"arrowstyle": "-", "color": VIRTUAL, "linewidth": 0.6})  # fmt: skip
-    foot = path_point(
-        np.zeros(2), np.array([e.along, e.across]), np.array([e.forward, e.left]), 0.0
-    )
+    foot = path_point(np.zeros(2), np.array([e.along, e.across]), np.array([e.forward, e.left]))
     if foot is not None:
         vx, vy = foot_velocity(np.array([shown.frame.motion.speed, 0.0]), foot).tolist()
         axes.annotate("", (at[0] + 2.0 * vx, at[1] + 2.0 * vy), at,
                       arrowprops={"arrowstyle": "-|>", "color": VIRTUAL, "lw": 1})  # fmt: skip
+
+
+def foot_velocity(robot_velocity: Array, foot: PathPoint) -> Array:
+    """v_r_perp_op = (v_r . q) q/|q|², q = p_vo - p_o: how the foot moves (2,) [m/s].
+
+    The projection divides by the squared norm, else its unit would be m²/s (eq. (11)).
+    """
+    u = np.array([foot.ux, foot.uy])
+    velocity: Array = (robot_velocity @ u) * u
+    return velocity
 
 
 def _speeds(axes: Axes, shown: Case) -> None:

@@ -5,11 +5,11 @@ from math import cos, degrees, sin
 
 from hsr8.recorder.record import FrameRecord
 from hsr8.render.walk_panels import INK
-from navigation.belief.landmark import points_to_world
 from navigation.gaze.scene import GazeScene, gaze_scene
 from navigation.motion.extended_radius import extended_radius
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
+from navigation.transform import points_to_world
 
 import numpy as np
 from figure_style import (

@@ -54,7 +54,7 @@ class Track:
         radius_sigma: [m].
         motion: static, moving or not yet known.
         hits: number of detections.
-        age: time since it was last detected [s].
+        age: time from its last detection to the capture of the frame [s].
         last_seen: where it was detected last (2,) [m].
         visible: detected in the latest frame.
         particles: hypotheses of a lost track that may move, else None.
@@ -86,7 +86,8 @@ class Belief:
     """Everything the robot believes after a camera frame.
 
     Attributes:
-        time: capture time of the frame [s].
+        time: of pose and positions [s]: of the capture, or later once it was carried on by
+            `navigation.belief.prediction`.
         pose: x, y, heading of R in W (3,) [m, m, rad], heading wrapped.
         pose_covariance: (3, 3).
         tracks: obstacles, by id.

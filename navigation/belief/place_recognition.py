@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.belief.landmark import points_from, points_to_world, pose_from_points, to_world
 from navigation.observation import Frame, Observation
 from navigation.parameters.belief import RecognitionParameters
+from navigation.transform import points_from, points_to_world, pose_from_points, to_world
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,6 @@
 """The belief now, from a camera frame that arrived late."""
 
 from dataclasses import replace
-from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.observation import CameraView
+from navigation.transform import moved_on
 
 Array = NDArray[np.float64]
 
@@ -17,7 +17,8 @@ def predict(belief: Belief, then: Array, now: Array, time: float, view: CameraVi
     """Carry a belief on from the capture of its frame.
 
     Odometry over so short a time is far better known than the pose, so the covariance
-    follows the motion and does not grow.
+    follows the motion and does not grow. Tracks move on straight along their velocities. All
+    else of them stays as of the frame, age, particles and turn rate too, and so does the map.
 
     Args:
         belief: at the capture.
@@ -26,17 +27,13 @@ def predict(belief: Belief, then: Array, now: Array, time: float, view: CameraVi
         time: now [s].
         view: where the camera looks now.
     """
-    dx, dy, turn = (now - then).tolist()
-    x, y, heading = belief.pose.tolist()
-    offset = heading - float(then[2])
-    c, s = cos(offset), sin(offset)
-    right, up = c * dx - s * dy, s * dx + c * dy
-    J = np.array([[1.0, 0.0, -up], [0.0, 1.0, right], [0.0, 0.0, 1.0]])
+    pose, J = moved_on(belief.pose, then, now)
+    pose[2] = wrap(float(pose[2]))
     dt = time - belief.time
     return replace(
         belief,
         time=time,
-        pose=np.array([x + right, y + up, wrap(heading + turn)]),
+        pose=pose,
         pose_covariance=J @ belief.pose_covariance @ J.T,
         tracks=tuple(replace(t, position=t.position + dt * t.velocity) for t in belief.tracks),
         view=view,

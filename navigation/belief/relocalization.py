@@ -11,9 +11,9 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief.landmark import points_from, points_to_world, pose_from_points, to_world
 from navigation.observation import Frame, Observation
 from navigation.parameters.belief import LocalizationParameters
+from navigation.transform import points_from, points_to_world, pose_from_points, to_world
 from navigation.value import value
 
 Array = NDArray[np.float64]

@@ -25,6 +25,7 @@ from navigation.belief.sightings import in_world
 from navigation.belief.visibility import Viewpoint
 from navigation.observation import Frame, Observation
 from navigation.parameters.belief import BeliefParameters
+from navigation.transform import moved_on
 
 Array = NDArray[np.float64]
 
@@ -115,6 +116,9 @@ class SelfMapping:
             self._faults += 1
             self._x, self._P = sound
             self._ids, self._labels, self._seen_at, self._mapped_at = [], [], [], []
+            # Without landmarks none is missing, and no arrangement of them can be recognised.
+            self._missing.clear()
+            self._lost = False
 
     def learn(self, frame: Frame, tracks: tuple[Track, ...]) -> None:
         """Map the static tracks seen in the frame, and forget what no longer stands still.
@@ -148,17 +152,9 @@ class SelfMapping:
         self._previous = (frame.time, frame.odometry.copy())
         if previous is None:
             return
-        before = previous[1]
         x, P = self._x, self._P
-        turn = float(x[2] - before[2])
-        dx, dy, dt = (frame.odometry - before).tolist()
-        c, s = cos(turn), sin(turn)
-        right, up = c * dx - s * dy, s * dx + c * dy
         heading = float(x[2])
-        x[0] += right
-        x[1] += up
-        x[2] += dt
-        F = np.array([[1.0, 0.0, -up], [0.0, 1.0, right], [0.0, 0.0, 1.0]])
+        x[:3], F = moved_on(x[:3], previous[1], frame.odometry)
         P[:3] = F @ P[:3]
         P[:, :3] = P[:, :3] @ F.T
         c, s = cos(heading), sin(heading)

@@ -29,8 +29,7 @@ def spawn(modes: Modes, count: int, rng: np.random.Generator) -> Particles:
         count: number of particles.
         rng: source of all draws.
     """
-    ticks = (np.arange(count) + rng.random()) / count
-    mode = np.minimum(np.searchsorted(np.cumsum(modes.weights), ticks), len(modes.weights) - 1)
+    mode = _systematic(modes.weights, count, rng)
     roots = np.linalg.cholesky(modes.covariances + 1e-12 * np.eye(SIZE))
     drawn = modes.states[mode]
     drawn = drawn + (roots[mode] @ rng.standard_normal((count, SIZE, 1)))[:, :, 0]
@@ -80,9 +79,7 @@ def resample(cloud: Particles, p: TrackingParameters, rng: np.random.Generator) 
     count = len(cloud.weights)
     if float(cloud.weights @ cloud.weights) * p.resample_share * count < 1.0:
         return cloud
-    cumulative = np.cumsum(cloud.weights)
-    ticks = (np.arange(count) + rng.random()) / count
-    chosen = np.minimum(np.searchsorted(cumulative, ticks), count - 1)
+    chosen = _systematic(cloud.weights, count, rng)
     return Particles(
         cloud.positions[chosen] + p.position_jitter * rng.standard_normal((count, 2)),
         cloud.velocities[chosen] + p.velocity_jitter * rng.standard_normal((count, 2)),
@@ -155,3 +152,9 @@ def costs(
     return particle_kernel.costs(
         cloud.positions, cloud.weights, z, variance, p.position_jitter, *lost, p.anywhere
     )
+
+
+def _systematic(weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.intp]:
+    """Indices (count,) drawn by `weights` (n,) from one draw: as many of each as its share."""
+    ticks = (np.arange(count) + rng.random()) / count
+    return np.minimum(np.searchsorted(np.cumsum(weights), ticks), len(weights) - 1)

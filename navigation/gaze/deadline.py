@@ -14,15 +14,14 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap, wrap_array
 from navigation.belief.belief import Belief, Motion, Track
-from navigation.belief.landmark import points_to_world
 from navigation.gaze.gate_vote import gate_vote
 from navigation.gaze.gaze_map import Votes
 from navigation.gaze.integrated import beacon_votes
 from navigation.gaze.scene import GazeScene, relative
-from navigation.obstacle_set import largest_deviation
 from navigation.parameters.gaze import GazeParameters
 from navigation.parameters.navigation import NavigationParameters
-from navigation.partial_evaluation import SamplePoints
+from navigation.partial_evaluation import SamplePoints, psi_self
+from navigation.transform import points_to_world
 
 Array = NDArray[np.float64]
 
@@ -79,11 +78,9 @@ def glance_vote(belief: Belief, glance: float, parameters: GazeParameters) -> li
 
 
 def self_urgency(belief: Belief, parameters: NavigationParameters) -> float:
-    """Uncertainty of the pose over what is tolerable, in [0, 1]."""
-    sigma = largest_deviation(belief.pose_covariance[:2, :2])
-    turn = float(np.sqrt(max(belief.pose_covariance[2, 2], 0.0)))
-    e, d = parameters.evaluation, parameters.gaze.deadline
-    return min(1.0, max(sigma / e.t_sf, turn / d.t_heading))
+    """psi_sf of eq. (2) with the heading tolerance of the deadlines, in [0, 1]."""
+    t_heading = parameters.gaze.deadline.t_heading
+    return psi_self(belief.pose_covariance, replace(parameters.evaluation, t_heading=t_heading))
 
 
 def obstacle_deadlines(

@@ -4,7 +4,7 @@ import numpy as np
 
 from navigation.belief.belief import Belief
 from navigation.gaze.gaze_map import Votes
-from navigation.motion.confidence_gate import gate_points
+from navigation.motion.confidence_gate import ground_seen
 from navigation.parameters.navigation import NavigationParameters
 
 
@@ -21,10 +21,7 @@ def gate_vote(
         parameters: of the decisions.
     """
     g, p = parameters.gate, parameters.gaze
-    if not g.enabled:
-        return []
-    points = gate_points(belief.pose, float(belief.pose[2]) + way, g)
-    if float(np.min(belief.local_map.confidence_at(points))) >= g.confidence:
+    if not g.enabled or ground_seen(belief, float(belief.pose[2]) + way, g):
         return []
     pan = min(max(way, -p.pan_limit), p.pan_limit)
     tilt = -float(np.arctan2(height, 0.5 * (g.near + g.far)))

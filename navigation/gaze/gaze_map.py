@@ -77,25 +77,15 @@ class GazeGrid:
         self.half_pan = half_pan
         self.half_tilt = half_tilt
 
-    def region(self, votes: Votes) -> Array:
-        """R(theta_k) of every vote (n, tilts, pans) (Yoo & Kim, eq. (5))."""
-        pans, tilts = self._masks(votes)
-        regions: Array = votes.value[:, None, None] * (tilts[:, :, None] * pans[:, None, :])
-        return regions
-
     def gaze_map(self, votes: Votes) -> Array:
-        """GM (tilts, pans): the sum of all regions (Yoo & Kim, eq. (6)).
+        """GM (tilts, pans): the sum of the regions R(theta_k) of all votes.
 
-        The weights of (6) are in the values of the votes.
+        Sources: Yoo & Kim, eqs. (5) and (6); the weights of (6) are in the values of the votes.
         """
-        pans, tilts = self._masks(votes)
-        total: Array = (tilts * votes.value[:, None]).T @ pans
-        return total
-
-    def _masks(self, votes: Votes) -> tuple[Array, Array]:
         pans = np.abs(self.pan - votes.pan[:, None]) <= self.half_pan + _FLAT
         tilts = np.abs(self.tilt - votes.tilt[:, None]) <= self.half_tilt + _FLAT
-        return pans.astype(np.float64), tilts.astype(np.float64)
+        total: Array = (tilts * votes.value[:, None]).T @ pans.astype(np.float64)
+        return total
 
     def value_at(self, gaze_map: Array, pan: float, tilt: float) -> float:
         """GM of the cell nearest to the gaze (pan, tilt) [rad]."""

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
-from navigation.belief.landmark import points_to_world
 from navigation.gaze.gaze_map import Votes
 from navigation.gaze.scene import GazeScene, relative
 from navigation.parameters.navigation import NavigationParameters
+from navigation.transform import points_to_world
 
 Array = NDArray[np.float64]
 

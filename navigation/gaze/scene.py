@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
 from navigation.belief.belief import Belief
-from navigation.belief.landmark import points_to_world
 from navigation.decision import MotionDecision
 from navigation.motion.extended_radius import extended_radius
 from navigation.obstacle_set import ObstacleSet
@@ -20,6 +19,7 @@ from navigation.partial_evaluation import (
     psi_self,
     psi_way,
 )
+from navigation.transform import points_to_world
 from navigation.value import value
 
 Array = NDArray[np.float64]

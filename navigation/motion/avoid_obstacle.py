@@ -31,6 +31,20 @@ def spiral_turn(gap: ArrayLike, s_oe: ArrayLike, d_e: ArrayLike, k_r: float) -> 
     return turn
 
 
+def turning_sign(p_od: Array, p_or: Array) -> Array:
+    """Sign of the short way round (Yoo & Kim, eq. (9)): +1, counter-clockwise, if cross < 0.
+
+    Args:
+        p_od: from obstacles to the destination (..., 2) [m].
+        p_or: from obstacles to the robot (..., 2) [m].
+
+    Returns:
+        (...).
+    """
+    cross = p_od[..., 0] * p_or[..., 1] - p_od[..., 1] * p_or[..., 0]
+    return np.where(cross < 0.0, 1.0, -1.0)
+
+
 def avoid_obstacle(
     position: Array,
     target: Array,
@@ -47,8 +61,7 @@ def avoid_obstacle(
 ) -> Array:
     """u_auf of every obstacle at every point (Yoo & Kim, eq. (9)).
 
-    theta_or points outward, from the obstacle to the robot. The sign takes the short way
-    round: counter-clockwise if cross(p_od, p_or) < 0. Obstacles beyond the destination or
+    theta_or points outward, from the obstacle to the robot. Obstacles beyond the destination or
     behind the robot do nothing (second and third condition).
 
     Args:
@@ -77,9 +90,8 @@ def avoid_obstacle(
     if outward is not None:
         angle = np.where(rho < _AT_CENTRE, outward, angle)
     gap = rho - s_oe
-    cross = p_od[..., 0] * p_or[..., 1] - p_od[..., 1] * p_or[..., 0]
-    short = np.where(cross < 0.0, 1.0, -1.0)
-    turn = (short if signs is None else signs) * spiral_turn(gap, s_oe, d_e, k_r)
+    sign = turning_sign(p_od, p_or) if signs is None else signs
+    turn = sign * spiral_turn(gap, s_oe, d_e, k_r)
     before_target = np.hypot(p_rd[..., 0], p_rd[..., 1]) + s_oe >= np.hypot(
         p_od[..., 0], p_od[..., 1]
     )

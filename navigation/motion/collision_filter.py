@@ -16,6 +16,7 @@ from navigation.motion.body_command import envelope
 from navigation.motion.facing import Facing
 from navigation.motion.hypotheses import Hypotheses
 from navigation.parameters.motion import BodyParameters, FilterParameters
+from navigation.transform import velocity_in_world
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -101,9 +102,7 @@ class CollisionFilter:
         penalty = self.penalty(
             pose, candidates, course, facing=facing, body_now=body_now, discs=near
         )
-        c, s = np.cos(pose[2]), np.sin(pose[2])
-        now = np.array([c * body_now[0] - s * body_now[1], s * body_now[0] + c * body_now[1]])
-        off, change = candidates - wanted, candidates - now
+        off, change = candidates - wanted, candidates - velocity_in_world(pose, body_now)
         cost = (
             np.hypot(off[:, 0], off[:, 1])
             + self._parameters.change_weight * np.hypot(change[:, 0], change[:, 1])

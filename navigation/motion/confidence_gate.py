@@ -6,6 +6,7 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.belief.belief import Belief
 from navigation.parameters.motion import GateParameters
 
 Array = NDArray[np.float64]
@@ -24,6 +25,18 @@ def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Ar
     c, s = cos(direction), sin(direction)
     points: Array = pose[:2] + np.stack([c * along - s * across, s * along + c * across], axis=1)
     return points
+
+
+def ground_seen(belief: Belief, direction: float, parameters: GateParameters) -> bool:
+    """Whether the ground before a robot that moves in `direction` in W [rad] was seen of late.
+
+    Args:
+        belief: what the robot believes.
+        direction: of its motion in W [rad].
+        parameters: extent of the ground and the confidence asked for.
+    """
+    points = gate_points(belief.pose, direction, parameters)
+    return float(np.min(belief.local_map.confidence_at(points))) >= parameters.confidence
 
 
 @cache

@@ -1,6 +1,14 @@
 """Where the body turns to while it walks."""
 
+from math import hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.decision import Task
 from navigation.value import value
+
+Array = NDArray[np.float64]
 
 
 @value
@@ -20,3 +28,9 @@ class Facing:
     def on(self, course: float) -> float:
         """Heading to turn to while walking along `course` [rad]."""
         return course + self.aside if self.heading is None else self.heading
+
+
+def arriving(position: Array, task: Task, distance: float) -> bool:
+    """Whether the body turns to the heading of `task`: at the goal, and within `distance` [m]."""
+    dx, dy = (task.target - position).tolist()
+    return task.aligning or (task.is_goal and hypot(dx, dy) < distance)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.decision import VirtualObstacle
-from navigation.motion.avoid_obstacle import avoid_obstacle, spiral_turn
+from navigation.motion.avoid_obstacle import avoid_obstacle, spiral_turn, turning_sign
 from navigation.motion.extended_radius import physical_radius
 from navigation.motion.move_to_goal import move_to_goal, muf
 from navigation.motion.univector import blended_sum, nearness, shrunk_for_goal, weighted_sum
@@ -206,9 +206,7 @@ class MotionField:
     ) -> tuple[VirtualForce, ...]:
         """Virtual obstacles as printed, eq. (11) in (9), of the obstacles with these `indices`."""
         forces = []
-        phi = float(
-            move_to_goal(pose[:2], pose[2], scene.target, scene.target_heading, self._univector)
-        )
+        u_muf = self._to_goal(pose, scene)
         for index in indices:
             foot = self._foot(pose, scene, index)
             if foot is None:
@@ -223,8 +221,7 @@ class MotionField:
             )
             radius = printed_radius(foot, float(scene.s_oe[index]), length, self._mover.xi)
             if radius is not None:
-                goal_side = foot.ux * sin(phi) - foot.uy * cos(phi)
-                side = -1 if goal_side < 0.0 else 1
+                side = -1 if foot.left_of_path(u_muf) < 0.0 else 1
                 track = int(scene.obstacles.ids[index])
                 forces.append(
                     self._force(
@@ -238,7 +235,6 @@ class MotionField:
             pose[:2],
             scene.obstacles.position[index],
             scene.obstacles.velocity[index],
-            self._mover.least_speed,
         )
 
     def _force(
@@ -258,12 +254,10 @@ class MotionField:
         outward = atan2(ny, nx)
         gap = max(0.0, side * foot.lateral - radius)
         turn = float(spiral_turn(gap, radius, p.d_e, p.k_r))
-        to_target = scene.target - np.array([foot.x, foot.y])
-        to_robot = pose[:2] - np.array([foot.x, foot.y])
-        cross = float(to_target[0] * to_robot[1] - to_target[1] * to_robot[0])
-        sign = 1.0 if cross < 0.0 else -1.0
+        place = np.array([foot.x, foot.y])
+        sign = float(turning_sign(scene.target - place, pose[:2] - place))
         return VirtualForce(
-            VirtualObstacle(np.array([foot.x, foot.y]), radius, track),
+            VirtualObstacle(place, radius, track),
             (outward + sign * turn + pi) % (2.0 * pi) - pi,
             outward,
             weight,

@@ -1,11 +1,12 @@
 """Move-to-goal univector field with an arrival heading, Yoo & Kim, eq. (8)."""
 
-from math import pi
+from math import atan2, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from navigation.angles import wrap_array
+from navigation.angles import wrap, wrap_array
+from navigation.decision import Task
 from navigation.parameters.motion import UnivectorParameters
 
 Array = NDArray[np.float64]
@@ -91,24 +92,29 @@ def _posture_turn(
 class ArrivalSide:
     """Remembers on which side to circle a destination that must be entered from beyond.
 
-    At |beta| = pi both sides are equal and noise would make the field chatter.
+    At |beta| = pi both sides are equal and noise would make the field chatter. Every leg of a
+    mission begins without a side; only the ramped arrival has one.
     """
 
     def __init__(self, parameters: UnivectorParameters) -> None:
         self._parameters = parameters
         self._side = 0
+        self._leg = -1
 
-    def update(self, beta: float) -> int:
-        """Sign to give beta, 0 while it is free, from the present `beta` [rad], wrapped."""
-        if abs(beta) < self._parameters.side_clear:
+    def update(self, position: Array, task: Task) -> int:
+        """Sign to give beta at `position` (2,) [m] on the way of `task`, 0 while it is free."""
+        p = self._parameters
+        if p.arrival != "ramped":
+            return 0
+        if task.index != self._leg:
+            self._leg, self._side = task.index, 0
+        dx, dy = (task.target - position).tolist()
+        beta = wrap(task.heading - atan2(dy, dx))
+        if abs(beta) < p.side_clear:
             self._side = 0
-        elif self._side == 0 and abs(beta) > self._parameters.side_set:
+        elif self._side == 0 and abs(beta) > p.side_set:
             self._side = 1 if beta > 0.0 else -1
         return self._side
-
-    def reset(self) -> None:
-        """Forget the side, for a new destination."""
-        self._side = 0
 
 
 def arrival_gain(distance: float, is_goal: bool, parameters: UnivectorParameters) -> float:

@@ -9,17 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from navigation.motion.avoid_obstacle import turning_sign
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import UnivectorParameters
 
 Array = NDArray[np.float64]
-
-
-def short_way(position: Array, target: Array, centres: Array) -> Array:
-    """Sign of (9) at `position` (2,) [m]: +1, counter-clockwise, if cross(p_od, p_or) < 0 (n,)."""
-    p_od, p_or = target - centres, position - centres
-    cross = p_od[:, 0] * p_or[:, 1] - p_od[:, 1] * p_or[:, 0]
-    return np.where(cross < 0.0, 1.0, -1.0)
 
 
 def groups(obstacles: ObstacleSet, width: float) -> NDArray[np.int64]:
@@ -53,13 +47,13 @@ class PassingSides:
             s_oe: extended radii (n,) [m].
         """
         p = self._parameters
-        chosen = short_way(position, target, obstacles.position)
+        chosen = turning_sign(target - obstacles.position, position - obstacles.position)
         label = groups(obstacles, 2.0 * p.s_robot) if p.grouping else np.arange(len(obstacles))
         if p.grouping:
             for group in np.unique(label):
                 members = label == group
                 middle = obstacles.position[members].mean(axis=0)
-                chosen[members] = short_way(position, target, middle[None])[0]
+                chosen[members] = turning_sign(target - middle, position - middle)
         if p.side_memory:
             offset = obstacles.position - position
             near = np.hypot(offset[:, 0], offset[:, 1]) <= s_oe + p.d_e + p.d_b

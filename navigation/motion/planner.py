@@ -6,15 +6,14 @@ from math import atan2, cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.motion.body_command import body_velocity, idle_velocity
 from navigation.motion.collision_band import CollisionCase, Encounter
 from navigation.motion.collision_filter import CollisionFilter, direction_and_speed
-from navigation.motion.confidence_gate import gate_points
+from navigation.motion.confidence_gate import ground_seen
 from navigation.motion.extended_radius import extended_radius, physical_radius
-from navigation.motion.facing import Facing
+from navigation.motion.facing import Facing, arriving
 from navigation.motion.hypotheses import collision_hypotheses
 from navigation.motion.motion_field import FieldScene, MotionField, VirtualForce
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
@@ -25,6 +24,7 @@ from navigation.motion.way_search import way_point
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
+from navigation.transform import velocity_in_world
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,6 @@ class Planner:
         self._arrival = ArrivalSide(parameters.univector)
         self._shoulder: ShoulderCheck | None = None
         self._way: tuple[float, float] | None = None
-        self._leg = -1
         self._body = np.zeros(3)
         self._direction: float | None = None
 
@@ -138,16 +137,13 @@ class Planner:
         obstacles = obstacles.where(np.array(known, dtype=np.bool_))
         psi_sf = psi_self(belief.pose_covariance, p.evaluation)
         psi_ob = psi_obstacle(
-            obstacles, belief.pose[:2], self._ground_velocity(belief.pose), p.evaluation
+            obstacles,
+            belief.pose[:2],
+            velocity_in_world(belief.pose, self._body),
+            p.evaluation,
         )
         s_oe = extended_radius(obstacles, psi_sf, psi_ob, p.univector)
-        side = 0
-        if p.univector.arrival == "ramped":
-            if task.index != self._leg:
-                self._arrival.reset()
-                self._leg = task.index
-            dx, dy = (task.target - belief.pose[:2]).tolist()
-            side = self._arrival.update(wrap(task.heading - atan2(dy, dx)))
+        side = self._arrival.update(belief.pose[:2], task)
         signs = None
         if p.univector.grouping or p.univector.side_memory:
             signs = self._sides.signs(belief.pose[:2], task.target, obstacles, s_oe)
@@ -160,7 +156,7 @@ class Planner:
         pose = belief.pose
         if task.aligning:
             return MotionDecision(self._body, float(pose[2]))
-        velocity = self._ground_velocity(pose)
+        velocity = velocity_in_world(pose, self._body)
         forces: tuple[VirtualForce, ...] = ()
         if p.mover.virtual_obstacle == "own":
             forces = self._field.own_forces(pose, velocity, scene)
@@ -188,8 +184,7 @@ class Planner:
     def _facing(self, belief: Belief, task: Task, wanted: MotionDecision) -> Facing:
         """Where the body turns to: the task's heading at the goal, else to its way or aside."""
         p = self._parameters
-        dx, dy = (task.target - belief.pose[:2]).tolist()
-        if task.aligning or (task.is_goal and hypot(dx, dy) < p.univector.holonomic_distance):
+        if arriving(belief.pose[:2], task, p.univector.holonomic_distance):
             return Facing(task.heading)
         # Only the deadline gaze hears what the body turned aside for.
         if not p.shoulder.enabled or p.gaze.mode != "deadline":
@@ -201,11 +196,6 @@ class Planner:
         course, speed = self._way or (wanted.direction, wanted.speed)
         aside = self._shoulder.aside(belief, course, speed)
         return Facing(aside=aside, glance=self._shoulder.glance())
-
-    def _ground_velocity(self, pose: Array) -> Array:
-        forward, left, _ = self._body.tolist()
-        c, s = cos(float(pose[2])), sin(float(pose[2]))
-        return np.array([c * forward - s * left, s * forward + c * left])
 
     def _steer(self, pose: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]) -> float:
         u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, forces).tolist()
@@ -276,6 +266,4 @@ class Planner:
         p = self._parameters.gate
         if not p.enabled:
             return self._limits.forward
-        points = gate_points(belief.pose, direction, p)
-        seen = float(np.min(belief.local_map.confidence_at(points))) >= p.confidence
-        return self._limits.forward if seen else p.speed
+        return self._limits.forward if ground_seen(belief, direction, p) else p.speed

@@ -50,25 +50,24 @@ class PathPoint:
         """n, from the path towards `side` (+1 left, -1 right)."""
         return -side * self.uy, side * self.ux
 
+    def left_of_path(self, direction: tuple[float, float]) -> float:
+        """Component of a `direction` in W across the path, left positive."""
+        return self.ux * direction[1] - self.uy * direction[0]
 
-def path_point(
-    robot: Array, obstacle: Array, velocity: Array, least_speed: float
-) -> PathPoint | None:
+
+def path_point(robot: Array, obstacle: Array, velocity: Array) -> PathPoint | None:
     """p_vo, the projection of the robot on the path of the mover (Yoo & Kim, eq. (11)).
 
     Args:
         robot: position (2,) [m].
         obstacle: position (2,) [m].
-        velocity: of the obstacle over ground (2,) [m/s].
-        least_speed: below it there is no path [m/s].
+        velocity: of the obstacle over ground, not zero (2,) [m/s].
 
     Returns:
-        None without a path or if the foot lies behind the mover.
+        None if the foot lies behind the mover.
     """
     vx, vy = velocity.tolist()
     speed = hypot(vx, vy)
-    if speed < least_speed:
-        return None
     ux, uy = vx / speed, vy / speed
     ox, oy = obstacle.tolist()
     rx, ry = robot.tolist()
@@ -77,16 +76,6 @@ def path_point(
         return None
     lateral = ux * (ry - oy) - uy * (rx - ox)
     return PathPoint(ux, uy, along, lateral, ox + along * ux, oy + along * uy)
-
-
-def foot_velocity(robot_velocity: Array, foot: PathPoint) -> Array:
-    """v_r_perp_op = (v_r . q) q/|q|², q = p_vo - p_o: how the foot moves (2,) [m/s].
-
-    The projection divides by the squared norm, else its unit would be m²/s (eq. (11)).
-    """
-    u = np.array([foot.ux, foot.uy])
-    velocity: Array = (robot_velocity @ u) * u
-    return velocity
 
 
 def printed_path_length(
@@ -129,7 +118,7 @@ class VirtualSides:
         side = self._sides.get(track)
         here = 1 if foot.lateral >= 0.0 else -1
         if side is None:
-            goal_side = foot.ux * u_muf[1] - foot.uy * u_muf[0]
+            goal_side = foot.left_of_path(u_muf)
             side = here
             if abs(foot.lateral) < p.side_switch and abs(goal_side) > p.side_aligned:
                 side = 1 if goal_side > 0.0 else -1

@@ -29,11 +29,10 @@ class Orca:
     def decide(self, scene: PlanningScene) -> Array:
         """Body velocity of the linear program (3,) [m/s, m/s, rad/s]."""
         s = scene.in_effect()
-        limits = s.envelope.limits
         box = self._box(s)
         wanted, own = s.wanted().tolist(), s.velocity().tolist()
         planes = [*box, *self._planes(s, (own[0], own[1]))]
-        v_max = hypot(max(limits.forward, limits.backward), limits.lateral)
+        v_max = s.envelope.limits.fastest
         return s.walk(np.array(solve(planes, len(box), (wanted[0], wanted[1]), v_max)))
 
     def _planes(self, s: PlanningScene, own: tuple[float, float]) -> list[HalfPlane]:
@@ -51,7 +50,7 @@ class Orca:
         ):
             horizon = p.static_horizon if static else p.horizon
             gap = hypot(ox - x, oy - y) - radius
-            if gap > horizon * (hypot(u, w) + s.envelope.limits.forward):
+            if gap > horizon * (hypot(u, w) + s.envelope.limits.fastest):
                 continue
             plane = orca_plane(
                 (ox - x, oy - y),

@@ -10,6 +10,7 @@ from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.motion.body_command import idle_velocity
+from navigation.motion.facing import arriving
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
@@ -49,7 +50,6 @@ class PeerPlanner:
         self._avoidance = avoidance
         self._envelope = Envelope(limits, parameters.body.turn_gain, parameters.filter.turn_change)
         self._arrival = ArrivalSide(parameters.univector)
-        self._leg = -1
         self._body = np.zeros(3)
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
@@ -79,8 +79,7 @@ class PeerPlanner:
         known = [t for t in belief.tracks if t.particles is None or t.age <= p.planner.memory]
         obstacles = ObstacleSet.from_tracks(known)
         course, speed, side = self._way(belief.pose, task)
-        dx, dy = (task.target - belief.pose[:2]).tolist()
-        near = task.is_goal and hypot(dx, dy) < p.univector.holonomic_distance
+        turning = arriving(belief.pose[:2], task, p.univector.holonomic_distance)
         return PlanningScene(
             pose=belief.pose,
             body=self._body,
@@ -91,7 +90,7 @@ class PeerPlanner:
             task=task,
             course=course,
             speed=speed,
-            facing=task.heading if task.aligning or near else None,
+            facing=task.heading if turning else None,
             side=side,
             envelope=self._envelope,
         )
@@ -101,11 +100,8 @@ class PeerPlanner:
         if task.aligning:
             return float(pose[2]), 0.0, 0
         p = self._parameters.univector
-        if task.index != self._leg:
-            self._arrival.reset()
-            self._leg = task.index
+        side = self._arrival.update(pose[:2], task)
         dx, dy = (task.target - pose[:2]).tolist()
-        side = self._arrival.update(wrap(task.heading - atan2(dy, dx)))
         course = float(move_to_goal(pose[:2], pose[2], task.target, task.heading, p, side=side))
         speed = self._limits.forward * arrival_gain(hypot(dx, dy), task.is_goal, p)
         return course, speed, side

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from navigation.decision import SpeedLimits, Task
 from navigation.motion.body_command import body_velocity
 from navigation.obstacle_set import ObstacleSet
+from navigation.transform import velocity_in_world
 
 Array = NDArray[np.float64]
 
@@ -75,9 +76,7 @@ class PlanningScene:
 
     def velocity(self) -> Array:
         """Present velocity in W (2,) [m/s]."""
-        forward, left, _ = self.body.tolist()
-        c, s = cos(float(self.pose[2])), sin(float(self.pose[2]))
-        return np.array([c * forward - s * left, s * forward + c * left])
+        return velocity_in_world(self.pose, self.body)
 
     def radii(self, margin: float) -> Array:
         """Radii of the obstacles with their uncertainty and a margin (n,) [m]."""

@@ -38,10 +38,10 @@ def gaps(position: Array, scene: PlanningScene, radii: Array, most: float) -> Ar
         most: gap that is told where it is larger [m].
     """
     k, t, _ = position.shape
-    dt, obstacles = scene.envelope.limits.footstep, scene.obstacles
-    limits = scene.envelope.limits
+    limits, obstacles = scene.envelope.limits, scene.obstacles
+    dt = limits.footstep
     offset = obstacles.position - scene.pose[:2]
-    reach = t * dt * (obstacles.speed + limits.forward) + radii + most
+    reach = t * dt * (obstacles.speed + limits.fastest) + radii + most
     near = np.nonzero(np.hypot(offset[:, 0], offset[:, 1]) < reach)[0].tolist()
     least = np.full((k, t), most)
     when = dt * np.arange(1, t + 1)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Belief, Motion, Particles, Track
-from navigation.belief.landmark import sighting
 from navigation.decision import SpeedLimits, Task
 from navigation.observation import CameraView, Frame, Observation
+from navigation.transform import sighting
 
 HEIGHT = 0.47
 

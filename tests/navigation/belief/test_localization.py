@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from navigation.angles import wrap
-from navigation.belief.landmark import sighting
 from navigation.belief.localization import Localizer
 from navigation.observation import CameraView, Frame, Observation
 from navigation.parameters.belief import LocalizationParameters
+from navigation.transform import sighting
 
 BEACONS = {f"b{i}": (3.0 * cos(i * pi / 4), 3.0 * sin(i * pi / 4)) for i in range(8)}
 P0 = np.eye(3) * 4e-4

@@ -6,7 +6,7 @@ from filterpy.kalman import JulierSigmaPoints, unscented_transform
 
 from navigation.angles import wrap, wrap_array
 from navigation.belief import pose_kernel as kernel
-from navigation.belief.landmark import sighting
+from navigation.transform import sighting
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import pytest
 
 from navigation.angles import wrap
 from navigation.belief.belief import Motion
-from navigation.belief.landmark import sighting
 from navigation.belief.self_mapping import SelfMapping
 from navigation.parameters.belief import BeliefParameters
+from navigation.transform import sighting
 
 DT = 0.1
 MOTION = (4e-6, 4e-6, 4e-7)  # variances per frame, forward, left and turn
@@ -187,6 +187,19 @@ def test_carried_away_it_notices_and_recognises_the_place(mapped):
     assert not slam.lost
     assert np.hypot(*(slam.pose - pose)[:2]) < 0.05
     assert abs(wrap(float(slam.pose[2] - pose[2]))) < 0.03
+
+
+def test_a_fault_while_lost_begins_the_map_anew(mapped):
+    slam, go_on = mapped
+    while not slam.lost:
+        go_on(1, where=(0.4, -0.5, 1.9))
+    slam._x[3] = np.nan
+    go_on(1, where=(0.4, -0.5, 1.9), hidden=range(len(PLACES)))
+    assert slam.faults == 1
+    go_on(130)
+    assert slam.recoveries == 0
+    assert not slam.lost
+    assert len(slam.landmarks) == len(PLACES)
 
 
 def test_one_landmark_gone_is_no_reason_to_be_lost(mapped):

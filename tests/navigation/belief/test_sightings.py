@@ -4,8 +4,8 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from navigation.belief.landmark import to_world
 from navigation.belief.sightings import in_world
+from navigation.transform import to_world
 
 
 def convert(observations, pose, P, **changes):

@@ -42,7 +42,7 @@ def test_every_cell_is_within_the_head_s_limits_and_none_is_left_out(step):
 def test_a_vote_counts_in_its_box_only():
     g = grid()
     pan, tilt = g.pan[20], g.tilt[8]
-    region = g.region(Votes.one(pan, tilt, 0.7))[0]
+    region = g.gaze_map(Votes.one(pan, tilt, 0.7))
     inside = (np.abs(g.pan - pan) <= 0.75)[None, :] & (np.abs(g.tilt - tilt) <= 0.6)[:, None]
     assert region[8, 20] == 0.7
     assert np.array_equal(region > 0, inside)
@@ -50,16 +50,17 @@ def test_a_vote_counts_in_its_box_only():
 
 def test_moving_a_candidate_moves_its_box():
     g = grid(0.4, 0.3)
-    one = g.region(Votes.one(g.pan[15], g.tilt[8], 1.0))[0]
-    other = g.region(Votes.one(g.pan[16], g.tilt[9], 1.0))[0]
+    one = g.gaze_map(Votes.one(g.pan[15], g.tilt[8], 1.0))
+    other = g.gaze_map(Votes.one(g.pan[16], g.tilt[9], 1.0))
     assert np.array_equal(np.roll(one, (1, 1), (0, 1)), other)
 
 
-def test_the_product_equals_the_sum_of_regions_in_any_order():
+def test_the_map_is_the_sum_of_regions_in_any_order():
     rng = np.random.default_rng(0)
     g, votes = grid(), random_votes(rng, 40)
     gm = g.gaze_map(votes)
-    assert gm == pytest.approx(g.region(votes).sum(axis=0))
+    single = [Votes.one(*v) for v in zip(votes.pan, votes.tilt, votes.value, strict=True)]
+    assert gm == pytest.approx(sum(g.gaze_map(v) for v in single))
     order = rng.permutation(40)
     shuffled = Votes(votes.pan[order], votes.tilt[order], votes.value[order])
     assert g.gaze_map(shuffled) == pytest.approx(gm)

@@ -4,8 +4,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from navigation.gaze.planner import GazePlanner
 from navigation.gaze.gaze_map import GazeGrid, Votes
+from navigation.gaze.planner import GazePlanner
 from navigation.gaze.policy import VotingGaze, gaze_policy, single_weight
 from navigation.parameters.gaze import GazeMode
 from navigation.parameters.navigation import NavigationParameters

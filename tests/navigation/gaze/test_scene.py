@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from navigation.belief.landmark import points_to_world
 from navigation.gaze.scene import gaze_scene, relative
 from navigation.motion.planner import Planner
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
+from navigation.transform import points_to_world
 
 P = NavigationParameters.extended()
 SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)

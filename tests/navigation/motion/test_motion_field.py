@@ -112,6 +112,17 @@ def test_the_printed_form_enters_the_sum_as_an_obstacle(track):
     assert with_it != pytest.approx(without)
 
 
+def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(track):
+    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    s = scene([track((0.5, 0.0), (-0.1, 0.0))], target=(0.3, 0.0), heading=np.pi)
+    for side in (1, -1):
+        held = replace(s, side=side)
+        way = field.at(np.zeros(2), 0.0, replace(held, obstacles=scene([]).obstacles,
+                       s_oe=np.zeros(0), psi=np.zeros(0)), ())  # fmt: skip
+        (printed,) = field.printed_forces(np.zeros(3), np.array([0.15, 0.0]), held, (0,))
+        assert np.sin(printed.outward) * way[1] > 0.5 * abs(way[1]) > 0.1
+
+
 def test_many_points_give_what_single_points_give(track):
     rng = np.random.default_rng(1)
     for p in (EXTENDED, PAPER):

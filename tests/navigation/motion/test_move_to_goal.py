@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from navigation.angles import wrap_array
+from navigation.decision import Task
 from navigation.motion.body_command import body_velocity
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal, muf
 from navigation.parameters.motion import UnivectorParameters
@@ -114,13 +115,15 @@ def test_the_ramped_field_is_continuous_at_d_con():
         assert abs(float(wrap_array(inside - outside))) < 1e-4
 
 
+def leg(beta, index=0):
+    """The task that a robot at the origin must turn by `beta` for at the end of its way."""
+    return Task(np.array([1.0, 0.0]), beta, False, index, False, False)
+
+
 def test_the_side_is_kept_while_beta_passes_pi():
     side = ArrivalSide(EXTENDED)
-    assert side.update(1.0) == 0
-    assert side.update(3.0) == 1
-    assert side.update(-3.1) == 1
-    assert side.update(-2.0) == 1
-    assert side.update(-1.7) == 0
+    betas = (1.0, 3.0, -3.1, -2.0, -1.7)
+    assert [side.update(ORIGIN, leg(beta)) for beta in betas] == [0, 1, 1, 1, 0]
     place = np.array([0.3, 0.01])
     free = move_to_goal(place, 0.0, ORIGIN, 0.0, EXTENDED)
     held = move_to_goal(place, 0.0, ORIGIN, 0.0, EXTENDED, side=1)
@@ -174,11 +177,14 @@ def test_the_posture_field_turns_by_the_angle_to_the_point_beyond():
 
 def test_each_side_is_set_and_forgotten():
     side = ArrivalSide(EXTENDED)
-    assert side.update(-3.0) == -1
-    assert side.update(3.1) == -1
-    side.reset()
-    assert side.update(2.0) == 0
-    assert side.update(2.5) == 1
+    assert [side.update(ORIGIN, leg(beta)) for beta in (-3.0, 3.1)] == [-1, -1]
+    assert [side.update(ORIGIN, leg(beta, 1)) for beta in (2.0, 2.5)] == [0, 1]
+
+
+@pytest.mark.parametrize("p", [PAPER, POSTURE])
+def test_arrivals_that_are_not_ramped_in_have_no_side(p):
+    side = ArrivalSide(p)
+    assert [side.update(ORIGIN, leg(beta)) for beta in (3.0, -3.1)] == [0, 0]
 
 
 def test_a_remembered_side_turns_a_whole_turn_the_other_way():

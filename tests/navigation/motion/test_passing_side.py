@@ -2,7 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from navigation.motion.passing_side import PassingSides, groups, short_way
+from navigation.motion.avoid_obstacle import turning_sign
+from navigation.motion.passing_side import PassingSides, groups
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import UnivectorParameters
 
@@ -22,9 +23,10 @@ def test_alone_and_without_memory_it_is_the_short_way(track):
     rng = np.random.default_rng(0)
     o = obstacles(track, *rng.uniform(-1, 1, (9, 2)))
     for place in rng.uniform(-2, 2, (20, 2)):
-        plain = short_way(place, TARGET, o.position).tolist()
+        plain = turning_sign(TARGET - o.position, place - o.position).tolist()
         assert signs(PassingSides(P), place, o) == plain
-        mirrored = short_way(place * [1, -1], TARGET, o.position * [1, -1])
+        p_od, p_or = TARGET - o.position, place - o.position
+        mirrored = turning_sign(p_od * [1, -1], p_or * [1, -1])
         assert (-mirrored).tolist() == plain
 
 

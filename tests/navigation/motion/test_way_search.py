@@ -41,8 +41,8 @@ def test_the_way_point_is_visible_in_reach_and_leads_round():
 
 
 def test_a_blocked_destination_in_the_robot_s_cell_leaves_the_task():
-    p, target = replace(P, around=0.95), START + [0.01, 0.0]
-    blocking, radius = target[None] + [0.05, 0.0], np.array([0.055])
+    p, target = replace(P, around=0.95), np.array([0.01, 0.0])
+    blocking, radius = np.array([[0.06, 0.0]]), np.array([0.055])
     assert shortest_way(START, target, blocking, radius, p).shape == (0, 2)
     assert way_point(START, target, blocking, radius, p) is target
 

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,16 @@ def test_gaps_equal_brute_force(track, limits):
                 for x, r in zip(there, radii, strict=True)
             )
             assert found[k, t] == pytest.approx(min(most, least))
+
+
+def test_what_can_only_be_reached_sideways_counts_too(track, limits):
+    wide = replace(limits, lateral=0.5)
+    s = scene([track((0.0, 1.4))], wide)
+    aside = np.zeros((1, 6, 3))
+    aside[..., 1] = wide.lateral
+    position, _ = roll_out(s.pose, aside, DT)
+    gap = gaps(position, s, np.array([0.2]), 0.3)
+    assert gap[0, -1] == pytest.approx(1.4 - 6 * DT * 0.5 - 0.2)
 
 
 def test_no_obstacle_leaves_the_largest_gap(limits):

@@ -6,12 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from navigation.angles import wrap
-from navigation.belief.landmark import (
+from navigation.transform import (
+    moved_on,
     points_from,
     points_to_world,
     pose_from_points,
     sighting,
     to_world,
+    velocity_in_world,
 )
 
 metres = st.floats(-5.0, 5.0)
@@ -44,6 +46,31 @@ def test_pose_from_points_inverts_the_sightings(x, y, heading):
         pose = pose_from_points(np.array(seen[:count]), landmarks[:count])
         assert np.allclose(pose[:2], [x, y], atol=1e-8)
         assert abs(wrap(pose[2] - heading)) < 1e-8
+
+
+@given(metres, metres, headings, metres, metres)
+def test_a_velocity_in_the_world_is_how_a_pose_moves(x, y, heading, forward, left):
+    pose, dt = np.array([x, y, heading]), 0.5
+    there = points_to_world(pose, dt * np.array([[forward, left]]))[0]
+    velocity = velocity_in_world(pose, np.array([forward, left, 0.3]))
+    assert np.allclose(pose[:2] + dt * velocity, there, atol=1e-9)
+
+
+@given(metres, metres, headings, metres, metres, headings)
+def test_odometry_moves_a_pose_as_it_moved_itself_and_in_two_steps_as_in_one(x, y, a, u, v, b):
+    pose, before = np.array([x, y, a]), np.array([u, v, b])
+    steps = np.array([[0.3, -0.2, 0.7], [0.1, 0.4, -0.5]])
+    middle, after = before + steps
+    assert np.allclose(moved_on(before, before, after)[0], after)
+    halfway, first = moved_on(pose, before, middle)
+    end, second = moved_on(halfway, middle, after)
+    whole, derivative = moved_on(pose, before, after)
+    assert np.allclose(end, whole, atol=1e-9)
+    assert np.allclose(second @ first, derivative, atol=1e-9)
+    for k in range(3):
+        step = 1e-6 * np.eye(3)[k]
+        moved = moved_on(pose + step, before, after)[0] - whole
+        assert np.allclose(moved / 1e-6, derivative[:, k], atol=1e-5)
 
 
 def test_one_point_is_not_enough():

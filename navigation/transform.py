@@ -1,4 +1,4 @@
-"""Landmarks: what a known point looks like from a pose, and a pose from known points."""
+"""Rigid transforms between the robot frame R and the field frame W."""
 
 from collections.abc import Sequence
 from math import atan2, cos, hypot, sin
@@ -45,6 +45,38 @@ def points_to_world(pose: Array, points: Array) -> Array:
     c, s = cos(pose[2]), sin(pose[2])
     laid: Array = points @ np.array([[c, s], [-s, c]]) + pose[:2]
     return laid
+
+
+def velocity_in_world(pose: Array, body: Array) -> Array:
+    """Velocity over ground in W (2,) [m/s].
+
+    Args:
+        pose: x, y, heading of R in W (3,) [m, m, rad].
+        body: forward, left, turn in R (3,) [m/s, m/s, rad/s].
+    """
+    forward, left, _ = body.tolist()
+    c, s = cos(float(pose[2])), sin(float(pose[2]))
+    return np.array([c * forward - s * left, s * forward + c * left])
+
+
+def moved_on(pose: Array, before: Array, after: Array) -> tuple[Array, Array]:
+    """A pose carried on by odometry.
+
+    Args:
+        pose: x, y, heading of R in W when the odometry was `before` (3,) [m, m, rad].
+        before: pose of R in the odometry frame (3,) [m, m, rad].
+        after: the same later (3,).
+
+    Returns:
+        Pose later, its heading not wrapped (3,) [m, m, rad], and its derivative by `pose` (3, 3).
+    """
+    dx, dy, turn = (after - before).tolist()
+    x, y, heading = pose.tolist()
+    offset = heading - float(before[2])
+    c, s = cos(offset), sin(offset)
+    right, up = c * dx - s * dy, s * dx + c * dy
+    derivative = np.array([[1.0, 0.0, -up], [0.0, 1.0, right], [0.0, 0.0, 1.0]])
+    return np.array([x + right, y + up, heading + turn]), derivative
 
 
 def pose_from_points(seen: Array, known: Array) -> Array:
