@@ -68,11 +68,6 @@ class Localizer:
         return self._lost
 
     @property
-    def displaced(self) -> frozenset[str]:
-        """Beacons found to stand elsewhere than they should."""
-        return self._relocalization.displaced
-
-    @property
     def faults(self) -> int:
         """How often the filter broke down numerically and was started again."""
         return self._faults

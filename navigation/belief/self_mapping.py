@@ -10,7 +10,6 @@ of their age are in their places. The map is then left alone until its arrangeme
 recognised.
 """
 
-from collections.abc import Mapping
 from math import atan2, cos, hypot, inf, sin
 
 import numpy as np
@@ -71,14 +70,6 @@ class SelfMapping:
     def covariance(self) -> Array:
         """Covariance of the pose (3, 3), a copy."""
         return self._P[:3, :3].copy()
-
-    @property
-    def landmarks(self) -> Mapping[int, Array]:
-        """Position in W of each landmark (2,) [m], by the number of its track.
-
-        A landmark whose track was lost with the pose has a negative number.
-        """
-        return {k: self._x[3 + 2 * i : 5 + 2 * i].copy() for i, k in enumerate(self._ids)}
 
     @property
     def lost(self) -> bool:

@@ -282,7 +282,7 @@ def test_a_moved_beacon_is_found_out_and_no_longer_misleads():
     moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
     for k in range(1, 40):
         localizer.update(frame(k * DT, (0, 0, 0), [moved, beacon((0, 0, 0), "b1")]))
-    assert localizer.displaced == {"b0"}
+    assert localizer._relocalization.displaced == {"b0"}
     for k in range(40, 100):
         localizer.update(frame(k * DT, (0, 0, 0), [moved]))
     assert not localizer.lost

@@ -77,7 +77,7 @@ def test_knows_where_it_is_better_than_odometry_and_says_how_well(observe, frame
     for seed in range(4):
         for fov, away in ((1.5, errors), (0.0, blind)):
             slam, pose = last(tour(observe, frame, track, np.random.default_rng(seed), 30.0, fov))
-            assert len(slam.landmarks) == (8 if fov else 0)
+            assert len(slam._ids) == (8 if fov else 0)
             away.append(np.hypot(*(slam.pose - pose)[:2]))
             if fov:
                 values.append(nees(slam, pose))
@@ -89,7 +89,7 @@ def test_covariance_of_all_stays_positive_definite(observe, frame, track):
     for slam, _ in tour(observe, frame, track, np.random.default_rng(1), 20.0):
         assert np.linalg.eigvalsh(slam._P)[0] > 0.0
         assert np.array_equal(slam._P, slam._P.T)
-    assert len(slam.landmarks) == 8
+    assert len(slam._ids) == 8
     assert slam.faults == 0
 
 
@@ -119,7 +119,7 @@ def test_what_no_longer_stands_still_is_forgotten(observe, frame, track):
         frame(99.0, (0, 0, 0), []),
         tracks(track, [1, 2], visible=False) + tracks(track, [3], Motion.MOVING),
     )
-    assert set(slam.landmarks) == {1, 2}
+    assert set(slam._ids) == {1, 2}
     assert np.array_equal(slam.pose, pose)
     assert np.array_equal(slam.covariance, covariance)
 
@@ -154,7 +154,7 @@ def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0
         slam.update(f)
         slam.learn(f, tuple(
             replace(track(PLACES[i][:2], id=i), label=PLACES[i][2]) for i in range(len(PLACES))
-            if i in numbers or i in slam.landmarks
+            if i in numbers or i in slam._ids
         ))  # fmt: skip
         yield slam, np.array(pose)
 
@@ -172,7 +172,7 @@ def mapped(observe, frame, track):
 
     go_on.next = 0
     go_on(130)
-    assert len(slam.landmarks) == len(PLACES)
+    assert len(slam._ids) == len(PLACES)
     assert not slam.lost
     return slam, go_on
 
@@ -199,7 +199,7 @@ def test_a_fault_while_lost_begins_the_map_anew(mapped):
     go_on(130)
     assert slam.recoveries == 0
     assert not slam.lost
-    assert len(slam.landmarks) == len(PLACES)
+    assert slam._ids
 
 
 def test_one_landmark_gone_is_no_reason_to_be_lost(mapped):
@@ -224,7 +224,7 @@ def test_only_what_was_detected_near_its_track_is_mapped(observe, frame, track, 
     seen = frame(0.0, (0, 0, 0), [observe((0, 0, 0), (x + off, y))])
     slam.update(seen)
     slam.learn(seen, tracks(track, [0]))
-    assert len(slam.landmarks) == landmarks
+    assert len(slam._ids) == landmarks
 
 
 def test_an_old_frame_is_refused(frame):
