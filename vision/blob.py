@@ -17,7 +17,6 @@ class Blob:
     Attributes:
         label: of its colour.
         box: left, top, right, bottom pixel, right and bottom exclusive.
-        area: [pixel].
         runs: row, first and last (exclusive) column of its runs of pixels, and its label,
             by row, then column (n, 4) [pixel].
         extents: first and last (exclusive) column of each of its rows, then first and last
@@ -28,7 +27,6 @@ class Blob:
 
     label: int
     box: tuple[int, int, int, int]
-    area: int
     runs: Table
     extents: Table
     touches: tuple[bool, bool, bool, bool]
@@ -50,14 +48,13 @@ def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:
     regions, runs, extents = regions_of(labels, np.array(min_area, np.int32))
     blobs: list[Blob] = []
     first_run = first_extent = 0
-    for left, top, right, bottom, area, label, count in regions.tolist():
+    for left, top, right, bottom, _, label, count in regions.tolist():
         last_run = first_run + count
         last_extent = first_extent + 2 * (bottom - top + right - left)
         blobs.append(
             Blob(
                 label,
                 (left, top, right, bottom),
-                area,
                 runs[first_run:last_run],
                 extents[first_extent:last_extent],
                 (left == 0, top == 0, right == width, bottom == height),

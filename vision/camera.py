@@ -1,4 +1,4 @@
-"""Pinhole camera: the one place that turns pixels into rays and points into pixels."""
+"""Pinhole camera and its pose."""
 
 from dataclasses import dataclass
 from math import tan
@@ -64,19 +64,11 @@ class PinholeCamera:
         """Vertical field of view [rad]."""
         return 2.0 * float(np.arctan(0.5 * self.height / self.focal))
 
-    def rays(self, u: Array, v: Array) -> Array:
-        """Directions in the camera frame (..., 3), z = 1, of image points (u, v) [pixel].
-
-        Pixel (i, j) covers u from i to i + 1 and v from j to j + 1.
-        """
-        x = (np.asarray(u, float) - 0.5 * self.width) / self.focal
-        y = (np.asarray(v, float) - 0.5 * self.height) / self.focal
-        return np.stack([x, y, np.ones_like(x)], axis=-1)
-
     def project(self, points: Array) -> Array:
         """Image points (..., 2) [pixel] of `points` in the camera frame (..., 3) [m].
 
-        Points behind the camera give NaN.
+        Pixel (i, j) covers u from i to i + 1 and v from j to j + 1. Points behind the camera
+        give NaN.
         """
         p = np.asarray(points, float)
         z = np.where(p[..., 2] > 1e-9, p[..., 2], np.nan)

@@ -21,7 +21,6 @@ class View:
     """
 
     def __init__(self, camera: PinholeCamera, pose: CameraPose) -> None:
-        self.camera = camera
         self.pose = pose
         x, y, z = pose.position.tolist()
         self.x: float = x

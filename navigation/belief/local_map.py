@@ -63,12 +63,6 @@ class LocalMap:
         """Confidence C of each cell, shaped like `age` [1]."""
         return self._confidence_of(self.age)
 
-    @property
-    def occupancy(self) -> Array:
-        """Probability that each cell is occupied, shaped like `age` [1]."""
-        probability: Array = 1.0 / (1.0 + np.exp(-self._log_odds))
-        return probability
-
     def confidence_at(self, points: ArrayLike) -> Array:
         """Confidence of the cells under points in W (n, 2); 1 outside the map (n,) [1]."""
         return self._confidence_of(self.age_at(points))
@@ -78,13 +72,10 @@ class LocalMap:
 
         Infinite where never seen, 0 outside the map.
         """
-        age: Array = self._time - self._under(points, self._seen_at, self._time)
+        places = np.ascontiguousarray(points, np.float64)
+        seen_at = local_map_kernel.under(places, self._corner, self.cell, self._seen_at, self._time)
+        age: Array = self._time - seen_at
         return age
-
-    def occupancy_at(self, points: ArrayLike) -> Array:
-        """Probability of an obstacle under points in W (n, 2); 1/2 where unknown (n,)."""
-        probability: Array = 1.0 / (1.0 + np.exp(-self._under(points, self._log_odds, 0.0)))
-        return probability
 
     def free_at(self, points: ArrayLike) -> Mask:
         """Whether all the floor around points in W (n, 2) was once seen empty (n,)."""
@@ -138,10 +129,6 @@ class LocalMap:
     def _corner_for(self, centre: tuple[float, float]) -> tuple[int, int]:
         half = self._count // 2
         return floor(centre[0] / self.cell) - half, floor(centre[1] / self.cell) - half
-
-    def _under(self, points: ArrayLike, cells: Array, outside: float) -> Array:
-        places = np.ascontiguousarray(points, np.float64)
-        return local_map_kernel.under(places, self._corner, self.cell, cells, outside)
 
     def _roll(self, centre: tuple[float, float]) -> None:
         """Move the map by whole cells so that the robot stays near its middle."""

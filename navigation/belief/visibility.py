@@ -54,36 +54,6 @@ class Viewpoint:
             reach,
         )
 
-    def contains(self, points: Array, height: float = 0.0, margin: float = 0.0) -> Mask:
-        """Whether points project into the image and lie within range.
-
-        Args:
-            points: in W (n, 2) [m].
-            height: above the floor [m].
-            margin: kept from the border of the image [rad].
-
-        Returns:
-            One truth value per point (n,).
-        """
-        camera = self._camera(height, margin)
-        return visibility_kernel.contains(np.ascontiguousarray(points), self.position, camera)
-
-    def hidden(self, points: Array, centres: Array, radii: Array, slack: float = 0.0) -> Mask:
-        """Whether a nearer disc stands between the camera and each point.
-
-        The cylinders are taken as tall enough to hide everything behind them.
-
-        Args:
-            points: in W (n, 2) [m].
-            centres: of the discs in W (m, 2) [m].
-            radii: of the discs (m,) [m].
-            slack: widening of every disc [m].
-
-        Returns:
-            One truth value per point (n,).
-        """
-        return visibility_kernel.hidden(points, self.position, centres, radii, slack)
-
     def expects(
         self, points: Array, centres: Array, radii: Array, *, margin: float, slack: float
     ) -> Mask:
@@ -99,7 +69,7 @@ class Viewpoint:
         Returns:
             One truth value per point (n,).
         """
-        camera = self._camera(0.0, margin)
+        camera = self._camera(margin)
         return visibility_kernel.expects(points, self.position, camera, centres, radii, slack)
 
     def searched(
@@ -114,16 +84,16 @@ class Viewpoint:
             centres: of the discs in the frame, in W (m, 2) [m].
             radii: (m,) [m].
         """
-        camera = self._camera(0.0, 0.0)
+        camera = self._camera(0.0)
         first = np.array(corner, np.float64)
         return visibility_kernel.searched(first, cell, count, self.position, camera, centres, radii)
 
-    def _camera(self, height: float, margin: float) -> visibility_kernel.Camera:
-        """Camera as `visibility_kernel.contained` wants it (13)."""
+    def _camera(self, margin: float) -> visibility_kernel.Camera:
+        """Camera as `visibility_kernel.contained` wants it, for the floor (13)."""
         wide = self.horizontal_half >= 0.5 * pi
         return (
             *self.rotation.ravel().tolist(),
-            height - float(self.position[2]),
+            -float(self.position[2]),
             -1.0 if wide else tan(max(self.horizontal_half - margin, 0.0)),
             tan(max(self.vertical_half - margin, 0.0)),
             float(self.range),

@@ -76,29 +76,22 @@ def from_camera(eye: Array, centres: Array, radii: Array, slack: float) -> Array
 
 
 @njit(cache=True)
-def contains(points: Array, eye: Array, camera: Camera) -> Mask:
-    """`contained` for points in W (n, 2) [m] and the camera at `eye` (3,): (n,)."""
-    inside = np.empty(len(points), np.bool_)
-    for i in range(len(points)):
-        inside[i] = contained(points[i, 0] - eye[0], points[i, 1] - eye[1], camera)
-    return inside
-
-
-@njit(cache=True)
-def hidden(points: Array, eye: Array, centres: Array, radii: Array, slack: float) -> Mask:
-    """`covered` for points (n, 2) and discs (m, 2), (m,) in W [m] and the camera at `eye`: (n,)."""
-    discs = from_camera(eye, centres, radii, slack)
-    blocked = np.empty(len(points), np.bool_)
-    for i in range(len(points)):
-        blocked[i] = covered(points[i, 0] - eye[0], points[i, 1] - eye[1], discs)
-    return blocked
-
-
-@njit(cache=True)
 def expects(
     points: Array, eye: Array, camera: Camera, centres: Array, radii: Array, slack: float
 ) -> Mask:
-    """Whether points are contained and not hidden; arguments as above (n,)."""
+    """Whether points of the floor are `contained` and not `covered`.
+
+    Args:
+        points: in W (n, 2) [m].
+        eye: position of the camera in W (3,) [m].
+        camera: as for `contained`.
+        centres: of the discs in W (m, 2) [m].
+        radii: (m,) [m].
+        slack: widening of every disc [m].
+
+    Returns:
+        (n,).
+    """
     discs = from_camera(eye, centres, radii, slack)
     clear = np.empty(len(points), np.bool_)
     for i in range(len(points)):

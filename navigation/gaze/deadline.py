@@ -36,7 +36,10 @@ def deadline_votes(
     glance: float | None = None,
     turn: float = 0.0,
 ) -> Votes:
-    """All deadline votes of this moment, for where things are once the head has turned there.
+    """All deadline votes of this moment.
+
+    Tracks, ground and glance count where they are once the head has turned there, beacons where
+    they are now, also beyond the pan stop.
 
     Args:
         scene: partial evaluations.

@@ -18,7 +18,7 @@ from navigation.gaze.information import information_votes
 from navigation.gaze.integrated import integrated_votes
 from navigation.gaze.scene import GazeScene
 from navigation.gaze.urgency import urgency_votes
-from navigation.parameters.gaze import GazeMode, GazeParameters
+from navigation.parameters.gaze import GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.value import value
 
@@ -142,7 +142,7 @@ def gaze_policy(
     elif p.mode == "info":
         votes = partial(_information, parameters)
     else:
-        votes = partial(_integrated, replace(parameters, gaze=single_weight(p, p.mode)))
+        votes = partial(_integrated, replace(parameters, gaze=single_weight(p)))
     return VotingGaze(votes, grid, p.switch_ratio)
 
 
@@ -168,16 +168,16 @@ def _integrated(parameters: NavigationParameters, m: Moment) -> Votes:
     return integrated_votes(m.scene, m.belief, m.task, parameters)
 
 
-def single_weight(p: GazeParameters, mode: GazeMode) -> GazeParameters:
-    """The weights of (6) for `mode`: all of `p`, or one for the evaluation it names alone."""
-    if mode == "integrated":
+def single_weight(p: GazeParameters) -> GazeParameters:
+    """The weights of (6) for `p.mode`: all of `p`, or one for the evaluation it names alone."""
+    if p.mode == "integrated":
         return p
     return replace(
         p,
-        w_lm=float(mode == "psi-lm"),
-        w_sf=float(mode == "psi-sf"),
-        w_ob=float(mode == "psi-ob"),
-        w_way=float(mode == "psi-way"),
+        w_lm=float(p.mode == "psi-lm"),
+        w_sf=float(p.mode == "psi-sf"),
+        w_ob=float(p.mode == "psi-ob"),
+        w_way=float(p.mode == "psi-way"),
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import cos, hypot, radians, sin
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from vision.camera import CameraPose, PinholeCamera
 from vision.colour import COLOUR_CLASSES
@@ -55,6 +55,13 @@ def pose(
     )
 
 
+def rays(camera: PinholeCamera, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
+    """Directions in the camera frame (..., 3), z = 1, of image points (u, v) [pixel]."""
+    x = (np.asarray(u, float) - 0.5 * camera.width) / camera.focal
+    y = (np.asarray(v, float) - 0.5 * camera.height) / camera.focal
+    return np.stack([x, y, np.ones_like(x)], axis=-1)
+
+
 def paint(
     things: Sequence[Cylinder],
     view: CameraPose,
@@ -63,8 +70,8 @@ def paint(
 ) -> NDArray[np.uint8]:
     """RGB image of `things`; sides are shaded by how much they face the camera."""
     v, u = np.mgrid[0 : camera.height, 0 : camera.width]
-    rays = camera.rays(u + 0.5, v + 0.5) @ view.rotation.T
-    X, Y, Z = np.moveaxis(rays, -1, 0)
+    directions = rays(camera, u + 0.5, v + 0.5) @ view.rotation.T
+    X, Y, Z = np.moveaxis(directions, -1, 0)
     px, py, pz = view.position.tolist()
     down = Z < -1e-9
     nearest = np.where(down, -pz / np.where(down, Z, -1.0), np.inf)

@@ -16,6 +16,10 @@ def mask_of(blob: Blob, shape: tuple[int, ...]) -> np.ndarray:
     return mask
 
 
+def area(blob: Blob) -> int:
+    return int((blob.runs[:, 2] - blob.runs[:, 1]).sum())
+
+
 @given(seed=st.integers(0, 10_000), share=st.floats(0.0, 1.0))
 def test_blobs_partition_the_coloured_pixels(seed: int, share: float) -> None:
     rng = np.random.default_rng(seed)
@@ -26,7 +30,7 @@ def test_blobs_partition_the_coloured_pixels(seed: int, share: float) -> None:
         left, top, right, bottom = blob.box
         mask = mask_of(blob, labels.shape)
         assert (labels[mask] == blob.label).all()
-        assert blob.area == mask.sum()
+        assert area(blob) == mask.sum()
         assert np.flatnonzero(mask.any(axis=0)).tolist() == list(range(left, right))
         assert np.flatnonzero(mask.any(axis=1)).tolist() == list(range(top, bottom))
         covered += mask
@@ -66,8 +70,8 @@ def test_small_blobs_are_left_out() -> None:
     labels = np.zeros((10, 10), np.uint8)
     labels[1, 1:4] = 1
     labels[5:8, 5:8] = 1
-    assert [blob.area for blob in find_blobs(labels, (4,))] == [9]
-    assert [blob.area for blob in find_blobs(labels, (3,))] == [3, 9]
+    assert [area(blob) for blob in find_blobs(labels, (4,))] == [9]
+    assert [area(blob) for blob in find_blobs(labels, (3,))] == [3, 9]
 
 
 @given(seed=st.integers(0, 10_000), share=st.floats(0.2, 1.0))
@@ -80,5 +84,5 @@ def test_blobs_are_the_components_that_opencv_finds(seed: int, share: float) -> 
     for label in (1, 2):
         _, _, stats, _ = cv2.connectedComponentsWithStats((labels == label).astype(np.uint8))
         rows = ((x, y, x + w, y + h, n) for x, y, w, h, n in stats[1:].tolist() if n >= 2)
-        found = ((*b.box, b.area) for b in blobs if b.label == label)
+        found = ((*b.box, area(b)) for b in blobs if b.label == label)
         assert sorted(found) == sorted(rows)

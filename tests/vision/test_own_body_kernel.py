@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, pose
+from tests.vision.scene import CAMERA, pose, rays
 from vision.own_body_kernel import LEAST_DEPTH, outline
 
 CENTRES, RADII = np.array([[0.0, 0.09, 0.38], [0.01, 0.1, 0.25]]), np.array([0.03, 0.045])
@@ -25,8 +25,8 @@ def test_points_lie_beyond_the_tangents_to_their_sphere(pan, tilt):
         local = (centre - view.position) @ view.rotation
         if local[2] - 1.1 * radius < LEAST_DEPTH or np.abs(polygon).max() >= 4096.0:
             continue
-        rays = CAMERA.rays(polygon[:, 0], polygon[:, 1])
-        rays /= np.linalg.norm(rays, axis=1)[:, None]
-        miss = np.linalg.norm(np.cross(rays, local), axis=1)
+        tangents = rays(CAMERA, polygon[:, 0], polygon[:, 1])
+        tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+        miss = np.linalg.norm(np.cross(tangents, local), axis=1)
         assert (miss > radius).all()
         assert (miss < 1.05 * radius).all()

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, pose
+from tests.vision.scene import CAMERA, pose, rays
 from vision.outline_kernel import angles, level, project, resolution
 from vision.view import View
 
@@ -15,7 +15,7 @@ columns, rows = st.floats(1.0, 319.0), st.floats(1.0, 239.0)
 
 def level_part(gaze, u, v):
     """Horizontal part of the ray through a pixel; straight down there is no azimuth."""
-    return np.linalg.norm((gaze.rotation @ CAMERA.rays(u, v))[:2])
+    return np.linalg.norm((gaze.rotation @ rays(CAMERA, u, v))[:2])
 
 
 @given(gaze=gazes, u=columns, v=rows)
@@ -33,7 +33,7 @@ def test_angles_and_pixels_invert_each_other(gaze, u, v) -> None:
 @given(gaze=gazes, u=columns, v=rows)
 def test_angles_are_those_of_the_ray_of_the_camera(gaze, u, v) -> None:
     view = View(CAMERA, gaze)
-    X, Y, Z = gaze.rotation @ CAMERA.rays(u, v)
+    X, Y, Z = gaze.rotation @ rays(CAMERA, u, v)
     if level_part(gaze, u, v) < 0.02:
         return
     azimuth, slope = angles(view.packed, u, v)

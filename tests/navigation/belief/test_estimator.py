@@ -55,7 +55,7 @@ def test_frames_become_a_belief(beliefs):
     assert np.hypot(*(blue.velocity - (0.0, 0.1))) < 0.04
     assert set(last.seen_beacons) == set(BEACONS)
     assert last.local_map.confidence_at([STATIC])[0] == 1.0
-    assert last.local_map.occupancy_at([STATIC])[0] > 0.9
+    assert not last.local_map.free_at([STATIC])[0]
     assert last.filter_faults == 0
     assert not last.lost
 

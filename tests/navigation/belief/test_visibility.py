@@ -5,10 +5,26 @@ import pytest
 
 from navigation.belief.visibility import Viewpoint
 
+NOTHING = np.empty((0, 2)), np.empty(0)
+
 
 @pytest.fixture
 def ahead(view):
     return Viewpoint.of(view(pan=0.0, tilt=-0.5), np.zeros(3), 2.5)
+
+
+@pytest.fixture
+def around(view):
+    """Sees everything, so that what it does not expect is hidden."""
+    return Viewpoint.of(view(hfov=2.0 * pi, vfov=pi), np.zeros(3), 9.0)
+
+
+def contains(viewpoint, points, margin=0.0):
+    return viewpoint.expects(points, *NOTHING, margin=margin, slack=0.0)
+
+
+def hidden(viewpoint, points, centres, radii):
+    return ~viewpoint.expects(points, centres, radii, margin=0.0, slack=0.0)
 
 
 def test_contains_agrees_with_projection(view):
@@ -27,37 +43,30 @@ def test_contains_agrees_with_projection(view):
             & (np.abs(np.arctan2(rays[:, 1], rays[:, 2])) <= camera.vertical_fov / 2)
         )
         near = np.hypot(*(points - pose[:2]).T) <= 2.5
-        seen = Viewpoint.of(camera, pose, 2.5).contains(points)
+        seen = contains(Viewpoint.of(camera, pose, 2.5), points)
         assert np.array_equal(seen, image & near)
 
 
 def test_a_margin_only_takes_away(ahead):
     points = np.random.default_rng(1).uniform(-3, 3, (500, 2))
-    whole, inner = ahead.contains(points), ahead.contains(points, margin=0.1)
+    whole, inner = contains(ahead, points), contains(ahead, points, 0.1)
     assert not (inner & ~whole).any()
     assert inner.sum() < whole.sum()
 
 
-def test_height_matters(ahead):
-    """What is too near on the floor is seen higher up, and far things the other way round."""
-    near = np.array([[0.1, 0.0]])
-    assert not ahead.contains(near).any()
-    assert ahead.contains(near, height=0.42).any()
-
-
-def test_a_disc_hides_what_is_behind_it_and_nothing_else(ahead):
+def test_a_disc_hides_what_is_behind_it_and_nothing_else(around):
     centre, radius = np.array([[1.0, 0.0]]), np.array([0.1])
     angles = np.linspace(-0.3, 0.3, 61)
     behind = 2.0 * np.column_stack([np.cos(angles), np.sin(angles)])
     half = atan2(radius[0], np.sqrt(1.0 - radius[0] ** 2))
-    assert np.array_equal(ahead.hidden(behind, centre, radius), np.abs(angles) < half)
-    assert not ahead.hidden(0.4 * behind, centre, radius).any()
-    assert not ahead.hidden(centre, centre, radius).any()
-    assert not ahead.hidden(-behind, centre, radius).any()
+    assert np.array_equal(hidden(around, behind, centre, radius), np.abs(angles) < half)
+    assert not hidden(around, 0.4 * behind, centre, radius).any()
+    assert not hidden(around, centre, centre, radius).any()
+    assert not hidden(around, -behind, centre, radius).any()
 
 
-def test_nothing_hides_without_discs(ahead):
-    assert not ahead.hidden(np.ones((3, 2)), np.empty((0, 2)), np.empty(0)).any()
+def test_nothing_hides_without_discs(around):
+    assert not hidden(around, np.ones((3, 2)), *NOTHING).any()
 
 
 def test_visibility_moves_with_the_robot(view):
@@ -81,5 +90,5 @@ def test_an_all_round_camera_contains_everything_in_range(view):
     rng = np.random.default_rng(2)
     points = rng.uniform(-3.0, 3.0, (50, 2))
     wide = view(0.4, -0.3, hfov=2.0 * np.pi, vfov=np.pi)
-    seen = Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5).contains(points, margin=0.1)
+    seen = contains(Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5), points, 0.1)
     np.testing.assert_array_equal(seen, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)

@@ -99,7 +99,7 @@ def test_a_single_evaluation_hears_itself_alone(choose, belief, track):
 
 @pytest.mark.parametrize("mode", PSI)
 def test_the_weight_of_a_single_evaluation_is_one(mode):
-    g = single_weight(P.gaze, mode)
+    g = single_weight(replace(P.gaze, mode=mode))
     weights = [g.w_lm, g.w_sf, g.w_ob, g.w_way]
     assert sorted(weights) == [0.0, 0.0, 0.0, 1.0]
     assert getattr(g, f"w_{mode.removeprefix('psi-')}") == 1.0
