@@ -16,6 +16,7 @@ FOLDERS = (
     "hsr8/world/camera",
     "hsr8/world/field",
     "hsr8/world/truth",
+    "navigation",
     "navigation/belief",
     "navigation/motion",
     "vision",

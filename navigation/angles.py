@@ -1,6 +1,6 @@
-"""Angles: wrapping, and the angle of a vector, for scalars and arrays.
+"""Wrapping angles, for a scalar and for arrays.
 
-The scalar versions stay out of NumPy because they run in hot scalar paths.
+The scalar version stays out of NumPy because it runs in hot scalar paths.
 """
 
 import math

@@ -3,7 +3,7 @@
 import dataclasses
 from dataclasses import dataclass
 from math import hypot
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 from navigation.value import value
 
 Array = NDArray[np.float64]
+
+
+Situation = Literal["free", "accelerate", "brake", "escape", "path_change"]
+"""What velocity modification found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +112,8 @@ class MotionDecision:
         velocity: forward, left, turn in R (3,) [m/s, m/s, rad/s].
         direction: field direction u_T in W [rad].
         speed: speed along it after velocity modification [m/s].
-        situation: what velocity modification found: free, accelerate, brake, escape,
-            path_change.
+        situation: what velocity modification found, see `Situation`; another planner tells its
+            own.
         virtual_obstacles: in force.
         extended_radii: (track id, S_oe) of the obstacles the field uses.
         glance: direction in W of ground that the body turned aside for; None for none [rad].

@@ -1,13 +1,12 @@
 """The tracks as arrays, the form in which all decisions are computed."""
 
 from collections.abc import Sequence
-from math import hypot, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Motion, Track
+from navigation.obstacle_kernel import deviation, deviations
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -52,7 +51,7 @@ class ObstacleSet:
         n = len(tracks)
         static = np.array([t.motion is Motion.STATIC for t in tracks], dtype=np.bool_)
         covariances = np.array([t.covariance for t in tracks], dtype=np.float64)
-        sigma, speed_sigma = _deviations(covariances.reshape(n, 4, 4))
+        sigma, speed_sigma = deviations(covariances.reshape(n, 4, 4))
         velocity = np.array([t.velocity for t in tracks], dtype=np.float64).reshape(n, 2)
         velocity[static] = 0.0
         return cls(
@@ -89,21 +88,4 @@ class ObstacleSet:
 def largest_deviation(covariance: Array) -> float:
     """sqrt(lambda_max) of a symmetric matrix (2, 2)."""
     (xx, xy), (_, yy) = covariance.tolist()
-    return _deviation(xx, xy, yy)
-
-
-@njit(cache=True)
-def _deviation(xx: float, xy: float, yy: float) -> float:
-    return sqrt(max(0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy), 0.0))
-
-
-@njit(cache=True)
-def _deviations(covariances: Array) -> tuple[Array, Array]:
-    """sqrt(lambda_max) of the blocks of positions and velocities of (n, 4, 4): (n,), (n,)."""
-    n = len(covariances)
-    places, velocities = np.empty(n), np.empty(n)
-    for i in range(n):
-        P = covariances[i]
-        places[i] = _deviation(P[0, 0], P[0, 1], P[1, 1])
-        velocities[i] = _deviation(P[2, 2], P[2, 3], P[3, 3])
-    return places, velocities
+    return deviation(xx, xy, yy)

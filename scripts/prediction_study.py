@@ -16,7 +16,7 @@ from typing import NamedTuple
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
 from navigation.belief.belief import Belief, Motion, Track
-from navigation.motion.bend import mean_velocity
+from navigation.motion.bend_kernel import mean_velocity
 
 import numpy as np
 from numpy.typing import NDArray

@@ -30,7 +30,7 @@ STEEPEST = -3.0  # slope at which a side is taken to be seen at most
 UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
 MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
 SPAN_SIGMA = 0.02  # least standard deviation of a distance from a span, relative to itself [1]
-TURNS = 3.0  # an edge that crosses a pixel errs so many times less, and one time less
+TURNS = 3.0  # an edge that crosses n pixels has a common error 1 + TURNS*n times smaller
 
 
 @njit(cache=True)

@@ -69,7 +69,8 @@ class VisionParameters:
     roundness_sigma: Annotated[float, Ge(0.0)] = 0.008
     """Standard deviation of a cylinder's outline, relative to its radius [1]."""
     step: Annotated[float, Gt(0.0)] = 2.5
-    """An outline that leaves one cylinder's by so much shows another cylinder [pixel]."""
+    """Jump of an outline that separates two cylinders; half of it makes a rim point stray
+    [pixel]."""
     max_misfit: Annotated[float, Gt(0.0)] = 16.0
     """Sum of squared normalised residuals above which a blob is not one cylinder [1]."""
     astray: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.2

@@ -15,7 +15,7 @@ Ints = NDArray[np.int64]
 
 MIN_COLUMNS = 3  # a piece of an outline needs so many columns
 MIN_INNER = 2  # of them must be left when those at its steps are not used
-NEAR_SHARE = 0.1  # of the points of a piece lie nearer than the thing is taken to be [1]
+NEAR_SHARE = 0.1  # quantile of the points' distances taken for the nearest [1]
 
 RIGHT, LEFT, RIGHT_TRUE, LEFT_TRUE, RUN, POINTS = range(6)  # columns of a table of pieces
 

@@ -140,7 +140,7 @@ class Localizer:
         noise = np.array([o.covariance for o in beacons])
         places = np.array([self._beacons[o.label] for o in beacons])
         # A distance that is not a number does not fit either.
-        fit = np.flatnonzero(f.distances(z, noise, places) <= self._parameters.gate)
+        fit = np.flatnonzero(f.nis(z, noise, places) <= self._parameters.gate)
         if len(fit) == 0:
             return []
         R = pose_kernel.together(noise[fit], frame.view.yaw_sigma**2, SHARED_LIMIT)

@@ -196,8 +196,8 @@ def fit(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, flo
 
 
 @njit(cache=True)
-def surprise(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) -> Array:
-    """Squared Mahalanobis distance of some obstacles' positions to their nearest modes (m,).
+def nis(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) -> Array:
+    """Normalised innovation squared of some obstacles' positions by their nearest modes (m,).
 
     Args:
         states: (n, 3, 5).
@@ -206,7 +206,7 @@ def surprise(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) 
         z: position of each (m, 2) [m].
         R: its covariance (m, 2, 2) [m²].
     """
-    surprises = np.empty(len(rows))
+    least_nis = np.empty(len(rows))
     for k in range(len(rows)):
         x, P = states[rows[k]], covariances[rows[k]]
         least = inf
@@ -219,8 +219,8 @@ def surprise(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) 
                 P[mode, 1, 1] + R[k, 1, 1],
             )
             least = min(least, distance)
-        surprises[k] = least
-    return surprises
+        least_nis[k] = least
+    return least_nis
 
 
 @njit(cache=True)

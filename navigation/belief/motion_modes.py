@@ -107,8 +107,8 @@ def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
     return mixed
 
 
-def surprise(modes: Modes, rows: Rows, z: Array, R: Array) -> Array:
-    """Squared Mahalanobis distance of some obstacles' positions to their nearest modes (m,).
+def nis(modes: Modes, rows: Rows, z: Array, R: Array) -> Array:
+    """Normalised innovation squared of some obstacles' positions by their nearest modes (m,).
 
     Args:
         modes: predicted.
@@ -116,7 +116,7 @@ def surprise(modes: Modes, rows: Rows, z: Array, R: Array) -> Array:
         z: position of each (m, 2) [m].
         R: its covariance (m, 2, 2) [m²].
     """
-    return mode_kernel.surprise(modes.states, modes.covariances, rows, z, R)
+    return mode_kernel.nis(modes.states, modes.covariances, rows, z, R)
 
 
 def costs(modes: Modes, z: Array, R: Array, gate: float) -> Array:

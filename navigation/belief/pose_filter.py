@@ -15,7 +15,7 @@ from navigation.belief import pose_kernel
 
 Array = NDArray[np.float64]
 
-# Every so many entries an angle.
+# Every third entry of a state and every second of a measurement is an angle.
 STATE = 3
 MEASUREMENT = 2
 ONE = np.eye(3)
@@ -114,7 +114,7 @@ class PoseFilter(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has n
         """
         self.sigmas_f: Array = self.points_fn.sigma_points(self.x, self.P)
 
-    def distances(self, z: Array, noise: Array, landmarks: Array) -> Array:
+    def nis(self, z: Array, noise: Array, landmarks: Array) -> Array:
         """Normalised innovation squared of sightings (k, 2) of landmarks (k, 2), each by itself.
 
         Args:
@@ -125,10 +125,10 @@ class PoseFilter(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has n
         Returns:
             (k,), after `spread`.
         """
-        return pose_kernel.distances(self.sigmas_f, self.Wm, self.Wc, landmarks, z, noise)
+        return pose_kernel.nis(self.sigmas_f, self.Wm, self.Wc, landmarks, z, noise)
 
     def correct(self, z: Array, noise: Array, landmarks: Array) -> None:
-        """Take in sightings as one measurement, after `spread`; arguments as `distances`.
+        """Take in sightings as one measurement, after `spread`; arguments as `nis`.
 
         Args:
             z: ranges and bearings (k, 2) [m, rad].

@@ -192,7 +192,7 @@ def together(noise: Array, shared: float, limit: float) -> Array:
 
 
 @njit(cache=True)
-def distances(
+def nis(
     poses: Array, mean_weights: Array, weights: Array, landmarks: Array, z: Array, noise: Array
 ) -> Array:
     """Normalised innovation squared of the sighting of every landmark by itself (k,).
@@ -205,7 +205,7 @@ def distances(
         z: range and bearing of each (k, 2) [m, rad].
         noise: its covariance (k, 2, 2).
     """
-    nis = np.empty(len(landmarks))
+    squares = np.empty(len(landmarks))
     seen = np.empty((len(poses), 2))
     for i in range(len(landmarks)):
         for k in range(len(poses)):
@@ -213,5 +213,5 @@ def distances(
         centre, S = transform(seen, mean_weights, weights, noise[i], z.shape[1])
         u, w = z[i, 0] - centre[0], wrapped(z[i, 1] - centre[1])
         a, b, d = S[0, 0], S[0, 1], S[1, 1]
-        nis[i] = (d * u * u - 2.0 * b * u * w + a * w * w) / (a * d - b * b)
-    return nis
+        squares[i] = (d * u * u - 2.0 * b * u * w + a * w * w) / (a * d - b * b)
+    return squares

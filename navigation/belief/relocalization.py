@@ -83,7 +83,10 @@ class Relocalization:
         return several or time - self._run[0][0] > p.lost_time
 
     def begin(self) -> None:
-        """Forget what was seen before the pose went wrong: another odometry frame."""
+        """Drop older sightings.
+
+        A robot that was carried is not where its odometry relates them to.
+        """
         if self._run:
             start = self._run[0][0]
             self._sightings = {n: s for n, s in self._sightings.items() if s.time >= start}

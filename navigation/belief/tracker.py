@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief import motion_modes, track_particles
-from navigation.belief.association import Indices, assign, overlapping
+from navigation.belief.association import Indices, assign
+from navigation.belief.association_kernel import overlapping
 from navigation.belief.belief import Motion, Track
 from navigation.belief.correlated_noise import variance_inflation
 from navigation.belief.sightings import Sightings
@@ -128,8 +129,8 @@ class Tracker:
                 z[i], raw[i] = seen.of_radius(column, o.radius, o.radius_sigma)
         inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o in objects]
         R = raw * np.array(inflation)[:, None, None]
-        surprise = motion_modes.surprise(modes, rows, z, raw)
-        for i in np.flatnonzero(surprise > p.gate).tolist():
+        nis = motion_modes.nis(modes, rows, z, raw)
+        for i in np.flatnonzero(nis > p.gate).tolist():
             # Nothing explains where it is: what was known of its motion is void.
             known = modes.at(pairs[i][0])
             begun = motion_modes.begun(z[i], raw[i], max(float(known.moving), 0.5), p)
@@ -137,7 +138,7 @@ class Tracker:
                 part[:] = anew
         motion_modes.update(modes, rows, z, R, p.evidence)
         for i, (o, (row, column)) in enumerate(zip(objects, pairs, strict=True)):
-            self._widen(o, seen.observations[column], inflation[i])
+            self._fuse_radius(o, seen.observations[column], inflation[i])
             o.hits += 1
             o.misses = 0
             o.expected_for = 0.0
@@ -149,7 +150,7 @@ class Tracker:
             o.presence = 1.0
             o.classify(modes.at(row), p)
 
-    def _widen(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
+    def _fuse_radius(self, o: TrackedObject, observation: Observation, inflation: float) -> None:
         """Fuse the radius, unless the part that was seen tells next to nothing about it."""
         p = self._parameters
         part = observation.cut or observation.occluded
@@ -228,7 +229,7 @@ class Tracker:
         return viewpoint.expects(points, centres, radii, margin=p.view_margin, slack=p.hiding_slack)
 
     def _survives(self, row: int, time: float, dt: float, expected: Mask) -> bool:
-        """Hold a frame without detection against a track; False ends it."""
+        """Count a frame without detection; return whether the track is kept."""
         p, o = self._parameters, self._objects[row]
         age = time - o.last_time
         if o.hits < p.birth_hits:

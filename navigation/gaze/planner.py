@@ -57,7 +57,7 @@ class GazePlanner:
         self._last: GazeDecision | None = None
 
     def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
-        """Choose the gaze; call at every frame or every 0.1 s.
+        """Choose the gaze; call at every frame.
 
         Args:
             belief: what the robot believes.

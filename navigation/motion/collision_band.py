@@ -11,7 +11,7 @@ class CollisionCase(StrEnum):
     """What a robot on a straight line has before it (letters of Fig. 4).
 
     CROSSING: (a) outside the band, the line crosses it.
-    ESCAPE: (b) inside the band, some speed is free.
+    ESCAPE: (b) inside the band; a fast enough robot leaves it, perhaps faster than v_max.
     DEFINITE: (c) inside the band and no speed up to the largest is free.
     RECEDING: (d) outside the band, walking at the mover itself; to stop is safe.
     """

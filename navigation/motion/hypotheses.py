@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Track
-from navigation.motion.bend import mean_velocity
+from navigation.motion.bend_kernel import mean_velocity
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import FilterParameters
 from navigation.value import value

@@ -49,8 +49,8 @@ class FieldScene:
 
 
 @value
-class VirtualForce:
-    """Dynamic virtual obstacle in force and the way out of it.
+class ActiveVirtualObstacle:
+    """A dynamic virtual obstacle in force, and the way out of it.
 
     Attributes:
         obstacle: what the recorder shows.
@@ -65,6 +65,9 @@ class VirtualForce:
     weight: float
 
 
+ActiveVirtualObstacles = tuple[ActiveVirtualObstacle, ...]
+
+
 class MotionField:
     """u_T of eq. (10) with the obstacles of eq. (9) and the virtual ones of eq. (11)."""
 
@@ -75,21 +78,25 @@ class MotionField:
         self._sides = VirtualSides(mover)
 
     def at(
-        self, points: Array, heading: float, scene: FieldScene, forces: tuple[VirtualForce, ...]
+        self,
+        points: Array,
+        heading: float,
+        scene: FieldScene,
+        virtual: ActiveVirtualObstacles,
     ) -> Array:
         """u_T at `points` (..., 2) in W [m] for a robot with `heading` [rad]: (..., 2).
 
-        `forces` in the blend by distance act alike at all points: they belong to one place
+        `virtual` in the blend by distance act alike at all points: they belong to one place
         of the robot.
         """
         p = self._univector
         u_muf = muf(points, heading, scene.target, scene.target_heading, p, side=scene.side)
         if p.blend == "weights":
-            return self._weighted(points, u_muf, scene, forces)
-        return self._blended(points, u_muf, scene, forces)
+            return self._weighted(points, u_muf, scene, virtual)
+        return self._blended(points, u_muf, scene, virtual)
 
     def planned(
-        self, heading: float, scene: FieldScene, forces: tuple[VirtualForce, ...]
+        self, heading: float, scene: FieldScene, virtual: ActiveVirtualObstacles
     ) -> "PlannedField":
         """The field of a decision, for those who watch.
 
@@ -97,11 +104,15 @@ class MotionField:
         around it is without.
         """
         p = self._univector
-        acting = forces if p.blend == "weights" else ()
+        acting = virtual if p.blend == "weights" else ()
         return PlannedField(p, self._mover, heading, scene, acting)
 
     def _weighted(
-        self, points: Array, u_muf: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]
+        self,
+        points: Array,
+        u_muf: Array,
+        scene: FieldScene,
+        virtual: ActiveVirtualObstacles,
     ) -> Array:
         """The printed sum: a virtual obstacle is one more obstacle with S_oe = R_vo."""
         p = self._univector
@@ -116,24 +127,28 @@ class MotionField:
             inside=p.inside,
             signs=scene.signs,
         )
-        if forces:
-            virtual = avoid_obstacle(
+        if virtual:
+            u_virtual = avoid_obstacle(
                 points,
                 scene.target,
-                np.array([f.obstacle.position for f in forces]),
-                np.array([f.obstacle.radius for f in forces]),
+                np.array([f.obstacle.position for f in virtual]),
+                np.array([f.obstacle.radius for f in virtual]),
                 d_e=p.d_e,
                 d_b=p.d_b,
                 k_r=p.k_r,
                 inside=p.inside,
-                outward=np.array([f.outward for f in forces]),
+                outward=np.array([f.outward for f in virtual]),
                 abeam=True,
             )
-            u_auf = np.concatenate([u_auf, virtual], axis=-2)
+            u_auf = np.concatenate([u_auf, u_virtual], axis=-2)
         return weighted_sum(u_muf, u_auf, p.w_muf, p.w_auf)
 
     def _blended(
-        self, points: Array, u_muf: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]
+        self,
+        points: Array,
+        u_muf: Array,
+        scene: FieldScene,
+        virtual: ActiveVirtualObstacles,
     ) -> Array:
         """The sum by distance, with radii that leave the destination reachable."""
         p = self._univector
@@ -158,13 +173,13 @@ class MotionField:
         )
         away = np.asarray(points)[..., None, :] - centres
         ramp = nearness(np.hypot(away[..., 0], away[..., 1]), radii, d_e, p.d_b)
-        g = np.array([[cos(f.direction), sin(f.direction)] for f in forces]).reshape(-1, 2)
-        weight = np.array([f.weight for f in forces])
+        g = np.array([[cos(f.direction), sin(f.direction)] for f in virtual]).reshape(-1, 2)
+        weight = np.array([f.weight for f in virtual])
         return blended_sum(u_muf, u_auf, ramp, g, weight, virtual_weight=p.virtual_weight)
 
-    def own_forces(
+    def own_obstacles(
         self, pose: Array, velocity: Array, scene: FieldScene
-    ) -> tuple[VirtualForce, ...]:
+    ) -> ActiveVirtualObstacles:
         """Virtual obstacles of the own form: uncapped, in the whole band, with a side kept.
 
         Args:
@@ -172,7 +187,7 @@ class MotionField:
             velocity: of the robot in W (2,) [m/s].
             scene: the scene.
         """
-        forces = []
+        virtual = []
         banded = set()
         for index in np.nonzero(scene.obstacles.speed >= self._mover.least_speed)[0].tolist():
             foot = self._foot(pose, scene, index)
@@ -188,11 +203,11 @@ class MotionField:
             banded.add(track)
             side = self._sides.update(track, foot, self._to_goal(pose, scene))
             f = oval(foot.along / length, self._mover.xi)
-            forces.append(
-                self._force(track, foot, side, weight=f, radius=f * s_oe, pose=pose, scene=scene)
+            virtual.append(
+                self._active(track, foot, side, weight=f, radius=f * s_oe, pose=pose, scene=scene)
             )
         self._sides.keep(banded)
-        return tuple(forces)
+        return tuple(virtual)
 
     def _to_goal(self, pose: Array, scene: FieldScene) -> tuple[float, float]:
         """u_muf at the robot."""
@@ -201,11 +216,11 @@ class MotionField:
         phi = float(move_to_goal(pose[:2], pose[2], goal, heading, p, side=scene.side))
         return cos(phi), sin(phi)
 
-    def printed_forces(
+    def printed_obstacles(
         self, pose: Array, velocity: Array, scene: FieldScene, indices: tuple[int, ...]
-    ) -> tuple[VirtualForce, ...]:
+    ) -> ActiveVirtualObstacles:
         """Virtual obstacles as printed, eq. (11) in (9), of the obstacles with these `indices`."""
-        forces = []
+        virtual = []
         u_muf = self._to_goal(pose, scene)
         for index in indices:
             foot = self._foot(pose, scene, index)
@@ -223,12 +238,12 @@ class MotionField:
             if radius is not None:
                 side = -1 if foot.left_of_path(u_muf) < 0.0 else 1
                 track = int(scene.obstacles.ids[index])
-                forces.append(
-                    self._force(
+                virtual.append(
+                    self._active(
                         track, foot, side, weight=1.0, radius=radius, pose=pose, scene=scene
                     )
                 )
-        return tuple(forces)
+        return tuple(virtual)
 
     def _foot(self, pose: Array, scene: FieldScene, index: int) -> PathPoint | None:
         return path_point(
@@ -237,7 +252,7 @@ class MotionField:
             scene.obstacles.velocity[index],
         )
 
-    def _force(
+    def _active(
         self,
         track: int,
         foot: PathPoint,
@@ -247,7 +262,7 @@ class MotionField:
         radius: float,
         pose: Array,
         scene: FieldScene,
-    ) -> VirtualForce:
+    ) -> ActiveVirtualObstacle:
         """Leave the path sideways, more along it the farther the robot is out of the oval."""
         p = self._univector
         nx, ny = foot.normal(side)
@@ -256,7 +271,7 @@ class MotionField:
         turn = float(spiral_turn(gap, radius, p.d_e, p.k_r))
         place = np.array([foot.x, foot.y])
         sign = float(turning_sign(scene.target - place, pose[:2] - place))
-        return VirtualForce(
+        return ActiveVirtualObstacle(
             VirtualObstacle(place, radius, track),
             (outward + sign * turn + pi) % (2.0 * pi) - pi,
             outward,
@@ -272,16 +287,16 @@ class PlannedField:
         univector, mover: parameters of the field.
         heading: of the robot [rad].
         scene: obstacles and destination.
-        forces: virtual obstacles that act wherever they are looked at.
+        virtual: virtual obstacles that act wherever they are looked at.
     """
 
     univector: UnivectorParameters
     mover: MoverParameters
     heading: float
     scene: FieldScene
-    forces: tuple[VirtualForce, ...]
+    virtual: ActiveVirtualObstacles
 
     def at(self, points: Array) -> Array:
         """u_T at `points` (..., 2) in W [m]: (..., 2)."""
         field = MotionField(self.univector, self.mover)
-        return field.at(points, self.heading, self.scene, self.forces)
+        return field.at(points, self.heading, self.scene, self.virtual)

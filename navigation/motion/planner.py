@@ -7,7 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
-from navigation.decision import MotionDecision, SpeedLimits, Task
+from navigation.decision import (
+    DirectionField,
+    MotionDecision,
+    Situation,
+    SpeedLimits,
+    Task,
+    VirtualObstacle,
+)
 from navigation.motion.body_command import body_velocity, idle_velocity
 from navigation.motion.collision_band import CollisionCase, Encounter
 from navigation.motion.collision_filter import CollisionFilter, direction_and_speed
@@ -15,7 +22,7 @@ from navigation.motion.confidence_gate import ground_seen
 from navigation.motion.extended_radius import extended_radius, physical_radius
 from navigation.motion.facing import Facing, arriving
 from navigation.motion.hypotheses import collision_hypotheses
-from navigation.motion.motion_field import FieldScene, MotionField, VirtualForce
+from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, MotionField
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
 from navigation.motion.passing_side import PassingSides
 from navigation.motion.shoulder_check import ShoulderCheck
@@ -25,10 +32,30 @@ from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
 from navigation.transform import velocity_in_world
+from navigation.value import value
 
 Array = NDArray[np.float64]
 
 _NO_DIRECTION = 1e-9
+
+
+@value
+class _Wanted:
+    """What field and velocity modification ask for, before the filter.
+
+    Attributes:
+        direction: in W [rad].
+        speed: along it [m/s].
+        situation: what velocity modification found.
+        virtual: virtual obstacles in force.
+        field: what the direction was taken from; None while only the heading is left to turn to.
+    """
+
+    direction: float
+    speed: float = 0.0
+    situation: Situation = "free"
+    virtual: tuple[VirtualObstacle, ...] = ()
+    field: DirectionField | None = None
 
 
 class Planner:
@@ -84,7 +111,16 @@ class Planner:
             limits=self._limits,
             turn_gain=self._parameters.body.turn_gain,
         )
-        return replace(wanted, velocity=self._body, extended_radii=radii, glance=facing.glance)
+        return MotionDecision(
+            self._body,
+            wanted.direction,
+            wanted.speed,
+            wanted.situation,
+            wanted.virtual,
+            extended_radii=radii,
+            glance=facing.glance,
+            field=wanted.field,
+        )
 
     def _round_obstacles(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
         """The task, or one on the way round still obstacles that block the straight way."""
@@ -103,7 +139,7 @@ class Planner:
     def _filtered(
         self,
         belief: Belief,
-        wanted: MotionDecision,
+        wanted: _Wanted,
         facing: Facing,
         obstacles: ObstacleSet,
     ) -> tuple[float, float]:
@@ -150,38 +186,37 @@ class Planner:
         scene = FieldScene(obstacles, s_oe, psi_sf + psi_ob, task.target, task.heading, side, signs)
         return scene, tuple(zip(obstacles.ids.tolist(), s_oe.tolist(), strict=True))
 
-    def _wanted(self, belief: Belief, task: Task, scene: FieldScene) -> MotionDecision:
+    def _wanted(self, belief: Belief, task: Task, scene: FieldScene) -> _Wanted:
         """Direction of the field and speed along it, before the filter."""
         p = self._parameters
         pose = belief.pose
         if task.aligning:
-            return MotionDecision(self._body, float(pose[2]))
+            return _Wanted(float(pose[2]))
         velocity = velocity_in_world(pose, self._body)
-        forces: tuple[VirtualForce, ...] = ()
+        virtual: ActiveVirtualObstacles = ()
         if p.mover.virtual_obstacle == "own":
-            forces = self._field.own_forces(pose, velocity, scene)
-        direction = self._steer(pose, scene, forces)
+            virtual = self._field.own_obstacles(pose, velocity, scene)
+        direction = self._steer(pose, scene, virtual)
         distance = hypot(*(task.target - pose[:2]).tolist())
         desired = self._limits.forward * arrival_gain(distance, task.is_goal, p.univector)
         encounters = self._encounters(pose, direction, scene)
         speed = self._modified(encounters, direction, velocity, desired)
         if p.mover.virtual_obstacle == "printed":
             blocked = self._blocking(encounters, speed)
-            forces = self._field.printed_forces(pose, velocity, scene, blocked)
-            if forces:
-                direction = self._steer(pose, scene, forces)
+            virtual = self._field.printed_obstacles(pose, velocity, scene, blocked)
+            if virtual:
+                direction = self._steer(pose, scene, virtual)
         self._direction = direction
         allowed = min(speed.speed, self._gate(belief, direction))
-        return MotionDecision(
-            self._body,
+        return _Wanted(
             direction,
             allowed,
             speed.situation,
-            tuple(f.obstacle for f in forces),
-            field=self._field.planned(float(pose[2]), scene, forces),
+            tuple(f.obstacle for f in virtual),
+            field=self._field.planned(float(pose[2]), scene, virtual),
         )
 
-    def _facing(self, belief: Belief, task: Task, wanted: MotionDecision) -> Facing:
+    def _facing(self, belief: Belief, task: Task, wanted: _Wanted) -> Facing:
         """Where the body turns to: the task's heading at the goal, else to its way or aside."""
         p = self._parameters
         if arriving(belief.pose[:2], task, p.univector.holonomic_distance):
@@ -197,8 +232,8 @@ class Planner:
         aside = self._shoulder.aside(belief, course, speed)
         return Facing(aside=aside, glance=self._shoulder.glance())
 
-    def _steer(self, pose: Array, scene: FieldScene, forces: tuple[VirtualForce, ...]) -> float:
-        u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, forces).tolist()
+    def _steer(self, pose: Array, scene: FieldScene, virtual: ActiveVirtualObstacles) -> float:
+        u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, virtual).tolist()
         if hypot(u_x, u_y) < _NO_DIRECTION:
             return float(pose[2]) if self._direction is None else self._direction
         return atan2(u_y, u_x)

@@ -1,9 +1,8 @@
 """Compiled part of the looks over the shoulder: how overdue each sector of the ground is.
 
-A fear is (feared speed of what was not seen [m/s], radius of the robot [m], least speed at which it
-comes nearer [m/s], shortest time to contact counted [s], age from which nothing grows worse [s],
-largest urgency of a point). Sectors are (middle, half width)
-from the way (n, 2) [rad].
+A fear is (feared speed of what was not seen [m/s], radius of the robot [m], least speed at which
+it comes nearer [m/s], shortest time to contact counted [s], age from which nothing grows worse [s],
+largest urgency of a point [1]). Sectors are (middle, half width) from the way (n, 2) [rad].
 """
 
 from math import atan2, ceil, cos, hypot, pi, sin

@@ -2,6 +2,7 @@
 
 from math import inf
 
+from navigation.decision import Situation
 from navigation.motion.collision_band import Encounter, free_intervals
 from navigation.value import value
 
@@ -14,11 +15,11 @@ class ModifiedSpeed:
 
     Attributes:
         speed: to walk with [m/s].
-        situation: free, accelerate, brake, escape or path_change.
+        situation: what was found.
     """
 
     speed: float
-    situation: str
+    situation: Situation
 
 
 def needed_acceleration(speed: float, wanted: float, contact_time: float, footstep: float) -> float:
@@ -68,7 +69,7 @@ def modify_speed(
     if above:
         time = min((e.touch_time(above[0]) for e in encounters), default=inf)
         if needed_acceleration(now, above[0], time, footstep) <= acceleration:
-            situation = "escape" if standing_hits else "accelerate"
+            situation: Situation = "escape" if standing_hits else "accelerate"
             return ModifiedSpeed(min(v_max, above[0] + _TOUCH), situation)
     below = [high for _, high in intervals if high < desired]
     if below and (wait_in_band or not trapped(encounters, desired, horizon)):

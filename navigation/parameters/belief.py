@@ -15,7 +15,8 @@ class LocalizationParameters:
     map: Literal["beacons", "none"] = "beacons"
     """beacons: their known places; none: the static obstacles it meets, as if there were none."""
     drift: NonNegative = 0.0001
-    """Random walk of position and heading that the odometry's covariance lacks [m/s^0.5]."""
+    """Random walk of position and heading that the odometry's covariance lacks
+    [m/s^0.5, rad/s^0.5]."""
     gate: Positive = 13.8
     """Normalised innovation squared above which a beacon sighting is rejected [1]."""
     lost_run: Annotated[int, Ge(2)] = 8
@@ -79,7 +80,7 @@ class TrackingParameters:
     top_speed: Positive = 0.2
     """Speed that no obstacle exceeds [m/s]."""
     reach_sigmas: NonNegative = 3.0
-    """Standard deviations of its last sighting by which an obstacle may be farther off [1]."""
+    """Size of the last sighting's ellipse in the reach, in standard deviations [1]."""
     reversal_rate: NonNegative = 1.0 / 12.0
     """Rate at which a mover turns back [1/s]."""
     start_rate: Positive = 0.01
@@ -89,8 +90,8 @@ class TrackingParameters:
     correlation_time: NonNegative = 0.03
     """Correlation time of the error of successive detections of one obstacle [s]."""
     lasting_error: NonNegative = 0.15
-    """Share of the standard deviation of its best detection that all detections of what stands
-    still have in common, so that no number of them brings it down [1]."""
+    """Error common to all detections of a static obstacle, as a share of its best detection's
+    standard deviation; averaging does not reduce it [1]."""
     static_velocity_sigma: Positive = 0.005
     """Standard deviation of each component of the velocity of a static track [m/s]."""
     gate: Positive = 13.8
@@ -102,8 +103,8 @@ class TrackingParameters:
     intruder_density: Positive = 0.004
     """Density of new obstacles where the floor was seen empty: movers not met before [1/m²]."""
     birth_range: Positive = 3.5
-    """Distance beyond which no track begins; below the range of vision, for of what is at its
-    limit only those sightings are reported that err short [m]."""
+    """Distance beyond which no track begins: below the range of vision, near which only
+    sightings that err short are reported [m]."""
     birth_hits: Annotated[int, Ge(2)] = 2
     """Detections that make a track [1]."""
     birth_time: Positive = 0.5

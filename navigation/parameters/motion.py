@@ -182,11 +182,11 @@ class FilterParameters:
     sigma_limit: NonNegative = 0.06
     """Largest part of a mover's position uncertainty added to that [m]."""
     inside_weight: NonNegative = 10.0
-    """Penalty besides of a contact with what the robot is too near to already [1]."""
+    """Extra penalty of a contact with a disc the robot is already in [1]."""
     inside_depth: NonNegative = 40.0
-    """The same for how much too near, as a share of the distance kept [1]."""
+    """Extra penalty for the depth in it, as a share of its radius [1]."""
     inside_closing: NonNegative = 100.0
-    """The same for every speed at which it comes nearer still [s/m]."""
+    """Extra penalty per closing speed [s/m]."""
 
 
 @dataclass(frozen=True)

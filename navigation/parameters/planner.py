@@ -39,7 +39,7 @@ class NPostureParameters:
     gain: Positive = 2.29
     """Winding n of the posture field [1]."""
     offset: Positive = 0.0545
-    """Distance d of the point behind the destination that bends the field [m]."""
+    """Distance d of the point beyond the destination that bends the field [m]."""
     lead: NonNegative = 1.03
     """Displacement K_o of an obstacle per velocity relative to the robot [s]."""
     d_min: NonNegative = 0.0278

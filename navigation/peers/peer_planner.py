@@ -14,7 +14,7 @@ from navigation.motion.facing import arriving
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
-from navigation.peers.planning_scene import Envelope, PlanningScene
+from navigation.peers.planning_scene import BodyEnvelope, PlanningScene
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,9 @@ class PeerPlanner:
         self._parameters = parameters
         self._limits = limits
         self._avoidance = avoidance
-        self._envelope = Envelope(limits, parameters.body.turn_gain, parameters.filter.turn_change)
+        self._envelope = BodyEnvelope(
+            limits, parameters.body.turn_gain, parameters.filter.turn_change
+        )
         self._arrival = ArrivalSide(parameters.univector)
         self._body = np.zeros(3)
 

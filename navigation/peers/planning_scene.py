@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Envelope:
+class BodyEnvelope:
     """What the body can do.
 
     Attributes:
@@ -68,7 +68,7 @@ class PlanningScene:
     speed: float
     facing: float | None
     side: int
-    envelope: Envelope
+    envelope: BodyEnvelope
 
     def wanted(self) -> Array:
         """Velocity towards the destination in W (2,) [m/s]."""

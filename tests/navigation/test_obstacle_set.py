@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion
-from navigation.obstacle_set import ObstacleSet, _deviations, largest_deviation
+from navigation.obstacle_set import ObstacleSet, largest_deviation
 
 
 def test_largest_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
@@ -14,12 +14,6 @@ def test_largest_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
     c, s = np.cos(0.7), np.sin(0.7)
     turn = np.array([[c, -s], [s, c]])
     assert [largest_deviation(q) for q in turn @ p @ turn.T] == pytest.approx(expected)
-    both = np.zeros((50, 4, 4))
-    both[:, :2, :2], both[:, 2:, 2:] = p, p[::-1]
-    for deviations in (_deviations, _deviations.py_func):
-        places, velocities = deviations(both)
-        assert places == pytest.approx(expected)
-        assert velocities == pytest.approx(expected[::-1])
 
 
 def test_static_tracks_have_no_speed(track):

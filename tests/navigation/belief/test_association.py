@@ -2,7 +2,7 @@ from itertools import permutations
 
 import numpy as np
 
-from navigation.belief.association import assign, overlapping
+from navigation.belief.association import assign
 
 
 def pairs(costs):
@@ -33,13 +33,3 @@ def test_nothing_is_paired_at_a_loss():
 def test_nothing_to_pair():
     assert pairs(np.empty((0, 3))) == []
     assert pairs(np.empty((2, 0))) == []
-
-
-def test_overlapping_are_the_pairs_nearer_than_their_radii():
-    rng = np.random.default_rng(1)
-    centres, radii = rng.uniform(-1, 1, (12, 2)), rng.uniform(0.1, 0.3, 12)
-    apart = np.hypot(*(centres[:, None] - centres).transpose(2, 0, 1))
-    wanted = np.argwhere(np.triu(apart < radii[:, None] + radii, 1))
-    assert np.array_equal(overlapping(centres, radii), wanted)
-    assert np.array_equal(overlapping.py_func(centres, radii), wanted)
-    assert 3 < len(wanted) < 60

@@ -45,7 +45,7 @@ def test_compiled_and_plain_agree():
     for function, arguments, changed in (
         (kernel.interact, (weights, states, covariances, change(1), 0.3, 5e-3, 0.04), ()),
         (kernel.move_on, (states, covariances, 0.3, 0.02, 1e-4, 0.9, 0.04), (0, 1)),
-        (kernel.surprise, (states, covariances, rows, z, R), ()),
+        (kernel.nis, (states, covariances, rows, z, R), ()),
         (kernel.costs, (weights, states, covariances, z, R, 13.8), ()),
         (kernel.correct, (states[0, 1], covariances[0, 1], z[0], R[0]), (0, 1)),
         (kernel.update, (weights, states, covariances, rows, z, R, 6.0, 1e-6), (0, 1, 2)),
@@ -183,7 +183,7 @@ def test_costs_are_those_of_the_gaussian_mixture_up_to_their_constant():
             assert found[k, m] == pytest.approx(-2 * np.log(likelihood + 1e-30))
             off = [(z[m] - g.mean, g.cov) for g in gaussians]
             least[k, m] = min(y @ np.linalg.solve(S, y) for y, S in off)
-    assert kernel.surprise(states, covariances, np.arange(4), z, R) == pytest.approx(np.diag(least))
+    assert kernel.nis(states, covariances, np.arange(4), z, R) == pytest.approx(np.diag(least))
     gate = np.median(least)
     gated = kernel.costs(weights, states, covariances, z, R, gate)
     assert np.array_equal(np.isfinite(gated), least < gate)

@@ -39,7 +39,7 @@ def test_compiled_and_plain_agree(drawn):
         (kernel.difference, (seen[1], seen[2], 2)),
         (kernel.transform, (points, mean_weights, weights, P, 3)),
         (kernel.cross_covariance, (points, pose, seen, seen[0], weights, 2)),
-        (kernel.distances, (points, mean_weights, weights, landmarks, z, noise)),
+        (kernel.nis, (points, mean_weights, weights, landmarks, z, noise)),
         (kernel.together, (noise, 2e-5, 0.9)),
     ):
         assert same(function(*arguments), function.py_func(*arguments))
@@ -83,7 +83,7 @@ def test_a_landmark_is_seen_as_from_everywhere_else(drawn):
 
 def test_the_distance_is_that_of_the_innovation(drawn):
     _, _, points, mean_weights, weights, landmarks, z, noise = drawn
-    found = kernel.distances(points, mean_weights, weights, landmarks, z, noise)
+    found = kernel.nis(points, mean_weights, weights, landmarks, z, noise)
     for i in range(3):
         seen = np.array([kernel.sighted(p, landmarks[i : i + 1]) for p in points])
         centre, S = kernel.transform(seen, mean_weights, weights, noise[i], 2)

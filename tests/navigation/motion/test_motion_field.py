@@ -88,26 +88,26 @@ def test_the_blend_is_continuous_where_it_begins(track):
 def test_a_mover_in_whose_band_the_robot_stands_pushes_it_sideways(track):
     field = MotionField(EXTENDED.univector, EXTENDED.mover)
     s = scene([track((1.0, 0.02), (-0.1, 0.0))])
-    (force,) = field.own_forces(np.zeros(3), np.array([0.15, 0.0]), s)
-    assert force.obstacle.track_id == 1
-    assert force.obstacle.position == pytest.approx([0.0, 0.02])
-    assert 0.0 < force.weight < 1.0
-    u = field.at(np.zeros(2), 0.0, s, (force,))
+    (active,) = field.own_obstacles(np.zeros(3), np.array([0.15, 0.0]), s)
+    assert active.obstacle.track_id == 1
+    assert active.obstacle.position == pytest.approx([0.0, 0.02])
+    assert 0.0 < active.weight < 1.0
+    u = field.at(np.zeros(2), 0.0, s, (active,))
     assert abs(u[1]) > 0.3
 
 
 def test_leaving_or_standing_obstacles_have_no_virtual_one(track):
     field = MotionField(EXTENDED.univector, EXTENDED.mover)
     for t in (track((1, 0), (0.1, 0)), track((1, 0)), track((1, 1), (-0.1, 0))):
-        assert field.own_forces(np.zeros(3), np.zeros(2), scene([t])) == ()
+        assert field.own_obstacles(np.zeros(3), np.zeros(2), scene([t])) == ()
 
 
 def test_the_printed_form_enters_the_sum_as_an_obstacle(track):
     field = MotionField(PAPER.univector, PAPER.mover)
     s = scene([track((0.8, -0.2), (-0.1, 0.06))], PAPER)
-    (force,) = field.printed_forces(np.zeros(3), np.array([0.15, 0.0]), s, (0,))
-    assert force.obstacle.radius <= np.hypot(*force.obstacle.position) + 1e-12
-    with_it = field.at(np.zeros(2), 0.0, s, (force,))
+    (active,) = field.printed_obstacles(np.zeros(3), np.array([0.15, 0.0]), s, (0,))
+    assert active.obstacle.radius <= np.hypot(*active.obstacle.position) + 1e-12
+    with_it = field.at(np.zeros(2), 0.0, s, (active,))
     without = field.at(np.zeros(2), 0.0, s, ())
     assert with_it != pytest.approx(without)
 
@@ -119,7 +119,7 @@ def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(t
         held = replace(s, side=side)
         way = field.at(np.zeros(2), 0.0, replace(held, obstacles=scene([]).obstacles,
                        s_oe=np.zeros(0), psi=np.zeros(0)), ())  # fmt: skip
-        (printed,) = field.printed_forces(np.zeros(3), np.array([0.15, 0.0]), held, (0,))
+        (printed,) = field.printed_obstacles(np.zeros(3), np.array([0.15, 0.0]), held, (0,))
         assert np.sin(printed.outward) * way[1] > 0.5 * abs(way[1]) > 0.1
 
 
@@ -176,8 +176,8 @@ def test_the_printed_virtual_obstacle_acts_before_a_mover_head_on(lateral, track
     """Fig. 4 (c): its centre lies abeam, where the third condition of (9) would drop it."""
     field = MotionField(PAPER.univector, PAPER.mover)
     s = scene([track((1.6, lateral), (-0.1, 0.0))], PAPER)
-    forces = field.printed_forces(np.zeros(3), np.array([0.2, 0.0]), s, (0,))
-    without, with_it = (field.at(np.zeros(2), 0.0, s, f) for f in ((), forces))
+    virtual = field.printed_obstacles(np.zeros(3), np.array([0.2, 0.0]), s, (0,))
+    without, with_it = (field.at(np.zeros(2), 0.0, s, f) for f in ((), virtual))
     assert without[1] == pytest.approx(0.0)
     away = np.copysign(1.0, lateral) if abs(lateral) > 0.01 else 1.0
     assert -0.25 - 1e-9 <= away * with_it[1] < -0.2
@@ -198,17 +198,17 @@ def test_rigid_motion_moves_field_and_forces_along(p, track):
             [track(r @ centre + shift, r @ velocity), track(r @ [0.5, 0.6] + shift)],
             p, r @ TARGET + shift, 0.3 + a,
         )  # fmt: skip
-        forces = []
+        virtual = []
         for s, at, v in ((here, pose, walking), (there, turned, r @ walking)):
             field = MotionField(p.univector, p.mover)
             if p is PAPER:
-                found = field.printed_forces(at, v, s, (0,))
+                found = field.printed_obstacles(at, v, s, (0,))
             else:
-                found = field.own_forces(at, v, s)
+                found = field.own_obstacles(at, v, s)
             # The printed circle goes through the robot: rounding decides whether it is inside.
             u = field.at(at[:2], at[2], s, () if p is PAPER else found)
-            forces.append((found, u))
-        (own, u), (moved, u_moved) = forces
+            virtual.append((found, u))
+        (own, u), (moved, u_moved) = virtual
         assert u_moved == pytest.approx(r @ u, abs=1e-9)
         for f, g in zip(own, moved, strict=True):
             acting += 1
@@ -222,12 +222,14 @@ def test_rigid_motion_moves_field_and_forces_along(p, track):
 def test_the_own_force_has_the_oval_of_its_relative_speed(track):
     p = EXTENDED
     s = scene([track((1.0, 0.1), (-0.1, 0.0))])
-    (force,) = MotionField(p.univector, p.mover).own_forces(np.zeros(3), np.array([0.15, 0.0]), s)
+    (active,) = MotionField(p.univector, p.mover).own_obstacles(
+        np.zeros(3), np.array([0.15, 0.0]), s
+    )
     length = p.mover.path_time * 0.25
-    assert force.weight == pytest.approx(oval(1.0 / length, p.mover.xi))
-    assert force.obstacle.radius == pytest.approx(force.weight * s.s_oe[0])
+    assert active.weight == pytest.approx(oval(1.0 / length, p.mover.xi))
+    assert active.obstacle.radius == pytest.approx(active.weight * s.s_oe[0])
     unsure = replace(s, psi=np.ones(1))
-    (force,) = MotionField(p.univector, p.mover).own_forces(
+    (active,) = MotionField(p.univector, p.mover).own_obstacles(
         np.zeros(3), np.array([0.15, 0.0]), unsure
     )
-    assert force.weight == pytest.approx(oval(1.0 / (length + p.univector.eta_imp), p.mover.xi))
+    assert active.weight == pytest.approx(oval(1.0 / (length + p.univector.eta_imp), p.mover.xi))

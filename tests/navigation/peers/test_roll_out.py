@@ -5,7 +5,7 @@ import pytest
 
 from navigation.decision import Task
 from navigation.obstacle_set import ObstacleSet
-from navigation.peers.planning_scene import Envelope, PlanningScene
+from navigation.peers.planning_scene import BodyEnvelope, PlanningScene
 from navigation.peers.roll_out import contact_cost, gaps, roll_out
 
 DT = 0.34
@@ -23,7 +23,7 @@ def scene(tracks, limits, pose=(0.0, 0.0, 0.0), body=(0.0, 0.0, 0.0)):
         speed=0.2,
         facing=None,
         side=0,
-        envelope=Envelope(limits, 1.5, 0.4),
+        envelope=BodyEnvelope(limits, 1.5, 0.4),
     )
 
 

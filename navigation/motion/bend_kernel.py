@@ -1,4 +1,4 @@
-"""Bends: the mean velocity of what turns while it moves."""
+"""Compiled part of bends: the mean velocity of what turns while it moves."""
 
 from math import cos, sin
 

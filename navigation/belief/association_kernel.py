@@ -1,0 +1,27 @@
+"""Compiled part of the association: which tracks may be one."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@njit(cache=True)
+def overlapping(centres: Array, radii: Array) -> Indices:
+    """Pairs i < j of discs that overlap (k, 2), by i, then j.
+
+    Args:
+        centres: (n, 2) [m].
+        radii: (n,) [m].
+    """
+    n, count = len(radii), 0
+    pairs = np.empty((n * (n - 1) // 2, 2), np.int64)
+    for i in range(n):
+        for j in range(i + 1, n):
+            dx, dy = centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1]
+            if dx * dx + dy * dy < (radii[i] + radii[j]) ** 2:
+                pairs[count, 0], pairs[count, 1] = i, j
+                count += 1
+    return pairs[:count]
