@@ -30,9 +30,7 @@ def integrated_votes(
     p = parameters.gaze
     votes = map_votes(scene, p.w_lm, p.map_votes)
     votes.append(way_vote(scene, belief, task, p.w_way, parameters))
-    seen = scene.attended & scene.reachable
-    pan = np.clip(scene.bearing[seen], -p.pan_limit, p.pan_limit)
-    tilt = np.arctan2(parameters.evaluation.aim_height - scene.camera_height, scene.distance[seen])
+    seen, pan, tilt = scene.aims(parameters)
     share = 1.0 / max(1, len(pan)) if p.obstacle_votes == "mean" else 1.0
     votes.append(Votes(pan, tilt, share * p.w_ob * scene.psi_ob[seen]))
     votes += self_votes(scene, pan, tilt, p)

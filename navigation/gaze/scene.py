@@ -65,6 +65,13 @@ class GazeScene:
         """Largest psi_ob over the set O."""
         return float(self.psi_ob[self.attended].max(initial=0.0))
 
+    def aims(self, parameters: NavigationParameters) -> tuple[Mask, Array, Array]:
+        """Which obstacles of O are within reach (n,), and pan and tilt to each (k,), (k,) [rad]."""
+        limit, height = parameters.gaze.pan_limit, parameters.evaluation.aim_height
+        seen = self.attended & self.reachable
+        pan = np.clip(self.bearing[seen], -limit, limit)
+        return seen, pan, np.arctan2(height - self.camera_height, self.distance[seen])
+
 
 def relative(points: Array, pose: Array) -> tuple[Array, Array]:
     """Bearing in R (n,) [rad] and distance (n,) [m] of points in W (n, 2) [m]."""

@@ -38,10 +38,7 @@ def urgency_votes(
         parameters: of the decisions.
     """
     p = parameters.gaze
-    seen = scene.attended & scene.reachable
-    pan = np.clip(scene.bearing[seen], -p.pan_limit, p.pan_limit)
-    aim = parameters.evaluation.aim_height
-    tilt = np.arctan2(aim - scene.camera_height, scene.distance[seen])
+    seen, pan, tilt = scene.aims(parameters)
     votes = map_votes(scene, p.w_lm, p.map_votes)
     votes.append(way_vote(scene, belief, task, p.w_way, parameters))
     votes.append(Votes(pan, tilt, p.w_ob * obstacle_urgency(scene, way, speed, parameters)[seen]))

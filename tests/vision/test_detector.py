@@ -195,7 +195,7 @@ def test_a_beacon_behind_an_obstacle_keeps_its_name_or_is_not_seen() -> None:
     for distance in np.linspace(0.5, 2.9, 13).tolist():
         scene = [*beacon(3.0, 0.0, "yellow", "magenta"), at(distance, 0.5, "red", 0.12)]
         names = [d.label for d in see(scene, pose(tilt=-0.1)) if d.kind == "beacon"]
-        assert names in ([], ["yellow/magenta"])
+        assert names == ["yellow/magenta"] or (names == [] and distance > 2.6)
 
 
 def test_one_reserved_colour_alone_is_no_beacon() -> None:
@@ -207,7 +207,9 @@ def test_beacons_close_to_each_other_in_the_image_do_not_swap_colours() -> None:
     names = {"yellow/cyan", "magenta/yellow"}
     for y in np.linspace(0.0, 0.4, 9).tolist():
         scene = beacon(2.5, 0.0, "yellow", "cyan") + beacon(3.2, y, "magenta", "yellow")
-        assert {d.label for d in see(scene, pose(tilt=-0.1))} <= names
+        seen = {d.label for d in see(scene, pose(tilt=-0.1))}
+        assert seen <= names
+    assert seen == names
 
 
 @pytest.mark.parametrize("value", [0, 128, 255])
@@ -221,11 +223,13 @@ def test_an_image_of_one_colour_locates_nothing(colour) -> None:
     assert DETECTOR.detect(image, pose()) == ()
 
 
-@pytest.mark.parametrize("tilt", [-1.2, -0.4, 0.4])
+@pytest.mark.parametrize("tilt", [-1.2, -0.4])
 def test_noise_yields_nothing_but_finite_detections(tilt: float) -> None:
     rng = np.random.default_rng(7)
     image = rng.integers(0, 256, (240, 320, 3), dtype=np.uint8)
-    for detection in DETECTOR.detect(image, pose(tilt=tilt, sigma=0.01)):
+    detections = DETECTOR.detect(image, pose(tilt=tilt, sigma=0.01))
+    assert detections
+    for detection in detections:
         assert np.isfinite([detection.distance, detection.bearing, detection.radius]).all()
         assert np.linalg.eigvalsh(detection.covariance).min() > 0.0
 
@@ -235,8 +239,7 @@ def test_what_cannot_be_located_in_finite_numbers_is_not_detected(unknown) -> No
     view = pose(tilt=-0.1)
     image = paint([at(1.0, 5.0, "green"), at(2.0, -20.0, "red"), at(1.6, 20.0, "blue")], view)
     assert len(DETECTOR.detect(image, view)) == 3
-    for detection in DETECTOR.detect(image, replace(view, **unknown)):
-        assert np.isfinite([detection.distance, detection.bearing, detection.radius]).all()
+    assert DETECTOR.detect(image, replace(view, **unknown)) == ()
 
 
 def test_pixel_noise_moves_a_detection_by_no_more_than_its_uncertainty() -> None:

@@ -197,7 +197,13 @@ def test_particles_where_the_camera_looks_in_vain_are_given_up(view, observe):
         stage.show()
     viewpoint = Viewpoint.of(view(pan=0.0), np.zeros(3), 2.5)
     for t in stage.tracks:
-        in_view = viewpoint.contains(t.particles.positions, margin=stage.parameters.view_margin)
+        in_view = viewpoint.expects(
+            t.particles.positions,
+            np.zeros((0, 2)),
+            np.zeros(0),
+            margin=stage.parameters.view_margin,
+            slack=0.0,
+        )
         assert t.particles.weights[in_view].sum() < 0.2
     assert before.particles.weights.sum() == pytest.approx(1.0)
 
