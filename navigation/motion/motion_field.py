@@ -78,11 +78,7 @@ class MotionField:
         self._sides = VirtualSides(mover)
 
     def at(
-        self,
-        points: Array,
-        heading: float,
-        scene: FieldScene,
-        virtual: ActiveVirtualObstacles,
+        self, points: Array, heading: float, scene: FieldScene, virtual: ActiveVirtualObstacles
     ) -> Array:
         """u_T at `points` (..., 2) in W [m] for a robot with `heading` [rad]: (..., 2).
 
@@ -108,11 +104,7 @@ class MotionField:
         return PlannedField(p, self._mover, heading, scene, acting)
 
     def _weighted(
-        self,
-        points: Array,
-        u_muf: Array,
-        scene: FieldScene,
-        virtual: ActiveVirtualObstacles,
+        self, points: Array, u_muf: Array, scene: FieldScene, virtual: ActiveVirtualObstacles
     ) -> Array:
         """The printed sum: a virtual obstacle is one more obstacle with S_oe = R_vo."""
         p = self._univector
@@ -144,11 +136,7 @@ class MotionField:
         return weighted_sum(u_muf, u_auf, p.w_muf, p.w_auf)
 
     def _blended(
-        self,
-        points: Array,
-        u_muf: Array,
-        scene: FieldScene,
-        virtual: ActiveVirtualObstacles,
+        self, points: Array, u_muf: Array, scene: FieldScene, virtual: ActiveVirtualObstacles
     ) -> Array:
         """The sum by distance, with radii that leave the destination reachable."""
         p = self._univector

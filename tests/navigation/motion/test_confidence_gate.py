@@ -5,7 +5,7 @@ import pytest
 
 from navigation.belief.visibility import Viewpoint
 from navigation.gaze.gate_vote import gate_vote
-from navigation.motion.confidence_gate import gate_points
+from navigation.motion.confidence_gate import gate_points, ground_seen
 from navigation.parameters.motion import GateParameters
 from navigation.parameters.navigation import NavigationParameters
 
@@ -42,3 +42,10 @@ def test_ground_that_holds_the_robot_up_asks_for_a_look_within_the_pan_stop(way,
     assert vote.pan == pytest.approx(np.clip(way, -p.gaze.pan_limit, p.gaze.pan_limit))
     assert 0.47 / -np.tan(vote.tilt) == pytest.approx(0.5 * (P.near + P.far))
     assert gate_vote(seen, way, 0.47, 0.8, p) == []
+
+
+def test_ground_is_seen_where_every_point_of_it_was(belief):
+    b = belief(pose=(0.0, 0.0, 2.0), confidence=lambda x, y: P.confidence - 1e-9 * (y > 0.05))
+    assert ground_seen(b, -0.5 * np.pi, P)
+    assert not ground_seen(b, 0.0, P)
+    assert not ground_seen(b, 0.5 * np.pi, P)
