@@ -317,6 +317,7 @@ def _servo_gains(path: str) -> dict[str, tuple[float, float]]:
     """Stiffness and damping of every position servo, by joint; Pinocchio does not read them.
 
     MuJoCo saves a position servo as a general actuator with affine bias; both are understood.
+    An actuator without stiffness holds no position.
     """
     root = ElementTree.parse(path).getroot()
     defaults: dict[tuple[str, str], dict[str, str]] = {}
@@ -340,10 +341,11 @@ def _servo_gains(path: str) -> dict[str, tuple[float, float]]:
             if kind == "position":
                 gain = float(values.get("kp", "1")), float(values.get("kv", "0"))
             elif values.get("biastype") == "affine":
-                bias = [float(value) for value in values["biasprm"].split()]
-                gain = -bias[1], -bias[2] if len(bias) > 2 else 0.0
+                given = [float(value) for value in values.get("biasprm", "").split()]
+                _, stiffness, damping = (*given, 0.0, 0.0, 0.0)[:3]  # what is left out is zero
+                gain = -stiffness, -damping
             else:
                 continue
-            if "joint" in values:
+            if "joint" in values and gain[0] > 0.0:
                 gains[values["joint"]] = gain
     return gains

@@ -151,6 +151,17 @@ def test_servos_saved_by_mujoco_are_understood(tmp_path, robot):
     np.testing.assert_array_equal(saved.damping, robot.damping)
 
 
+@pytest.mark.parametrize("bias", ["", 'biasprm="0"', 'biasprm="0 0 -1"'])
+def test_an_affine_actuator_without_stiffness_is_no_position_servo(tmp_path, bias):
+    text = MODEL.read_text(encoding="utf-8")
+    servo = re.search(r'<position [^>]*joint="l_knee"[^>]*/>', text).group()
+    path = tmp_path / "limp.xml"
+    limp = f'<general biastype="affine" {bias} joint="l_knee"/>'
+    path.write_text(text.replace(servo, limp), encoding="utf-8")
+    with pytest.raises(ValueError, match="no position servo for l_knee"):
+        RobotModel.from_mjcf(path)
+
+
 def test_the_pendulum_is_lower_than_the_mass_centre_because_the_feet_stay(robot):
     trunk = robot.com(robot.ready)[2] + 5.0 / 6.0 * robot.legs[0].length
     assert 0.8 * trunk < robot.pendulum_height() < trunk
