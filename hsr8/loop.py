@@ -28,7 +28,7 @@ from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
-from walking.state import Phase
+from walking.phase import Phase
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
 FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]

@@ -15,10 +15,10 @@ from navigation.observation import CameraView, Frame, Observation
 from vision.camera import CameraPose
 from vision.detection import Detection
 from vision.parameters import PoseParameters
-from walking.body.odometry import increment
+from walking.body.odometry import Odometry, increment
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.sensing import BodySensors
-from walking.state import HeadCameraPose, Odometry, WalkingState
+from walking.state import HeadCameraPose, WalkingState
 from walking.targets import JointTargets
 from walking.value import value
 from walking.walker import Walker

@@ -15,19 +15,21 @@ from dataclasses import dataclass, field
 from math import cos, hypot, sin
 from pathlib import Path
 
-from walking.body.robot_model import RobotModel, Sole
+from walking.body.robot_model import RobotModel
+from walking.body.sole import Sole
 from walking.command import Command, CommandState, VelocityCommand
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.steering import Steering
 from walking.footsteps.stride import STILL
 from walking.gait.gait import Gait
 from walking.gait.transition import Transition
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
+from walking.pattern.dcm_tracker import dcm_reference
 from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import PendulumState, dcm_reference
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import SupportRegion, support_region
-from walking.state import Footstep
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -102,7 +104,7 @@ class Walker:
         self.lipm.calls.clear()
         self.planner = FootstepPlanner(gait, self.parameters.limits, sole)
         h = gait.half_stance
-        stance = (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0))
+        stance = (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0))
         self.gait = Gait(self.parameters, self.planner, stance)
         self.steering = Steering(
             self.planner, self.parameters.limits, selective=self.generator.selective
@@ -111,7 +113,7 @@ class Walker:
         start = self.gait.plan(stance[1], self.planner.still, moving=False)[-1]
         self.state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
         self.clipped = self.cost = self.late = self.missed = 0.0
-        self.feet: tuple[Footstep, ...] = stance
+        self.feet: tuple[Foothold, ...] = stance
 
     @property
     def evaluations(self) -> int:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.command import VelocityCommand
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 

@@ -23,8 +23,8 @@ from walking.body.robot_model import READY, RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.robot_measures import HSR_VIII
 from walking.similarity import carried, parameters_for
-from walking.yardsticks import HSR_VIII
 
 import mujoco
 import numpy as np
@@ -170,7 +170,7 @@ class Walker:
 
         def scaled(now: float) -> tuple[VelocityCommand, HeadTarget]:
             command, head = script(now / self.time)
-            return carried(command, HSR_VIII, self.model.yardsticks()), head
+            return carried(command, HSR_VIII, self.model.measures()), head
 
         return scaled
 
@@ -199,7 +199,7 @@ def build(name: str, folder: Path, *, derived: bool = True) -> Walker:
         path=path,
         model=model,
         parameters=parameters if derived else WalkingParameters(),
-        time=model.yardsticks().time / HSR_VIII.time,
+        time=model.measures().time / HSR_VIII.time,
     )
 
 
@@ -249,7 +249,7 @@ def steady(walker: Walker, asked: VelocityCommand, seed: int, duration: float) -
     velocity = mean_velocity(trace, 3.0 * walker.time, stride)
     command, _ = script(0.0)
     given = np.array([command.forward, command.left, command.turn])
-    main, leg = int(np.argmax(np.abs(given))), walker.model.yardsticks().leg
+    main, leg = int(np.argmax(np.abs(given))), walker.model.measures().leg
     unit = sqrt(GRAVITY * leg) if main < 2 else sqrt(GRAVITY / leg)
     reached = float(velocity[main])
     return replace(summary(trace), share=reached / given[main], number=reached / unit)
@@ -272,7 +272,7 @@ def pushed(walker: Walker, seed: int, impulse: float) -> Outcome:
     """
     rng = np.random.default_rng([seed, 3])
     script = walker.similar(steady_script(VelocityCommand(0.1, 0.0, 0.0)))
-    strength = impulse * walker.model.mass * sqrt(GRAVITY * walker.model.yardsticks().leg)
+    strength = impulse * walker.model.mass * sqrt(GRAVITY * walker.model.measures().leg)
     length, tilts, falls, steps = PUSH_TIME * walker.time, [], 0, 0
     for direction, phase in enumerate(np.random.default_rng([seed, 5]).uniform(size=8)):
         angle = 0.25 * pi * direction

@@ -13,12 +13,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise, product
 
 from walking.body.joints import LEFT_LEG, LEG_JOINTS, RIGHT_LEG
-from walking.body.odometry import increment
+from walking.body.odometry import Odometry, increment
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.state import Odometry
 
 import mujoco
 import numpy as np

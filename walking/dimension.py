@@ -1,23 +1,22 @@
-"""What a parameter goes with from robot to robot.
+"""How parameters scale with the robot: dynamic similarity.
 
 A parameter that is a length grows with the legs, one that is a time with the period of the
 pendulum. Such powers of the robot's own measures are all that it takes to carry a choice that
 was made for one robot over to another: the walk of a robot of twice the size is then the same
-walk in longer steps and slower time (dynamic similarity; with gravity the same, equal Froude
-numbers v²/(g leg); Alexander, "Optimization and gaits in the locomotion of vertebrates",
-Physiol. Rev. 1989).
+walk in longer steps and slower time (with gravity the same, equal Froude numbers v²/(g leg);
+Alexander, "Optimization and gaits in the locomotion of vertebrates", Physiol. Rev. 1989).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from walking.yardsticks import Yardsticks
+from walking.robot_measures import RobotMeasures
 
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """A product of powers of a robot's measures, see `Yardsticks`.
+    """A product of powers of a robot's measures, see `RobotMeasures`.
 
     Attributes:
         leg, hip, sole, time, weight, ankle: the powers.
@@ -43,10 +42,10 @@ class Dimension:
     def _powers(self) -> tuple[float, ...]:
         return self.leg, self.hip, self.sole, self.time, self.weight, self.ankle
 
-    def carry(self, value: float, old: Yardsticks, new: Yardsticks) -> float:
+    def carry(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
         """What `value` of the robot with measures `old` is for one with measures `new`."""
         factor = 1.0
-        for power, a, b in zip(self._powers, old.measures(), new.measures(), strict=True):
+        for power, a, b in zip(self._powers, old.values(), new.values(), strict=True):
             factor *= (b / a) ** power
         return value * factor
 
@@ -55,7 +54,7 @@ class Dimension:
 class ShareLeft:
     """A share of something that is left after a control tick, as of an exponential decay."""
 
-    def carry(self, value: float, old: Yardsticks, new: Yardsticks) -> float:
+    def carry(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
         """The share that leaves as much after the same phase of the gait."""
         return float(value ** (old.time / new.time))
 
@@ -64,7 +63,7 @@ class ShareLeft:
 class ShareTaken:
     """A share of a difference that is made up for in a control tick."""
 
-    def carry(self, value: float, old: Yardsticks, new: Yardsticks) -> float:
+    def carry(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
         """The share that makes up for as much in the same phase of the gait."""
         if old.time == new.time:
             return value  # not even rounded

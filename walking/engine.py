@@ -25,7 +25,7 @@ from walking.gait.gait import Gait
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import PendulumState
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import Footing, SupportRegion
 from walking.sensing import BodySensors
 from walking.servos.head import Head

@@ -7,7 +7,7 @@ from typing import Any, TypeVar, get_type_hints
 from walking.body.robot_model import RobotModel
 from walking.dimension import Dimension, Rule, ShareLeft, ShareTaken
 from walking.parameters import WalkingParameters
-from walking.yardsticks import HSR_VIII, Yardsticks
+from walking.robot_measures import HSR_VIII, RobotMeasures
 
 Section = TypeVar("Section")
 
@@ -21,11 +21,11 @@ def parameters_for(robot: RobotModel, given: WalkingParameters | None = None) ->
             is kept, the rest is the robot's own.
     """
     defaults = WalkingParameters()
-    own = carried(defaults, HSR_VIII, robot.yardsticks())
+    own = carried(defaults, HSR_VIII, robot.measures())
     return own if given is None else _chosen(given, defaults, own)
 
 
-def carried(parameters: Section, old: Yardsticks, new: Yardsticks) -> Section:
+def carried(parameters: Section, old: RobotMeasures, new: RobotMeasures) -> Section:
     """Parameters of a robot with measures `old`, made those of one with measures `new`.
 
     Args:

@@ -6,12 +6,14 @@ from numpy.typing import NDArray
 from walking import snapshot_kernel
 from walking.body.joints import HEAD
 from walking.body.measurement import BodyMeasurement
+from walking.body.odometry import Odometry
 from walking.body.robot_model import RobotModel
+from walking.foothold import Foothold
 from walking.gait.gait import Gait
-from walking.pattern.pattern import PendulumState
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import Footing
 from walking.sensing import BodySensors
-from walking.state import Balance, Footstep, HeadCameraPose, Odometry, foothold
+from walking.state import Balance, HeadCameraPose
 from walking.value import value
 
 Array = NDArray[np.float64]
@@ -30,7 +32,7 @@ class PlanSeen:
         balance: planned and measured motion in detail.
     """
 
-    footsteps: tuple[Footstep, ...]
+    footsteps: tuple[Foothold, ...]
     zmp: Array
     dcm: Array
     com: Array
@@ -92,7 +94,7 @@ def plan_seen(
         footsteps,
     )
     return PlanSeen(
-        footsteps=tuple(map(foothold, footsteps.tolist())),
+        footsteps=tuple(map(Foothold.from_row, footsteps.tolist())),
         zmp=points[0],
         dcm=points[1],
         com=points[4],

@@ -1,75 +1,15 @@
 """What walking knows of itself after a tick: odometry, camera pose, gait."""
 
-from enum import StrEnum
-
 import numpy as np
 from numpy.typing import NDArray
 
 from walking.admission import AdmissionReport
+from walking.body.odometry import Odometry
+from walking.foothold import Foothold
+from walking.phase import Phase
 from walking.value import value
 
 Array = NDArray[np.float64]
-
-
-class Phase(StrEnum):
-    """Phase of the gait, or of a fall: getting up, or given up."""
-
-    STANDING = "standing"
-    DOUBLE_SUPPORT = "double"
-    LEFT_SUPPORT = "left"
-    RIGHT_SUPPORT = "right"
-    GETTING_UP = "up"
-    FALLEN = "fallen"
-
-    @property
-    def down(self) -> bool:
-        """Whether the robot is off its feet, so that neither odometry nor camera pose hold."""
-        return self in (Phase.GETTING_UP, Phase.FALLEN)
-
-
-@value
-class Footstep:
-    """A foothold in the plan frame; in a `WalkingState`, in the odometry frame.
-
-    Attributes:
-        left: whether it is the left foot.
-        x, y: position of the foot frame on the floor [m].
-        yaw: direction of the foot [rad].
-    """
-
-    left: bool
-    x: float
-    y: float
-    yaw: float
-
-    @property
-    def row(self) -> tuple[float, float, float, float]:
-        """As compiled code has it: x, y, yaw, and 1 for a left foot, 0 for a right one."""
-        return self.x, self.y, self.yaw, 1.0 if self.left else 0.0
-
-
-def foothold(row: list[float]) -> Footstep:
-    """The foothold of a row, see `Footstep.row`."""
-    x, y, yaw, left = row
-    return Footstep(left > 0.0, x, y, yaw)
-
-
-@value
-class Odometry:
-    """Pose of the robot frame R in the odometry frame, which drifts.
-
-    Attributes:
-        x, y: position [m].
-        yaw: heading [rad], unwrapped.
-        covariance: of the error since the start, as a displacement and a turn of the whole
-            odometry frame about its origin (3, 3) [m², m rad, rad²]. The errors of successive
-            stretches add up there; `odometry.increment` takes those of one stretch out again.
-    """
-
-    x: float
-    y: float
-    yaw: float
-    covariance: Array
 
 
 @value
@@ -139,7 +79,7 @@ class WalkingState:
     odometry: Odometry
     camera: HeadCameraPose
     given: Array
-    footsteps: tuple[Footstep, ...]
+    footsteps: tuple[Foothold, ...]
     zmp: Array
     dcm: Array
     com: Array

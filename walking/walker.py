@@ -11,9 +11,10 @@ from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.get_up.get_up import GetUp, Outcome
 from walking.parameters import WalkingParameters
+from walking.phase import Phase
 from walking.rehearsal import rehearse
 from walking.sensing import BodySensors
-from walking.state import Phase, WalkingState
+from walking.state import WalkingState
 from walking.targets import JointTargets
 
 

@@ -23,7 +23,8 @@ from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
 from walking.admission import Limit
 from walking.body.joints import JOINT_NAMES
-from walking.state import Phase, WalkingState
+from walking.phase import Phase
+from walking.state import WalkingState
 
 Array = NDArray[np.float64]
 

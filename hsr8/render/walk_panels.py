@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.walking_table import PHASES, WalkingTable
-from walking.state import Phase
+from walking.phase import Phase
 
 Array = NDArray[np.float64]
 

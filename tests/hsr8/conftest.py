@@ -19,8 +19,11 @@ from navigation.decision import GazeDecision, MotionDecision, Task, VirtualObsta
 from navigation.observation import CameraView, Frame
 from navigation.parameters.belief import LocalMapParameters
 from vision.detection import Detection
+from walking.body.odometry import Odometry
 from walking.command import HeadTarget, VelocityCommand
-from walking.state import Balance, Footstep, HeadCameraPose, Odometry, Phase, WalkingState
+from walking.foothold import Foothold
+from walking.phase import Phase
+from walking.state import Balance, HeadCameraPose, WalkingState
 
 NQ = 33
 READY = np.concatenate([[0.0, 0.0, 0.245, 1.0, 0.0, 0.0, 0.0], np.zeros(NQ - 7)])
@@ -194,8 +197,8 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
             camera=HeadCameraPose(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3),
             given=np.array([0.2, 0.0, 0.0]),
             footsteps=(
-                Footstep(True, x, y + 0.035, yaw),
-                Footstep(False, x + 0.05, y - 0.035, yaw),
+                Foothold(True, x, y + 0.035, yaw),
+                Foothold(False, x + 0.05, y - 0.035, yaw),
             ),
             zmp=np.array([x, y]),
             dcm=np.array([x, y]),

@@ -16,7 +16,7 @@ from hsr8.scenario.loader import load
 from hsr8.snapshot import MAGIC, decode, encode
 from navigation.belief.belief import Motion
 from walking.get_up.get_up import Outcome
-from walking.state import Phase
+from walking.phase import Phase
 
 ANCHORS = {"model": None, "robot model": None}
 

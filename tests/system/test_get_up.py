@@ -13,7 +13,7 @@ from walking.body.robot_model import RobotModel
 from walking.get_up.get_up import GetUp, Outcome
 from walking.get_up.key_posture import STRAIGHT
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
-from walking.state import Phase
+from walking.phase import Phase
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"
 PUSH = 'fault=[{kind="push",start=0.8,size=4.0,direction_deg=0}]'

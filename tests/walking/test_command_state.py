@@ -7,12 +7,13 @@ import pytest
 
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import Strides, Timing
 from walking.gait.gait import Gait
 from walking.gait.swing_foot_kernel import HEIGHT
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.state import Footstep, Phase
+from walking.phase import Phase
 
 AHEAD = HeadTarget()
 PARAMETERS = WalkingParameters()
@@ -102,7 +103,7 @@ def test_strides_and_timing_are_read_back_as_the_command_state(robot, forward, d
 def gait(robot):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
     h = PARAMETERS.gait.half_stance
-    gait = Gait(PARAMETERS, planner, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
+    gait = Gait(PARAMETERS, planner, (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)))
     gait.start(0)
     return gait
 

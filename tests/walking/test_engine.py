@@ -11,7 +11,7 @@ from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.footsteps.planner import STANCE_TURN
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.state import Phase
+from walking.phase import Phase
 
 AHEAD = HeadTarget()
 GENERATORS = ["dcm", "preview", "paper", "robust"]

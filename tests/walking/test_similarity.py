@@ -17,19 +17,19 @@ from walking.dimension import (
     TIME,
 )
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
+from walking.robot_measures import HSR_VIII, RobotMeasures
 from walking.similarity import carried, parameters_for, rules_of
-from walking.yardsticks import HSR_VIII, Yardsticks
 
 SECTIONS = [type(getattr(WalkingParameters(), f.name)) for f in fields(WalkingParameters)]
 
 
-def scaled(y: Yardsticks, size: float) -> Yardsticks:
-    return Yardsticks(
+def scaled(y: RobotMeasures, size: float) -> RobotMeasures:
+    return RobotMeasures(
         y.leg * size, y.hip * size, y.sole * size, y.time * sqrt(size), y.weight * size**3, y.ankle
     )
 
 
-SLENDER = Yardsticks(leg=0.4, hip=0.05, sole=0.035, time=0.19, weight=90.0, ankle=0.2)
+SLENDER = RobotMeasures(leg=0.4, hip=0.05, sole=0.035, time=0.19, weight=90.0, ankle=0.2)
 
 
 def numbers(parameters: WalkingParameters) -> dict[str, float]:
@@ -50,7 +50,7 @@ def test_every_number_says_what_it_goes_with(section):
 
 def test_the_parameters_of_the_reference_are_the_defaults(robot):
     # After a change of the model: choose the defaults for it, then give HSR_VIII its measures.
-    assert robot.yardsticks() == HSR_VIII
+    assert robot.measures() == HSR_VIII
     assert parameters_for(robot) == WalkingParameters()
 
 
@@ -60,7 +60,7 @@ def test_a_choice_is_kept_and_the_rest_is_the_robots_own(robot):
     assert parameters_for(robot, given) == given
 
     class Giant:
-        def yardsticks(self):
+        def measures(self):
             return scaled(HSR_VIII, 4.0)
 
     made = parameters_for(Giant(), given)
@@ -135,7 +135,7 @@ def test_dimensions_multiply():
 
 
 def test_measures_follow_the_mass_and_the_servos(robot):
-    y = robot.yardsticks()
+    y = robot.measures()
     assert y.leg == pytest.approx(sum(astuple(robot.legs[0])[3:]), rel=1e-5)
     height = GRAVITY * y.time**2
     assert y.ankle == pytest.approx(robot.mass * GRAVITY * height / robot.stiffness[4], rel=1e-5)

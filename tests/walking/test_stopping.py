@@ -2,14 +2,14 @@
 
 import pytest
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.command import VelocityCommand
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.steering import Steering
 from walking.footsteps.stride import STILL
 from walking.gait.gait import Gait
 from walking.parameters import WalkingParameters
-from walking.state import Footstep
 
 PARAMETERS = WalkingParameters()
 LIMITS = PARAMETERS.limits
@@ -28,7 +28,7 @@ FASTEST = [
 def walk(velocity, stop_at, *, selective):
     """Footsteps completed by the command to stop and by the time of standing."""
     h = PARAMETERS.gait.half_stance
-    gait = Gait(PARAMETERS, PLANNER, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
+    gait = Gait(PARAMETERS, PLANNER, (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)))
     steering = Steering(PLANNER, LIMITS, selective=selective)
     gait.start(0)
     at_stop = 0

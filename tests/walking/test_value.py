@@ -2,7 +2,7 @@ import pickle
 
 import pytest
 
-from walking.state import Footstep
+from walking.foothold import Foothold
 from walking.value import value
 
 
@@ -24,5 +24,5 @@ def test_a_value_has_no_room_for_anything_else():
 
 
 def test_a_value_survives_a_copy_to_another_process():
-    step = Footstep(left=True, x=0.1, y=0.2, yaw=0.3)
+    step = Foothold(left=True, x=0.1, y=0.2, yaw=0.3)
     assert pickle.loads(pickle.dumps(step)) == step

@@ -11,7 +11,7 @@ from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.get_up.get_up import Outcome
 from walking.parameters import GetUpParameters, WalkingParameters
-from walking.state import Phase
+from walking.phase import Phase
 from walking.walker import Walker
 
 AHEAD, FORWARD = HeadTarget(), VelocityCommand(0.2, 0.0, 0.0)

@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from walking.foothold import Foothold
 from walking.gait.gait import Gait
+from walking.pattern.dcm_tracker import DcmTracker
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import DcmTracker, PatternGenerator, PendulumState
+from walking.pattern.pattern import PatternGenerator
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
 from walking.pattern.support import SupportRegion
-from walking.state import Footstep
 
 
 class CatchingPendulum:
@@ -49,7 +51,7 @@ class CatchingPendulum:
         """Whether the body has left the plan."""
         return self.planned is not self.state
 
-    def advance(self, ramps: Sequence[ZmpRamp], landing: Footstep, region: SupportRegion) -> None:
+    def advance(self, ramps: Sequence[ZmpRamp], landing: Foothold, region: SupportRegion) -> None:
         """One tick.
 
         Args:

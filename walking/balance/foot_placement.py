@@ -3,15 +3,16 @@
 from walking.admission import Limit
 from walking.balance.catching import CatchingPendulum
 from walking.balance.stabilizer import Capture, Stabilizer
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL, Strides, Velocity
 from walking.gait.gait import Gait
 from walking.gait.transition import Transition
+from walking.pattern.dcm_tracker import dcm_reference
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import PatternGenerator, dcm_reference
+from walking.pattern.pattern import PatternGenerator
 from walking.pattern.ramps import Ramps
 from walking.pattern.support import SupportRegion
-from walking.state import Footstep
 
 Point = tuple[float, float]
 NOT_MOVED: Point = (0.0, 0.0)
@@ -59,7 +60,7 @@ class FootPlacement:
         self.moving = False
 
     @property
-    def landing(self) -> Footstep:
+    def landing(self) -> Foothold:
         """Landing of the plan, without what balance adds."""
         return self._transition.landing
 
@@ -112,7 +113,7 @@ class FootPlacement:
 
     def _reference(
         self, wish: Strides, velocity: Velocity, region: SupportRegion
-    ) -> tuple[Ramps, Footstep]:
+    ) -> tuple[Ramps, Foothold]:
         """Reference of the plan that the generator admits, and the landing in it."""
         gait, transition = self._gait, self._transition
         if not self._selects:
@@ -141,7 +142,7 @@ class FootPlacement:
             return True
         return gait.adjustable and not self._planner.same(gait.nominal(wish), transition.landing)
 
-    def _catch(self, landing: Footstep, ramps: Ramps, wish: Strides, error: Point) -> Ramps:
+    def _catch(self, landing: Foothold, ramps: Ramps, wish: Strides, error: Point) -> Ramps:
         """Aim at the landing that catches the body; the reference that goes with it."""
         gait, caught = self._gait, landing
         capture = self._capture(landing, ramps, error)
@@ -163,7 +164,7 @@ class FootPlacement:
             ramps = gait.plan(gait.landing, wish, moving=self.moving)
         return ramps
 
-    def _capture(self, landing: Footstep, ramps: Ramps, error: Point) -> Capture | None:
+    def _capture(self, landing: Foothold, ramps: Ramps, error: Point) -> Capture | None:
         """What the footholds of the plan do not catch of the measured DCM, if anything."""
         gait, w = self._gait, self._lipm.omega
         pendulum = self._catching.state

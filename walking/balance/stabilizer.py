@@ -3,13 +3,13 @@
 from math import cos, exp, sin
 
 from walking.balance.pole_placement import dcm_gain
-from walking.balance.saturation import beyond
 from walking.balance.step_timing import catching_time
 from walking.body.robot_model import RobotModel
+from walking.dead_zone import dead_zone
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.pattern.support import SupportRegion
-from walking.state import Footstep
 from walking.value import value
 
 ROUNDING = 1e-6  # ticks that a time divided into them may lack
@@ -24,7 +24,7 @@ class Capture:
         ticks: after which it has to carry [1].
     """
 
-    landing: Footstep
+    landing: Foothold
     ticks: int
 
 
@@ -56,20 +56,20 @@ class Stabilizer:
         x, y = region.clip(zmp[0] + gain * error[0], zmp[1] + gain * error[1])
         return x - zmp[0], y - zmp[1]
 
-    def exceeds(self, foot: Footstep, error: tuple[float, float], share: float) -> bool:
+    def exceeds(self, foot: Foothold, error: tuple[float, float], share: float) -> bool:
         """Whether a DCM error is more than a share of the room that the ZMP has [m]."""
         x, y = self._in_foot(foot, error)
         return abs(x) > share * self._room[0] or abs(y) > share * self._room[1]
 
-    def holds(self, foot: Footstep, error: tuple[float, float]) -> bool:
+    def holds(self, foot: Foothold, error: tuple[float, float]) -> bool:
         """Whether the ankles hold a DCM error, so that no landing is moved [m]."""
         return not self.exceeds(foot, error, self._parameters.capture_dead_zone)
 
     def capture(
         self,
         planner: FootstepPlanner,
-        support: Footstep,
-        landing: Footstep,
+        support: Foothold,
+        landing: Foothold,
         error: tuple[float, float],
         reference: tuple[float, float],
         *,
@@ -91,8 +91,8 @@ class Stabilizer:
         """
         p = self._parameters
         x, y = self._in_foot(support, error)
-        x = beyond(x, p.capture_dead_zone * self._room[0])
-        y = beyond(y, p.capture_dead_zone * self._room[1])
+        x = dead_zone(x, p.capture_dead_zone * self._room[0])
+        y = dead_zone(y, p.capture_dead_zone * self._room[1])
         growth = exp(self._omega * ticks_left * CONTROL_PERIOD)
         dx = min(p.capture_forward, max(-p.capture_forward, growth * x))
         dy = min(p.capture_side, max(-p.capture_side, growth * y))
@@ -106,10 +106,11 @@ class Stabilizer:
             self._in_foot(support, (caught.x - landing.x, caught.y - landing.y)),
             strict=True,
         ):
-            time = min(time, catching_time(self._omega, planned, beyond(off, room), ahead, reach))
+            missing = dead_zone(off, room)
+            time = min(time, catching_time(self._omega, planned, missing, ahead, reach))
         return Capture(caught, int(time / CONTROL_PERIOD + ROUNDING))
 
     @staticmethod
-    def _in_foot(foot: Footstep, vector: tuple[float, float]) -> tuple[float, float]:
+    def _in_foot(foot: Foothold, vector: tuple[float, float]) -> tuple[float, float]:
         c, s = cos(foot.yaw), sin(foot.yaw)
         return c * vector[0] + s * vector[1], c * vector[1] - s * vector[0]

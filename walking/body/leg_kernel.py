@@ -22,9 +22,10 @@ Pose = tuple[float, float, float, float, float, float]
 Angles = tuple[float, float, float, float, float, float]
 """Hip yaw, roll, pitch, knee, ankle pitch, roll [rad]."""
 
-Balance = tuple[Point, Point, Array]
-"""Directions of the left and of the right foot [rad]; by how much the ankles are to move the ZMP,
-in the plan frame [m]; angular velocity of the trunk (3,) [rad/s]."""
+AnkleTask = tuple[Point, Point, Array]
+"""What the ankles are to do besides carrying: directions of the left and of the right foot [rad];
+by how much they are to move the ZMP, in the plan frame [m]; angular velocity of the trunk, which
+they damp (3,) [rad/s]."""
 
 # Numbers that stay are rows of arrays: a tuple is taken apart at every call.
 
@@ -278,7 +279,7 @@ def offsets(
     right_load: float,
     base: float,
     legs: Array,
-    balance: Balance,
+    task: AnkleTask,
     ankles: Array,
     found: Array,
 ) -> None:
@@ -296,7 +297,7 @@ def offsets(
         right_load: share of the weight on the right foot [1].
         base: its height above the floor [m].
         legs: left and right, see `Leg` (2, 6).
-        balance: what the ankles are to do besides.
+        task: what the ankles are to do besides.
         ankles: see `ankle`.
         found: the offsets, set (26,) [rad].
     """
@@ -326,17 +327,17 @@ def offsets(
     for index in range(2):
         load = right_load if index else left_load
         if load > 0.0:
-            pitch, roll = ankle(balance, index, load, ankles)
+            pitch, roll = ankle(task, index, load, ankles)
             found[6 * index + 4] += pitch
             found[6 * index + 5] += roll
 
 
 @njit(cache=True)
-def ankle(balance: Balance, index: int, load: float, ankles: Array) -> Point:
+def ankle(task: AnkleTask, index: int, load: float, ankles: Array) -> Point:
     """Set-points of pitch and roll that move the ZMP of a foot.
 
     Args:
-        balance: what the ankles are to do.
+        task: what the ankles are to do.
         index: of the foot.
         load: share of the weight on it [1].
         ankles: weight of the robot [N]; stiffness of pitch and of roll [N m/rad]; damping by the
@@ -345,7 +346,7 @@ def ankle(balance: Balance, index: int, load: float, ankles: Array) -> Point:
     Returns:
         both [rad].
     """
-    yaw, (dx, dy), gyro = balance[0][index], balance[1], balance[2]
+    yaw, (dx, dy), gyro = task[0][index], task[1], task[2]
     c, s = cos(yaw), sin(yaw)
     x, y = c * dx + s * dy, c * dy - s * dx
     weight, damping = ankles[0] * load, ankles[3] * load

@@ -7,13 +7,30 @@ from numpy.typing import NDArray
 
 from walking.body import estimation_kernel
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
-from walking.state import Odometry
 from walking.value import value
 
 Array = NDArray[np.float64]
 
 # Where xx, xy … of the covariance are in the state, see `walking.body.estimation_kernel`.
 COVARIANCE = np.array([[14, 15, 16], [15, 17, 18], [16, 18, 19]])
+
+
+@value
+class Odometry:
+    """Pose of the robot frame R in the odometry frame, which drifts.
+
+    Attributes:
+        x, y: position [m].
+        yaw: heading [rad], unwrapped.
+        covariance: of the error since the start, as a displacement and a turn of the whole
+            odometry frame about its origin (3, 3) [m², m rad, rad²]. The errors of successive
+            stretches add up there; `increment` takes those of one stretch out again.
+    """
+
+    x: float
+    y: float
+    yaw: float
+    covariance: Array
 
 
 @value

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import asin, atan2, sqrt
 from os import PathLike, fspath
 from typing import Any
@@ -15,8 +14,9 @@ from numpy.typing import NDArray
 from walking.body import head_kernel
 from walking.body.joints import HEAD, HEAD_JOINTS, JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 from walking.body.leg_kinematics import FootPose, LegDimensions, foot_pose, leg_angles
+from walking.body.sole import Sole
 from walking.parameters import GRAVITY
-from walking.yardsticks import Yardsticks
+from walking.robot_measures import RobotMeasures
 
 Array = NDArray[np.float64]
 
@@ -27,21 +27,6 @@ SERVOS = ("position", "general")  # elements of MJCF that can be a position serv
 FITS = 1e-5  # error of a foot's pose that is rounding [m, rad]
 # Columns are the camera's right, down and forward in the frame of the head, which looks along x.
 R_HC = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-
-
-@dataclass(frozen=True, slots=True)
-class Sole:
-    """Rectangle of a sole in the foot frame.
-
-    Attributes:
-        centre: middle of the sole ahead of the ankle [m].
-        half_length: half of its length [m].
-        half_width: half of its width [m].
-    """
-
-    centre: float
-    half_length: float
-    half_width: float
 
 
 class RobotModel:
@@ -201,8 +186,8 @@ class RobotModel:
         force, moment = (moved - still)[[0, 4]].tolist()
         return float((moment + height * force) / self.mass)
 
-    def yardsticks(self) -> Yardsticks:
-        """The measures that a walk goes with.
+    def measures(self) -> RobotMeasures:
+        """The measures by which a walk scales.
 
         They have six digits: no more is known of a robot, and the rounding of a file's reader
         shall not alter a walk.
@@ -218,7 +203,7 @@ class RobotModel:
             weight,
             weight * height / stiffness,
         )
-        return Yardsticks(*(float(f"{measure:.6g}") for measure in exact))
+        return RobotMeasures(*(float(f"{measure:.6g}") for measure in exact))
 
     def camera_pose(self, joint_position: Array) -> tuple[Array, Array]:
         """Rotation R_BC (3, 3) and position p_BC (3,) [m] of the head camera."""

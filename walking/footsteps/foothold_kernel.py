@@ -10,7 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Foothold = tuple[float, float, float, float]
+Row = tuple[float, float, float, float]
+"""A foothold, see `Foothold.row`."""
+
 Placement = tuple[float, float, float]
 Placements = tuple[Placement, Placement]
 """Landing in the frame of the support foot, x, y [m] and direction [rad]: the right foot's and the
@@ -28,9 +30,9 @@ RAMP = 13  # numbers of a ramp, see `Ramps`
 
 @njit(cache=True)
 def onwards(
-    unloading: Foothold,
-    support: Foothold,
-    landing: Foothold,
+    unloading: Row,
+    support: Row,
+    landing: Row,
     chain: Chain,
     moving: bool,
     zmp: tuple[float, float],
@@ -43,9 +45,7 @@ def onwards(
 
 
 @njit(cache=True)
-def sequence(
-    support: Foothold, landing: Foothold, chain: Chain, moving: bool
-) -> tuple[Array, bool]:
+def sequence(support: Row, landing: Row, chain: Chain, moving: bool) -> tuple[Array, bool]:
     """Footholds from `landing` on, and whether the walk ends after the last.
 
     Args:
@@ -76,8 +76,8 @@ def sequence(
 
 @njit(cache=True)
 def ramps(
-    unloading: Foothold,
-    support: Foothold,
+    unloading: Row,
+    support: Row,
     steps: Array,
     zmp: tuple[float, float],
     ticks: tuple[int, int, int, int, int],
@@ -125,7 +125,7 @@ def ramps(
 
 
 @njit(cache=True)
-def _landing(support: Foothold, strides: Placements) -> Foothold:
+def _landing(support: Row, strides: Placements) -> Row:
     """Next foothold of the foot that is not `support`."""
     x, y, turned = strides[0] if support[3] > 0.0 else strides[1]
     c, s = cos(support[2]), sin(support[2])
@@ -138,7 +138,7 @@ def _landing(support: Foothold, strides: Placements) -> Foothold:
 
 
 @njit(cache=True)
-def _under(foot: Foothold, spot: Spot) -> tuple[float, float]:
+def _under(foot: Row, spot: Spot) -> tuple[float, float]:
     """ZMP under a foot that carries alone [m]."""
     forward = spot[0]
     inward = -spot[1] if foot[3] > 0.0 else spot[1]
@@ -154,8 +154,8 @@ def _ramp(
     ay: float,
     bx: float,
     by: float,
-    one: Foothold,
-    two: Foothold,
+    one: Row,
+    two: Row,
 ) -> None:
     row[0], row[1], row[2], row[3], row[4] = ticks, ax, ay, bx, by
     row[5], row[6], row[7], row[8] = one

@@ -3,13 +3,13 @@
 from math import cos, sin, sqrt
 
 from walking.admission import Limit
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.command import CommandState
+from walking.foothold import Foothold
 from walking.footsteps import stride_kernel
 from walking.footsteps.foothold_kernel import Chain
 from walking.footsteps.stride import STILL, Strides, Timing, Velocity
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters
-from walking.state import Footstep
 
 PLACE_TOLERANCE = 0.024  # between footholds that count as the same, of half the stance [1]
 TURN_TOLERANCE = 1e-3  # between their directions [rad]
@@ -54,7 +54,7 @@ class FootstepPlanner:
         tendency = left / self._limits.lateral + turn / self._limits.turn
         return None if tendency == 0.0 else tendency > 0.0
 
-    def landing(self, support: Footstep, wish: Strides) -> Footstep:
+    def landing(self, support: Foothold, wish: Strides) -> Foothold:
         """Next foothold of the foot that is not `support`."""
         return self._at(support, *(wish.right if support.left else wish.left))
 
@@ -187,7 +187,7 @@ class FootstepPlanner:
         right, left, _ = stride_kernel.strides(velocity, time, self._longest, self._build)
         return Strides(right=right, left=left)
 
-    def reachable(self, support: Footstep, landing: Footstep, dx: float, dy: float) -> Footstep:
+    def reachable(self, support: Foothold, landing: Foothold, dx: float, dy: float) -> Foothold:
         """`landing` moved by dx, dy [m], kept within reach and clear of the support foot."""
         side = 1.0 if landing.left else -1.0
         c, s = cos(support.yaw), sin(support.yaw)
@@ -217,7 +217,7 @@ class FootstepPlanner:
             self._gait.preview_steps,
         )
 
-    def parallel(self, support: Footstep, other: Footstep) -> bool:
+    def parallel(self, support: Foothold, other: Foothold) -> bool:
         """Whether the two feet stand side by side as for standing, or nearly so.
 
         A foot that meets the floor early, or is moved to keep the balance, lands beside its
@@ -231,7 +231,7 @@ class FootstepPlanner:
             and abs(rest.yaw - other.yaw) < turned
         )
 
-    def same(self, one: Footstep, other: Footstep) -> bool:
+    def same(self, one: Foothold, other: Foothold) -> bool:
         """Whether two footholds of a foot differ by no more than counts."""
         return one is other or (
             abs(one.x - other.x) < self._near
@@ -240,9 +240,9 @@ class FootstepPlanner:
         )
 
     @staticmethod
-    def _at(support: Footstep, x: float, y: float, turned: float) -> Footstep:
+    def _at(support: Foothold, x: float, y: float, turned: float) -> Foothold:
         c, s = cos(support.yaw), sin(support.yaw)
-        return Footstep(
+        return Foothold(
             left=not support.left,
             x=support.x + c * x - s * y,
             y=support.y + s * x + c * y,

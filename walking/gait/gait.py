@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL, Strides, Timing
 from walking.gait import swing_foot_kernel
@@ -13,7 +14,7 @@ from walking.gait.swing_reaction import NO_SWINGS, Swings
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.ramps import Ramps, ZmpRamp, table_of
 from walking.pattern.zmp_reference import ZmpReference
-from walking.state import Footstep, Phase, foothold
+from walking.phase import Phase
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -57,7 +58,7 @@ class Gait:
         self,
         parameters: WalkingParameters,
         planner: FootstepPlanner,
-        stance: tuple[Footstep, Footstep],
+        stance: tuple[Foothold, Foothold],
     ) -> None:
         gait = parameters.gait
         self._planner = planner
@@ -118,7 +119,7 @@ class Gait:
         return self._shift.zmp_at(self._tick, goal)
 
     @property
-    def support_feet(self) -> tuple[Footstep, Footstep]:
+    def support_feet(self) -> tuple[Foothold, Foothold]:
         """The unloading and the loading foot in double support, the same foot twice in single."""
         loading = self.footholds[self.support]
         return (self.footholds[self.swing] if self.double else loading), loading
@@ -135,7 +136,7 @@ class Gait:
         self._begin(support, ticks, self.zmp, self.right_weight)
         self._shift_fixed = not at_once
 
-    def nominal(self, wish: Strides) -> Footstep:
+    def nominal(self, wish: Strides) -> Foothold:
         """Landing that the wish asks for."""
         support, (known, by, landing) = self.footholds[self.support], self._nominal
         if wish is not known or support is not by:
@@ -168,7 +169,7 @@ class Gait:
             return not self.stepping
         return shift.end == timing.double if self.double else single.ticks == timing.single
 
-    def hasten(self, ticks: int, landing: Footstep) -> bool:
+    def hasten(self, ticks: int, landing: Foothold) -> bool:
         """End single support `ticks` from now, or as soon after as the foot can be down.
 
         Args:
@@ -227,17 +228,17 @@ class Gait:
         """The weight shift under way made to end in another tick."""
         return WeightShift(self._tick, end, self.zmp, self.right_weight)
 
-    def aim(self, wanted: Footstep) -> None:
+    def aim(self, wanted: Foothold) -> None:
         """Move the landing towards `wanted`, in the air no faster than allowed."""
         self.landing = self.aimed(self.landing, wanted)
 
-    def aimed(self, landing: Footstep, wanted: Footstep) -> Footstep:
+    def aimed(self, landing: Foothold, wanted: Foothold) -> Foothold:
         """A landing moved towards `wanted` by as much as one tick allows."""
         if wanted is landing or self.swing_phase == 0.0:
             return wanted
         return moved(landing, wanted, self._move, self._turn)
 
-    def plan(self, landing: Footstep, wish: Strides, *, moving: bool) -> Ramps:
+    def plan(self, landing: Foothold, wish: Strides, *, moving: bool) -> Ramps:
         """ZMP reference from now on if the swing foot lands at `landing`.
 
         Where nothing has changed it is that of the last tick, its first ramp a tick shorter.
@@ -300,7 +301,7 @@ class Gait:
         )
 
     def footsteps(self) -> Array:
-        """Planned footholds in the plan frame, support foot first (n, 4); see `Footstep.row`."""
+        """Planned footholds in the plan frame, support foot first (n, 4); see `Foothold.row`."""
         support = self.footholds[self.support]
         if not self.stepping:
             return np.array([support.row, self.footholds[self.swing].row])
@@ -311,7 +312,7 @@ class Gait:
     def touch_down(self) -> None:
         """The swing foot has met the floor early: leave it where it is."""
         self.held = True
-        self.landing = Footstep(self.swing == 0, *self.feet[self.swing, :HEIGHT].tolist())
+        self.landing = Foothold(self.swing == 0, *self.feet[self.swing, :HEIGHT].tolist())
         self._look_at_clock()
 
     def advance(self, *, moving: bool) -> None:
@@ -346,7 +347,7 @@ class Gait:
         stand(self.feet[swing], self.landing)
         self.completed += 1
         here = self.spots[support]
-        following = foothold(self._future[1].tolist()) if len(self._future) > 1 else None
+        following = Foothold.from_row(self._future[1].tolist()) if len(self._future) > 1 else None
         if not moving and self._planner.parallel(self.footholds[support], self.landing):
             self.stepping = False
             self._tick = 0

@@ -5,17 +5,17 @@ from math import ceil, hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from walking.foothold import Foothold
 from walking.gait.minimum_jerk import PEAK
 from walking.gait.swing_foot_kernel import HEIGHT, RATE, WIDTH
 from walking.parameters import CONTROL_PERIOD
-from walking.state import Footstep
 
 Array = NDArray[np.float64]
 
 ROUNDING = 1e-7  # of a landing that another one is one move away from, of the move [1]
 
 
-def resting(stance: tuple[Footstep, Footstep]) -> Array:
+def resting(stance: tuple[Foothold, Foothold]) -> Array:
     """References of two feet on the floor, see `walking.gait.swing_foot_kernel` (2, 10)."""
     feet = np.zeros((2, WIDTH))
     for foot, foothold in zip(feet, stance, strict=True):
@@ -23,13 +23,13 @@ def resting(stance: tuple[Footstep, Footstep]) -> Array:
     return feet
 
 
-def stand(foot: Array, foothold: Footstep) -> None:
+def stand(foot: Array, foothold: Foothold) -> None:
     """Have a reference (10,) rest on a foothold, at the height it has."""
     foot[:HEIGHT] = foothold.x, foothold.y, foothold.yaw
     foot[RATE:] = 0.0
 
 
-def least_ticks(foot: Array, landing: Footstep, speed: float) -> int:
+def least_ticks(foot: Array, landing: Foothold, speed: float) -> int:
     """Control ticks of a swing from rest to `landing` that peaks at `speed` [m/s].
 
     Args:
@@ -42,7 +42,7 @@ def least_ticks(foot: Array, landing: Footstep, speed: float) -> int:
     return ceil(PEAK * way / (speed * CONTROL_PERIOD))
 
 
-def moved(landing: Footstep, wanted: Footstep, most: float, turn: float) -> Footstep:
+def moved(landing: Foothold, wanted: Foothold, most: float, turn: float) -> Foothold:
     """A landing moved towards another one.
 
     By no more than `most` along x and y [m], and by no more than `turn` [rad]; place and
@@ -53,7 +53,7 @@ def moved(landing: Footstep, wanted: Footstep, most: float, turn: float) -> Foot
     if largest <= 1.0 + ROUNDING:
         return wanted
     share = 1.0 / largest
-    return Footstep(
+    return Foothold(
         left=wanted.left,
         x=landing.x + share * dx,
         y=landing.y + share * dy,

@@ -3,13 +3,14 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+from walking.foothold import Foothold
 from walking.footsteps.stride import Strides
 from walking.gait.footstep_clock import Clock
 from walking.gait.gait import Gait
-from walking.pattern.pattern import PatternGenerator, PendulumState
+from walking.pattern.pattern import PatternGenerator
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import Ramps
 from walking.pattern.support import SupportRegion
-from walking.state import Footstep
 from walking.value import value
 
 BISECTIONS = 4  # an admitted change is at least 1/16 short of the largest possible
@@ -26,7 +27,7 @@ class Course:
         moving: whether it goes on walking.
     """
 
-    landing: Footstep
+    landing: Foothold
     strides: Strides
     clock: Clock
     moving: bool
@@ -178,9 +179,9 @@ class Transition:
         return ramps
 
 
-def _landing(a: Footstep, b: Footstep, share: float) -> Footstep:
+def _landing(a: Foothold, b: Foothold, share: float) -> Foothold:
     """A landing `share` of the way from `a` to `b`."""
-    return Footstep(
+    return Foothold(
         left=b.left,
         x=a.x + share * (b.x - a.x),
         y=a.y + share * (b.y - a.y),

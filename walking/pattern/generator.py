@@ -1,10 +1,12 @@
 """The choice of the pattern generator."""
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.parameters import PatternParameters
+from walking.pattern.dcm_pattern import DcmGenerator
 from walking.pattern.lipm import Lipm
 from walking.pattern.paper_pattern import PaperGenerator
-from walking.pattern.pattern import DcmGenerator, PatternGenerator, PreviewGenerator
+from walking.pattern.pattern import PatternGenerator
+from walking.pattern.preview_pattern import PreviewGenerator
 from walking.pattern.robust_pattern import RobustGenerator
 
 

@@ -19,8 +19,10 @@ from dataclasses import dataclass
 from math import cos, exp, inf, log, sin, sqrt
 
 from walking.parameters import CONTROL_PERIOD, PatternParameters
+from walking.pattern.dcm_pattern import DcmGenerator
+from walking.pattern.dcm_tracker import dcm_reference
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import DcmGenerator, PendulumState, dcm_reference
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
 from walking.pattern.support import SupportRegion
 

@@ -6,7 +6,7 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.state import Footstep
+from walking.foothold import Foothold
 from walking.value import value
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ class ZmpRamp:
     ay: float
     bx: float
     by: float
-    feet: tuple[Footstep, Footstep]
+    feet: tuple[Foothold, Foothold]
 
 
 class Ramps(Sequence[ZmpRamp]):
@@ -55,9 +55,9 @@ class Ramps(Sequence[ZmpRamp]):
         if isinstance(index, slice):
             return Ramps(self.table[index])
         ticks, ax, ay, bx, by, *feet = self.table[index].tolist()
-        first = second = Footstep(feet[3] > 0.0, *feet[:3])
+        first = second = Foothold(feet[3] > 0.0, *feet[:3])
         if feet[7] != feet[3]:
-            second = Footstep(feet[7] > 0.0, *feet[4:7])
+            second = Foothold(feet[7] > 0.0, *feet[4:7])
         return ZmpRamp(int(ticks), ax, ay, bx, by, (first, second))
 
     @property

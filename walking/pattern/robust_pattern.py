@@ -23,11 +23,12 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern import zmp_kernel
+from walking.pattern.dcm_tracker import DcmTracker, dcm_reference
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import DcmTracker, PendulumState, dcm_reference
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp, table_of
 from walking.pattern.support import SupportRegion
 

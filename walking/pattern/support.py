@@ -5,9 +5,9 @@ from math import cos, dist, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.pattern import support_kernel
-from walking.state import Footstep
 
 Array = NDArray[np.float64]
 Polygon = tuple[tuple[float, float], ...]
@@ -40,7 +40,7 @@ class SupportRegion:
         return support_kernel.clip(self.row, x, y)
 
 
-def support_region(sole: Sole, first: Footstep, second: Footstep, margin: float) -> SupportRegion:
+def support_region(sole: Sole, first: Foothold, second: Foothold, margin: float) -> SupportRegion:
     """Region of two feet on the floor, or of one when both arguments are the same foot."""
     ac, as_ = cos(first.yaw), sin(first.yaw)
     bc, bs = (ac, as_) if second is first else (cos(second.yaw), sin(second.yaw))
@@ -67,14 +67,14 @@ class Footing:
         feet: these feet.
     """
 
-    def __init__(self, sole: Sole, feet: tuple[Footstep, Footstep]) -> None:
+    def __init__(self, sole: Sole, feet: tuple[Foothold, Foothold]) -> None:
         self._sole = sole
         self.feet = feet
         self._polygon: Polygon | None = None
         self._edges: Array | None = None
         self._regions: dict[float, SupportRegion] = {}
 
-    def stand(self, feet: tuple[Footstep, Footstep]) -> None:
+    def stand(self, feet: tuple[Foothold, Foothold]) -> None:
         """Have the feet there."""
         if feet[0] is not self.feet[0] or feet[1] is not self.feet[1]:
             self.feet, self._polygon, self._edges = feet, None, None
@@ -104,7 +104,7 @@ class Footing:
         return found
 
 
-def support_polygon(sole: Sole, first: Footstep, second: Footstep) -> Polygon:
+def support_polygon(sole: Sole, first: Foothold, second: Foothold) -> Polygon:
     """Convex hull of two soles on the floor, or one sole when both are the same foot."""
     corners = _corners(sole, second)
     return corners if second is first else _hull([*_corners(sole, first), *corners])
@@ -121,7 +121,7 @@ def edges(polygon: Polygon) -> Array:
     return np.array(rows)
 
 
-def _corners(sole: Sole, foot: Footstep) -> Polygon:
+def _corners(sole: Sole, foot: Foothold) -> Polygon:
     c, s = cos(foot.yaw), sin(foot.yaw)
     front, back = sole.centre + sole.half_length, sole.centre - sole.half_length
     side = sole.half_width

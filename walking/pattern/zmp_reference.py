@@ -5,13 +5,13 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.footsteps import foothold_kernel
 from walking.footsteps.foothold_kernel import Chain
 from walking.footsteps.stride import Timing
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.ramps import Ramps
-from walking.state import Footstep
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -34,7 +34,7 @@ class ZmpReference:
         self.spot = (sole.centre + pattern.zmp_forward, pattern.zmp_inward)
         self.stop = max(1, round(parameters.gait.stop_time / CONTROL_PERIOD))
 
-    def under(self, foot: Footstep) -> Point:
+    def under(self, foot: Foothold) -> Point:
         """ZMP under a foot that carries alone [m]."""
         forward, inward = self.spot
         inward = -inward if foot.left else inward
@@ -44,15 +44,15 @@ class ZmpReference:
             foot.y + s * forward + c * inward,
         )
 
-    def between(self, one: Footstep, other: Footstep) -> Point:
+    def between(self, one: Foothold, other: Foothold) -> Point:
         """ZMP while both feet carry alike [m]."""
         (ax, ay), (bx, by) = self.under(one), self.under(other)
         return 0.5 * (ax + bx), 0.5 * (ay + by)
 
     def onwards(
         self,
-        feet: tuple[Footstep, Footstep],
-        landing: Footstep,
+        feet: tuple[Foothold, Foothold],
+        landing: Foothold,
         chain: Chain,
         timing: Timing,
         *,

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from walking.body import leg_kernel
 from walking.body.joints import LEFT_LEG, RIGHT_LEG
-from walking.body.leg_kernel import Balance, Point, Vector
+from walking.body.leg_kernel import AnkleTask, Point, Vector
 from walking.body.robot_model import RobotModel
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class FeedForward:
-    """Load and velocity lag, both divided by the servos' stiffness; the ankles' balance on top.
+    """Load and velocity lag, both divided by the servos' stiffness, and the task of the ankles.
 
     Args:
         robot: masses and servo gains.
@@ -45,7 +45,7 @@ class FeedForward:
         right_load: float,
         acceleration: Point,
         *,
-        balance: Balance,
+        task: AnkleTask,
     ) -> Array:
         """Offsets of all set-points (26,) [rad].
 
@@ -58,7 +58,7 @@ class FeedForward:
             spots: where the ZMP is meant to be under either foot, in the plan frame [m].
             right_load: planned share of the weight on the right foot [1].
             acceleration: planned, of the base, in the plan frame [m/s²].
-            balance: what the ankles are to do besides.
+            task: what the ankles are to do besides.
         """
         if not self._started:
             self._started = True
@@ -86,7 +86,7 @@ class FeedForward:
             right_load,
             self._height,
             robot.leg_rows,
-            balance,
+            task,
             self._ankles,
             found,
         )

@@ -7,9 +7,9 @@ from walking.body import leg_kernel
 from walking.body.leg_kernel import Vector
 from walking.body.leg_kinematics import foot_pose
 from walking.body.robot_model import RobotModel
+from walking.foothold import Foothold
 from walking.gait.gait import Gait
 from walking.parameters import WalkingParameters
-from walking.state import Footstep
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -64,13 +64,13 @@ class Posture:
         return position, pelvis
 
 
-def ready_stance(robot: RobotModel) -> tuple[Footstep, Footstep]:
+def ready_stance(robot: RobotModel) -> tuple[Foothold, Foothold]:
     """Feet of the ready posture; the plan frame has its origin under the hips."""
     a, b, c, d, e, f = robot.ready[:6].tolist()
     left = foot_pose(robot.legs[0], (a, b, c, d, e, f))
     a, b, c, d, e, f = robot.ready[6:12].tolist()
     right = foot_pose(robot.legs[1], (a, b, c, d, e, f))
     return (
-        Footstep(left=True, x=left.x, y=left.y, yaw=left.yaw),
-        Footstep(left=False, x=right.x, y=right.y, yaw=right.yaw),
+        Foothold(left=True, x=left.x, y=left.y, yaw=left.yaw),
+        Foothold(left=False, x=right.x, y=right.y, yaw=right.yaw),
     )

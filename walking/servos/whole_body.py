@@ -10,7 +10,7 @@ from walking.gait.gait import Gait
 from walking.gait.swing_reaction import SwingCompensation, leg_reaction
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import PendulumState
+from walking.pattern.pendulum import PendulumState
 from walking.servos.feedforward import FeedForward
 from walking.servos.posture import Posture
 from walking.targets import JointTargets
@@ -99,7 +99,7 @@ class WholeBody:
             gait.spots,
             right_load,
             (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),
-            balance=((left.yaw, right.yaw), zmp_shift, gyro),
+            task=((left.yaw, right.yaw), zmp_shift, gyro),
         )
         self.com = self._robot.moved_com()
         return JointTargets(position=position, offset=set_points)

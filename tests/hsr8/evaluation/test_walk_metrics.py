@@ -11,7 +11,7 @@ from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import PushActing
 from walking.admission import Limit
 from walking.command import VelocityCommand
-from walking.state import Phase
+from walking.phase import Phase
 
 STEP = 0.34
 

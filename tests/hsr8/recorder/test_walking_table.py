@@ -15,8 +15,8 @@ from hsr8.recorder.walking_table import (
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import PushActing
 from walking.admission import AdmissionReport, Limit
+from walking.body.odometry import Odometry
 from walking.command import VelocityCommand
-from walking.state import Odometry
 
 
 @pytest.fixture

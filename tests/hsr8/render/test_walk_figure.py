@@ -9,7 +9,7 @@ from hsr8.recorder.walking_table import COLUMNS, LEG_JOINTS, LIMITS, WalkingTabl
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
 from walking.admission import Limit
-from walking.state import Phase
+from walking.phase import Phase
 
 STEP, SPEED, TURN = 0.34, 0.2, 0.5
 

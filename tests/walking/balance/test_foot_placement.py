@@ -7,6 +7,7 @@ from walking.balance.catching import CatchingPendulum
 from walking.balance.foot_placement import FootPlacement
 from walking.balance.stabilizer import Stabilizer
 from walking.command import VelocityCommand
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.steering import Steering
 from walking.footsteps.stride import STILL
@@ -14,9 +15,8 @@ from walking.gait.gait import Gait
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
 from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import PendulumState
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import support_region
-from walking.state import Footstep
 
 GENERATORS = ["dcm", "robust"]
 NONE = (0.0, 0.0)
@@ -34,7 +34,7 @@ class Pendulum:
         made = make_generator(lipm, pattern, robot.sole)
         self.planner = FootstepPlanner(parameters.gait, parameters.limits, robot.sole)
         h = parameters.gait.half_stance
-        stance = Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)
+        stance = Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)
         self.gait = Gait(parameters, self.planner, stance)
         start = self.gait.plan(stance[1], self.planner.still, moving=False)[-1]
         state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)

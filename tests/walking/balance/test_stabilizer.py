@@ -7,15 +7,15 @@ import pytest
 
 from walking.balance.pole_placement import dcm_gain
 from walking.balance.stabilizer import Stabilizer
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, GaitParameters, LimitParameters, StabilizerParameters
 from walking.pattern.lipm import Lipm
 from walking.pattern.support import support_region
-from walking.state import Footstep
 
 PARAMETERS = StabilizerParameters()
 OMEGA = Lipm(0.19).omega
-LEFT = Footstep(True, 0.0, 0.042, 0.0)
+LEFT = Foothold(True, 0.0, 0.042, 0.0)
 AHEAD = (0.005, -0.02)  # of the planned DCM from the ZMP [m]
 
 
@@ -81,7 +81,7 @@ def test_a_footstep_is_shortened_only_when_its_landing_is_out_of_reach(stabilize
 
 
 def test_mirrored_errors_are_caught_by_mirrored_footsteps(stabilizer, planner):
-    right = Footstep(False, LEFT.x, -LEFT.y, 0.0)
+    right = Foothold(False, LEFT.x, -LEFT.y, 0.0)
     for off in ((0.06, 0.02), (0.02, -0.04), (-0.07, 0.05)):
         one = stabilizer.capture(
             planner,

@@ -5,7 +5,7 @@ from math import exp
 import pytest
 
 from walking.admission import Limit
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.command import VelocityCommand
 from walking.footsteps.caution import Caution
 from walking.footsteps.planner import FootstepPlanner

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.footsteps import foothold_kernel
 from walking.footsteps.planner import TURN_TOLERANCE, FootstepPlanner
 from walking.footsteps.stride import STILL
 from walking.parameters import WalkingParameters
-from walking.state import Footstep, foothold
 
 PARAMETERS = WalkingParameters()
 SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
@@ -24,7 +24,7 @@ def draw(seed):
     """A stance, strides, and the footholds to come."""
     rng = np.random.default_rng(seed)
     left = bool(rng.integers(2))
-    support = Footstep(left, *rng.uniform(-1.0, 1.0, 3).tolist())
+    support = Foothold(left, *rng.uniform(-1.0, 1.0, 3).tolist())
     velocity = tuple((rng.uniform(-1.0, 1.0, 3) * (0.4, 0.15, 1.5)).tolist())
     strides = PLANNER.strides(STILL if seed % 3 == 0 else velocity, 0.34)
     landing = PLANNER.landing(support, strides)
@@ -41,7 +41,7 @@ def arguments(support, landing, strides, moving):
 def test_each_foothold_is_the_stride_of_the_one_before(seed, moving):
     _, support, landing, strides = draw(seed)
     steps, ends = foothold_kernel.sequence(*arguments(support, landing, strides, moving))
-    feet = [support, *map(foothold, steps.tolist())]
+    feet = [support, *map(Foothold.from_row, steps.tolist())]
     assert feet[1] == landing
     for before, after in pairwise(feet[1:]):
         expected = PLANNER.landing(before, strides)
@@ -61,7 +61,7 @@ def test_compiled_they_are_what_they_say(plainly, seed, ends):
     plain, plainly_over = plainly(foothold_kernel, "sequence", *asked)
     np.testing.assert_array_equal(steps, plain)
     assert over == plainly_over
-    swing = Footstep(not support.left, *rng.uniform(-1.0, 1.0, 3).tolist())
+    swing = Foothold(not support.left, *rng.uniform(-1.0, 1.0, 3).tolist())
     asked = (swing.row, support.row, steps, (0.1, 0.2), (int(seed % 2), 30, 10, 58, 60), SPOT, over)
     found = foothold_kernel.ramps(*asked)
     np.testing.assert_array_equal(found, plainly(foothold_kernel, "ramps", *asked))

@@ -7,17 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.admission import Limit
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.footsteps.foothold_kernel import sequence
 from walking.footsteps.planner import FootstepPlanner
 from walking.parameters import GaitParameters, LimitParameters
-from walking.state import Footstep, foothold
 
 GAIT, LIMITS = GaitParameters(), LimitParameters()
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
 PLANNER = FootstepPlanner(GAIT, LIMITS, SOLE)
-LEFT = Footstep(True, 0.0, GAIT.half_stance, 0.0)
-RIGHT = Footstep(False, 0.0, -GAIT.half_stance, 0.0)
+LEFT = Foothold(True, 0.0, GAIT.half_stance, 0.0)
+RIGHT = Foothold(False, 0.0, -GAIT.half_stance, 0.0)
 velocities = st.tuples(
     st.floats(-LIMITS.backward, LIMITS.forward),
     st.floats(-LIMITS.lateral, LIMITS.lateral),
@@ -27,7 +27,7 @@ yaws = st.floats(-pi, pi)
 
 
 def mirror(step):
-    return Footstep(not step.left, step.x, -step.y, -step.yaw)
+    return Foothold(not step.left, step.x, -step.y, -step.yaw)
 
 
 def fields(step):
@@ -65,7 +65,7 @@ def test_mirrored_velocity_gives_mirrored_footholds(velocity):
 
 @given(velocities, yaws)
 def test_footholds_turn_and_move_with_the_support_foot(velocity, yaw):
-    support = Footstep(True, 1.0, -2.0, yaw)
+    support = Foothold(True, 1.0, -2.0, yaw)
     assert seen_from(support, landed(support, velocity)) == pytest.approx(
         seen_from(LEFT, landed(LEFT, velocity)), abs=1e-9
     )
@@ -107,7 +107,7 @@ def test_stopping_closes_the_stance():
     steps, ends = sequence(LEFT.row, landing.row, PLANNER.chain(PLANNER.still), False)
     assert ends
     assert len(steps) == 2
-    assert PLANNER.parallel(*map(foothold, steps.tolist()))
+    assert PLANNER.parallel(*map(Foothold.from_row, steps.tolist()))
 
 
 def test_walking_on_plans_all_steps_with_alternating_feet():

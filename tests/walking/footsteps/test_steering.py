@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.admission import Limit
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.command import VelocityCommand
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.steering import STRIDE_LIMITS, Steering

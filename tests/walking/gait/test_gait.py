@@ -5,13 +5,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL
 from walking.gait.gait import Gait
 from walking.gait.swing_foot_kernel import HEIGHT
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
-from walking.state import Footstep, Phase
+from walking.phase import Phase
 
 PARAMETERS = WalkingParameters()
 GAIT = PARAMETERS.gait
@@ -27,7 +28,7 @@ PLANNER = FootstepPlanner(GAIT, PARAMETERS.limits, SOLE)
 @pytest.fixture
 def gait():
     h = GAIT.half_stance
-    return Gait(PARAMETERS, PLANNER, (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0)))
+    return Gait(PARAMETERS, PLANNER, (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0)))
 
 
 def tick(gait, velocity, *, moving=True):
@@ -167,7 +168,7 @@ def test_a_hurried_footstep_leaves_the_foot_time_for_its_way(gait):
     for _ in range(START + STEP):
         tick(gait, FORWARD)
     landing = gait.landing
-    far = Footstep(landing.left, landing.x + 0.2, landing.y, landing.yaw)
+    far = Foothold(landing.left, landing.x + 0.2, landing.y, landing.yaw)
     assert gait.hasten(0, far)
     way = far.x - gait.feet[gait.swing, 0]
     assert gait.ticks_left * CONTROL_PERIOD >= 1.875 * way / GAIT.swing_speed

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from walking.foothold import Foothold
 from walking.gait.minimum_jerk import PEAK
 from walking.gait.swing import least_ticks, moved, resting, stand
 from walking.gait.swing_foot_kernel import HEIGHT
 from walking.parameters import CONTROL_PERIOD
-from walking.state import Footstep
 
-STANCE = Footstep(True, 0.1, 0.04, 0.2), Footstep(False, 0.1, -0.04, -0.2)
+STANCE = Foothold(True, 0.1, 0.04, 0.2), Foothold(False, 0.1, -0.04, -0.2)
 
 
 def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
@@ -24,12 +24,12 @@ def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
 
 def test_a_way_takes_its_time():
     foot = resting(STANCE)[0]
-    ticks = least_ticks(foot, Footstep(True, 0.13, 0.08, 0.0), 0.5)
+    ticks = least_ticks(foot, Foothold(True, 0.13, 0.08, 0.0), 0.5)
     assert (ticks - 1) * CONTROL_PERIOD < PEAK * 0.05 / 0.5 <= ticks * CONTROL_PERIOD
 
 
 def test_a_landing_moves_and_turns_together_and_no_faster_than_allowed():
-    a, b = Footstep(True, 0.0, 0.0, 0.0), Footstep(True, 0.03, -0.01, 0.6)
+    a, b = Foothold(True, 0.0, 0.0, 0.0), Foothold(True, 0.03, -0.01, 0.6)
     one = moved(a, b, 0.02, 0.1)
     assert (one.x, one.y, one.yaw) == pytest.approx((0.005, -0.01 / 6.0, 0.1))
     assert moved(a, b, 0.01, 10.0).x == pytest.approx(0.01)

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import Strides, Timing
 from walking.gait.gait import Gait
 from walking.gait.transition import BISECTIONS, Transition
 from walking.parameters import WalkingParameters
-from walking.pattern.pattern import PendulumState
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import support_region
-from walking.state import Footstep
 
 PARAMETERS = WalkingParameters()
 TIME = PARAMETERS.gait.footstep_time
@@ -44,7 +44,7 @@ class UpTo:
 def setting(robot):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
     h = PARAMETERS.gait.half_stance
-    stance = (Footstep(True, 0.0, h, 0.0), Footstep(False, 0.0, -h, 0.0))
+    stance = (Foothold(True, 0.0, h, 0.0), Foothold(False, 0.0, -h, 0.0))
     gait = Gait(PARAMETERS, planner, stance)
     gait.start(0)
     generator = UpTo(gait)
@@ -172,7 +172,7 @@ def test_while_the_body_is_caught_the_plan_keeps_its_own_landing(setting):
     gait, _, transition, _ = setting
     swinging(setting)
     kept = transition.landing
-    gait.aim(Footstep(False, kept.x + 0.01, kept.y, 0.0))
+    gait.aim(Foothold(False, kept.x + 0.01, kept.y, 0.0))
     gait.touch_down()
     tick(setting, SLOW, caught=True)
     assert transition.landing == kept

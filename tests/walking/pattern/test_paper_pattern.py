@@ -7,14 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.parameters import CONTROL_PERIOD, PatternParameters
+from walking.pattern.dcm_tracker import dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.paper_pattern import PaperGenerator, zmp_function
-from walking.pattern.pattern import PendulumState, dcm_reference
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
 from walking.pattern.support import support_region
-from walking.state import Footstep
 
 LIPM = Lipm(0.19)
 W = LIPM.omega
@@ -47,10 +48,10 @@ def test_no_other_two_level_function_has_a_lower_peak(time, first, share, ratio)
 
 
 def feet(count=5, stride=0.05):
-    steps = [Footstep(True, 0.0, 0.042, 0.0)]
+    steps = [Foothold(True, 0.0, 0.042, 0.0)]
     for k in range(1, count):
         left = k % 2 == 0
-        steps.append(Footstep(left, k * stride, 0.042 if left else -0.042, 0.0))
+        steps.append(Foothold(left, k * stride, 0.042 if left else -0.042, 0.0))
     return steps
 
 
@@ -146,7 +147,7 @@ def test_what_could_not_be_reached_is_told():
 def test_it_mirrors():
     states = []
     for sign in (1.0, -1.0):
-        steps = [Footstep(f.left == (sign > 0), f.x, sign * f.y, 0.0) for f in feet(9)]
+        steps = [Foothold(f.left == (sign > 0), f.x, sign * f.y, 0.0) for f in feet(9)]
         state = PendulumState(0.005, sign * 0.03, 0.2, sign * 0.05)
         region = support_region(SOLE, steps[0], steps[0], 0.005)
         generator = PaperGenerator(LIPM, PatternParameters())

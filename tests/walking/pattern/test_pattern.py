@@ -1,27 +1,23 @@
-"""The pendulum follows its reference with the ZMP in the sole."""
+"""Generators that track any reference, with the ZMP in the sole."""
 
 import numpy as np
 import pytest
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.parameters import PatternParameters
 from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import PendulumState, dcm_reference
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
 from walking.pattern.support import support_region
-from walking.state import Footstep
 
 LIPM = Lipm(0.19)
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
-LEFT, RIGHT = Footstep(True, 0.0, 0.042, 0.0), Footstep(False, 0.0, -0.042, 0.0)
+LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.0), Foothold(False, 0.0, -0.042, 0.0)
 FEET = (RIGHT, LEFT)
 BOTH = support_region(SOLE, RIGHT, LEFT, 0.005)
 GENERATORS = ["dcm", "preview"]
-
-
-def shift(ramps, dx, dy):
-    return [ZmpRamp(r.ticks, r.ax + dx, r.ay + dy, r.bx + dx, r.by + dy, FEET) for r in ramps]
 
 
 RAMPS = [
@@ -29,26 +25,6 @@ RAMPS = [
     ZmpRamp(54, 0.01, 0.03, 0.01, 0.03, FEET),
     ZmpRamp(14, 0.01, 0.03, 0.05, -0.03, FEET),
 ]
-
-
-def test_dcm_reference_walks_the_reference_exactly():
-    x, y = dcm_reference(LIPM, RAMPS)
-    for ramp in RAMPS:
-        c = LIPM.ramp(ramp.ticks)
-        x = c.growth * x - c.first * ramp.ax - c.last * ramp.bx
-        y = c.growth * y - c.first * ramp.ay - c.last * ramp.by
-    assert (x, y) == pytest.approx((RAMPS[-1].bx, RAMPS[-1].by), abs=1e-9)
-
-
-def test_dcm_reference_moves_with_the_footholds():
-    x, y = dcm_reference(LIPM, RAMPS)
-    assert dcm_reference(LIPM, shift(RAMPS, 0.1, -0.2)) == pytest.approx((x + 0.1, y - 0.2))
-
-
-def test_dcm_reference_forgets_the_far_future():
-    far = [*RAMPS, ZmpRamp(300, 0.05, -0.03, 0.05, -0.03, FEET)]
-    moved = [*far, ZmpRamp(1, 0.05, -0.03, 5.0, 5.0, FEET)]
-    assert dcm_reference(LIPM, moved) == pytest.approx(dcm_reference(LIPM, far), abs=1e-3)
 
 
 @pytest.mark.parametrize("name", GENERATORS)

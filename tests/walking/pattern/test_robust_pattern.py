@@ -6,16 +6,18 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
+from walking.foothold import Foothold
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
+from walking.pattern.dcm_tracker import dcm_reference
 from walking.pattern.lipm import Lipm
-from walking.pattern.pattern import PendulumState, dcm_reference
+from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
 from walking.pattern.robust_pattern import RobustGenerator
 from walking.pattern.support import support_region
-from walking.state import Footstep, Phase
+from walking.phase import Phase
 
 LIPM = Lipm(0.19)
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
@@ -26,7 +28,7 @@ def feet(stride, side=1.0):
     steps = []
     for k in range(6):
         left = (k % 2 == 0) == (side > 0)
-        steps.append(Footstep(left, k * stride, 0.042 if left else -0.042, 0.0))
+        steps.append(Foothold(left, k * stride, 0.042 if left else -0.042, 0.0))
     return steps
 
 

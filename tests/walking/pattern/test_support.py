@@ -6,14 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.pattern.support import Footing, edges, support_polygon, support_region
 from walking.pattern.support_kernel import depth
-from walking.state import Footstep
 
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
 MARGIN = 0.005
-RIGHT = Footstep(False, 0.0, -0.042, 0.0)
+RIGHT = Foothold(False, 0.0, -0.042, 0.0)
 coordinates = st.floats(-0.3, 0.3)
 
 
@@ -31,14 +31,14 @@ def outside(point, feet, margin):
 
 @given(coordinates, coordinates, st.floats(-0.1, 0.1), st.floats(-0.7, 0.7))
 def test_clipped_points_are_inside_the_hull_of_both_soles(x, y, ahead, yaw):
-    left = Footstep(True, ahead, 0.06, yaw)
+    left = Foothold(True, ahead, 0.06, yaw)
     region = support_region(SOLE, RIGHT, left, MARGIN)
     assert outside(region.clip(x, y), (RIGHT, left), MARGIN) < 1e-9
 
 
 @given(coordinates, coordinates, st.floats(-3.0, 3.0))
 def test_clipped_points_are_inside_a_single_sole(x, y, yaw):
-    foot = Footstep(True, 0.2, -0.1, yaw)
+    foot = Foothold(True, 0.2, -0.1, yaw)
     region = support_region(SOLE, foot, foot, MARGIN)
     assert outside(region.clip(x, y), (foot,), MARGIN) < 1e-9
 
@@ -51,7 +51,7 @@ def test_clipping_twice_changes_nothing(x, y):
 
 
 def test_load_share_runs_from_one_foot_to_the_other():
-    left = Footstep(True, 0.0, 0.042, 0.0)
+    left = Foothold(True, 0.0, 0.042, 0.0)
     region = support_region(SOLE, RIGHT, left, MARGIN)
     assert region.share(0.01, -0.042) == pytest.approx(0.0)
     assert region.share(0.01, 0.0) == pytest.approx(0.5)
@@ -60,14 +60,14 @@ def test_load_share_runs_from_one_foot_to_the_other():
 
 @given(coordinates, coordinates, st.floats(-0.1, 0.1), st.floats(-0.7, 0.7))
 def test_depth_in_the_polygon_agrees_with_the_hull(x, y, ahead, yaw):
-    left = Footstep(True, ahead, 0.08, yaw)
+    left = Foothold(True, ahead, 0.08, yaw)
     sides = edges(support_polygon(SOLE, RIGHT, left))
     assert depth(sides, x, y) == pytest.approx(-outside((x, y), (RIGHT, left), 0.0), abs=1e-9)
 
 
 @given(st.floats(-0.1, 0.1), st.integers(-15, -6), st.sampled_from((-1.0, 1.0)))
 def test_soles_that_are_almost_parallel_lose_no_corner(ahead, exponent, sign):
-    left = Footstep(True, ahead, 0.08, sign * 10.0**exponent)
+    left = Foothold(True, ahead, 0.08, sign * 10.0**exponent)
     sides = edges(support_polygon(SOLE, RIGHT, left))
     for x, y in np.random.default_rng(0).uniform(-0.2, 0.2, (20, 2)):
         expected = -outside((x, y), (RIGHT, left), 0.0)
@@ -75,7 +75,7 @@ def test_soles_that_are_almost_parallel_lose_no_corner(ahead, exponent, sign):
 
 
 def test_the_polygon_of_one_foot_is_its_sole():
-    foot = Footstep(True, 0.2, -0.1, 0.4)
+    foot = Foothold(True, 0.2, -0.1, 0.4)
     polygon = support_polygon(SOLE, foot, foot)
     assert len(polygon) == 4
     centre = np.mean(polygon, axis=0)
@@ -85,7 +85,7 @@ def test_the_polygon_of_one_foot_is_its_sole():
 
 def test_a_footing_follows_its_feet():
     footing = Footing(SOLE, (RIGHT, RIGHT))
-    left = Footstep(True, 0.0, 0.042, 0.0)
+    left = Foothold(True, 0.0, 0.042, 0.0)
     for feet in ((RIGHT, left), (left, left), (RIGHT, RIGHT)):
         footing.stand(feet)
         assert footing.polygon() == support_polygon(SOLE, *feet)

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from walking.foothold import Foothold
 from walking.parameters import CONTROL_PERIOD
 from walking.pattern import zmp_kernel
 from walking.pattern.lipm import Lipm
 from walking.pattern.ramps import ZmpRamp, table_of
 from walking.pattern.zmp_kernel import CELL, limit, place, sides, solve
-from walking.state import Footstep
 
 NOMINAL = (0.005, -0.003)
 BOUNDS = (-0.04, 0.04, -0.02, 0.02)
@@ -211,7 +211,7 @@ def reference(rng, *, double, steps):
     for k in range(steps + 2):
         turn += rng.uniform(-0.2, 0.2)
         place = (0.06 * k + rng.uniform(-0.01, 0.01), 0.042 * (-1.0) ** k)
-        feet.append(Footstep(k % 2 == 0, *place, turn))
+        feet.append(Foothold(k % 2 == 0, *place, turn))
     points = [(f.x + 0.01 * np.cos(f.yaw), f.y + 0.01 * np.sin(f.yaw)) for f in feet]
     left = int(rng.integers(1, 58))
     ramps = [ZmpRamp(left, *points[1], *points[1], (feet[1], feet[1]))]

@@ -5,28 +5,28 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from walking.body.robot_model import Sole
+from walking.body.sole import Sole
+from walking.foothold import Foothold
 from walking.footsteps import foothold_kernel
 from walking.footsteps.stride import Timing
 from walking.parameters import PatternParameters, WalkingParameters
 from walking.pattern.ramps import Ramps
 from walking.pattern.zmp_reference import ZmpReference
-from walking.state import Footstep
 
 SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
 REFERENCE = ZmpReference(WalkingParameters(), SOLE)
-LEFT, RIGHT = Footstep(True, 0.0, 0.042, 0.1), Footstep(False, 0.05, -0.042, -0.1)
+LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.1), Foothold(False, 0.05, -0.042, -0.1)
 TIMING = Timing(14, 54, 0.025)
 
 
 def test_it_mirrors():
     x, y = REFERENCE.under(LEFT)
-    assert REFERENCE.under(Footstep(False, 0.0, -0.042, -0.1)) == pytest.approx((x, -y))
+    assert REFERENCE.under(Foothold(False, 0.0, -0.042, -0.1)) == pytest.approx((x, -y))
 
 
 def test_it_turns_with_the_foot():
-    x, y = REFERENCE.under(Footstep(True, 0.0, 0.0, 0.0))
-    assert REFERENCE.under(Footstep(True, 1.0, 2.0, 1.5707963267948966)) == pytest.approx(
+    x, y = REFERENCE.under(Foothold(True, 0.0, 0.0, 0.0))
+    assert REFERENCE.under(Foothold(True, 1.0, 2.0, 1.5707963267948966)) == pytest.approx(
         (1.0 - y, 2.0 + x)
     )
 
@@ -41,7 +41,7 @@ def onwards(steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
 @pytest.mark.parametrize("ends", [False, True])
 @pytest.mark.parametrize("left", [(0, 30), (5, 54)])
 def test_it_goes_from_foot_to_foot_without_jumps(ends, left):
-    steps = [RIGHT, Footstep(True, 0.1, 0.042, 0.0), Footstep(False, 0.1, -0.042, 0.0)]
+    steps = [RIGHT, Foothold(True, 0.1, 0.042, 0.0), Foothold(False, 0.1, -0.042, 0.0)]
     ramps = onwards(steps, ends=ends, zmp=(0.01, 0.02), left=left)
     start = (0.01, 0.02) if left[0] else REFERENCE.under(LEFT)
     assert (ramps[0].ax, ramps[0].ay) == start
@@ -62,7 +62,7 @@ def test_both_feet_carry_alike_halfway_between_them():
 def test_under_a_foot_it_is_ahead_of_the_ankle_and_inward():
     pattern = PatternParameters(zmp_forward=0.004, zmp_inward=0.003)
     reference = ZmpReference(WalkingParameters(pattern=pattern), SOLE)
-    assert reference.under(Footstep(True, 0.0, 0.0, 0.0)) == pytest.approx((0.014, -0.003))
+    assert reference.under(Foothold(True, 0.0, 0.0, 0.0)) == pytest.approx((0.014, -0.003))
 
 
 def test_each_step_takes_its_double_and_its_single_support():

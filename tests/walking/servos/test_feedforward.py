@@ -22,7 +22,7 @@ SOLES = ((0.01, 0.042), (0.01, -0.042))
 
 
 def offsets(robot, soles=SOLES, right_load=0.5, acceleration=(0.0, 0.0)):
-    return feed(robot).offsets(robot.ready, ORIGIN, soles, right_load, acceleration, balance=STILL)
+    return feed(robot).offsets(robot.ready, ORIGIN, soles, right_load, acceleration, task=STILL)
 
 
 def test_standing_offsets_mirror(robot):
@@ -42,10 +42,10 @@ def test_a_loaded_knee_is_stretched_against_the_weight(robot):
 def test_a_moving_head_is_led_by_its_lag(robot):
     ahead = feed(robot, inertia_gain=0.0)
     q = robot.ready.copy()
-    still = ahead.offsets(q, ORIGIN, SOLES, 0.5, (0.0, 0.0), balance=STILL)
+    still = ahead.offsets(q, ORIGIN, SOLES, 0.5, (0.0, 0.0), task=STILL)
     moved = q.copy()
     moved[HEAD.start] += 0.01
-    after = ahead.offsets(moved, ORIGIN, SOLES, 0.5, (0.0, 0.0), balance=STILL)
+    after = ahead.offsets(moved, ORIGIN, SOLES, 0.5, (0.0, 0.0), task=STILL)
     rate = 0.01 / CONTROL_PERIOD
     assert after[HEAD.start] - still[HEAD.start] == pytest.approx(
         rate * robot.damping[HEAD.start] / robot.stiffness[HEAD.start], abs=1e-4
@@ -56,7 +56,7 @@ def test_the_ankle_has_the_moment_of_the_whole_body_about_it(robot):
     """A body that tips sideways in slow motion: at rest over one foot, its mass beside it."""
     compliant = feed(robot, velocity_gain=0.0, inertia_gain=0.0)
     q = robot.ready
-    offset = compliant.offsets(q, ORIGIN, SOLES, 0.0, (0.0, 0.0), balance=STILL)
+    offset = compliant.offsets(q, ORIGIN, SOLES, 0.0, (0.0, 0.0), task=STILL)
     ankle = robot.com(q)[1] - robot.legs[0].hip_y  # the ankle stands under the hip
     weightless = robot.inverse_dynamics(q, 0.0 * q, 0.0 * q, (0.0, 0.0))[0][5]
     moment = offset[5] * robot.stiffness[5] - weightless
@@ -73,10 +73,10 @@ def test_shared_loads_put_the_zmp_under_either_sole(robot):
 
 
 def balanced(robot, right_load, shift, gyro=(0.0, 0.0, 0.0)):
-    """What balance adds to the offsets."""
+    """What the ankles' task adds to the offsets."""
     asked = (robot.ready, ORIGIN, SOLES, right_load, (0.0, 0.0))
-    without = feed(robot).offsets(*asked, balance=STILL)
-    return feed(robot).offsets(*asked, balance=((0.0, 0.0), shift, gyro)) - without
+    without = feed(robot).offsets(*asked, task=STILL)
+    return feed(robot).offsets(*asked, task=((0.0, 0.0), shift, gyro)) - without
 
 
 def test_ankle_torque_matches_the_shift_of_the_zmp(robot):
@@ -118,9 +118,9 @@ def test_offsets_are_those_of_the_robot_wherever_it_stands(robot):
         there,
         0.3,
         turned[0],
-        balance=(tuple(yaw + own for own in directions), turned[1], gyro),
+        task=(tuple(yaw + own for own in directions), turned[1], gyro),
     )
     here = feed(robot).offsets(
-        robot.ready, ORIGIN, SOLES, 0.3, (0.2, -0.1), balance=(directions, (0.01, 0.02), gyro)
+        robot.ready, ORIGIN, SOLES, 0.3, (0.2, -0.1), task=(directions, (0.01, 0.02), gyro)
     )
     np.testing.assert_allclose(moved, here, rtol=0.0, atol=1e-12)

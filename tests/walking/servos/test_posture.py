@@ -5,11 +5,11 @@ import pytest
 
 from walking.body.joints import HEAD, LEFT_LEG, RIGHT_LEG
 from walking.body.leg_kinematics import foot_pose
+from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.gait.gait import Gait
 from walking.parameters import WalkingParameters
 from walking.servos.posture import Posture
-from walking.state import Footstep
 
 PARAMETERS = WalkingParameters()
 
@@ -17,7 +17,7 @@ PARAMETERS = WalkingParameters()
 @pytest.fixture
 def gait(robot):
     planner = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, robot.sole)
-    stance = (Footstep(True, 0.01, 0.045, 0.15), Footstep(False, -0.01, -0.04, -0.05))
+    stance = (Foothold(True, 0.01, 0.045, 0.15), Foothold(False, -0.01, -0.04, -0.05))
     return Gait(PARAMETERS, planner, stance)
 
 

@@ -9,7 +9,7 @@ import pytest
 from hsr8.world.model.models import models_dir
 from hsr8.world.model.scaled_model import scale_robot
 from walking.body.robot_model import RobotModel
-from walking.yardsticks import HSR_VIII
+from walking.robot_measures import HSR_VIII
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"
 LENGTHS = ("body_pos", "body_ipos", "geom_pos", "site_pos", "site_size", "cam_pos")
@@ -86,7 +86,7 @@ def test_the_walking_library_reads_it_from_the_file_that_mujoco_saves(size, tmp_
     spec.compile()
     path = tmp_path / "robot.xml"
     path.write_text(spec.to_xml(), encoding="utf-8")
-    y = RobotModel.from_mjcf(path).yardsticks()
+    y = RobotModel.from_mjcf(path).measures()
     assert (y.leg, y.hip, y.sole) == pytest.approx(
         (size * HSR_VIII.leg, size * HSR_VIII.hip, size * HSR_VIII.sole), rel=1e-5
     )

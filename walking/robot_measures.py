@@ -1,10 +1,10 @@
-"""The measures of a robot that its walk goes with, and those of HSR-VIII."""
+"""Measures of a robot, by which its walk scales, and those of HSR-VIII."""
 
 from dataclasses import astuple, dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Yardsticks:
+class RobotMeasures:
     """Measures of a robot.
 
     Attributes:
@@ -24,12 +24,12 @@ class Yardsticks:
     weight: float
     ankle: float
 
-    def measures(self) -> tuple[float, ...]:
+    def values(self) -> tuple[float, ...]:
         """All of them, in order."""
         return astuple(self)
 
 
-HSR_VIII = Yardsticks(
+HSR_VIII = RobotMeasures(
     leg=0.245, hip=0.035, sole=0.03, time=0.146737, weight=53.955, ankle=0.0949724
 )
 """The robot for which the defaults of the parameters were chosen."""

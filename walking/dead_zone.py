@@ -1,7 +1,7 @@
-"""Small nonlinear functions of a scalar."""
+"""A dead zone: what is small does not count, and what is large counts by its excess."""
 
 
-def beyond(value: float, zone: float) -> float:
+def dead_zone(value: float, zone: float) -> float:
     """What exceeds a dead zone of ±`zone`, zero inside it."""
     if value > zone:
         return value - zone
