@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from walking.admission import Limit
 from walking.body.sole import Sole
+from walking.command import CommandState
 from walking.foothold import Foothold
 from walking.footsteps.foothold_kernel import sequence
 from walking.footsteps.planner import FootstepPlanner
@@ -160,3 +161,23 @@ def test_the_shortest_footstep_has_a_tick_of_either_support(time, share):
     timing = FootstepPlanner(gait, LIMITS, SOLE).cadence((0.1, 0.0, 0.0))
     assert timing.double >= 1
     assert timing.single >= 1
+
+
+def test_mirrored_command_states_give_mirrored_footsteps():
+    strides, _ = PLANNER.explicit(CommandState(forward=0.05, direction=0.2), 0.0)
+    other, _ = PLANNER.explicit(CommandState(forward=0.05, direction=-0.2), 0.0)
+    x, y, turned = strides.left
+    assert other.right == pytest.approx((x, -y, -turned))
+
+
+@pytest.mark.parametrize("forward", [-0.05, 0.1])
+@pytest.mark.parametrize("direction", [-0.1, 0.0, 0.1])
+def test_strides_and_timing_are_read_back_as_the_command_state(forward, direction):
+    command = CommandState(0.3, 0.1, forward, 0.13, direction, 0.02)
+    strides, bound = PLANNER.explicit(command, 0.0)
+    timing, late = PLANNER.timing(command)
+    assert not bound
+    assert not late
+    read = PLANNER.command_state(strides, timing)
+    for name in ("single_support", "double_support", "forward", "side", "direction"):
+        assert getattr(read, name) == pytest.approx(getattr(command, name))

@@ -8,7 +8,7 @@ import pytest
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
-from walking.footsteps.stride import STILL
+from walking.footsteps.stride import STILL, Timing
 from walking.gait.gait import Gait
 from walking.gait.swing_foot_kernel import HEIGHT
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -184,3 +184,44 @@ def test_the_reference_of_a_tick_is_the_same_as_if_made_anew(gait):
         anew = gait.plan(gait.landing, wish, moving=True)
         np.testing.assert_array_equal(found.table, anew.table)
         tick(gait, (FORWARD, SLOWER)[k // 50 % 2])
+
+
+@pytest.mark.parametrize("single", [40, 90])
+@pytest.mark.parametrize("phase", [0.1, 0.4, 0.7])
+def test_single_support_stretched_or_cut_in_mid_swing_keeps_the_foot_smooth(gait, single, phase):
+    gait.start(0)
+    while gait.swing_phase < phase:
+        tick(gait, STILL)
+    heights, held = [float(gait.feet[1, HEIGHT])], gait.swing_phase
+    gait.retime(Timing(14, single, 0.025))
+    assert gait.swing_phase == held
+    while gait.completed == 0:
+        tick(gait, STILL)
+        heights.append(float(gait.feet[1, HEIGHT]))
+    assert np.abs(np.diff(heights)).max() < 0.008
+    assert heights[-1] == 0.0
+
+
+def test_a_frozen_landing_keeps_its_time(gait):
+    gait.start(0)
+    while gait.swing_phase < 0.85:
+        tick(gait, STILL)
+    left = gait.ticks_left
+    assert not gait.retime(Timing(14, 100, 0.025))
+    assert gait.ticks_left == left
+
+
+def test_a_double_support_under_way_changes_its_length(gait):
+    gait.start(0)
+    while gait.completed == 0:
+        tick(gait, STILL)
+    for _ in range(5):
+        tick(gait, STILL)
+    weight, origin = gait.right_weight, gait.zmp
+    assert gait.retime(Timing(30, 54, 0.025))
+    assert gait.right_weight == pytest.approx(weight)
+    assert gait.zmp == pytest.approx(origin)
+    for _ in range(25):
+        assert gait.double
+        tick(gait, STILL)
+    assert not gait.double
