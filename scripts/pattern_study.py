@@ -14,6 +14,7 @@ import time
 from dataclasses import dataclass, field
 from math import cos, hypot, sin
 from pathlib import Path
+from unittest import mock
 
 from walking.body.robot_model import RobotModel
 from walking.body.sole import Sole
@@ -25,6 +26,7 @@ from walking.footsteps.stride import STILL
 from walking.gait.gait import Gait
 from walking.gait.transition import Transition
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
+from walking.pattern import zmp_kernel
 from walking.pattern.dcm_tracker import dcm_reference
 from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
@@ -92,6 +94,20 @@ class CountingRegion:
         return inside
 
 
+class CountingPlan:
+    """Makes plans as the kernel does, and notes how often their programs' gradients were needed."""
+
+    def __init__(self) -> None:
+        self._plan = zmp_kernel.plan
+        self.evaluations = 0
+
+    def __call__(self, *asked: object) -> tuple[bool, Point, int, np.ndarray]:
+        """As the kernel."""
+        made = self._plan(*asked)
+        self.evaluations += made[2]
+        return made
+
+
 class Walker:
     """Steering, gait and generator without a body."""
 
@@ -114,11 +130,6 @@ class Walker:
         self.state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
         self.clipped = self.cost = self.late = self.missed = 0.0
         self.feet: tuple[Foothold, ...] = stance
-
-    @property
-    def evaluations(self) -> int:
-        """Of the gradient of the generator's program so far."""
-        return getattr(self.generator, "evaluations", 0)
 
     def tick(self, command: Command) -> list[Point]:
         """One control tick; the ZMP walked in it."""
@@ -220,13 +231,14 @@ def commands_of(seed: int, duration: float) -> list[Command]:
 
 def every_tick(name: str, sole: Sole, seeds: list[int], duration: float) -> Tally:
     """A new command in every tick, checked between the ticks, too."""
-    tally = Tally()
+    tally, plans = Tally(), CountingPlan()
     for seed in seeds:
         walker = Walker(name, sole)
         for command in commands_of(seed, duration):
-            before, evaluated = walker.gait.completed, walker.evaluations
-            points = walker.tick(command)
-            tally.evaluations.append(walker.evaluations - evaluated)
+            before, plans.evaluations = walker.gait.completed, 0
+            with mock.patch.object(zmp_kernel, "plan", plans):
+                points = walker.tick(command)
+            tally.evaluations.append(plans.evaluations)
             distance = walker.outside(points)
             tally.ticks += 1
             tally.outside += distance > OUTSIDE

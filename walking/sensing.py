@@ -16,7 +16,8 @@ class BodySensors:
         joint_position: encoder angles in the order of ``JOINT_NAMES`` (26,) [rad].
         joint_velocity: encoder rates in the same order (26,) [rad/s].
         gyro: angular velocity of the trunk in the IMU frame (3,) [rad/s].
-        accelerometer: specific force in the IMU frame (3,) [m/s²].
+        accelerometer: specific force in the IMU frame (3,) [m/s²]; walking
+            leaves it to the filter of `orientation`.
         orientation: attitude of the IMU as its own filter reports it, quaternion
             w-x-y-z (4,); roll and pitch are absolute, yaw drifts.
         foot_force: normal force under front-left, front-right, back-left and

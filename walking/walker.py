@@ -30,7 +30,6 @@ class Walker:
 
     Attributes:
         get_up: the fall that is under way, if one is.
-        get_ups: how often the robot has got up.
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
@@ -42,7 +41,6 @@ class Walker:
         self.get_up: GetUp | None = None
         self._asked: Command = VelocityCommand()
         self._steps = 0
-        self.get_ups = 0
 
     @property
     def parameters(self) -> WalkingParameters:
@@ -124,4 +122,3 @@ class Walker:
         self._odometry.interrupt(p.get_up.displacement, p.get_up.turn)
         self._engine = WalkingEngine(self._robot, p, self._odometry)
         self.get_up = None
-        self.get_ups += 1

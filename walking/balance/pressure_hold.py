@@ -1,5 +1,6 @@
 """Putting the mass centre where the floor says that it is not."""
 
+from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 
 Point = tuple[float, float]
@@ -43,7 +44,7 @@ class PressureHold:
         if begins:
             if self._ticks > 0:
                 x, y = (
-                    min(self._limit, max(-self._limit, goal - self._gain * total / self._ticks))
+                    clamp(goal - self._gain * total / self._ticks, self._limit)
                     for goal, total in zip(self._goal, self._sum, strict=True)
                 )
                 self._goal = x, y

@@ -5,6 +5,7 @@ from math import cos, exp, sin
 from walking.balance.pole_placement import dcm_gain
 from walking.balance.step_timing import catching_time
 from walking.body.robot_model import RobotModel
+from walking.clamp import clamp
 from walking.dead_zone import dead_zone
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
@@ -57,12 +58,12 @@ class Stabilizer:
         return x - zmp[0], y - zmp[1]
 
     def exceeds(self, foot: Foothold, error: tuple[float, float], share: float) -> bool:
-        """Whether a DCM error is more than a share of the room that the ZMP has [m]."""
+        """Whether a DCM error [m] is more than a share [1] of the room that the ZMP has."""
         x, y = self._in_foot(foot, error)
         return abs(x) > share * self._room[0] or abs(y) > share * self._room[1]
 
     def holds(self, foot: Foothold, error: tuple[float, float]) -> bool:
-        """Whether the ankles hold a DCM error, so that no landing is moved [m]."""
+        """Whether the ankles hold a DCM error [m], so that no landing is moved."""
         return not self.exceeds(foot, error, self._parameters.capture_dead_zone)
 
     def capture(
@@ -94,8 +95,8 @@ class Stabilizer:
         x = dead_zone(x, p.capture_dead_zone * self._room[0])
         y = dead_zone(y, p.capture_dead_zone * self._room[1])
         growth = exp(self._omega * ticks_left * CONTROL_PERIOD)
-        dx = min(p.capture_forward, max(-p.capture_forward, growth * x))
-        dy = min(p.capture_side, max(-p.capture_side, growth * y))
+        dx = clamp(growth * x, p.capture_forward)
+        dy = clamp(growth * y, p.capture_side)
         c, s = cos(support.yaw), sin(support.yaw)
         caught = planner.reachable(support, landing, c * dx - s * dy, s * dx + c * dy)
         planned = time = ticks_left * CONTROL_PERIOD

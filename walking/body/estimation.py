@@ -31,7 +31,8 @@ class Estimation:
         seen: what the last tick has seen, see `estimation_kernel.observe` (24,).
         tilt: roll and pitch of the trunk, filtered; None before the first tick [rad].
         dcm_error: of the body against the plan [m].
-        pressure_error: centre of pressure less planned ZMP, forward and left; none in the air [m].
+        pressure_error: centre of pressure less planned ZMP, forward and left [m]; zero in the
+            air.
         pose: by odometry (x, y, heading) [m, m, rad].
     """
 

@@ -4,13 +4,16 @@ What is remembered from tick to tick is kept in arrays, booleans as 0 or 1:
 
     tilt (3,)       whether it is known | roll, pitch [rad];
     odometry (20,)  x, y [m], heading without jumps [rad] | whether the IMU has told one, and which
-                    [rad] | whether the arms are known, from foot to body in the odometry frame:
-                    left x, y, right x, y [m] | index of the foot that counts | whether both feet
-                    carry, and how far apart they were when they began to, x, y [m] |
+                    [rad] | whether the vectors from foot to body are known, and which in the
+                    odometry frame: left x, y, right x, y [m] | index of the foot that counts |
+                    whether both feet carry, and how far apart they were when they began to,
+                    x, y [m] |
                     xx, xy, xw, yy, yw, ww of the error's covariance;
     error (5,)      x, y [m], vx, vy [m/s] | weight on the right foot [1], -1 before the first.
 
-Numbers that stay are arrays as well: a tuple is taken apart at every call.
+Numbers that stay are arrays as well: a tuple is taken apart at every call. The legs' forward
+kinematics stands here and not beside its inverse in `leg_kernel`, because no kernel calls one of
+another file.
 """
 
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
@@ -74,7 +77,7 @@ def estimate(
 
     Returns:
         roll and pitch [rad]; error of the DCM in the plan frame [m]; of the centre of pressure,
-        forward and left, none in the air [m]; pose by odometry [m, m, rad].
+        forward and left, zero in the air [m]; pose by odometry [m, m, rad].
     """
     inclined = observe(joints, pads, orientation, gyro, com, tilt, legs, body, period, found)
     left, right = (found[6], found[7]), (found[11], found[12])
@@ -366,7 +369,7 @@ def com_error(
 
 @njit(cache=True)
 def foot_pose(leg: Leg, angles: Angles) -> Pose:
-    """Pose of the foot for given joint angles."""
+    """Pose of the foot for given joint angles; the inverse is `leg_kernel.leg_angles`."""
     hip_x, hip_y, hip_z, l1, l2, h = leg
     a, b, c, d, e, f = angles
     ca, sa, cb, sb, cf, sf = cos(a), sin(a), cos(b), sin(b), cos(f), sin(f)

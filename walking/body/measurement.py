@@ -12,14 +12,12 @@ class FootMeasurement:
     Attributes:
         x, y, z: position of the foot frame [m].
         yaw: its direction [rad].
-        force: load under the sole [N].
     """
 
     x: float
     y: float
     z: float
     yaw: float
-    force: float
 
 
 @value
@@ -28,8 +26,6 @@ class BodyMeasurement:
 
     Attributes:
         roll, pitch: filtered tilt of the trunk [rad].
-        heading: heading as the IMU reports it [rad].
-        gyro: angular velocity of the trunk [rad/s].
         feet: left and right foot.
         com: centre of mass [m].
         right_load: share of the load on the right foot; half in the air [1].
@@ -37,8 +33,6 @@ class BodyMeasurement:
 
     roll: float
     pitch: float
-    heading: float
-    gyro: Vector
     feet: tuple[FootMeasurement, FootMeasurement]
     com: Vector
     right_load: float
@@ -46,14 +40,11 @@ class BodyMeasurement:
 
 def body_of(found: list[float]) -> BodyMeasurement:
     """The body of the numbers that `estimation_kernel.observe` finds (24,)."""
-    roll, pitch, heading, gx, gy, gz, *feet = found[:16]
-    x, y, z, right_load = found[16:20]
+    (x, y, z), right_load = found[16:19], found[19]
     return BodyMeasurement(
-        roll,
-        pitch,
-        heading,
-        (gx, gy, gz),
-        (FootMeasurement(*feet[:5]), FootMeasurement(*feet[5:])),
+        found[0],
+        found[1],
+        (FootMeasurement(*found[6:10]), FootMeasurement(*found[11:15])),
         (x, y, z),
         right_load,
     )

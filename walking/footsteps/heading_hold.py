@@ -1,5 +1,6 @@
 """Keeping the heading that the commands add up to, though the feet slip."""
 
+from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 
 
@@ -35,7 +36,6 @@ class HeadingHold:
             the rate [rad/s].
         """
         if renew:
-            wanted = self._gain * (ahead - self._held)
-            self._rate = min(self._limit, max(-self._limit, wanted))
+            self._rate = clamp(self._gain * (ahead - self._held), self._limit)
         self._held += self._rate * CONTROL_PERIOD
         return self._rate

@@ -4,6 +4,7 @@ from math import cos, sin, sqrt
 
 from walking.admission import Limit
 from walking.body.sole import Sole
+from walking.clamp import clamp
 from walking.command import CommandState
 from walking.foothold import Foothold
 from walking.footsteps import stride_kernel
@@ -96,11 +97,11 @@ class FootstepPlanner:
             turn: added to its direction [rad].
         """
         limits, gap, bound = self._limits, self._gait.foot_clearance, []
-        dx = min(limits.step_forward, max(-limits.step_forward, command.forward))
+        dx = clamp(command.forward, limits.step_forward)
         widest = 2.0 * self._gait.half_stance + limits.step_side
         apart = min(widest, command.side)
         wanted = command.direction + turn
-        turned = min(limits.step_turn, max(-limits.step_turn, wanted))
+        turned = clamp(wanted, limits.step_turn)
         if dx != command.forward:
             bound.append(Limit.STEP_LENGTH)
         if apart != command.side:

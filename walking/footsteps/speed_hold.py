@@ -2,6 +2,7 @@
 
 from math import cos, sin
 
+from walking.clamp import clamp
 from walking.footsteps.stride import Velocity
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 
@@ -73,7 +74,7 @@ class SpeedHold:
     def _learn(self, velocity: Velocity) -> None:
         time = self._ticks * CONTROL_PERIOD
         forward, left = (
-            min(self._limit, max(-self._limit, now - self._gain * (way / time - wanted)))
+            clamp(now - self._gain * (way / time - wanted), self._limit)
             for now, way, wanted in zip(self._correction, self._way, velocity[:2], strict=True)
         )
         self._correction = forward, left

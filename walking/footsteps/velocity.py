@@ -3,6 +3,7 @@
 from math import sqrt
 
 from walking.admission import Limit
+from walking.clamp import clamp
 from walking.command import VelocityCommand
 from walking.footsteps.stride import STILL, Velocity
 from walking.parameters import CONTROL_PERIOD, LimitParameters
@@ -38,8 +39,8 @@ def _within(command: VelocityCommand, limits: LimitParameters) -> Velocity:
     """The command with every component within its limit."""
     return (
         min(limits.forward, max(-limits.backward, command.forward)),
-        min(limits.lateral, max(-limits.lateral, command.left)),
-        min(limits.turn, max(-limits.turn, command.turn)),
+        clamp(command.left, limits.lateral),
+        clamp(command.turn, limits.turn),
     )
 
 

@@ -3,7 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from walking.clamp import clamp
 from walking.foothold import Foothold
+from walking.footsteps.foothold_kernel import RAMP
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL, Strides, Timing
 from walking.gait import swing_foot_kernel
@@ -92,7 +94,7 @@ class Gait:
         self.lift = timing.lift
         self._future = NO_STEPS
         self._walk: tuple[object, ...] | None = None  # what the footholds and ramps are made of
-        self._ramps = Ramps(np.empty((0, 13)))
+        self._ramps = Ramps(np.empty((0, RAMP)))
         still = planner.still
         self._nominal = still, stance[0], planner.landing(stance[0], still)
 
@@ -327,8 +329,7 @@ class Gait:
         swing, single, landing = -1, self._single, self.landing
         if self.stepping and not self.held and single.first < self._elapsed <= single.last:
             swing = self.swing
-            change = self.timing.lift - self.lift
-            self.lift += min(self._lift_change, max(-self._lift_change, change))
+            self.lift += clamp(self.timing.lift - self.lift, self._lift_change)
         swing_foot_kernel.advance(
             self.feet,
             self._contact_decay,

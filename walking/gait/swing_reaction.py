@@ -38,12 +38,13 @@ SMALL = 1e-4  # of a foot's move in finite differences [m]
 
 @dataclass(frozen=True, slots=True)
 class LegReaction:
-    """Move of the ZMP by an acceleration of the swing foot.
+    """How an acceleration of the swing foot moves the ZMP.
 
     Attributes:
-        thrust: B, against a horizontal one, per its size [s²].
-        weight: K, towards the foot for one upwards, per its size and the foot's distance [s²/m].
-        knee: N, backward for one upwards, per its size [s²].
+        thrust: B, backward shift of the ZMP per forward acceleration of the foot [s²].
+        weight: K, shift towards the foot per upward acceleration of it and distance of it from
+            the ZMP [s²/m].
+        knee: N, backward shift per upward acceleration of the foot [s²].
     """
 
     thrust: float

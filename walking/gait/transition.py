@@ -13,7 +13,7 @@ from walking.pattern.ramps import Ramps
 from walking.pattern.support import SupportRegion
 from walking.value import value
 
-BISECTIONS = 4  # an admitted change is at least 1/16 short of the largest possible
+BISECTIONS = 4  # halvings: at most 1/16 short of the largest change that is admissible
 
 
 @value

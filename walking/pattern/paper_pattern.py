@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, exp, inf, log, sin, sqrt
 
+from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern.dcm_pattern import DcmGenerator
 from walking.pattern.dcm_tracker import dcm_reference
@@ -212,7 +213,7 @@ class PaperGenerator:
         functions, missed = [], []
         wanted = self._solve(state, ramp, target)
         for function, room in zip(wanted, _room(ramp, region), strict=True):
-            level = min(room, max(-room, function.level))
+            level = clamp(function.level, room)
             functions.append(ZmpFunction(level, 0.0))
             missed.append((function.level - level) * (growth - 1.0) / growth)
         self._target, self._functions = target, (functions[0], functions[1])

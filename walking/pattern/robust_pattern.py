@@ -63,9 +63,6 @@ class RobustGenerator:
         lipm: pendulum.
         parameters: margin and largest rate of the ZMP.
         sole: rectangle of the soles.
-
-    Attributes:
-        evaluations: of the program's gradient so far.
     """
 
     selective = True
@@ -82,7 +79,6 @@ class RobustGenerator:
         self._plan: ZmpPlan | None = None
         self._age = 0
         self._candidate: tuple[Sequence[ZmpRamp], ZmpPlan] | None = None
-        self.evaluations = 0
 
     def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
         """Whether a plan with all knots in place leads into a reference."""
@@ -157,7 +153,7 @@ class RobustGenerator:
         if plan is not None:
             growth = self._lipm.ramp(self._age).growth
             dual = plan.dual[0] / growth, plan.dual[1] / growth
-        feasible, dual, evaluations, knots = zmp_kernel.plan(
+        feasible, dual, _, knots = zmp_kernel.plan(
             table,
             (state.x, state.y, state.vx / w, state.vy / w, state.zmp_x, state.zmp_y),
             sole,
@@ -165,7 +161,6 @@ class RobustGenerator:
             self._rate,
             dual,
         )
-        self.evaluations += evaluations
         return ZmpPlan(knots, table, dual) if feasible else None
 
 

@@ -21,6 +21,9 @@ class Posture:
     Args:
         robot: dimensions.
         parameters: heights, arms, tilt compensation.
+
+    Attributes:
+        height: of the base above the floor [m].
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
@@ -30,13 +33,21 @@ class Posture:
         self._ready = robot.ready
         self._legs = robot.leg_rows
         p = parameters.stabilizer
-        height = parameters.pattern.pelvis_height - robot.legs[0].hip_z
-        law = p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, height
+        self.height = parameters.pattern.pelvis_height - robot.legs[0].hip_z
+        law = p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, self.height
         self._law = np.array(law)
         self._tilt = np.zeros((2, 2))
 
     def pelvis(self, gait: Gait, com: Point) -> Vector:
-        """Pelvis x, y [m] and heading [rad] that put its constant offset point on the pendulum."""
+        """Pelvis whose nominal mass centre, a fixed distance ahead of the base, is at `com`.
+
+        Args:
+            gait: feet.
+            com: of the pendulum, in the plan frame [m].
+
+        Returns:
+            x, y [m], heading [rad] in the plan frame.
+        """
         return leg_kernel.pelvis_of(gait.feet, com, self._ahead)
 
     def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Vector]:
@@ -44,7 +55,7 @@ class Posture:
 
         Args:
             gait: feet.
-            com: where the pelvis's constant offset point is meant to be, in the plan frame [m].
+            com: where the nominal mass centre is meant to be, in the plan frame [m].
             tilt: measured roll and pitch of the trunk [rad].
             head: pan and tilt [rad].
         """

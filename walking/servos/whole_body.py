@@ -50,7 +50,7 @@ class WholeBody:
         self._gait = gait
         self._pendulum = pendulum
         self._posture = Posture(robot, parameters)
-        base = parameters.pattern.pelvis_height - robot.legs[0].hip_z
+        base = self._posture.height
         self._feedforward = FeedForward(robot, parameters.stabilizer, base)
         self.compensation = SwingCompensation(lipm, leg_reaction(robot, base, parameters.gait.lift))
         self.pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
