@@ -97,7 +97,7 @@ def mirrored_joints():
         for name in JOINT_NAMES
     ]
     sign = np.array(
-        [-1.0 if name.endswith(("yaw", "roll", "gripper")) else 1.0 for name in JOINT_NAMES]
+        [-1.0 if name.endswith(("yaw", "roll", "pan", "gripper")) else 1.0 for name in JOINT_NAMES]
     )
     return lambda angles: sign * angles[..., swapped]
 

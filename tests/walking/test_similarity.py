@@ -6,16 +6,6 @@ from math import sqrt
 import pytest
 
 from walking.command import CommandState, VelocityCommand
-from walking.dimension import (
-    ACCELERATION,
-    LEFT_PER_TICK,
-    LENGTH,
-    NUMBER,
-    RATE,
-    SPEED,
-    TAKEN_PER_TICK,
-    TIME,
-)
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.robot_measures import HSR_VIII, RobotMeasures
 from walking.similarity import carried, parameters_for, rules_of
@@ -121,17 +111,6 @@ def test_a_softer_ankle_is_moved_further():
     changed = {name for name, value in numbers(made).items() if value != before[name]}
     assert changed == {"stabilizer.gyro_gain"}
     assert made.stabilizer.gyro_gain == 2.0 * before["stabilizer.gyro_gain"]
-
-
-def test_dimensions_multiply():
-    assert SPEED * TIME == LENGTH
-    assert ACCELERATION == SPEED / TIME
-    assert RATE * TIME == NUMBER
-    other = scaled(HSR_VIII, 2.0)
-    assert NUMBER.carry(0.37, HSR_VIII, other) == 0.37
-    left = LEFT_PER_TICK.carry(0.9, HSR_VIII, other)
-    assert TAKEN_PER_TICK.carry(0.1, HSR_VIII, other) == pytest.approx(1.0 - left, rel=1e-12)
-    assert left > 0.9
 
 
 def test_measures_follow_the_mass_and_the_servos(robot):
