@@ -17,6 +17,9 @@ Knots that share a parallelogram are a *cell*, a row of
     low u, high u, low v, high v [m] | Σ w, Σ w², max w of its knots [1];
 
 `starts` (n + 1,) holds the index of the first knot of every cell, `weights` those of all knots.
+
+`plan` is `lay_out` (cells, knots' times and weights), `solve` (λ) and `place` (the knots' points);
+`follow` walks what it has made.
 """
 
 from math import cos, exp, hypot, sin
@@ -33,6 +36,13 @@ Pendulum = tuple[float, float, float, float, float, float]
 """Position x, y [m], velocity x, y, divided by ω where a plan is made of it [m/s or m], ZMP of the
 last tick x, y [m]."""
 
+Sole = tuple[float, float, float]
+"""Its middle ahead of the ankle, and half of its length and width less the margin that the knots
+keep [m]."""
+
+Tick = tuple[float, float, float, float]
+"""A control tick of the pendulum, see `Lipm`."""
+
 SOLVED = 1e-10  # DCM not accounted for that is rounding [m]
 ITERATIONS = 20
 HALVINGS = 6
@@ -47,7 +57,7 @@ CELL = 15  # numbers of a cell
 def plan(
     ramps: Array,
     pendulum: Pendulum,
-    sole: tuple[float, float, float],
+    sole: Sole,
     wh: float,
     rate: float,
     dual: Point,
@@ -73,16 +83,14 @@ def plan(
 
 
 @njit(cache=True)
-def follow(
-    knots: Array, begin: int, pendulum: Pendulum, tick: tuple[float, float, float, float]
-) -> tuple[Pendulum, int]:
+def follow(knots: Array, begin: int, pendulum: Pendulum, tick: Tick) -> tuple[Pendulum, int]:
     """One tick along a plan.
 
     Args:
         knots: ticks since the one before, of that at `begin` those still to go; x, y [m] (n, 3).
         begin: index of the first knot to come; beyond the last the ZMP stays.
         pendulum: of now.
-        tick: of the pendulum, see `Lipm`.
+        tick: of the pendulum.
 
     Returns:
         the pendulum, and the first knot to come, a tick later.
@@ -108,7 +116,7 @@ def _slide(
     velocity: float,
     before: float,
     after: float,
-    tick: tuple[float, float, float, float],
+    tick: Tick,
 ) -> Point:
     """Position [m] and velocity [m/s] one tick later under a ZMP moving linearly."""
     w, c, s, period = tick
@@ -120,15 +128,14 @@ def _slide(
 
 @njit(cache=True)
 def lay_out(
-    ramps: Array, pendulum: Pendulum, sole: tuple[float, float, float], wh: float, rate: float
+    ramps: Array, pendulum: Pendulum, sole: Sole, wh: float, rate: float
 ) -> tuple[Array, Indices, Array, Point, Array]:
     """The program of a plan near a reference.
 
     Args:
         ramps: reference, see `walking.pattern.ramps` (n, 13).
         pendulum: of now.
-        sole: its middle ahead of the ankle, and half of its length and width less the margin that
-            the knots keep [m].
+        sole: of either foot.
         wh: ω times the control period [1].
         rate: largest move of the ZMP per tick in single support [m].
 
@@ -145,6 +152,7 @@ def lay_out(
         rest_x, rest_y = dcm(ramps[near:], wh)
     table = ramps[:near]
     if ends:
+        # Drawn out by a time of standing on its last point, with the feet of the last ramp.
         table = np.empty((near, ramps.shape[1]))
         for column in range(ramps.shape[1]):
             for k in range(near):
@@ -172,7 +180,7 @@ def lay_out(
 
 
 @njit(cache=True)
-def dcm(ramps: Array, wh: float) -> tuple[float, float]:
+def dcm(ramps: Array, wh: float) -> Point:
     """DCM from which a reference is walked for ever: the recursion run backward [m].
 
     Args:
@@ -197,7 +205,7 @@ def limit(cell: Array, x: float, y: float, reach: float) -> None:
 
 
 @njit(cache=True)
-def sides(cell: Array, x: float, y: float) -> tuple[float, float]:
+def sides(cell: Array, x: float, y: float) -> Point:
     """Coordinates of a vector along the sides of a cell."""
     ax, ay, bx, by = cell[2], cell[3], cell[4], cell[5]
     scale = ax * by - ay * bx
@@ -219,7 +227,8 @@ def _near(ramps: Array) -> int:
     """Number of the ramps whose ZMP is planned.
 
     Planned is the ZMP up to the end of the second single support and through the double
-    support after it; a reference that ends before is drawn out by a time of standing.
+    support after it. Where the reference ends before, it is one more than there are: `lay_out` adds
+    a time of standing.
     """
     singles = 0
     for k in range(ramps.shape[0] - 1):
@@ -231,17 +240,28 @@ def _near(ramps: Array) -> int:
 
 
 @njit(cache=True)
-def _lay_cells(
-    ramps: Array, sole: tuple[float, float, float], cells: Array, starts: Indices, knots: Array
-) -> int:
-    """Cells and times of the knots; returns the number of cells."""
-    every, since, carried, count, knot = SINGLE_SPACING, 0, 0, 0, 0
+def _lay_cells(ramps: Array, sole: Sole, cells: Array, starts: Indices, knots: Array) -> int:
+    """Cells and times of the knots; returns the number of cells.
+
+    A single support has one cell, for the last knot of the double support before it as well; every
+    other knot of a double support has a cell of its own.
+
+    Args:
+        ramps: whose ZMP is planned (n, 13).
+        sole: of either foot.
+        cells: set, but for the sums of their weights.
+        starts: set.
+        knots: their ticks since the knot before are set.
+    """
+    # Ticks from the last knot to the ramp's begin; knots that wait for the cell of the next sole.
+    since, carried = 0, 0
+    every, count, knot = SINGLE_SPACING, 0, 0
     starts[0] = 0
     for k in range(ramps.shape[0]):
         ramp, ticks = ramps[k], int(ramps[k, 0])
         final = k == ramps.shape[0] - 1
         single = ramp[8] == ramp[12]
-        # On the next sole, with the knots of the single support on it.
+        # Its last knot is on the next sole, with those of the single support there.
         lands = not (single or final) and _stands_on(ramps[k + 1], ramp)
         spacing = every if single else DOUBLE_SPACING
         # Counted from the end, so that the knots keep their times.
@@ -281,7 +301,8 @@ def _stands_on(ramp: Array, before: Array) -> bool:
 
 
 @njit(cache=True)
-def _on_sole(ramp: Array, sole: tuple[float, float, float], cell: Array) -> None:
+def _on_sole(ramp: Array, sole: Sole, cell: Array) -> None:
+    """The rectangle of the sole that carries."""
     centre, length, width = sole
     c, s = cos(ramp[7]), sin(ramp[7])
     cx, cy = ramp[5] + centre * c, ramp[6] + centre * s
@@ -293,7 +314,7 @@ def _on_sole(ramp: Array, sole: tuple[float, float, float], cell: Array) -> None
 
 
 @njit(cache=True)
-def _between(ramp: Array, elapsed: float, sole: tuple[float, float, float], cell: Array) -> None:
+def _between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
     """A parallelogram between the outer edges of two soles."""
     centre, length, width = sole
     first, second = ramp[5:9], ramp[9:13]
@@ -315,7 +336,7 @@ def _between(ramp: Array, elapsed: float, sole: tuple[float, float, float], cell
 
 
 @njit(cache=True)
-def _edge(foot: Array, centre: float, outward: float) -> tuple[float, float]:
+def _edge(foot: Array, centre: float, outward: float) -> Point:
     """A point of the sole on the side away from the other one [m]."""
     c, s = cos(foot[2]), sin(foot[2])
     across = outward if foot[3] > 0.0 else -outward
@@ -344,7 +365,7 @@ def _limit_first(
 @njit(cache=True)
 def _weigh(
     knots: Array, weights: Array, pendulum: Pendulum, rest_x: float, rest_y: float, wh: float
-) -> tuple[float, float]:
+) -> Point:
     """Set the weights of the knots but the last; the DCM that those have to bring about [m].
 
     Args:
@@ -390,7 +411,7 @@ def solve(
     weights: Array,
     x: float,
     y: float,
-    start: tuple[float, float],
+    start: Point,
 ) -> tuple[bool, float, float, int]:
     """Find λ, beginning at `start`.
 
@@ -417,9 +438,7 @@ def solve(
 
 
 @njit(cache=True)
-def place(
-    cells: Array, starts: Indices, weights: Array, dual: tuple[float, float], knots: Array
-) -> None:
+def place(cells: Array, starts: Indices, weights: Array, dual: Point, knots: Array) -> None:
     """Write x, y [m] of the knots of a solution into the last two columns of `knots`."""
     lx, ly = dual
     for k in range(starts.size - 1):
@@ -503,7 +522,7 @@ def _gradient(
 @njit(cache=True)
 def _along(
     cell: Array, weights: Array, nominal: float, slope: float, low: float, high: float
-) -> tuple[float, float]:
+) -> Point:
     """Σ w clip(nominal + w slope) of a cell's knots, and its derivative by the slope."""
     if low <= nominal <= high and low <= nominal + cell[14] * slope <= high:
         return cell[12] * nominal + cell[13] * slope, cell[13]
