@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
-Foothold = tuple[float, float, float, float]
-"""x, y [m], yaw [rad], and 1 if it is a left one, 0 if not."""
+Row = tuple[float, float, float, float]
+"""A foothold, see `Foothold.row`: x, y [m], yaw [rad], and 1 if it is a left one, 0 if not."""
 
-Feet = tuple[Foothold, Foothold, Foothold]
+Feet = tuple[Row, Row, Row]
 """The foot that carries in this footstep; where the other foot swings from; where it is about to
 land."""
 
@@ -161,7 +161,7 @@ def _moved(
 
 
 @njit(cache=True)
-def _under(foot: Foothold, spot: Spot) -> tuple[float, float]:
+def _under(foot: Row, spot: Spot) -> tuple[float, float]:
     """ZMP under a foot that carries alone [m]."""
     forward = spot[0]
     inward = -spot[1] if foot[3] > 0.0 else spot[1]
@@ -174,8 +174,8 @@ def _swing(
     row: Array,
     begin: int,
     lift: float,
-    origin: Foothold,
-    landing: Foothold,
+    origin: Row,
+    landing: Row,
     zmp: tuple[float, float],
 ) -> None:
     row[0], row[1] = begin, lift
