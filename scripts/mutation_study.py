@@ -225,7 +225,7 @@ def fails(tests: list[str], planted: Planted | None, patience: float) -> bool:
 
 def study(module: str, each: int, seed: int) -> tuple[int, int, list[Mutant]]:
     """Mutants there are, mutants tried, and those that survived."""
-    package, name = module.split("/")
+    package, name = module.rsplit("/", 1)
     files = TESTS.get(module, (f"{package}/test_{name}",))
     tests = [str(ROOT / "tests" / f"{file}.py") for file in files]
     began = time.perf_counter()

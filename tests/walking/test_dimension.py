@@ -8,10 +8,17 @@ from hypothesis import strategies as st
 
 from walking.dimension import (
     ACCELERATION,
+    CHANGE_WEIGHT,
+    DIFFUSION,
+    HEIGHT,
     LEFT_PER_TICK,
     LENGTH,
     NUMBER,
+    PER_LENGTH,
     RATE,
+    RATE_CHANGE,
+    SOLE,
+    SOLE_SPEED,
     SPEED,
     STANCE,
     TAKEN_PER_TICK,
@@ -32,6 +39,15 @@ def test_they_multiply():
     assert RATE * TIME == NUMBER
     assert LENGTH**2.0 == LENGTH * LENGTH
     assert STANCE != LENGTH
+
+
+def test_units_are_those_of_the_laws():
+    assert RATE_CHANGE * TIME == RATE
+    assert SOLE_SPEED * TIME == SOLE
+    assert DIFFUSION**2.0 * TIME == LENGTH**2.0
+    assert PER_LENGTH * LENGTH == NUMBER
+    assert HEIGHT / TIME == TIME
+    assert CHANGE_WEIGHT / TIME == TIME
 
 
 @given(DIMENSION, DIMENSION, ROBOT, ROBOT)

@@ -110,6 +110,16 @@ def test_all_of_it_moves_with_the_odometry_frame(robot, gait):
     )
 
 
+def test_points_keep_their_places_about_the_pendulum(robot, gait):
+    plan = seen(robot, gait, ORIGIN)
+    c, s = np.cos(LEFT.yaw), np.sin(LEFT.yaw)  # the planned support foot has no yaw
+    R = np.array([[c, -s], [s, c]])
+    assert plan.zmp - plan.balance.com == pytest.approx(R @ [0.01, 0.005])
+    assert plan.dcm - plan.balance.com == pytest.approx(R @ [0.1 / 7.2, -0.2 / 7.2])
+    assert plan.balance.capture == pytest.approx(R @ [0.03, -0.01])
+    assert len(plan.balance.support) == len(Footing(robot.sole, gait.support_feet).polygon())
+
+
 def test_the_measured_dcm_is_the_planned_one_and_its_error(robot, gait):
     plan = seen(robot, gait, ORIGIN)
     apart = np.array([0.001 + 0.01 / 7.2, -0.002 + 0.02 / 7.2])

@@ -66,9 +66,10 @@ def test_a_pendulum_on_the_dcm_is_walked_along_the_reference():
 
 @pytest.mark.parametrize("gain", [1.5, 3.0])
 def test_an_error_of_the_dcm_shrinks_by_the_gain(gain):
-    state = PendulumState(0.011, 0.001)
+    w = LIPM.omega
+    state = PendulumState(0.012, -0.001, -0.001 * w, 0.002 * w)  # its DCM is off by 1 mm
     DcmTracker(LIPM, gain).advance(state, (0.01, 0.0), (0.01, 0.0), BOTH)
     growth = LIPM.ramp(1).growth
     left = growth - gain * (growth - 1.0)
-    assert state.x + state.vx / LIPM.omega - 0.01 == pytest.approx(0.001 * left)
-    assert state.y + state.vy / LIPM.omega == pytest.approx(0.001 * left)
+    assert state.x + state.vx / w - 0.01 == pytest.approx(0.001 * left)
+    assert state.y + state.vy / w == pytest.approx(0.001 * left)

@@ -6,9 +6,10 @@ import pytest
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.gait.gait import Gait
-from walking.parameters import CONTROL_PERIOD, WalkingParameters
+from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
+from walking.servos.feedforward import FeedForward
 from walking.servos.whole_body import WholeBody
 
 PARAMETERS = WalkingParameters()
@@ -79,6 +80,22 @@ def test_a_pendulum_off_its_zmp_is_accelerated_by_the_ankles(body):
     left, right = falling.offset[4] - at_rest.offset[4], falling.offset[10] - at_rest.offset[10]
     assert left == pytest.approx(right, rel=1e-6)
     assert left < -1e-3
+
+
+def test_the_servos_are_told_of_the_pendulum_s_acceleration(robot, body):
+    whole, gait = body()
+    targets = follow(whole, zmp=(-0.01, 0.005))
+    height = PARAMETERS.pattern.pelvis_height - robot.legs[0].hip_z
+    w2 = GRAVITY / PARAMETERS.pattern.lipm_height
+    expected = FeedForward(robot, PARAMETERS.stabilizer, height).offsets(
+        targets.position,
+        whole.pelvis,
+        gait.spots,
+        0.5,
+        (w2 * 0.02, -w2 * 0.005),
+        task=((0.0, 0.0), NONE, STILL),
+    )
+    assert targets.offset == pytest.approx(expected, abs=1e-12)
 
 
 def test_what_is_mirrored_goes_in_and_comes_out(body, mirrored_joints):
