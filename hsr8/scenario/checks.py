@@ -13,7 +13,7 @@ from hsr8.scenario.section import Point
 from hsr8.scenario.toml_lines import Path
 from hsr8.scenario.world import ROBOT_RADIUS, CircleMover, Mover, ShuttleMover
 from vision.errors import VisionError
-from walking.yardsticks import HSR_VIII
+from walking.robot_measures import HSR_VIII
 
 MOST_CELLS = 1000
 """Largest side of the local map, which every frame goes through [cells]."""
