@@ -1,5 +1,6 @@
 """``hsr8 sweep``: one scenario over many seeds, and over values of a setting."""
 
+import hashlib
 import itertools
 import os
 import re
@@ -35,8 +36,10 @@ from hsr8.scenario.schema import Scenario
 
 START = 60.0  # a process may need so long to begin [s]
 SLOWEST = 20.0  # and so long for a simulated second [s]
+LONGEST_TIMEOUT = 1e7  # some four months; threads cannot wait for much longer [s]
 MOST_WORKERS = 1024
 MOST_VARIANTS = 1000
+LONGEST_NAME = 120  # of a folder [characters]
 INTERRUPTED = 130
 CHANGED = "hsr8: the program's files changed during the sweep: its runs are not of one version"
 
@@ -53,8 +56,10 @@ def main(options: Sweep) -> int:
     shard = None if options.shard is None else parse_shard(options.shard)
     workers = _workers(options)
     kind, _ = parse_executor(options.executor)
-    if options.timeout is not None and not options.timeout > 0.0:
-        raise UsageError(f"--timeout {options.timeout:g}: give a time above 0 s")
+    if options.timeout is not None and not 0.0 < options.timeout <= LONGEST_TIMEOUT:
+        raise UsageError(
+            f"--timeout {options.timeout:g}: give a time above 0, at most {LONGEST_TIMEOUT:g} s"
+        )
     variants = _variants(options)
     scenarios = {name: _scenario(options, more) for name, more in variants.items()}
     if kind == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
@@ -173,7 +178,13 @@ def _variants(options: Sweep) -> dict[str, tuple[str, ...]]:
 
 
 def _folder_name(combination: Sequence[str]) -> str:
-    return re.sub(r"[^A-Za-z0-9._=+,-]+", "_", ",".join(combination))[:120]
+    """The settings as a file system takes them; a digest tells apart what this makes the same."""
+    text = ",".join(combination)
+    name = re.sub(r"[^A-Za-z0-9._=+,-]+", "_", text)
+    if name == text and len(name) <= LONGEST_NAME:
+        return name
+    digest = hashlib.sha256(text.encode("utf-8", errors="surrogateescape")).hexdigest()[:8]
+    return f"{name[: LONGEST_NAME - 9]}-{digest}"
 
 
 def _scenario(options: Sweep, more: tuple[str, ...]) -> Scenario:

@@ -129,8 +129,8 @@ class LocalExecutor:
 
         try:
             row = run_job(job, begin)
-        except OSError as error:  # no process, no disk
-            row = lost(job, str(error))
+        except Exception as error:  # no process, no disk; without a row the sweep would wait for it
+            row = lost(job, f"{type(error).__name__}: {error}")
         finally:
             with self._lock:
                 self._running.difference_update(mine)

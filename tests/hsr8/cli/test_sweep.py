@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from hsr8.cli.main import entry
+from hsr8.cli.options import Sweep
+from hsr8.cli.sweep import _variants
 from hsr8.evaluation.sweep.folder import SweepFolder
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
@@ -189,12 +191,30 @@ def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_
 
 
 @pytest.mark.parametrize(
+    "varied",
+    [
+        [f"navigation.gaze.deadline.{k}=0.25,0.5" for k in ("map_weight", "gate_weight")]
+        + [f"belief.tracking.{k}=1.25,1.5" for k in ("process_noise", "forget_after_time")],
+        ["own.planner=a/p.py:P,a_p.py:P"],
+    ],
+)
+def test_every_combination_has_a_folder_of_its_own(varied):
+    """Also where characters are replaced and long names cut."""
+    variants = _variants(Sweep("quick", "0:2", vary=[tuple(varied)]))
+    assert len(variants) == 2 ** len(varied)
+    assert len(set(variants.values())) == len(variants)
+    assert all(len(name) <= 120 and "/" not in name for name in variants)
+
+
+@pytest.mark.parametrize(
     ("more", "word"),
     [
         (["--seeds", "x"], "--seeds"),
         (["--seeds", "0:2", "--workers", "0"], "--workers"),
         (["--seeds", "0:2", "--shard", "3/2"], "--shard"),
         (["--seeds", "0:2", "--timeout", "0"], "--timeout"),
+        (["--seeds", "0:2", "--timeout", "inf"], "at most 1e+07 s"),
+        (["--seeds", "0:2", "--timeout", "nan"], "--timeout"),
         (["--seeds", "0:2", "--vary", "a"], "--vary"),
         (["--seeds", "0:2", "--vary", "seed=1,2", "seed=3"], "twice"),
         (["--seeds", "0:2", "--vary", "wrld.n=1,2"], "world"),

@@ -36,15 +36,23 @@ def test_every_job_ends_once(local, monkeypatch):
     assert local.wait(0.0) == []
 
 
-def test_a_job_that_cannot_begin_is_a_crash(local, monkeypatch):
+@pytest.mark.parametrize(
+    "error",
+    [
+        OSError("No space left on device"),
+        RuntimeError("can't start new thread"),
+        OverflowError("timestamp too large"),
+    ],
+)
+def test_a_job_that_cannot_begin_is_a_crash(local, monkeypatch, error):
     def fail(job, start):
-        raise OSError("No space left on device")
+        raise error
 
     monkeypatch.setattr(module, "run_job", fail)
     local.submit(JOB)
     ((_, row),) = _all(local, 1)
     assert row["outcome"] == "crashed"
-    assert "No space left" in row["error"]
+    assert str(error) in row["error"]
 
 
 @pytest.mark.parametrize("stubborn", [False, True])
