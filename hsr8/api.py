@@ -45,6 +45,8 @@ def run(
         RenderingUnavailable: the camera needs OpenGL and there is none.
         UsageError: the run folder cannot be made, there is no such level of `log`, or `planner`
             or `gaze` answers with what is no decision.
+        RecordingFailed: the run folder cannot be written any more.
+        TypeError: a loaded scenario is given settings.
         KeyboardInterrupt: Ctrl-C; the run folder is complete up to then.
     """
     level = _level(log)
@@ -55,11 +57,12 @@ def run(
     simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze)
     recording = Recording(simulation, listeners)
     if out is not None:
+        renderer = renderer_of(loaded)
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)
         source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
         words = ("hsr8", "run", str(source), "--seed", str(loaded.seed), *_options(settings))
         command = _own(planner, gaze) or tuple(map(shlex.quote, words))
-        manifest = Manifest.now(loaded.name, loaded.seed, command, renderer_of(loaded))
+        manifest = Manifest.now(loaded.name, loaded.seed, command, renderer)
         recording.into(path, manifest, log=level)
     result = recording.run()
     if result.exit_reason == "interrupted":

@@ -94,7 +94,8 @@ class Simulation:
     Raises:
         ScenarioError: the seed is none, or the world cannot be drawn as asked.
         ModelError: a model of robot or field is missing or damaged.
-        RenderingUnavailable: the camera needs OpenGL and there is none.
+        UsageError: `planner` or `gaze`, or one that the scenario names, will not do.
+        RenderingUnavailable: by ``with`` or `run`, the camera needs OpenGL and there is none.
     """
 
     def __init__(
@@ -167,10 +168,14 @@ class Simulation:
 
     def __enter__(self) -> Self:
         cv2.setNumThreads(1)  # threads only wait for one another over images so small
-        if self._analytic is None:
-            self._rendered = RenderedCamera(
-                self.model, self.scenario.camera, self._camera_rng, self._camera_faults
-            )
+        try:
+            if self._analytic is None:
+                self._rendered = RenderedCamera(
+                    self.model, self.scenario.camera, self._camera_rng, self._camera_faults
+                )
+        except BaseException as error:  # who listens is to know that there is no run
+            self.__exit__(type(error), error, None)
+            raise
         self._open = True
         return self
 

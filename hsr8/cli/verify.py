@@ -44,14 +44,18 @@ def verify(folder: Path) -> Verified:
     """
     first = open_run(folder)
     out = Path(tempfile.mkdtemp(prefix="hsr8-verify-"))
-    words = [sys.executable, "-m", "hsr8", "run", str(first.scenario_file)]
-    words += ["--no-log", "--quiet", "--out", str(out)]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    if done.returncode not in ENDED:
-        raise Hsr8Error(f"the second run failed: {done.stderr.strip() or done.returncode}")
-    second = open_run(out)
-    difference = first_difference(first, second)
-    hashes = len(read_tape(folder / run_folder.TAPE, whole=True))
-    if not difference:
-        shutil.rmtree(out)
-    return Verified(difference, hashes, second.path)
+    difference = ""
+    try:
+        words = [sys.executable, "-m", "hsr8", "run", str(first.scenario_file)]
+        words += ["--no-log", "--quiet", "--out", str(out)]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        if done.returncode not in ENDED:
+            raise Hsr8Error(f"the second run failed: {done.stderr.strip() or done.returncode}")
+        second = open_run(out)
+        difference = first_difference(first, second)
+        hashes = len(read_tape(folder / run_folder.TAPE, whole=True))
+        return Verified(difference, hashes, second.path)
+    finally:
+        told = any(out.rglob(run_folder.CRASH))  # a message names this file
+        if not difference and not told:
+            shutil.rmtree(out, ignore_errors=True)

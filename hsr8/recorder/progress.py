@@ -32,7 +32,6 @@ class Progress:
         self._live: Live | None = None
         if self._console.is_terminal:
             self._live = Live(console=self._console, auto_refresh=False, transient=True)
-            self._live.start()
         self._counts = dict.fromkeys(COUNTED, 0)
         self._started = clock.perf_counter()
         self._shown_at = self._started
@@ -50,6 +49,7 @@ class Progress:
                 self._next_line += PLAIN_PERIOD
                 print(self.line(record), file=self._stream, flush=True)
             return
+        self._live.start()  # it hides the cursor: not before `close` is sure to come
         now = clock.perf_counter()
         if now - self._shown_at >= REFRESH:
             self._shown_at = now

@@ -3,7 +3,7 @@
 import json
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
@@ -21,6 +21,7 @@ from hsr8.suggestion import suggestion
 
 BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
 LARGEST = 1_000_000  # a scenario file is not longer than this [byte]
+KINDS = ("kind", "motion")  # keys that say which other keys a table has
 DEEPEST = 8  # files that may extend one another
 
 Table = dict[str, Any]
@@ -105,8 +106,10 @@ class _Draft:
     def add(self, table: Table, place: str, lines: dict[Path, int] | None = None) -> None:
         """Put `table` over what is there; `place` names its source."""
         lines = lines or {}
-        self.data = self._merged(self.data, table, ())
-        for path in _paths(table, ()):
+        self.data = _merged(self.data, table)
+        for path, value in _items(table, ()):
+            if not isinstance(value, dict):
+                self._forget(path)
             line = nearest(lines, path)
             self.places[path] = place if line is None else f"{place}:{line}"
 
@@ -122,19 +125,6 @@ class _Draft:
             raise self._error(name, problems)
         return scenario
 
-    def _merged(self, base: Table, over: Table, path: Path) -> Table:
-        # Another kind of mission or mover has other keys: nothing of the old one is kept.
-        changed = "kind" in over and over["kind"] != base.get("kind", over["kind"])
-        merged = {} if changed else dict(base)
-        for key, value in over.items():
-            here = (*path, key)
-            if isinstance(value, dict) and isinstance(merged.get(key), dict):
-                merged[key] = self._merged(merged[key], value, here)
-            else:
-                merged[key] = value
-                self._forget(here)
-        return merged
-
     def _forget(self, path: Path) -> None:
         for known in [p for p in self.places if p[: len(path)] == path]:
             del self.places[known]
@@ -147,6 +137,18 @@ class _Draft:
             where = f"{place}: " if place else ""
             lines.append(f"  {where}{problem.key()}: {problem.text}")
         return ScenarioError("\n".join(lines))
+
+
+def _merged(base: Table, over: Table) -> Table:
+    """`over` put over `base`, table by table."""
+    # Another kind of mission, fault or mover has other keys: nothing of the old one is kept.
+    changed = any(key in over and over[key] != base.get(key, over[key]) for key in KINDS)
+    merged = {} if changed else dict(base)
+    for key, value in over.items():
+        old = merged.get(key)
+        both = isinstance(value, dict) and isinstance(old, dict)
+        merged[key] = _merged(old, value) if both else value
+    return merged
 
 
 def _find(name_or_path: str) -> FilePath:
@@ -261,7 +263,7 @@ def _put(part: str, value: Any, there: Any, override: str) -> Any:
         )
     old = there[int(part)]
     if isinstance(old, dict) and isinstance(value, dict):
-        value = {**old, **value}
+        value = _merged(old, value)
     return [*there[: int(part)], value, *there[int(part) + 1 :]]
 
 
@@ -276,13 +278,14 @@ def _at(data: Any, parts: Sequence[str]) -> Any:
     return data
 
 
-def _paths(value: Any, path: Path) -> list[Path]:
-    """Every table, key and list entry in `value`."""
-    paths = [path] if path else []
+def _items(value: Any, path: Path) -> Iterator[tuple[Path, Any]]:
+    """Path and value of every table, key and list entry in `value`, the outer ones first."""
+    if path:
+        yield path, value
+    inner: Iterable[tuple[str | int, Any]] = ()
     if isinstance(value, dict):
-        for key, inner in value.items():
-            paths += _paths(inner, (*path, key))
+        inner = value.items()
     elif isinstance(value, list):
-        for k, inner in enumerate(value):
-            paths += _paths(inner, (*path, k))
-    return paths
+        inner = enumerate(value)
+    for key, within in inner:
+        yield from _items(within, (*path, key))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import hsr8
-from hsr8.errors import ScenarioError, UsageError
+from hsr8.errors import RenderingUnavailable, ScenarioError, UsageError
 from hsr8.recorder.run_reader import open_run
 from navigation.decision import GazeDecision, MotionDecision
 
@@ -96,6 +96,16 @@ def test_the_log_holds_as_much_as_it_is_told_to(tmp_path):
 def test_a_level_that_there_is_not_is_told_before_the_run(tmp_path):
     with pytest.raises(UsageError, match="minimal, standard, full"):
         hsr8.run("quick", settings=STAND_INS, out=tmp_path, log="all")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_nothing_can_be_drawn_no_folder_is_left(tmp_path, monkeypatch):
+    def none(scenario):
+        raise RenderingUnavailable("no OpenGL")
+
+    monkeypatch.setattr("hsr8.api.renderer_of", none)
+    with pytest.raises(RenderingUnavailable):
+        hsr8.run("quick", settings=STAND_INS, out=tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 

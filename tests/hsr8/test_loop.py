@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from hsr8.decisions import Looks, Moves
+from hsr8.errors import RenderingUnavailable
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load
@@ -52,6 +53,22 @@ def test_a_run_left_early_closes_its_listeners(fake):
     listener = Closes()
     with pytest.raises(ZeroDivisionError), Simulation(quick(), 4, [listener]):
         raise ZeroDivisionError
+    assert listener.reason == "error"
+
+
+def test_a_run_that_cannot_begin_closes_its_listeners(fake, monkeypatch):
+    class Closes(Listener):
+        def close(self, exit_reason):
+            self.reason = exit_reason
+
+    def none(*_):
+        raise RenderingUnavailable("no OpenGL")
+
+    monkeypatch.setattr("hsr8.loop.RenderedCamera", none)
+    listener = Closes()
+    simulation = Simulation(load("quick"), 4, [listener])
+    with pytest.raises(RenderingUnavailable):
+        simulation.run()
     assert listener.reason == "error"
 
 

@@ -1,8 +1,13 @@
 import json
+import subprocess
+import tempfile
+
+import pytest
 
 from hsr8.cli import verify as module
 from hsr8.cli.main import entry
 from hsr8.cli.verify import verify
+from hsr8.errors import Hsr8Error
 from hsr8.recorder.run_reader import open_run
 
 FAST = [
@@ -34,6 +39,21 @@ def test_a_run_that_cannot_be_repeated_is_found_out(tmp_path, capsys):
     assert not verified.equal
     assert "tick 0" in verified.difference
     assert verified.second.is_dir()
+
+
+@pytest.mark.parametrize("stopped", [Hsr8Error, KeyboardInterrupt])
+def test_a_second_run_that_comes_to_no_end_leaves_nothing(tmp_path, monkeypatch, stopped):
+    def second(*_, **__):
+        if stopped is KeyboardInterrupt:
+            raise KeyboardInterrupt
+        return subprocess.CompletedProcess([], 3, "", "no memory")
+
+    entry([*FAST, "--out", str(tmp_path / "runs"), "--quiet"])
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(module.subprocess, "run", second)
+    with pytest.raises(stopped):
+        verify(open_run(tmp_path / "runs").path)
+    assert [path.name for path in tmp_path.iterdir()] == ["runs"]
 
 
 def test_a_difference_fails_the_run(tmp_path, monkeypatch, capsys):

@@ -2,6 +2,8 @@ import io
 
 from hsr8.recorder.progress import Progress
 
+HIDE_CURSOR, SHOW_CURSOR, ERASE_LINE = "\x1b[?25l", "\x1b[?25h", "\x1b[2K"
+
 
 def test_without_a_terminal_there_is_a_plain_line_every_ten_seconds(walk):
     stream = io.StringIO()
@@ -38,9 +40,15 @@ def test_a_terminal_gets_a_live_line_that_goes_away(fake, monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm")
     stream = io.StringIO()
+    monkeypatch.setattr("hsr8.recorder.progress.REFRESH", 0.0)
     progress = Progress(30.0, stream)
-    progress.on_record(fake.record(0.0))
+    assert HIDE_CURSOR not in stream.getvalue(), "a run that does not begin leaves the cursor"
+    progress.on_record(fake.record(2.0))
     progress.on_event(1.0, "fall", "the robot has fallen")
+    assert "2.0 / 30.0 s" in stream.getvalue()
+    before = len(stream.getvalue())
     progress.close("fall")
     progress.close("fall")
     assert "the robot has fallen" in stream.getvalue()
+    assert ERASE_LINE in stream.getvalue()[before:]
+    assert stream.getvalue().count(HIDE_CURSOR) == stream.getvalue().count(SHOW_CURSOR) == 1

@@ -284,6 +284,33 @@ def test_overrides_change_single_keys():
     assert scenario.command.stretch[0] == before.command.stretch[0]
 
 
+def test_an_override_changes_one_key_however_deep_in_a_list(tmp_path):
+    file = tmp_path / "mine.toml"
+    steps = "{forward = 0.04, side = 0.09, swing_height = 0.03}"
+    file.write_text(
+        'mission = {kind = "walk"}\n'
+        f"[command]\nstretch = [{{duration = 1.0, footstep = {steps}}}]\n"
+    )
+    (old,) = load(str(file)).command.stretch
+    (new,) = load(str(file), ["command.stretch.0.footstep.forward=0.05"]).command.stretch
+    assert new.footstep == old.footstep.model_copy(update={"forward": 0.05})
+    assert new.duration == old.duration
+
+
+def test_another_kind_of_fault_or_mover_keeps_nothing_of_the_old_one(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'extends = "course"\n'
+        '[[fault]]\nkind = "imu-tilt"\nsize = 0.1\nstart = 3.0\n'
+        '[[world.mover]]\nmotion = "circle"\ncentre = [1.0, 1.0]\npath_radius = 0.4\n'
+    )
+    changed = load(str(file), ["fault.0.kind=imu-frozen", "fault.0.start=4.0"])
+    assert (changed.fault[0].kind, changed.fault[0].start) == ("imu-frozen", 4.0)
+    line = ["motion=line", "start=[1.0, 1.0]", "heading_deg=90"]
+    changed = load(str(file), [f"world.mover.0.{setting}" for setting in line])
+    assert changed.world.mover[0].start == (1.0, 1.0)
+
+
 def test_overrides_are_words_one_word_or_a_table():
     wanted = load("course", ["world.n_moving=3", "world.size=[4.0, 6.0]"])
     assert load("course", {"world.n_moving": 3, "world.size": (4.0, 6.0)}) == wanted
