@@ -25,7 +25,7 @@ LIBRARIES = (
     "pydantic",
     "av",
 )
-FORMAT = 2  # of run folders; those without a number are of format 1
+FORMAT = 3  # of run folders; those without a number are of format 1
 RUNNING = "running"
 OWN = "hsr8.run("  # begins the command of a run with a planner or a gaze of one's own
 

@@ -19,6 +19,7 @@ be read up to its last second.
 """
 
 import errno
+import re
 import secrets
 from collections.abc import Mapping
 from contextlib import ExitStack
@@ -52,7 +53,7 @@ LOG = "log.rrd"
 VIDEO = "video.mp4"
 CRASH = "crash.txt"
 
-MOST_PARTS = 1000  # of a run that is resumed again and again
+_LOG_OF_PART = re.compile(r"log(?:-(\d{1,9}))?\.rrd")
 
 
 class RunFolder:
@@ -192,15 +193,17 @@ def write_metrics(path: Path, metrics: Mapping[str, Any]) -> None:
 
 def logs(path: Path) -> list[Path]:
     """Rerun logs in the run folder `path`; a run that was resumed has one for each part."""
-    return [file for k in range(1, MOST_PARTS) if (file := _log(path, k)).exists()]
+    return [file for _, file in sorted(_parts(path).items())]
 
 
 def next_log(path: Path) -> Path:
     """Log of the part of the run in `path` that begins now."""
-    return _log(path, len(logs(path)) + 1)
-
-
-def _log(path: Path, part: int) -> Path:
-    """Log of a part of the run, counted from 1."""
+    part = max(_parts(path), default=0) + 1
     first = path / LOG
     return first if part == 1 else first.with_stem(f"{first.stem}-{part}")
+
+
+def _parts(path: Path) -> dict[int, Path]:
+    """Logs in the run folder `path`, by the part of the run, counted from 1."""
+    found = {file: _LOG_OF_PART.fullmatch(file.name) for file in path.glob("log*.rrd")}
+    return {int(match[1] or 1): file for file, match in found.items() if match is not None}

@@ -1,6 +1,5 @@
 """A viewer that shows a run while it goes on; nobody but this machine can reach it."""
 
-import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ class LiveView:
 
     address: str
     page: str
-    process: subprocess.Popen[bytes]
+    process: viewer.Viewer
 
     def wait(self) -> None:
         """Wait until the window is closed, or for Ctrl-C."""

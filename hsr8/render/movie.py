@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.recorder import run_folder
 from hsr8.recorder.run_reader import Run
-from hsr8.render.animation import KINDS, AnimationWriter
+from hsr8.render.animation import KINDS, AnimationWriter, require_room
 from hsr8.render.png import write_png
 from hsr8.render.scene_pictures import Pictures
 from hsr8.render.segments import Segments, join
@@ -84,13 +84,15 @@ def film(run: Run, shot: Shot, out: Path, tell: Tell) -> Film:
 
     Raises:
         OSError: a file cannot be written.
-        UsageError: the run has no motion in the time asked for, or there is no such camera.
+        UsageError: the run has no motion in the time asked for, there is no such camera, a GIF
+            would be too large, or somebody else is drawing the same video.
         RenderingUnavailable: no OpenGL draws here.
     """
     times, speed = instants(run.trajectory().time, shot)
     kind = out.suffix.lower()
     if kind == ".png":
         times, speed = times[:1], 1.0
+    require_room(out, shot.size, len(times))
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     with Pictures(
@@ -114,14 +116,13 @@ def film(run: Run, shot: Shot, out: Path, tell: Tell) -> Film:
                     animation.add(draw(index))
                     tell(index + 1, len(times))
         else:
-            segments = Segments(out, _key(run, shot, speed))
-            segments.open()
-            reused = _shoot(segments, draw, len(times), shot, tell)
-            parts = [segments.path(k) for k in range(len(_lengths(len(times))))]
-            join(parts, _lengths(len(times)), shot.fps, out)
-            thumbnail = out.with_suffix(".png")
-            segments.thumbnail.replace(thumbnail)
-            segments.remove()
+            with Segments(out, _key(run, shot, speed)) as segments:
+                reused = _shoot(segments, draw, len(times), shot, tell)
+                parts = [segments.path(k) for k in range(len(_lengths(len(times))))]
+                join(parts, _lengths(len(times)), shot.fps, out)
+                thumbnail = out.with_suffix(".png")
+                segments.thumbnail.replace(thumbnail)
+                segments.remove()
     return Film(out, thumbnail, len(times), reused, len(times) / shot.fps, speed)
 
 

@@ -1,10 +1,14 @@
 """A video in segments, so that an interrupted one goes on where it stopped."""
 
+import fcntl
+import os
 import shutil
 from pathlib import Path
+from typing import Self
 
 import av
 
+from hsr8.errors import UsageError
 from hsr8.render.video import OPTIONS_OF_CONTAINER
 
 KEY = "what.txt"
@@ -13,24 +17,50 @@ KEY = "what.txt"
 class Segments:
     """The folder that holds the finished segments of one video while it is made.
 
+    Used by ``with``: inside, nobody else may make that video.
+
     Args:
         video: file that is to be made; the folder lies beside it.
         key: tells apart videos that are not made of the same pictures.
+
+    Raises:
+        UsageError: by ``with``, somebody else is making it.
     """
 
     def __init__(self, video: Path, key: str) -> None:
+        self._video = video
         self._folder = video.with_name(video.name + ".parts")
         self._key = key
-        known = self._folder / KEY
-        self._known = known.is_file() and known.read_text(encoding="utf-8") == key
+        self._known = False
+        self._handle = -1
 
-    def open(self) -> None:
-        """Make the folder; what it holds of another video is thrown away."""
+    def __enter__(self) -> Self:
+        self._folder.mkdir(exist_ok=True)
+        self._handle = os.open(self._folder, os.O_RDONLY)
+        try:
+            fcntl.flock(self._handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._take_over()
+        except BaseException as error:
+            os.close(self._handle)
+            if isinstance(error, BlockingIOError):
+                raise UsageError(
+                    f"another hsr8 render is drawing {self._video}; wait, or choose another file "
+                    "with --out"
+                ) from None
+            raise
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        os.close(self._handle)
+
+    def _take_over(self) -> None:
+        """Keep what the folder holds of this video, and throw away what is of another."""
+        file = self._folder / KEY
+        self._known = file.is_file() and file.read_text(encoding="utf-8") == self._key
         if not self._known:
-            self.remove()
-            self._folder.mkdir()
-            (self._folder / KEY).write_text(self._key, encoding="utf-8")
-            self._known = True
+            for part in self._folder.iterdir():
+                part.unlink()
+            file.write_text(self._key, encoding="utf-8")
 
     def path(self, number: int) -> Path:
         """File of one segment."""
@@ -47,8 +77,7 @@ class Segments:
 
     def remove(self) -> None:
         """Throw everything away."""
-        if self._folder.exists():
-            shutil.rmtree(self._folder)
+        shutil.rmtree(self._folder)
 
 
 def join(parts: list[Path], frames: list[int], fps: int, out: Path) -> None:

@@ -7,9 +7,10 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time as clock
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -86,36 +87,69 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-@contextmanager
-def running(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
+class Viewer:
+    """A process of the viewer.
+
+    Args:
+        command: its command line.
+    """
+
+    def __init__(self, command: Sequence[str]) -> None:
+        # Not a pipe: nobody has to read while it writes.
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115  closed by `close`
+        try:
+            # The launcher starts a second process: a group of their own ends both.
+            self._process = subprocess.Popen(
+                command, stdout=subprocess.DEVNULL, stderr=self._said, start_new_session=True
+            )
+        except BaseException:
+            self._said.close()
+            raise
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended."""
+        return self._process.poll() is not None
+
+    def wait(self, limit: float | None = None) -> None:
+        """Wait for its end, at most `limit` [s]."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(limit)
+
+    def complaint(self) -> str:
+        """What went wrong, as it said before it ended; empty if it said nothing of the kind."""
+        self._said.seek(0)
+        return complaint(self._said.read().decode(errors="replace"))
+
+    def close(self) -> None:
+        """End it."""
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            if not self.ended:
+                os.killpg(self._process.pid, number)
+                self.wait(ENDING)
+        self._said.close()
+
+
+def running(command: Sequence[str]) -> AbstractContextManager[Viewer]:
     """A viewer for the time of the context."""
-    # The launcher starts a second process: a group of their own ends both.
-    viewer = subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True
-    )
-    try:
-        yield viewer
-    finally:
-        if viewer.poll() is None:
-            os.killpg(viewer.pid, signal.SIGTERM)
-        viewer.communicate()
+    return closing(Viewer(command))
 
 
-def _connect(viewer: subprocess.Popen[bytes], port: int) -> "ViewerClient":
+def _connect(viewer: Viewer, port: int) -> "ViewerClient":
     from rerun.experimental import ViewerClient  # noqa: PLC0415  a run without a viewer has no need
 
     connected(viewer, port)
     return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
 
 
-def connected(viewer: subprocess.Popen[bytes], port: int) -> None:
+def connected(viewer: Viewer, port: int) -> None:
     """Wait until the viewer listens.
 
     Raises:
         UsageError: it ended, or does not answer.
     """
     end = clock.monotonic() + START_LIMIT
-    while clock.monotonic() < end and viewer.poll() is None:
+    while clock.monotonic() < end and not viewer.ended:
         try:
             with socket.create_connection(("127.0.0.1", port), timeout=1.0):
                 return
@@ -124,18 +158,18 @@ def connected(viewer: subprocess.Popen[bytes], port: int) -> None:
     raise _failed(viewer)
 
 
-def _wait_for_recording(client: "ViewerClient", viewer: subprocess.Popen[bytes], log: Path) -> None:
+def _wait_for_recording(client: "ViewerClient", viewer: Viewer, log: Path) -> None:
     end = clock.monotonic() + START_LIMIT
-    while clock.monotonic() < end and viewer.poll() is None:
+    while clock.monotonic() < end and not viewer.ended:
         if client.get_state().recordings:
             return
         clock.sleep(0.2)
-    if viewer.poll() is None:
+    if not viewer.ended:
         raise UsageError(f"the Rerun viewer finds no recording in {log}")
     raise _failed(viewer)
 
 
-def _stop_at(client: "ViewerClient", viewer: subprocess.Popen[bytes], time: float) -> None:
+def _stop_at(client: "ViewerClient", viewer: Viewer, time: float) -> None:
     """Go to a time; a recording that is still being read has none for a while."""
     end = clock.monotonic() + START_LIMIT
     while True:
@@ -143,17 +177,14 @@ def _stop_at(client: "ViewerClient", viewer: subprocess.Popen[bytes], time: floa
             client.set_time(TIMELINE, duration=time, play_state="paused")
             return
         except ConnectionError:
-            if clock.monotonic() >= end or viewer.poll() is not None:
+            if clock.monotonic() >= end or viewer.ended:
                 raise
             clock.sleep(0.2)
 
 
-def _failed(viewer: subprocess.Popen[bytes]) -> UsageError:
-    with suppress(subprocess.TimeoutExpired):
-        viewer.wait(ENDING)
-    said = ""
-    if viewer.poll() is not None and viewer.stderr is not None:
-        said = complaint(viewer.stderr.read().decode(errors="replace"))
+def _failed(viewer: Viewer) -> UsageError:
+    viewer.wait(ENDING)
+    said = viewer.complaint() if viewer.ended else ""
     if "Failed to load file" in said:
         return UsageError(f"the log is damaged, the Rerun viewer cannot read it: {said}")
     return UsageError(

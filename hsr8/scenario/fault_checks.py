@@ -1,10 +1,20 @@
 """What the faults of a scenario must satisfy beyond the type and range of each key."""
 
 from collections.abc import Iterator
+from math import ceil
 
-from hsr8.scenario.fault import Bump, CameraLate, CameraLight, MoverAppears, Slippery, WorldFault
+from hsr8.scenario.fault import (
+    Bump,
+    CameraLate,
+    CameraLight,
+    MoverAppears,
+    Slippery,
+    WorldFault,
+    ticks,
+)
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.section import CONTROL_PERIOD_MS
 
 LATEST_MS = 500
 """Images that arrive later than this are not understood [ms]."""
@@ -14,7 +24,7 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
     """Every fault that does not fit the rest of the scenario."""
     world, body = scenario.world, scenario.robot.body
     movers = len(world.mover) + world.n_moving + world.encounters.n
-    late = scenario.camera.latency_ms
+    period_ms, late_ticks = scenario.camera.period_ms, 0
     appear: set[int] = set()
     for i, fault in enumerate(scenario.fault):
         if fault.start >= scenario.duration:
@@ -35,12 +45,14 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
                 f'"{scenario.camera.source}" has not; camera.source = "egl" has',
             )
         if isinstance(fault, CameraLate):
-            late += round(1000.0 * fault.size)
+            late_ticks += ticks(fault.size)
+            periods = ceil(late_ticks * CONTROL_PERIOD_MS / period_ms)
+            late = scenario.camera.latency_ms + periods * period_ms
             if late > LATEST_MS:
                 yield Problem(
                     ("fault", i, "size"),
-                    f"with camera.latency_ms and all such faults together images come {late} ms "
-                    f"late; at most {LATEST_MS}",
+                    f"with camera.latency_ms and all such faults together, in whole camera "
+                    f"periods, images come {late} ms late; at most {LATEST_MS}",
                 )
         if isinstance(fault, MoverAppears) and fault.mover >= movers:
             has = f"0 to {movers - 1}" if movers else "none"

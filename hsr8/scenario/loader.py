@@ -146,8 +146,10 @@ def _merged(base: Table, over: Table) -> Table:
     merged = {} if changed else dict(base)
     for key, value in over.items():
         old = merged.get(key)
-        both = isinstance(value, dict) and isinstance(old, dict)
-        merged[key] = _merged(old, value) if both else value
+        if isinstance(value, dict) and isinstance(old, dict):
+            merged[key] = _merged(old, value)
+        else:
+            merged[key] = value
     return merged
 
 

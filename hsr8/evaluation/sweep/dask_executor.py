@@ -2,6 +2,7 @@
 
 import logging
 from collections import deque
+from contextlib import ExitStack
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -43,28 +44,32 @@ class DaskExecutor:
             ) from None
         # A run whose worker died is ours to retry, and to mark.
         dask.config.set({"distributed.scheduler.allowed-failures": 0})
-        self._cluster: Any = None
-        if not address:
-            self._cluster = LocalCluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                host="127.0.0.1",
-                dashboard_address=None,
-                memory_limit=None,
-                silence_logs=logging.CRITICAL,
-            )
-        try:
-            self._client: Any = Client(
-                self._cluster or f"tcp://{address}",
-                timeout=PATIENCE,
-                set_as_default=False,
-            )
-        except (OSError, ValueError) as error:
-            raise UsageError(f"--executor dask://{address}: nobody answers ({error})") from None
-        self._ended: SimpleQueue[tuple[Job, Any]] = SimpleQueue()
-        self._futures: set[Any] = set()
-        self._waiting: deque[Job] = deque()
-        self.workers = len(self._check_workers(address))
+        with ExitStack() as undo:
+            self._cluster: Any = None
+            if not address:
+                self._cluster = LocalCluster(
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    host="127.0.0.1",
+                    dashboard_address=None,
+                    memory_limit=None,
+                    silence_logs=logging.CRITICAL,
+                )
+                undo.callback(self._cluster.close)
+            try:
+                self._client: Any = Client(
+                    self._cluster or f"tcp://{address}",
+                    timeout=PATIENCE,
+                    set_as_default=False,
+                )
+                undo.callback(self._client.close)
+            except (OSError, ValueError) as error:
+                raise UsageError(f"--executor dask://{address}: nobody answers ({error})") from None
+            self._ended: SimpleQueue[tuple[Job, Any]] = SimpleQueue()
+            self._futures: set[Any] = set()
+            self._waiting: deque[Job] = deque()
+            self.workers = len(self._check_workers(address))
+            undo.pop_all()
 
     def submit(self, job: Job) -> None:
         """Take a job."""

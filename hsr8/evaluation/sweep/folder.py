@@ -13,7 +13,7 @@ import fcntl
 import json
 import os
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Self, TextIO
 
@@ -62,7 +62,7 @@ class SweepFolder:
         except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
             raise UsageError(
                 f"cannot read the sweep {path}: {file} or its {SCENARIO}: {error}"
-            ) from (error)
+            ) from error
 
     @classmethod
     def open(cls, path: Path, definition: Definition) -> Self:
@@ -99,13 +99,13 @@ class SweepFolder:
         name = LEDGER if shard is None else f"shard-{shard[0]}-of-{shard[1]}.jsonl"
         file = self.path / name
         try:
-            ledger = file.open("a+", encoding="utf-8")
-            try:
+            with ExitStack() as undo:
+                ledger = undo.enter_context(file.open("a+", encoding="utf-8"))
                 fcntl.flock(ledger, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                ledger.close()
-                raise UsageError(f"another sweep is writing {file}; wait, or stop it") from None
-            _cut_torn_line(ledger)
+                _cut_torn_line(ledger)
+                undo.pop_all()
+        except BlockingIOError:
+            raise UsageError(f"another sweep is writing {file}; wait, or stop it") from None
         except OSError as error:
             raise UsageError(f"cannot write {file}: {error.strerror}") from error
         self._ledger = ledger

@@ -162,6 +162,10 @@ class ForkedProcess:
             self._end.result(timeout)
         except TimeoutError:
             raise subprocess.TimeoutExpired("hsr8", timeout or 0.0) from None
+        except OSError:
+            for file in self.files:
+                file.close()
+            raise
         texts = []
         for file in self.files:
             with file:

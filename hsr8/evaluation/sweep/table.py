@@ -1,10 +1,12 @@
 """Rows of results as a Parquet table: a run a line, nested results as dotted columns."""
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from hsr8.evaluation.sweep.job import Row
+from hsr8.recorder import atomic
 
 
 def flat(row: Row, prefix: str = "") -> Row:
@@ -26,9 +28,9 @@ def write_table(path: Path, rows: Sequence[Row]) -> None:
     flattened = [flat(row) for row in rows]
     names = list(dict.fromkeys(name for row in flattened for name in row))
     columns = {name: _column([row.get(name) for row in flattened]) for name in names}
-    draft = path.with_name(path.name + ".tmp")
-    pq.write_table(pa.table({name: pa.array(values) for name, values in columns.items()}), draft)
-    draft.replace(path)
+    content = io.BytesIO()
+    pq.write_table(pa.table({name: pa.array(values) for name, values in columns.items()}), content)
+    atomic.write_bytes(path, content.getvalue())
 
 
 def _column(values: list[Any]) -> list[Any]:

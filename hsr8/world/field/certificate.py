@@ -53,15 +53,14 @@ class Certificate:
         return float(np.hypot(*np.diff(self.path[:, 1:3], axis=0).T).sum())
 
 
-def certify(layout: Layout, speed: SpeedEnvelope, most_points: int = MOST_POINTS) -> Certificate:
-    """Search a way through `layout`, for a long tour to the first `most_points` points.
+def certify(layout: Layout, speed: SpeedEnvelope) -> Certificate:
+    """Search a way through `layout`, for a long tour to the first `MOST_POINTS` points.
 
     Args:
         layout: the world.
-        speed: what the robot can do; the usual if left out.
-        most_points: to go to.
+        speed: what the robot can do.
     """
-    points = layout.waypoints[:most_points].tolist()
+    points = layout.waypoints[:MOST_POINTS].tolist()
     if not points:
         return Certificate(True, 0, 0, 0.0)
     for cell in CELLS:

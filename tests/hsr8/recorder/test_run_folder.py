@@ -47,6 +47,21 @@ def test_a_finished_run_can_be_read_back(folder, walk, fake):
     assert run.scenario_file.read_text() == 'name = "quick"\n'
 
 
+def test_the_next_log_never_takes_the_place_of_one_that_is_there(tmp_path):
+    """Also where those of earlier parts were removed."""
+    assert run_folder.logs(tmp_path) == []
+    assert run_folder.next_log(tmp_path).name == "log.rrd"
+    for name in ("log.rrd", "log-2.rrd", "log-10.rrd", "log-old.rrd"):
+        (tmp_path / name).touch()
+    assert [file.name for file in run_folder.logs(tmp_path)] == [
+        "log.rrd",
+        "log-2.rrd",
+        "log-10.rrd",
+    ]
+    (tmp_path / "log.rrd").unlink()
+    assert run_folder.next_log(tmp_path).name == "log-11.rrd"
+
+
 def test_a_killed_run_can_be_read_up_to_its_last_second(folder, walk):
     for record in walk(2.5):
         folder.on_record(record)

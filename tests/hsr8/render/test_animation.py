@@ -2,7 +2,8 @@ import av
 import numpy as np
 import pytest
 
-from hsr8.render.animation import AnimationWriter
+from hsr8.errors import UsageError
+from hsr8.render.animation import AnimationWriter, require_room
 
 
 def _write(path, fps=5, count=6):
@@ -31,6 +32,14 @@ def test_a_webp_is_an_animation_without_end(tmp_path):
     assert content.count(b"ANMF") == 6
     loops = content[content.index(b"ANIM") + 12 :][:2]
     assert loops == b"\x00\x00"
+
+
+def test_a_gif_that_would_fill_the_memory_is_refused(tmp_path):
+    size = (960, 540)
+    with pytest.raises(UsageError, match=r"1500 pictures of 960x540, 778 million .*at most 400"):
+        require_room(tmp_path / "a.gif", size, 1500)
+    require_room(tmp_path / "a.gif", size, 700)
+    require_room(tmp_path / "a.webp", size, 1500)
 
 
 def _fail_within(path):

@@ -10,6 +10,7 @@ from hsr8.errors import UsageError
 from hsr8.recorder import run_folder
 from hsr8.recorder.run_reader import open_run
 from hsr8.render.movie import Shot, film, instants
+from hsr8.render.segments import Segments
 
 TIME = 0.02 * np.arange(50 * 100 + 1)  # 100 s
 
@@ -105,6 +106,23 @@ def test_segments_of_another_shot_are_thrown_away(run, tmp_path, monkeypatch):
         film(run, Shot(camera="top", size=(64, 64), fps=5), out, interrupt)
     made = film(run, Shot(camera="corner", size=(64, 64), fps=5), out, lambda n, total: None)
     assert (made.frames, made.reused) == (5, 0)
+
+
+def test_one_video_is_drawn_by_one_at_a_time(tmp_path):
+    out = tmp_path / "v.mp4"
+    with (
+        Segments(out, "one") as first,
+        pytest.raises(UsageError, match=r"another hsr8 render is drawing .*v\.mp4; wait"),
+        Segments(out, "two"),
+    ):
+        pass
+    assert not first.done(0)
+    with Segments(out, "two") as second:
+        second.path(0).touch()
+    with Segments(out, "two") as again:
+        assert again.done(0)
+        again.remove()
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.gl

@@ -1,4 +1,5 @@
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -38,10 +39,7 @@ class Running:
     """A process that has ended with `code`, or has not."""
 
     def __init__(self, code):
-        self._code = code
-
-    def poll(self):
-        return self._code
+        self.ended = code is not None
 
 
 def test_a_viewer_that_goes_down_leads_to_the_cure(monkeypatch):
@@ -50,6 +48,27 @@ def test_a_viewer_that_goes_down_leads_to_the_cure(monkeypatch):
     with pytest.raises(UsageError, match="did not start: Error: no graphics") as caught:
         viewer.screenshot(Path("log.rrd"), 0.0, (64, 64))
     assert VULKAN_LINE in str(caught.value)
+
+
+TALKATIVE_AND_DEAF = """
+import pathlib, signal, sys, time
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+print(100_000 * "x", "Error: still here", sep="\\n", file=sys.stderr, flush=True)
+pathlib.Path(sys.argv[1]).touch()
+time.sleep(60)
+"""
+
+
+def test_a_viewer_that_says_much_and_does_not_end_is_ended(tmp_path, monkeypatch):
+    monkeypatch.setattr(viewer, "ENDING", 0.2)
+    done = tmp_path / "done"
+    with viewer.running([sys.executable, "-c", TALKATIVE_AND_DEAF, str(done)]) as talks:
+        until = time.monotonic() + 20.0
+        while not done.exists() and time.monotonic() < until:
+            time.sleep(0.05)
+        assert done.exists(), "it waits for somebody to read"
+        assert not talks.ended
+    assert talks.ended
 
 
 def test_a_damaged_log_is_not_laid_to_the_graphics(monkeypatch):

@@ -93,6 +93,10 @@ def test_all_kinds_are_one_vocabulary():
         (['robot.body="kinematic"', f"fault=[{fault_of('bump')}]"], "needs dynamics"),
         (['camera.source="analytic"', f"fault=[{fault_of('camera-light')}]"], "rendered images"),
         (["camera.latency_ms=450", f"fault=[{fault_of('camera-late')}]"], "at most 500"),
+        (
+            ["camera.period_ms=160", f"fault=[{fault_of('camera-late', size='0.49')}]"],
+            "images come 640 ms late",
+        ),
         (["fault=[" + ",".join([fault_of("imu-frozen")] * 65) + "]"], "64"),
     ],
 )

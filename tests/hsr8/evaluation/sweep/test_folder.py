@@ -91,6 +91,7 @@ def test_runs_of_something_else_do_not_join(folder, definition, change, told):
 
 def test_the_seed_of_the_scenario_means_nothing(folder, definition):
     other = replace(definition, scenario=definition.scenario.replace("seed = 1", "seed = 2"))
+    assert other.scenario != definition.scenario
     SweepFolder.open(folder.path, other)
 
 

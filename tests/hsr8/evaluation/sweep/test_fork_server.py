@@ -148,6 +148,8 @@ def test_a_signal_while_it_loads_ends_it(doing, pipe):
 def test_without_room_for_a_process_the_run_is_told(doing):
     doing("os.fork = lambda: open('/nowhere/at/all')")
     server = ForkServer()
+    process = server.start(["pass"])
     with pytest.raises(OSError, match="cannot fork: No such file"):
-        server.start(["pass"]).communicate(timeout=LIMIT)
+        process.communicate(timeout=LIMIT)
+    assert all(file.closed for file in process.files)
     server.close()

@@ -38,5 +38,18 @@ def test_a_column_has_one_type(tmp_path, values, back):
     assert pq.read_table(tmp_path / "t")["x"].to_pylist() == back
 
 
+def test_a_full_disk_leaves_the_old_table_alone(tmp_path, monkeypatch):
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    file = tmp_path / "runs.parquet"
+    write_table(file, [{"seed": 1}])
+    before = file.read_bytes()
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(OSError, match="No space"):
+        write_table(file, [{"seed": 2}])
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [before]
+
+
 def test_nested_results_are_flat():
     assert flat({"a": {"b": 1, "c": {"d": 2}}, "e": 3}) == {"a.b": 1, "a.c.d": 2, "e": 3}
