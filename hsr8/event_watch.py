@@ -27,7 +27,7 @@ class EventWatch:
         faults: of the scenario.
     """
 
-    def __init__(self, faults: Sequence[Fault] = ()) -> None:
+    def __init__(self, faults: Sequence[Fault]) -> None:
         told = [(f.begin, f"{f.text()}: begins") for f in faults]
         told += [(f.end, f"{f.text()}: ends") for f in faults if f.end is not None]
         self._faults = sorted(told, key=lambda line: line[0])

@@ -16,7 +16,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from hsr8.world.model.scaled_model import scale_robot
 from walking.body.joints import LEG_JOINTS
 from walking.body.leg_kinematics import FootPose, leg_angles
 from walking.body.robot_model import READY, RobotModel
@@ -29,6 +28,7 @@ from walking.similarity import carried, parameters_for
 import mujoco
 import numpy as np
 import tyro
+from scaled_model import scale_robot
 from walk_study import mean_velocity
 from walking_body import ROBOT, Body, Plant
 from walking_trial import Script, Trace, random_script, steady_script, walk

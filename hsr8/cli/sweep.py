@@ -142,7 +142,7 @@ def _run(
         folder = sweeps[job.folder]
         folder.append([row | {"command": folder.definition.command(job.seed)}])
         if progress is not None:
-            progress.on_row(job, row)
+            progress.on_row(row)
 
     with ExitStack() as stack:
         if progress is not None:

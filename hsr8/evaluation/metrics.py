@@ -19,7 +19,6 @@ from hsr8.world.truth.truth import Truth
 from navigation.angles import wrap
 
 Array = NDArray[np.float64]
-Value = object
 Seen = tuple[FrameRecord, Truth]  # a camera frame, and what was true then
 
 TOLERANCE = 0.10  # the true position may be so much farther from a point than the believed [m]
@@ -93,7 +92,7 @@ class Metrics(Listener):
         """Stop the clock."""
         self._wall = clock.perf_counter() - self._started
 
-    def result(self, exit_reason: str, state_hash: str) -> dict[str, Value]:
+    def result(self, exit_reason: str, state_hash: str) -> dict[str, object]:
         """All results by name, in the units their names end with.
 
         What was not measured, for example the localization of a robot without a camera
@@ -180,7 +179,7 @@ class Metrics(Listener):
         return exit_reason in ("completed", "goal")
 
     def _arrival_error(self) -> float | None:
-        """Heading error where the mission ended, or where the run stopped [deg]."""
+        """Error of the true heading at the end of the run [deg]; None if the mission was not finished."""
         if self._done_at is None or self._layout.goal_heading is None or self._last is None:
             return None
         return degrees(abs(wrap(float(self._last.robot[2]) - self._layout.goal_heading)))

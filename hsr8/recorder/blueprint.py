@@ -25,7 +25,7 @@ OUTLINES = rr.Cylinders3D.from_fields(
 ABOVE = 6.2  # height of the eye over a field of 5 m [m]
 
 
-def blueprint(field_size: float, *, walking: bool = False, pictures: bool = True) -> rrb.Blueprint:
+def blueprint(field_size: float, *, walking: bool, pictures: bool) -> rrb.Blueprint:
     """Two tabs: the whole robot, and its walking in detail.
 
     Args:

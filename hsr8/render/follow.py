@@ -28,7 +28,7 @@ class FollowCamera:
         speed: simulated seconds per second of video.
     """
 
-    def __init__(self, qpos: Array, fps: float, speed: float = 1.0) -> None:
+    def __init__(self, qpos: Array, fps: float, speed: float) -> None:
         yaw = np.unwrap([heading(row[3:7]) for row in qpos])
         self._place = _smooth(qpos[:, :2], min(STEADY, NEAR / speed) * fps)
         direction = _smooth(np.column_stack([np.cos(yaw), np.sin(yaw)]), CALM * fps)

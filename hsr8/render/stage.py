@@ -50,8 +50,8 @@ class Stage:
         size: tuple[int, int],
         *,
         optics: Optics,
-        finer: float = 1.0,
-        fine: bool = False,
+        finer: float,
+        fine: bool,
     ) -> None:
         require_gl()
         self.model = assemble(layout, quality, optics)

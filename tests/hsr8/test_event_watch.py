@@ -25,12 +25,12 @@ def truth_with(time, *obstacles):
 
 
 def test_a_contact_is_told_with_the_name_of_what_is_touched():
-    (event,) = EventWatch().look(truth_with(0.0, 3), None)
+    (event,) = EventWatch(()).look(truth_with(0.0, 3), None)
     assert event.text == "l_sole touches beacon 3"
 
 
 def test_a_contact_that_goes_on_is_one_event_and_a_later_one_another():
-    watch = EventWatch()
+    watch = EventWatch(())
 
     def told(time, obstacle):
         return [event.kind for event in watch.look(truth_with(time, obstacle), None)]

@@ -1,9 +1,15 @@
 """Whole runs for the system tests."""
 
+import sys
+from pathlib import Path
+
 import pytest
 
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load
+
+# `scaled_model` is an experiment, and the experiments are no package.
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 
 
 class Recorded:

@@ -6,9 +6,9 @@ from math import sqrt
 import mujoco
 import numpy as np
 import pytest
+from scaled_model import scale_robot
 
 from hsr8.world.model.models import models_dir
-from hsr8.world.model.scaled_model import scale_robot
 from walking.body.joints import JOINT_NAMES
 from walking.body.robot_model import RobotModel
 from walking.command import CommandState, HeadTarget, VelocityCommand

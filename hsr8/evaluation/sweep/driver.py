@@ -14,7 +14,7 @@ def drive(
     jobs: Sequence[Job],
     executor: Executor,
     record: Callable[[Job, Row], None],
-    tick: Callable[[], None] = lambda: None,
+    tick: Callable[[], None],
 ) -> None:
     """Run all jobs; one that crashes is run again, elsewhere if there is an elsewhere.
 

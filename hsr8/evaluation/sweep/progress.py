@@ -2,13 +2,12 @@
 
 import sys
 import time as clock
-from typing import TextIO
 
 from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from hsr8.evaluation.sweep.job import CRASHED, Job, Row
+from hsr8.evaluation.sweep.job import CRASHED, Row
 from hsr8.evaluation.sweep.report import fault
 
 
@@ -18,21 +17,19 @@ class SweepProgress:
     Args:
         total: runs of the whole sweep.
         done: of them, those that were there before.
-        stream: where to write; standard error by default.
     """
 
-    def __init__(self, total: int, done: int, stream: TextIO | None = None) -> None:
-        self._stream = stream or sys.stderr
+    def __init__(self, total: int, done: int) -> None:
         self._total, self._before, self._done = total, done, done
         self._succeeded = self._failed = self._crashed = 0
         self._began = clock.monotonic()
-        console = Console(file=self._stream)
+        console = Console(stderr=True)
         self._live: Live | None = None
         if console.is_terminal:
             self._live = Live(console=console, auto_refresh=False, transient=True)
             self._live.start()
 
-    def on_row(self, job: Job, row: Row) -> None:
+    def on_row(self, row: Row) -> None:
         """Count a run that ended."""
         self._done += 1
         self._succeeded += bool(row.get("success"))
@@ -41,7 +38,7 @@ class SweepProgress:
         what = fault(row)
         text = f"seed {row['seed']}: {what or 'good'}"
         if self._live is None:
-            print(f"{self.line()}   {text}", file=self._stream, flush=True)
+            print(f"{self.line()}   {text}", file=sys.stderr, flush=True)
         elif what:
             self._live.console.print(Text(text, style="yellow"))
 

@@ -118,6 +118,7 @@ class KinematicBody:
 
     def update_kinematics(self) -> None:
         """Bring all poses up to date."""
+        self._around.move(self.data, self.time)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
@@ -126,6 +127,7 @@ class KinematicBody:
         """State of the world now; a kinematic robot never falls."""
         data, root = self.data, self._index.root_qpos
         if self._tick % WATCH_TICKS:
+            self._around.move(data, self.time)
             mujoco.mj_kinematics(self.model, data)
         robot = np.array(
             [*data.qpos[root : root + 2].tolist(), heading(data.qpos[root + 3 : root + 7])]

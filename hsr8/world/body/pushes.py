@@ -41,7 +41,7 @@ def schedule(
     duration: float,
     period: float,
     rng: np.random.Generator,
-    faults: Sequence[Fault] = (),
+    faults: Sequence[Fault],
 ) -> tuple[ScheduledPush, ...]:
     """All pushes of a run in the order in which they begin.
 

@@ -67,13 +67,13 @@ class AnalyticCamera:
         camera: PinholeCamera,
         rng: np.random.Generator,
         settings: Camera,
-        faults: CameraFaults | None = None,
+        faults: CameraFaults,
     ) -> None:
         self._camera = camera
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
         self._all_round = settings.all_round
-        self._faults = faults or CameraFaults()
+        self._faults = faults
         self._movers = layout.motion()
         self._things = [
             *(_Thing("obstacle", o.colour, o.radius, o.height) for o in layout.obstacles),

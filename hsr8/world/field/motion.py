@@ -18,25 +18,6 @@ INSTANT = 1e-6  # times nearer to one another are the same [s]
 
 
 @dataclass(frozen=True, slots=True)
-class Still:
-    """A mover that does not move.
-
-    Attributes:
-        at: where it stands [m].
-    """
-
-    at: Point
-
-    def position(self, time: float) -> Point:
-        """Position at `time` [s]."""
-        return self.at
-
-    def velocity(self, time: float) -> Point:
-        """Velocity at `time` [m/s]."""
-        return 0.0, 0.0
-
-
-@dataclass(frozen=True, slots=True)
 class Line:
     """Straight on at constant velocity.
 
@@ -153,7 +134,7 @@ class Appearing:
         return self.start <= time + INSTANT < self.end
 
 
-MotionLaw = Still | Line | Shuttle | Circle | Passage | Wander | Appearing
+MotionLaw = Line | Shuttle | Circle | Passage | Wander | Appearing
 
 
 def pace(law: MotionLaw) -> float:
@@ -161,8 +142,6 @@ def pace(law: MotionLaw) -> float:
     match law:
         case Appearing():
             return pace(law.law)
-        case Still():
-            return 0.0
         case Line():
             return hypot(*law.rate)
     return abs(law.speed)
@@ -178,7 +157,7 @@ class Movers:
     def __init__(self, laws: tuple[MotionLaw, ...]) -> None:
         """Take the laws in layout order."""
         self.laws = laws
-        straight = [k for k, law in enumerate(laws) if isinstance(law, Still | Line | Shuttle)]
+        straight = [k for k, law in enumerate(laws) if isinstance(law, Line | Shuttle)]
         round_ = [k for k, law in enumerate(laws) if isinstance(law, Circle)]
         self._others = [
             (k, w) for k, w in enumerate(laws) if isinstance(w, Passage | Wander | Appearing)
@@ -253,6 +232,4 @@ def _lane(law: MotionLaw) -> tuple[Point, Point, float, float, float]:
         speed = hypot(*law.rate)
         way = (law.rate[0] / speed, law.rate[1] / speed) if speed > 0.0 else (0.0, 0.0)
         return law.start, way, speed, inf, 0.0
-    if isinstance(law, Still):
-        return law.at, (0.0, 0.0), 0.0, inf, 0.0
     raise TypeError(f"{type(law).__name__} is no straight law")

@@ -35,8 +35,13 @@ def test_columns_are_sent_when_asked_for_and_once(tmp_path, monkeypatch):
 
 def test_the_arrangement_is_in_the_file_as_if_rerun_had_set_the_sinks(tmp_path):
     ours, theirs = BlockStream("test"), BlockStream("test")
-    ours.begin([rr.FileSink(str(tmp_path / "ours.rrd"))], blueprint(5.0))
-    theirs.set_sinks(rr.FileSink(str(tmp_path / "theirs.rrd")), default_blueprint=blueprint(5.0))
+    ours.begin(
+        [rr.FileSink(str(tmp_path / "ours.rrd"))], blueprint(5.0, walking=False, pictures=True)
+    )
+    theirs.set_sinks(
+        rr.FileSink(str(tmp_path / "theirs.rrd")),
+        default_blueprint=blueprint(5.0, walking=False, pictures=True),
+    )
     for stream in (ours, theirs):
         stream.disconnect()
     sizes = [(tmp_path / f"{name}.rrd").stat().st_size for name in ("ours", "theirs")]

@@ -13,7 +13,7 @@ def _walk(n, yaw):
 def test_a_standing_robot_is_seen_from_behind_and_beside():
     qpos = _walk(50, np.full(50, 0.7))
     qpos[:, 0] = 1.0
-    camera = FollowCamera(qpos, 25).at(30)
+    camera = FollowCamera(qpos, 25, 1.0).at(30)
     np.testing.assert_allclose(camera.lookat[:2], [1.0, 0.0], atol=1e-9)
     assert np.isclose(camera.azimuth, np.degrees(0.7) + BESIDE)
 
@@ -22,7 +22,7 @@ def test_sway_does_not_shake_the_picture():
     n = 200
     qpos = _walk(n, 0.2 * np.sin(np.arange(n) * 2 * np.pi / 8))
     qpos[:, 1] = 0.03 * np.sin(np.arange(n) * 2 * np.pi / 8)
-    follow = FollowCamera(qpos, 25)
+    follow = FollowCamera(qpos, 25, 1.0)
     azimuth = [follow.at(i).azimuth for i in range(50, 150)]
     aside = [follow.at(i).lookat[1] for i in range(50, 150)]
     assert np.ptp(azimuth) < 0.5
@@ -31,13 +31,13 @@ def test_sway_does_not_shake_the_picture():
 
 def test_a_turn_through_180_degrees_goes_the_short_way():
     n = 400
-    follow = FollowCamera(_walk(n, np.linspace(3.0, 3.4, n)), 25)
+    follow = FollowCamera(_walk(n, np.linspace(3.0, 3.4, n)), 25, 1.0)
     azimuth = np.array([follow.at(i).azimuth for i in range(n)])
     assert np.abs(np.diff(azimuth)).max() < 1.0
 
 
 def test_the_camera_does_not_lag_behind():
-    follow = FollowCamera(_walk(500, np.zeros(500)), 25)
+    follow = FollowCamera(_walk(500, np.zeros(500)), 25, 1.0)
     middle = follow.at(250).lookat[0]
     assert abs(middle - 2.0 * 250 / 499) < 0.01
 

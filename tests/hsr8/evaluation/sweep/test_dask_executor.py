@@ -32,7 +32,7 @@ def test_every_run_ends_also_that_of_a_worker_that_dies(monkeypatch):
     try:
         assert executor.workers == 2
         jobs = [replace(JOB, seed=seed) for seed in range(6)]
-        drive(jobs, executor, lambda job, row: rows.append(row))
+        drive(jobs, executor, lambda job, row: rows.append(row), lambda: None)
     finally:
         executor.close()
     found = {row["seed"]: row for row in rows}

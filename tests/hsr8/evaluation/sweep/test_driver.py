@@ -35,7 +35,12 @@ JOB = Job(0, "/sweep", "", 10.0)
 
 def _drive(seeds, script):
     executor, rows = Scripted(script), []
-    drive([replace(JOB, seed=s) for s in seeds], executor, lambda job, row: rows.append(row))
+    drive(
+        [replace(JOB, seed=s) for s in seeds],
+        executor,
+        lambda job, row: rows.append(row),
+        lambda: None,
+    )
     return executor, {row["seed"]: row for row in rows}
 
 

@@ -1,20 +1,14 @@
-import io
-
-from hsr8.evaluation.sweep.job import Job
 from hsr8.evaluation.sweep.progress import SweepProgress, spell
 
-JOB = Job(0, "/nowhere", "", 10.0)
 
-
-def test_every_run_has_a_line_where_there_is_no_terminal(row):
-    stream = io.StringIO()
-    progress = SweepProgress(5, 2, stream)
-    progress.on_row(JOB, row(7))
-    progress.on_row(JOB, row(8, success=False, collisions=1))
-    progress.on_row(JOB, {"seed": 9, "outcome": "crashed", "error": "killed by SIGKILL"})
+def test_every_run_has_a_line_where_there_is_no_terminal(row, capsys):
+    progress = SweepProgress(5, 2)
+    progress.on_row(row(7))
+    progress.on_row(row(8, success=False, collisions=1))
+    progress.on_row({"seed": 9, "outcome": "crashed", "error": "killed by SIGKILL"})
     progress.tick()
     progress.close()
-    lines = stream.getvalue().splitlines()
+    lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 3
     assert lines[0].startswith("3/5 runs   1 succeeded, 0 not")
     assert lines[0].endswith("seed 7: good")

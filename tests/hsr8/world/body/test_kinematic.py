@@ -4,6 +4,7 @@ import pytest
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.field.layout import Obstacle, standard_beacons
+from hsr8.world.field.motion import Line
 from hsr8.world.model.models import models_dir
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
@@ -90,6 +91,18 @@ def test_touching_an_obstacle_is_noticed_though_nothing_stops_it(world, silent, 
     assert not any(c.moving for c in contacts)
     assert any(c.closing for c in contacts)  # it walked into it
     assert body.truth().robot[0] > 0.2
+
+
+def test_between_two_looks_for_contacts_movers_are_where_they_belong(world, silent):
+    law = Line((1.0, 0.0), (-0.5, 0.0))
+    body = body_in(world, silent, Obstacle((1.0, 0.0), 0.10, 0.40, "blue", law))
+    stands, gaps = JointTargets(body.sense().joint_position, np.zeros(26)), []
+    for _ in range(8):
+        body.apply(stands)
+        gaps.append(body.truth().clearance)
+        body.update_kinematics()
+        assert body.data.mocap_pos[:, 0].min() == pytest.approx(law.position(body.time)[0])
+    assert np.allclose(np.diff(gaps), -0.5 * 0.005, atol=1e-5)
 
 
 def test_touching_a_beacon_is_noticed_too(world, silent, robot_model):

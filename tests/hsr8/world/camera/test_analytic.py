@@ -4,6 +4,7 @@ import pytest
 from hsr8.scenario.camera import Camera
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.analytic import AnalyticCamera
+from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Obstacle
 from vision.camera import PinholeCamera
 
@@ -19,7 +20,7 @@ def see(world, silent):
         layout, model = world(*obstacles, start=start)
         body = KinematicBody(model, layout, silent, np.random.default_rng(0))
         body.data.joint("head_tilt").qpos[0] = tilt
-        camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1), settings)
+        camera = AnalyticCamera(layout, CAMERA, np.random.default_rng(1), settings, CameraFaults())
         return [camera.capture(body) for _ in range(frames)]
 
     return make

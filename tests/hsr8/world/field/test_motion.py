@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.world.field.motion import Appearing, Circle, Line, Movers, Shuttle, Still, pace
+from hsr8.world.field.motion import Appearing, Circle, Line, Movers, Shuttle, pace
 from hsr8.world.field.passage import Passage
 from hsr8.world.field.wander import Wander, draw_wander
 
@@ -42,7 +42,12 @@ wanders = st.builds(
     speed,
 )
 laws = st.one_of(
-    passages, wanders, shuttles(), circles, st.builds(Line, point, point), st.builds(Still, point)
+    passages,
+    wanders,
+    shuttles(),
+    circles,
+    st.builds(Line, point, point),
+    st.builds(Line, point, st.just((0.0, 0.0))),
 )
 
 

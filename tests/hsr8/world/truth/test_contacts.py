@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from hsr8.world.field.layout import Obstacle, standard_beacons
-from hsr8.world.field.motion import Still
+from hsr8.world.field.motion import Line
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.contacts import ContactWatch
 
@@ -50,7 +50,7 @@ def test_the_robot_closes_a_gap_only_when_it_walks_into_it(placed, speed, closin
 
 
 def test_what_can_move_is_told_from_what_cannot(placed):
-    mover = Obstacle((0.15, 0.0), 0.10, 0.40, "blue", Still((0.15, 0.0)))
+    mover = Obstacle((0.15, 0.0), 0.10, 0.40, "blue", Line((0.15, 0.0), (0.0, 0.0)))
     far = Obstacle((2.0, 2.0), 0.10, 0.40, "red")
     watch, data, _ = placed(far, mover)
     watch.watch(data)
