@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, SupportsIndex
 
-from hsr8.decisions import Looks, Moves
+from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
@@ -24,8 +24,8 @@ def run(
     settings: Sequence[str] | Mapping[str, Any] = (),
     out: str | Path | None = None,
     log: bool | str = True,
-    planner: Moves | None = None,
-    gaze: Looks | None = None,
+    planner: MotionPlanner | None = None,
+    gaze: GazeController | None = None,
     listeners: Sequence[Listener] = (),
 ) -> Result:
     """Run a scenario.
@@ -70,7 +70,7 @@ def run(
     return result
 
 
-def _own(planner: Moves | None, gaze: Looks | None) -> tuple[str, ...]:
+def _own(planner: MotionPlanner | None, gaze: GazeController | None) -> tuple[str, ...]:
     """The words of the call that names planner and gaze of one's own; none if there are none."""
     given = {"planner": planner, "gaze": gaze}
     names = [

@@ -1,23 +1,23 @@
 """Builds the world and the body in it for a scenario."""
 
 import mujoco
-import numpy as np
 
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.body import Body
 from hsr8.world.body.kinematic import KinematicBody
-from hsr8.world.body.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.body.pushes import schedule
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble
 from hsr8.world.model.models import reading_models
+from walking.parameters import CONTROL_PERIOD
 
 
 def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
     """The world as the robot's camera sees it."""
     camera = scenario.camera
-    fov = float(np.radians(camera.vertical_fov_deg))
+    fov = camera.vertical_fov
     brightness = scenario.world.brightness
     optics = Optics(camera.width, camera.height, fov, brightness, camera.shadows)
     return assemble(layout, "vision", optics)

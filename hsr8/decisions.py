@@ -58,14 +58,14 @@ class Goes(Protocol):
         """Task at the believed pose (3,)."""
 
 
-class Looks(Protocol):
+class GazeController(Protocol):
     """Chooses where to look."""
 
     def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
         """Gaze for this frame."""
 
 
-class Moves(Protocol):
+class MotionPlanner(Protocol):
     """Chooses how to move."""
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
@@ -88,8 +88,8 @@ class Decisions:
         self,
         *,
         mission: Goes,
-        planner: Moves,
-        gaze: Looks,
+        planner: MotionPlanner,
+        gaze: GazeController,
         landmarks: LandmarkObstacles,
         footstep: float,
     ) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from hsr8.recorder.record import FrameRecord
+from hsr8.recorder.frame_record import FrameRecord
 from hsr8.scenario.fault import Fault
 from hsr8.world.truth.episodes import Episodes
 from hsr8.world.truth.falls import Falls

@@ -6,7 +6,6 @@ MuJoCo reads ``MUJOCO_GL`` once, when it is first imported. The package calls
 
 import ctypes
 import os
-import sys
 from functools import cache
 
 from hsr8.errors import RenderingUnavailable
@@ -29,10 +28,10 @@ def choose_backend() -> str:
     the import of MuJoCo fail although physics needs no drawing.
 
     Returns:
-        The backend in force; empty where MuJoCo is to choose by itself (not Linux).
+        The backend in force.
     """
     asked = os.environ.get("MUJOCO_GL", "").strip().lower()
-    if not sys.platform.startswith("linux") or asked in _OTHERS:
+    if asked in _OTHERS:
         return asked
     wanted = [name for name in BACKENDS if asked in ("", name)]
     chosen = next((name for name in wanted if _loads(_LIBRARIES[name])), "disable")

@@ -9,16 +9,16 @@ from typing import Any, Self, SupportsIndex
 import cv2
 
 from hsr8.body_builder import build_body, build_model
-from hsr8.decisions import Looks, Moves
+from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.event_watch import Event, EventWatch
-from hsr8.recorder.record import FrameRecord, Listener, TickRecord
+from hsr8.recorder.frame_record import FrameRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.tape import TapeWriter
 from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_robot, head_camera
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
-from hsr8.world.body.physics import CONTROL_PERIOD
 from hsr8.world.body.sensor_faults import SensorFaults
 from hsr8.world.body.servo_faults import ServoFaults
 from hsr8.world.camera.analytic import AnalyticCamera
@@ -28,6 +28,7 @@ from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
+from walking.parameters import CONTROL_PERIOD
 from walking.phase import Phase
 
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
@@ -104,8 +105,8 @@ class Simulation:
         seed: SupportsIndex,
         listeners: Sequence[Listener] = (),
         *,
-        planner: Moves | None = None,
-        gaze: Looks | None = None,
+        planner: MotionPlanner | None = None,
+        gaze: GazeController | None = None,
     ) -> None:
         self.scenario = scenario
         self.seed = scenario.with_seed(seed).seed
@@ -142,7 +143,7 @@ class Simulation:
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
 
-    def _built(self, planner: Moves | None, gaze: Looks | None) -> Robot:
+    def _built(self, planner: MotionPlanner | None, gaze: GazeController | None) -> Robot:
         scenario = self.scenario
         try:
             return build_robot(scenario, self.layout, self.seed, planner=planner, gaze=gaze)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.decisions import Looks, Moves
+from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
@@ -35,7 +35,7 @@ class OwnPlanner:
         UsageError: it is none; in `plan`, its answer is no motion.
     """
 
-    def __init__(self, planner: Moves) -> None:
+    def __init__(self, planner: MotionPlanner) -> None:
         _must_answer(planner, "planner", PLAN)
         self._planner = planner
 
@@ -67,7 +67,7 @@ class OwnGaze:
         UsageError: it is none; in `choose`, its answer is no gaze.
     """
 
-    def __init__(self, gaze: Looks) -> None:
+    def __init__(self, gaze: GazeController) -> None:
         _must_answer(gaze, "gaze", CHOOSE)
         self._gaze = gaze
 

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from hsr8.decisions import Decisions, Now
-from hsr8.recorder.record import FrameRecord, Image
+from hsr8.recorder.frame_record import FrameRecord, Image
 from hsr8.recorder.walk_tally import WalkTally
 from navigation.belief.belief import Belief
 from navigation.observation import CameraView, Frame, Observation

@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 
-from hsr8.decisions import Decisions, Goes, Looks, Moves
+from hsr8.decisions import Decisions, GazeController, Goes, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.own_decisions import OwnGaze, OwnPlanner
 from hsr8.own_file import made_from
@@ -47,8 +47,8 @@ def build_robot(
     layout: Layout,
     seed: int,
     *,
-    planner: Moves | None = None,
-    gaze: Looks | None = None,
+    planner: MotionPlanner | None = None,
+    gaze: GazeController | None = None,
 ) -> Robot:
     """The robot of `scenario`, placed by `layout`; `seed` draws its particles and commands.
 
@@ -82,7 +82,7 @@ def robot_model() -> RobotModel:
 def head_camera(scenario: Scenario) -> PinholeCamera:
     """Intrinsics of the head camera of `scenario`."""
     camera = scenario.camera
-    fov = float(np.radians(camera.vertical_fov_deg))
+    fov = camera.vertical_fov
     return PinholeCamera.from_vertical_fov(camera.width, camera.height, fov)
 
 
@@ -99,8 +99,8 @@ def build_decisions(
     seed: int,
     script: CommandScript | None,
     *,
-    planner: Moves | None = None,
-    gaze: Looks | None = None,
+    planner: MotionPlanner | None = None,
+    gaze: GazeController | None = None,
 ) -> Decisions:
     """Mission, planner and gaze of the robot of `scenario`.
 
@@ -118,8 +118,8 @@ def build_decisions(
         gaze = made_from(own.gaze)
     beacons = known_beacons(scenario, layout)
     mission: Goes
-    moves: Moves
-    looks: Looks
+    moves: MotionPlanner
+    looks: GazeController
     if script is not None:
         if planner is not None:
             raise UsageError(

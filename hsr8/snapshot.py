@@ -31,6 +31,7 @@ MODULES = (
     "hsr8.robot",
     "hsr8.script",
     "hsr8.recorder.block",
+    "hsr8.recorder.frame_record",
     "hsr8.recorder.record",
     "hsr8.recorder.time_histogram",
     "hsr8.recorder.walk_tally",

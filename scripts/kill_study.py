@@ -29,7 +29,7 @@ from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.run_reader import open_run
 from hsr8.recorder.tape import read_tape
 from hsr8.scenario.loader import dump, load
-from hsr8.world.body.physics import CONTROL_PERIOD
+from walking.parameters import CONTROL_PERIOD
 
 from study_page import STAND_INS, command_line
 

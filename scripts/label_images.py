@@ -33,7 +33,7 @@ def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
     scenario = load("course")
     layout = draw_layout(scenario, seed)
     camera = scenario.camera
-    fov = float(np.radians(camera.vertical_fov_deg))
+    fov = camera.vertical_fov
     model = assemble(layout, "vision", Optics(camera.width, camera.height, fov))
     rng = named_rng(seed, "label")
     body = KinematicBody(model, layout, scenario.sensors, rng)

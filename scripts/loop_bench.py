@@ -23,11 +23,11 @@ from hsr8.recorder.run_folder import RunFolder
 from hsr8.recorder.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
-from hsr8.world.body.physics import CONTROL_PERIOD
 from hsr8.world.camera.image_noise import ImageNoise
 from hsr8.world.camera.offscreen import Offscreen
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.model.assembly import HEAD_CAMERA
+from walking.parameters import CONTROL_PERIOD
 
 import mujoco
 from stopwatch import Stopwatch

@@ -3,7 +3,8 @@
 from dataclasses import dataclass, field
 
 from hsr8.loop import Simulation
-from hsr8.recorder.record import FrameRecord, Listener, TickRecord
+from hsr8.recorder.frame_record import FrameRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 

@@ -165,7 +165,7 @@ def draw(tours: list[Tour]) -> Figure:
 
 def _snapshot(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
     row = int(rows_at(shown.motion.time, [frame.time])[0])
-    fov = frame.fov, float(np.radians(shown.scenario.camera.vertical_fov_deg))
+    fov = frame.fov, shown.scenario.camera.vertical_fov
     seen = placed(window(*frame.gaze, fov, shown.height), frame.truth)
     axes.add_patch(Polygon(seen, closed=True, facecolor=VIEW, alpha=0.35, edgecolor="none"))
     for obstacle in shown.layout.static:

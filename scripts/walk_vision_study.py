@@ -44,7 +44,7 @@ class Referee(Listener):
         self.data = mujoco.MjData(self.model)
         camera = simulation.scenario.camera
         self.pinhole = PinholeCamera.from_vertical_fov(
-            camera.width, camera.height, float(np.radians(camera.vertical_fov_deg))
+            camera.width, camera.height, camera.vertical_fov
         )
         self.renderer = mujoco.Renderer(self.model, camera.height, camera.width)
         self.renderer.enable_segmentation_rendering()

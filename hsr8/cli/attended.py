@@ -26,10 +26,8 @@ def ends_with(parent: int) -> bool:
         parent: process id.
 
     Returns:
-        Whether the parent is still there; elsewhere than on Linux nobody asks.
+        Whether the parent is still there.
     """
-    if not sys.platform.startswith("linux"):
-        return True
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     return os.getppid() == parent
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hsr8.cli.doctor import examine
 from hsr8.cli.options import BugReport
+from hsr8.cli.output_file import writing
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic, run_folder
 from hsr8.recorder.run_reader import open_run
@@ -40,10 +41,8 @@ def main(options: BugReport) -> int:
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in content.items():
             archive.writestr(name, text)
-    try:
+    with writing("--out", options.out):
         options.out.write_bytes(packed.getvalue())
-    except OSError as error:
-        raise UsageError(f"--out {options.out}: cannot be written: {error.strerror}") from None
     if options.json:
         print(atomic.dumps({"report": str(options.out), "files": list(content)}))
         return 0

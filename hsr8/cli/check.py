@@ -10,8 +10,7 @@ from rich.table import Table
 from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.cost import estimate
 from hsr8.cli.options import Check
-from hsr8.cli.picture import require_png
-from hsr8.errors import UsageError
+from hsr8.cli.output_file import require_png, writing
 from hsr8.own_file import require_own
 from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
@@ -42,12 +41,8 @@ def main(options: Check) -> int:
     world = draw_world(scenario, scenario.seed)
     layout = world.layout
     if options.picture is not None:
-        try:
+        with writing("--picture", options.picture):
             write_png(options.picture, PlanView(layout, certificate=world.certificate).draw())
-        except OSError as error:
-            raise UsageError(
-                f"--picture {options.picture}: cannot be written: {error.strerror}"
-            ) from None
     summary = summarize(scenario, world)
     if options.json:
         print(json.dumps(summary))

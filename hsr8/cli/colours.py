@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hsr8.cli.options import Colours
+from hsr8.cli.output_file import writing
 from hsr8.errors import UsageError
 from vision.colour import COLOUR_CLASSES, ColourTable, Labels
 from vision.colour_file import SUFFIX, save_table
@@ -46,10 +47,8 @@ def main(options: Colours) -> int:
         table = learn(pairs)
     except VisionError as error:
         raise UsageError(str(error)) from None
-    try:
+    with writing("--out", options.out):
         save_table(table, options.out)
-    except OSError as error:
-        raise UsageError(f"--out {options.out}: cannot be written: {error.strerror}") from None
     rows = list(_recognised(table, pairs))
     if options.json:
         print(json.dumps({"colour_table": str(options.out), "classes": rows}))

@@ -17,6 +17,7 @@ from hsr8.errors import Hsr8Error
 from hsr8.gl import APT_LINE, ASKED, BACKENDS, VULKAN_LINE, is_software
 from hsr8.recorder import atomic
 from hsr8.recorder.manifest import versions
+from hsr8.render import viewer
 from hsr8.version import VERSION
 from hsr8.world.model.models import models_dir
 
@@ -140,12 +141,12 @@ def _disk() -> Finding:
 
 
 def _viewer() -> Finding:
-    beside = Path(sys.executable).with_name("rerun")
-    found = str(beside) if beside.exists() else shutil.which("rerun")
-    if found is None:
-        return Finding("Rerun viewer", "note", "not found; `pip install rerun-sdk` brings it")
+    try:
+        found = viewer.executable()
+    except Hsr8Error as error:
+        return Finding("Rerun viewer", "note", str(error))
     text = f"{found}; hsr8 binds it to 127.0.0.1 only"
-    if sys.platform.startswith("linux") and not _vulkan_drivers():
+    if not _vulkan_drivers():
         return Finding("Rerun viewer", "note", f"{text}; it draws with Vulkan: {VULKAN_LINE}")
     return Finding("Rerun viewer", "ok", text)
 

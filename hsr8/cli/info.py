@@ -14,7 +14,6 @@ from hsr8.evaluation.verdict import Check, judge
 from hsr8.recorder import atomic
 from hsr8.recorder.manifest import RUNNING, other_versions
 from hsr8.recorder.run_reader import Run, open_run
-from hsr8.scenario.loader import load
 
 SHOWN = 30  # events in a terminal; all of them with --json
 
@@ -70,7 +69,7 @@ def _show(run: Run) -> None:
         results=run.metrics(),
         checks=_checks(run),
         path=run.path,
-        command=str(manifest.get("command", "")).split(),
+        command=str(manifest.get("command", "")),
         console=console,
     )
 
@@ -87,7 +86,7 @@ def _checks(run: Run) -> tuple[Check, ...]:
     if not results:
         return ()
     try:
-        return judge(load(str(run.scenario_file), seed=run.seed).criteria, results)
+        return judge(run.scenario().criteria, results)
     except (UsageError, KeyError):  # made by another version
         return ()
 

@@ -51,7 +51,7 @@ HELP = {"-h", "--help"}
 VIEWS = ("native", "web")
 MODULES = dict(COMMANDS.values())
 INTERRUPTED = 130
-READER_LEFT = 141  # as of a program that SIGPIPE ends
+SIGPIPE_EXIT = 141  # as of a program that SIGPIPE ends
 CALLED: Any = reduce(
     or_, (Annotated[kind, tyro.conf.subcommand(name)] for name, (kind, _) in COMMANDS.items())
 )
@@ -79,7 +79,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         for stream in (sys.stdout, sys.stderr):
             _drop_unread(stream)
         if isinstance(error, BrokenPipeError):
-            return READER_LEFT
+            return SIGPIPE_EXIT
         with suppress(OSError):  # it may be standard error that takes no more
             print(f"hsr8: cannot write to standard output: {error.strerror}", file=sys.stderr)
         return Hsr8Error.exit_code

@@ -3,6 +3,7 @@
 import sys
 
 from hsr8.cli.options import Plot
+from hsr8.cli.output_file import writing
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic
 from hsr8.recorder.run_reader import open_run
@@ -36,10 +37,8 @@ def main(options: Plot) -> int:
     if (start, stop) != (0.0, end):
         title += f", {start:g} to {stop:g} s"
     figure = draw(table.window(start, stop), options.what, title)
-    try:
+    with writing("--out", out):
         save(figure, out)
-    except OSError as error:
-        raise UsageError(f"--out {out}: cannot be written: {error.strerror}") from error
     if options.json:
         print(atomic.dumps({"plot": str(out), "what": options.what, "from_s": start, "to_s": stop}))
     else:

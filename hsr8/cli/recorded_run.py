@@ -132,7 +132,7 @@ def _told(options: Run, result: Result, manifest: Manifest, view: LiveView | Non
             results=results,
             checks=checks,
             path=result.folder,
-            command=manifest.command.split(),
+            command=manifest.command,
         )
     if view is not None and result.exit_reason != "interrupted":
         print(f"{'Ctrl-C' if view.page else 'closing the window'} ends the viewer", file=sys.stderr)

@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hsr8.cli.options import Render
+from hsr8.cli.output_file import writing
 from hsr8.cli.size import parse_size
 from hsr8.errors import UsageError
 from hsr8.gl import is_software, require_gl
@@ -49,9 +50,10 @@ def main(options: Render) -> int:
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("drawing", total=None)
         try:
-            made = film(run, shot, out, lambda n, total: bar.update(task, completed=n, total=total))
-        except OSError as error:
-            raise UsageError(f"{out} cannot be written: {error.strerror}; see --out") from error
+            with writing("--out", out):
+                made = film(
+                    run, shot, out, lambda n, total: bar.update(task, completed=n, total=total)
+                )
         except KeyboardInterrupt:
             if out.suffix.lower() == ".mp4":
                 console.print("interrupted; the same command goes on where it stopped")

@@ -4,7 +4,7 @@ import shlex
 import sys
 
 from hsr8.cli.options import Replay
-from hsr8.cli.picture import require_png
+from hsr8.cli.output_file import require_png, writing
 from hsr8.cli.size import parse_size
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic
@@ -28,12 +28,8 @@ def main(options: Replay) -> int:
         print("drawing in the viewer, which takes some ten seconds", file=sys.stderr, flush=True)
         time = options.time if options.time is not None else _middle(run)
         picture = viewer.screenshot(run.log_files, time, size)
-        try:
+        with writing("--screenshot", options.screenshot):
             options.screenshot.write_bytes(picture)
-        except OSError as error:
-            raise UsageError(
-                f"--screenshot {options.screenshot}: cannot be written: {error.strerror}"
-            ) from None
         if options.json:
             print(atomic.dumps({"screenshot": str(options.screenshot), "time_s": time}))
         else:

@@ -59,7 +59,7 @@ ROWS: tuple[tuple[str, str, str], ...] = (
     ("wall time", "wall_time_s", "{:.1f} s, {real_time_factor:.1f}x real time"),
 )
 # What goes without saying.
-UNTOLD = (("pushes", 0), ("clipped_target_ticks", 0), ("joint_stop_ticks", 0))
+HIDDEN_WHEN_ZERO = (("pushes", 0), ("clipped_target_ticks", 0), ("joint_stop_ticks", 0))
 TOLD_LIMITS = 3  # reasons of altered commands that are told
 
 
@@ -69,7 +69,7 @@ def show(
     results: Mapping[str, Any],
     checks: Sequence[Check],
     path: Path,
-    command: Sequence[str],
+    command: str,
     console: Console | None = None,
 ) -> None:
     """Print results, criteria, and what can be done with the run."""
@@ -82,7 +82,7 @@ def show(
         "stopped": _joints(results.get("joint_stop_by")),
     }
     for label, key, form in ROWS:
-        if results.get(key) is not None and (key, results[key]) not in UNTOLD:
+        if results.get(key) is not None and (key, results[key]) not in HIDDEN_WHEN_ZERO:
             table.add_row(label, _say(form, results[key], told))
     console.print(table)
     if checks:
@@ -93,7 +93,7 @@ def show(
         lines.insert(1, f"look at it  hsr8 replay {word}")
     if (path / run_folder.WALKING).exists():
         lines.append(f"plots       hsr8 plot {word}")
-    lines.append(f"again       {' '.join(command)}")
+    lines.append(f"again       {command}")
     for line in lines:
         console.print(line, highlight=False, soft_wrap=True, markup=False)
 

@@ -1,7 +1,7 @@
 """``hsr8 schema``: what a scenario file may hold, for editors."""
 
 from hsr8.cli.options import Schema
-from hsr8.errors import UsageError
+from hsr8.cli.output_file import writing
 from hsr8.recorder import atomic
 from hsr8.scenario.reference import json_schema
 
@@ -18,10 +18,8 @@ def main(options: Schema) -> int:
     if options.out is None:
         print(atomic.dumps(schema, indent=2))
         return 0
-    try:
+    with writing("--out", options.out):
         atomic.write_json(options.out, schema)
-    except OSError as error:
-        raise UsageError(f"--out {options.out}: cannot be written: {error.strerror}") from None
     print(f"schema      {options.out}")
     print(f'first line of a scenario, for Taplo and its editors:  "#:schema {options.out}"')
     return 0

@@ -15,9 +15,9 @@ from hsr8.recorder.fingerprints import CHANNELS, DECISIONS
 from hsr8.recorder.measurements import Measured, read_measurements
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import Block, read_tape
-from hsr8.world.body.physics import CONTROL_PERIOD
 from hsr8.world.model.models import models_dir
 from walking.body.joints import JOINT_NAMES
+from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from hsr8.evaluation.track_metrics import TrackMetrics
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.block import Block
-from hsr8.recorder.record import FrameRecord, Listener, TickRecord
+from hsr8.recorder.frame_record import FrameRecord
+from hsr8.recorder.record import Listener, TickRecord
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.episodes import Episodes
 from hsr8.world.truth.falls import Falls
@@ -77,7 +78,7 @@ class Metrics(Listener):
 
     def __getstate__(self) -> dict[str, Any]:
         """The wall time so far instead of when it began; no record waits."""
-        self._work_off()
+        self._write_pending()
         return self.__dict__ | {"_started": clock.perf_counter() - self._started}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -86,7 +87,7 @@ class Metrics(Listener):
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
         if self._waiting.add(record):
-            self._work_off()
+            self._write_pending()
 
     def close(self, exit_reason: str) -> None:
         """Stop the clock."""
@@ -98,7 +99,7 @@ class Metrics(Listener):
         What was not measured, for example the localization of a robot without a camera
         frame, is None.
         """
-        self._work_off()
+        self._write_pending()
         time = self._last.time if self._last is not None else 0.0
         wall = self._wall if self._wall is not None else clock.perf_counter() - self._started
         collisions = self._episodes.collisions
@@ -144,7 +145,7 @@ class Metrics(Listener):
             **self._walk.result(),
         }
 
-    def _work_off(self) -> None:
+    def _write_pending(self) -> None:
         """Count the records that wait."""
         records = self._waiting.take()
         for record in records:
@@ -179,7 +180,10 @@ class Metrics(Listener):
         return exit_reason in ("completed", "goal")
 
     def _arrival_error(self) -> float | None:
-        """Error of the true heading at the end of the run [deg]; None if the mission was not finished."""
+        """Error of the true heading at the end of the run [deg].
+
+        None if the mission was not finished.
+        """
         if self._done_at is None or self._layout.goal_heading is None or self._last is None:
             return None
         return degrees(abs(wrap(float(self._last.robot[2]) - self._layout.goal_heading)))

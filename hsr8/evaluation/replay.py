@@ -21,9 +21,9 @@ from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import HASH, Block, read_tape
 from hsr8.robot_builder import build_decisions, build_estimator, build_script
 from hsr8.seeds import named_rng
-from hsr8.world.body.physics import CONTROL_PERIOD
 from hsr8.world.field.generator import draw_layout
 from walking.body.joints import JOINT_NAMES
+from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
 
 STAND_STILL = np.zeros(len(JOINT_NAMES))

@@ -31,24 +31,19 @@ def write_bytes(path: Path, content: bytes) -> None:
         raise
 
 
-def overwrite_text(path: Path, text: str) -> None:
-    """As `write_text` where there is no room for two: over the old file, in its place."""
-    try:
-        write_text(path, text)
-    except OSError:
-        with path.open("r+b") as file:
-            file.write(text.encode("utf-8"))
-            file.truncate()
-
-
 def write_json(path: Path, value: Mapping[str, Any]) -> None:
     """Write `value` as indented JSON; numbers that are not finite become null."""
     write_text(path, dumps(value, indent=2) + "\n")
 
 
 def overwrite_json(path: Path, value: Mapping[str, Any]) -> None:
-    """As `write_json`, by `overwrite_text`."""
-    overwrite_text(path, dumps(value, indent=2) + "\n")
+    """As `write_json`, but if the disk is too full for a second copy, overwrite in place."""
+    try:
+        write_json(path, value)
+    except OSError:
+        with path.open("r+b") as file:
+            file.write((dumps(value, indent=2) + "\n").encode("utf-8"))
+            file.truncate()
 
 
 def dumps(value: Any, indent: int | None = None) -> str:

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
+from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.pace import Pace
-from hsr8.recorder.record import FrameRecord
 from navigation.belief.belief import Belief, Motion
 from navigation.decision import MotionDecision
 from navigation.observation import CameraView

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
+from hsr8.recorder.frame_record import FrameRecord, Image
 from hsr8.recorder.geometry import xyzw
-from hsr8.recorder.record import FrameRecord, Image
 from hsr8.world.model.assembly import HEAD_CAMERA
 from navigation.decision import GazeDecision
 from navigation.parameters.gaze import GazeParameters

@@ -19,8 +19,8 @@ from hsr8.recorder.fingerprints import (
     decision_fingerprints,
     fingerprints,
 )
+from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.guarded_file import GuardedWriter, read_payloads
-from hsr8.recorder.record import FrameRecord
 from navigation.observation import CameraView, Frame, Observation
 
 Array = NDArray[np.float64]

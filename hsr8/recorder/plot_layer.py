@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.channel import Channel
-from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.frame_record import FrameRecord
+from hsr8.recorder.record import TickRecord
 from navigation.angles import wrap
 
 Array = NDArray[np.float64]

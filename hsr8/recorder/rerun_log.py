@@ -115,7 +115,7 @@ class RerunLog:
     def on_record(self, record: TickRecord) -> None:
         """Log one record."""
         if self._waiting.add(record):
-            self._work_off()
+            self._write_pending()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Log one event."""
@@ -125,7 +125,7 @@ class RerunLog:
 
     def flush(self) -> None:
         """Hand everything to the operating system."""
-        self._work_off()
+        self._write_pending()
         self._wait()
 
     def close(self, exit_reason: str) -> None:
@@ -200,7 +200,7 @@ class RerunLog:
         outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + place
         return outline
 
-    def _work_off(self) -> None:
+    def _write_pending(self) -> None:
         """Send the records that wait."""
         records = self._waiting.take()
         if records:

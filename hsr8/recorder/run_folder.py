@@ -32,9 +32,10 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.recorder import atomic, frame_summary
 from hsr8.recorder.block import Block
+from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.measurements import MeasurementWriter
-from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.record import TickRecord
 from hsr8.recorder.trajectory import TrajectoryWriter
 from hsr8.recorder.writing import NO_ROOM, failure, writing
 
@@ -138,7 +139,7 @@ class RunFolder:
         with writing(self.path):
             if not (self.path / MANIFEST).exists():  # open files outlive their folder
                 raise FileNotFoundError(errno.ENOENT, "it is no longer there")
-            self._work_off()
+            self._write_pending()
             if self._trajectory is not None:
                 self._trajectory.flush()
             self._frames.flush()
@@ -153,14 +154,14 @@ class RunFolder:
             farewell.callback(self._frames.close)
             if self._trajectory is not None:
                 farewell.callback(self._trajectory.close)
-            farewell.callback(self._work_off)
+            farewell.callback(self._write_pending)
 
     def note(self, exit_reason: str) -> None:
         """Note how the run ended."""
         with writing(self.path):
             self._manifest.ended(exit_reason).write(self.path / MANIFEST)
 
-    def _work_off(self) -> None:
+    def _write_pending(self) -> None:
         """Write the records that wait."""
         records = self._waiting.take()
         if self._trajectory is not None and records:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hsr8.recorder.writing import failure
 
-OF_LOG = 9  # two workers, one that frees memory, and two each of log, arrangement and sinks
+LOG_THREADS = 9  # two workers, one that frees memory, and two each of log, arrangement and sinks
 
 
 def require_threads(folder: Path) -> None:
@@ -18,14 +18,14 @@ def require_threads(folder: Path) -> None:
         RecordingFailed: the system does not grant them.
     """
     enough = threading.Event()
-    threads = [threading.Thread(target=enough.wait) for _ in range(OF_LOG)]
+    threads = [threading.Thread(target=enough.wait) for _ in range(LOG_THREADS)]
     granted = 0
     try:
         for thread in threads:
             thread.start()
             granted += 1
     except RuntimeError as error:
-        reason = f"the log takes {OF_LOG} threads, and the system grants {granted}"
+        reason = f"the log takes {LOG_THREADS} threads, and the system grants {granted}"
         ways = "raise its limit (ulimit -u; pids.max of a container), or do without: --no-log"
         raise failure(folder, f"{reason}\n  {ways}") from error
     finally:

@@ -134,17 +134,17 @@ class WalkingTableWriter(Listener):
 
     def flush(self) -> None:
         """Hand everything to the operating system."""
-        self._work_off()
+        self._write_pending()
         self._file.flush()
 
     def close(self, exit_reason: str) -> None:
         """Finish the file."""
         try:
-            self._work_off()
+            self._write_pending()
         finally:
             self._file.close()
 
-    def _work_off(self) -> None:
+    def _write_pending(self) -> None:
         """Write the rows of the records that wait."""
         records = self._waiting.take()
         table = np.empty(len(records), dtype=_row_type(len(COLUMNS)))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.render.keeping import KeptIfWhole
+from hsr8.render.keeping import AtomicWriter
 
 Image = NDArray[np.uint8]
 
@@ -18,7 +18,7 @@ KINDS = (".gif", ".webp")
 MOST_PIXELS = 400_000_000  # of all pictures of a GIF: some 2 GB
 
 
-class AnimationWriter(KeptIfWhole):
+class AnimationWriter(AtomicWriter):
     """Writes pictures; the file appears, repeating without end, when it is complete.
 
     Args:

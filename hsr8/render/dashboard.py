@@ -78,7 +78,7 @@ class Dashboard:
         self.eye_size: Size = (side, eye_height)
         self._left, self._below = width - side, eye_height + gap
         self._overlay = EyeOverlay(
-            (camera.width, camera.height), self.eye_size, float(np.radians(camera.vertical_fov_deg))
+            (camera.width, camera.height), self.eye_size, camera.vertical_fov
         )
         self._above = TopDown(layout, (side, height - self._below))
         self._timeline = timeline

@@ -5,7 +5,7 @@ from types import TracebackType
 from typing import Self
 
 
-class KeptIfWhole(ABC):
+class AtomicWriter(ABC):
     """A writer used by ``with``: an error inside takes back what it has written."""
 
     @abstractmethod

@@ -71,7 +71,7 @@ class Pictures:
         self._optics = Optics(
             camera.width,
             camera.height,
-            float(np.radians(camera.vertical_fov_deg)),
+            camera.vertical_fov,
             scenario.world.brightness,
         )
         self._fine = fine

@@ -8,7 +8,7 @@ import av
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.render.keeping import KeptIfWhole
+from hsr8.render.keeping import AtomicWriter
 
 Image = NDArray[np.uint8]
 
@@ -16,7 +16,7 @@ OPTIONS = {"preset": "veryfast", "crf": "21", "threads": "1"}
 OPTIONS_OF_CONTAINER = {"movflags": "+faststart"}  # a page plays it while it loads
 
 
-class VideoWriter(KeptIfWhole):
+class VideoWriter(AtomicWriter):
     """Writes frames; the file appears under its name when it is complete.
 
     Args:

@@ -41,8 +41,6 @@ def executable() -> str:
 
 def has_display() -> bool:
     """Whether a window can be opened."""
-    if not sys.platform.startswith("linux"):
-        return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 

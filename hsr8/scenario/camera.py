@@ -54,9 +54,14 @@ class Camera(Section):
         return self.source == "all-round"
 
     @property
+    def vertical_fov(self) -> float:
+        """Vertical field of view [rad]."""
+        return radians(self.vertical_fov_deg)
+
+    @property
     def horizontal_fov_deg(self) -> float:
         """Horizontal field of view [deg]."""
-        half = tan(0.5 * radians(self.vertical_fov_deg)) * self.width / self.height
+        half = tan(0.5 * self.vertical_fov) * self.width / self.height
         return degrees(2.0 * atan(half))
 
     @model_validator(mode="after")

@@ -5,7 +5,9 @@ from typing import Annotated, Literal
 from annotated_types import Interval, MultipleOf
 from pydantic import AfterValidator, BaseModel, ConfigDict
 
-CONTROL_PERIOD_MS = 5
+from walking.parameters import CONTROL_PERIOD
+
+CONTROL_PERIOD_MS = round(1000.0 * CONTROL_PERIOD)
 
 
 class Section(BaseModel):

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from hsr8.decisions import Decided, Now
-from hsr8.recorder.record import FrameRecord, TickRecord
+from hsr8.recorder.frame_record import FrameRecord
+from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.field.motion import Shuttle

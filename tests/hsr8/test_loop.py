@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hsr8.decisions import Looks, Moves
+from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import RenderingUnavailable
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
@@ -23,7 +23,7 @@ class Spin:
 
 
 class Stare:
-    """Looks to the left whatever happens."""
+    """GazeController to the left whatever happens."""
 
     def choose(self, belief, task, motion):
         return GazeDecision(pan=0.7, tilt=-0.2)
@@ -84,8 +84,8 @@ def test_a_run_is_stepped_between_its_beginning_and_its_end_alone():
 
 
 def test_an_own_planner_and_gaze_take_their_places():
-    spin: Moves = Spin()
-    stare: Looks = Stare()
+    spin: MotionPlanner = Spin()
+    stare: GazeController = Stare()
     record = None
     with Simulation(quick(4.0), 4, planner=spin, gaze=stare) as simulation:
         while simulation.exit_reason is None:

@@ -69,7 +69,7 @@ def parse_executor(name: str) -> tuple[str, str]:
 
 
 class LocalExecutor:
-    """A process per run on this machine; on Linux forked from one that has loaded everything.
+    """A process per run on this machine, forked from one that has loaded everything.
 
     Args:
         workers: runs at a time.

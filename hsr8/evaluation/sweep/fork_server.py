@@ -24,7 +24,7 @@ SAID = 2000  # characters kept of what it said at its end
 
 
 class ForkServer:
-    """The process that forks; it begins to load when it is made. Linux only.
+    """The process that forks; it begins to load when it is made.
 
     Raises:
         OSError: here and in `start`, there is no process, no file, or no server any more.

@@ -1,12 +1,11 @@
-"""Starts the processes of runs; on Linux forked from one that has loaded everything."""
+"""Starts the processes of runs: forked from one that has loaded everything."""
 
-import sys
 from collections.abc import Sequence
 from functools import cache
 from threading import Lock
 
 from hsr8.evaluation.sweep.fork_server import ForkServer
-from hsr8.evaluation.sweep.process import Process, start
+from hsr8.evaluation.sweep.process import Process
 
 
 class Launcher:
@@ -22,8 +21,6 @@ class Launcher:
         Raises:
             OSError: there is no process.
         """
-        if not sys.platform.startswith("linux"):
-            return start(words)
         with self._lock:
             if self._server is not None and self._server.gone:
                 self._server.close()

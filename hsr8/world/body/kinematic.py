@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.kinematic_kernel import GRAVITY, felt, stand
-from hsr8.world.body.physics import CONTROL_PERIOD, place_robot
+from hsr8.world.body.physics import place_robot
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.field.layout import Layout
 from hsr8.world.rotation import heading
 from hsr8.world.truth.truth import Truth
+from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
 

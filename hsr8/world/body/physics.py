@@ -20,12 +20,12 @@ from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product
 from hsr8.world.truth.saturation import SaturationWatch
 from hsr8.world.truth.truth import Truth
 from walking.body.joints import JOINT_NAMES
+from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
 from walking.targets import JointTargets
 
 Array = NDArray[np.float64]
 
-CONTROL_PERIOD = 0.005  # Yoo & Kim: the walking pattern is recomputed every 5 ms [s]
 FALLEN_SHARE = 0.64  # a pelvis below this share of its height when ready lies [1]
 FALLEN_TILT = 0.5  # cosine of the tilt beyond which the robot has fallen [1]
 

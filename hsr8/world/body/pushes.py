@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.disturbance import Disturbance
 from hsr8.scenario.fault import Fault, Push
-from hsr8.world.truth.truth import PushActing
+from hsr8.world.truth.truth import ActivePush
 
 Array = NDArray[np.float64]
 
@@ -81,7 +81,7 @@ class Pusher:
         self._bodies = [int(model.body(push.body).id) for push in pushes]
         self._next = 0
         self._acting: dict[int, Array] = {}
-        self._seen: dict[int, PushActing] = {}
+        self._seen: dict[int, ActivePush] = {}
 
     def busy(self, tick: int) -> bool:
         """Whether there is anything to do in control tick `tick`."""
@@ -112,7 +112,7 @@ class Pusher:
             lever = data.xmat[body].reshape(3, 3) @ push.point
             data.xfrc_applied[body, :3] += force
             data.xfrc_applied[body, 3:] += np.cross(lever, force)
-            self._seen[number] = PushActing(
+            self._seen[number] = ActivePush(
                 number=number,
                 begin=push.first * self._period,
                 duration=push.ticks * self._period,
@@ -122,7 +122,7 @@ class Pusher:
                 force=force,
             )
 
-    def take(self) -> tuple[PushActing, ...]:
+    def take(self) -> tuple[ActivePush, ...]:
         """Pushes that acted since the last call, in order; forgets them."""
         seen = tuple(self._seen[number] for number in sorted(self._seen))
         self._seen.clear()

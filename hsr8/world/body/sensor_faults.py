@@ -13,11 +13,10 @@ from hsr8.scenario.fault import (
     ImuTurn,
     SensorFault,
 )
-from hsr8.scenario.section import CONTROL_PERIOD_MS
 from hsr8.world.rotation import quaternion_from_yaw, quaternion_product, small_rotation
+from walking.parameters import CONTROL_PERIOD
 from walking.sensing import BodySensors
 
-PERIOD = 0.001 * CONTROL_PERIOD_MS
 AXES = {"roll": 0, "pitch": 1, "yaw": 2}
 
 
@@ -50,7 +49,7 @@ class SensorFaults:
             gyro = now.gyro.copy()
             gyro[AXES[fault.axis]] += fault.size
             if fault.axis == "yaw":
-                self._turned += PERIOD * fault.size
+                self._turned += CONTROL_PERIOD * fault.size
             return replace(now, gyro=gyro)
         if isinstance(fault, ImuTilt):
             roll, pitch = (fault.size, 0.0) if fault.axis == "roll" else (0.0, fault.size)

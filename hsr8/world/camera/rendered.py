@@ -1,7 +1,6 @@
 """The head camera: images rendered from the model's own camera, without a display."""
 
 from functools import partial
-from math import radians
 from typing import TYPE_CHECKING
 
 import mujoco
@@ -55,7 +54,7 @@ class RenderedCamera:
         self._offscreen = Offscreen(model, HEAD_CAMERA, settings.width, settings.height)
         self._blur: MotionBlur | None = None
         if settings.shutter_ms > 0.0:
-            fov = radians(settings.vertical_fov_deg)
+            fov = settings.vertical_fov
             optics = PinholeCamera.from_vertical_fov(settings.width, settings.height, fov)
             self._blur = MotionBlur(optics, 1e-3 * settings.shutter_ms)
         self._latest: Exposure | None = None

@@ -34,7 +34,7 @@ class Contact:
 
 
 @dataclass(frozen=True, slots=True)
-class PushActing:
+class ActivePush:
     """The world pushes the robot.
 
     Attributes:
@@ -99,5 +99,5 @@ class Truth:
     foot_force: Array
     zmp: Array
     fallen: bool
-    pushes: tuple[PushActing, ...] = ()
+    pushes: tuple[ActivePush, ...] = ()
     saturation: SaturationWatch | None = None

@@ -18,7 +18,7 @@ def test_the_report_shows_results_criteria_and_what_to_do_next(layout, walk, tmp
         results=metrics.result("timeout", "hash"),
         checks=(Check("falls", "<= 0", "0", True), Check("goal reached", "yes", "no", False)),
         path=tmp_path,
-        command=("hsr8", "run", "quick"),
+        command="hsr8 run quick",
         console=Console(file=stream, width=100),
     )
     text = stream.getvalue()
@@ -37,7 +37,7 @@ def test_a_log_can_be_replayed(tmp_path):
         results={"exit_reason": "goal"},
         checks=(),
         path=Path(tmp_path),
-        command=(),
+        command="",
         console=Console(file=stream, width=200),
     )
     assert f"hsr8 replay {tmp_path}" in stream.getvalue()
@@ -48,7 +48,7 @@ def test_a_path_with_spaces_can_be_typed_again(tmp_path):
     path.mkdir()
     stream = io.StringIO()
     console = Console(file=stream, width=200)
-    report.show("quick", results={}, checks=(), path=path, command=(), console=console)
+    report.show("quick", results={}, checks=(), path=path, command="", console=console)
     assert f"hsr8 render '{path}'" in stream.getvalue()
 
 
@@ -61,7 +61,7 @@ def test_cut_off_set_points_are_told_only_when_there_are_any(tmp_path):
             results={"clipped_target_ticks": ticks, "clipped_target_by": by},
             checks=(),
             path=tmp_path,
-            command=(),
+            command="",
             console=Console(file=stream, width=200),
         )
         said.append(stream.getvalue())

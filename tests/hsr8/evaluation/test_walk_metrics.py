@@ -8,7 +8,7 @@ import pytest
 from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth.saturation import Saturation
-from hsr8.world.truth.truth import PushActing
+from hsr8.world.truth.truth import ActivePush
 from walking.admission import Limit
 from walking.command import VelocityCommand
 from walking.phase import Phase
@@ -116,7 +116,7 @@ def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
     ticks[3], peak[3] = 7, 1.0
     none = np.zeros(26, dtype=np.int64)
     saturation = Saturation(7, ticks, 0, none, 7, ticks, peak, 5.0 * peak)
-    push = PushActing(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
+    push = ActivePush(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
     watch = SimpleNamespace(so_far=lambda: saturation)
     record = fake.record(0.0, saturation=watch, pushes=(push,))
     results = results_of([replace(record, tally=tally)])

@@ -15,7 +15,7 @@ from hsr8.recorder.block_stream import BlockStream
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.log_reader import Log
 from hsr8.recorder.rerun_log import PATIENCE, RerunLog
-from hsr8.world.truth.truth import PushActing
+from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
 from navigation.parameters.gaze import GazeParameters
 from walking.admission import AdmissionReport, Limit
@@ -261,7 +261,7 @@ def test_pushes_and_altered_commands_are_logged_when_they_change(log, fake):
     asked, given = VelocityCommand(0.5), VelocityCommand(0.3)
     altered = AdmissionReport(asked, given, (Limit.SPEED, Limit.LANDING_FROZEN))
     routine = AdmissionReport(given, given, (Limit.LANDING_FROZEN,))
-    push = PushActing(
+    push = ActivePush(
         0, 0.2, 0.05, "torso_link", 0.0, np.array([0.0, 0.0, 0.3]), np.array([4.0, 0.0, 0.0])
     )
     for k in range(50):

@@ -32,18 +32,18 @@ def grant(monkeypatch):
     return granted
 
 
-@pytest.mark.parametrize("count", [0, 1, threads.OF_LOG - 1])
+@pytest.mark.parametrize("count", [0, 1, threads.LOG_THREADS - 1])
 def test_too_few_are_told_and_left_to_others(grant, tmp_path, count):
     before = threading.active_count()
     grant(count)
-    with pytest.raises(RecordingFailed, match=f"takes {threads.OF_LOG} .* grants {count}\n"):
+    with pytest.raises(RecordingFailed, match=f"takes {threads.LOG_THREADS} .* grants {count}\n"):
         require_threads(tmp_path)
     assert threading.active_count() == before
 
 
 def test_as_many_as_it_takes_are_given_back(grant, tmp_path):
     before = threading.active_count()
-    grant(threads.OF_LOG)
+    grant(threads.LOG_THREADS)
     require_threads(tmp_path)
     assert threading.active_count() == before
 

@@ -13,7 +13,7 @@ from hsr8.recorder.walking_table import (
     read_walking_table,
 )
 from hsr8.world.model.index import ModelIndex
-from hsr8.world.truth.truth import PushActing
+from hsr8.world.truth.truth import ActivePush
 from walking.admission import AdmissionReport, Limit
 from walking.body.odometry import Odometry
 from walking.command import VelocityCommand
@@ -84,7 +84,7 @@ def test_a_window_holds_both_ends(written):
 def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
     asked = VelocityCommand(0.5)
     report = AdmissionReport(asked, asked, (Limit.SPEED, Limit.BALANCE, Limit.SPEED))
-    push = PushActing(
+    push = ActivePush(
         0, 0.0, 0.05, "torso_link", 0.0, np.array([0.1, 0.2, 0.3]), np.array([1.0, -2.0, 0.0])
     )
     records = [fake.record(0.0), fake.record(0.02, pushes=(push,))]

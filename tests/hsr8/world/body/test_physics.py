@@ -3,9 +3,10 @@ import pytest
 
 from hsr8.errors import SimulationDiverged
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.body.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Obstacle, standard_beacons
 from hsr8.world.field.motion import Line, Shuttle
+from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
 
 

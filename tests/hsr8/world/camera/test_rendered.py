@@ -7,12 +7,13 @@ import pytest
 
 from hsr8.scenario.camera import Camera, CameraNoise
 from hsr8.world.body.kinematic import KinematicBody
-from hsr8.world.body.physics import CONTROL_PERIOD, PhysicsBody
+from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.camera.rendered import RenderedCamera, turning
 from vision.camera import CameraPose, PinholeCamera
 from vision.detector import Detector
 from vision.parameters import VisionParameters
 from walking.body.joints import JOINT_NAMES
+from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
 
 CLEAN = Camera(noise=CameraNoise(pixel=0.0, exposure=0.0))
