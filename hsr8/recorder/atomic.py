@@ -38,11 +38,12 @@ def write_json(path: Path, value: Mapping[str, Any]) -> None:
 
 def overwrite_json(path: Path, value: Mapping[str, Any]) -> None:
     """As `write_json`, but if the disk is too full for a second copy, overwrite in place."""
+    text = dumps(value, indent=2) + "\n"
     try:
-        write_json(path, value)
+        write_text(path, text)
     except OSError:
         with path.open("r+b") as file:
-            file.write((dumps(value, indent=2) + "\n").encode("utf-8"))
+            file.write(text.encode("utf-8"))
             file.truncate()
 
 

@@ -52,13 +52,6 @@ def test_a_backend_that_does_not_exist_is_not_left_to_break_the_import(
     assert gl.choose_backend() == ("egl" if asked == "EGL " else "disable")
 
 
-def test_other_systems_choose_by_themselves(libraries, monkeypatch):
-    libraries("EGL")
-    monkeypatch.setattr(sys, "platform", "darwin")
-    assert gl.choose_backend() == ""
-    assert "MUJOCO_GL" not in os.environ
-
-
 def test_without_opengl_the_message_says_what_to_do(libraries, monkeypatch):
     libraries()
     monkeypatch.setattr(gl, "ASKED", "")

@@ -23,7 +23,7 @@ class Spin:
 
 
 class Stare:
-    """GazeController to the left whatever happens."""
+    """Looks to the left whatever happens."""
 
     def choose(self, belief, task, motion):
         return GazeDecision(pan=0.7, tilt=-0.2)

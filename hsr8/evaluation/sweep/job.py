@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from hsr8.evaluation.sweep.process import Process, start
+from hsr8.evaluation.sweep.process import Process
 from hsr8.recorder import atomic, run_folder
 
 Row = dict[str, Any]
@@ -51,7 +51,7 @@ class Job:
     avoid: str = ""
 
 
-def run_job(job: Job, start: Start = start, worker: str = "") -> Row:
+def run_job(job: Job, start: Start, worker: str = "") -> Row:
     """Run `job` in a process of its own and wait for it.
 
     Args:

@@ -3,11 +3,7 @@
 import subprocess
 import sys
 
-import pytest
-
 from hsr8.evaluation.sweep.process import environment
-
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks on Linux only")
 
 LOADED = """
 import os, sys

@@ -83,7 +83,6 @@ def test_closing_ends_what_runs(monkeypatch, stubborn):
     assert [p.returncode for p in processes] == [-9 if stubborn else -15]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="forks on Linux only")
 def test_when_the_server_is_killed_its_run_is_a_crash_and_the_next_has_a_new_one(monkeypatch):
     program = "import sys, hsr8.cli.fork_server as p; p.load_everything = lambda: None;"
     program += "p.entry = lambda words: exec(words[0]) or 0; p.main(sys.argv[1:])"

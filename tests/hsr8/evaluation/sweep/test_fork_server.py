@@ -10,8 +10,6 @@ import pytest
 from hsr8.evaluation.sweep import fork_server as module
 from hsr8.evaluation.sweep.fork_server import ForkServer
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks on Linux only")
-
 PROGRAM = """
 import os, sys
 import hsr8.cli.fork_server as program

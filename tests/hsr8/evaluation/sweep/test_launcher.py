@@ -1,5 +1,3 @@
-import sys
-
 import pytest
 
 from hsr8.evaluation.sweep import launcher as module
@@ -30,7 +28,6 @@ def made(monkeypatch):
         return servers[-1]
 
     monkeypatch.setattr(module, "ForkServer", make)
-    monkeypatch.setattr(sys, "platform", "linux")
     return servers
 
 
@@ -51,13 +48,6 @@ def test_one_that_is_gone_is_replaced(made):
     made[0].gone = True
     assert launcher.start(["run"]) is made[1]
     assert made[0].closed
-
-
-def test_where_nothing_is_forked_every_run_starts_anew(made, monkeypatch):
-    monkeypatch.setattr(sys, "platform", "darwin")
-    monkeypatch.setattr(module, "start", lambda words: words)
-    assert Launcher().start(["run"]) == ["run"]
-    assert made == []
 
 
 def test_the_runs_of_one_worker_share_theirs():

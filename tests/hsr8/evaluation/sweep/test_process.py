@@ -1,14 +1,6 @@
 import os
 
-from hsr8.evaluation.sweep.process import environment, start
-
-
-def test_a_command_line_runs_in_a_process_of_its_own():
-    process = start(["--version"])
-    printed, said = process.communicate(timeout=60.0)
-    assert printed.startswith("hsr8 ")
-    assert said == ""
-    assert process.returncode == 0
+from hsr8.evaluation.sweep.process import environment
 
 
 def test_one_thread_unless_the_user_says_otherwise(monkeypatch):
