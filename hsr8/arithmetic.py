@@ -1,4 +1,4 @@
-"""The same bits on every x86-64 processor of ten years: the one place that sees to it.
+"""Makes NumPy and OpenBLAS give the same bits on every x86-64 processor with AVX2 and FMA.
 
 NumPy and OpenBLAS choose among kernels by the processor, and these differ in the last bit; a walk
 among movers makes another walk of that. Told to use no more than level 3 (AVX2 and FMA), they

@@ -119,7 +119,7 @@ class Decisions:
         return Decided(belief, task, motion, self._gaze.choose(belief, task, motion), fresh)
 
     def forget(self) -> None:
-        """Off its feet the robot does not go on with what it was about to do."""
+        """Drop the decision in force; the next frame plans anew."""
         self._motion = None
 
     def _move(self, now: Now, belief: Belief, task: Task) -> MotionDecision:

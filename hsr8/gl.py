@@ -70,7 +70,7 @@ def require_gl() -> str:
 
 
 def flush() -> None:
-    """Have OpenGL draw what it was told to in the current context, and do not wait for it."""
+    """Start the queued drawing without waiting (glFlush)."""
     from OpenGL import GL  # noqa: PLC0415  binds to the platform of the context
 
     GL.glFlush()

@@ -1,4 +1,4 @@
-"""Compiled kernels are kept: the one place that chooses where.
+"""Chooses the folder where Numba caches compiled kernels.
 
 Numba keeps them beside the sources, else in a cache folder of the user, and refuses to import a
 kernel where it can write neither. The package calls `choose_kernel_cache` before anything of it

@@ -32,7 +32,7 @@ class OwnPlanner:
         planner: to ask.
 
     Raises:
-        UsageError: it is none; in `plan`, its answer is no motion.
+        UsageError: `planner` has no method plan; from `plan`: it returned no valid MotionDecision.
     """
 
     def __init__(self, planner: MotionPlanner) -> None:
@@ -64,7 +64,7 @@ class OwnGaze:
         gaze: to ask.
 
     Raises:
-        UsageError: it is none; in `choose`, its answer is no gaze.
+        UsageError: `gaze` has no method choose; from `choose`: it returned no valid GazeDecision.
     """
 
     def __init__(self, gaze: GazeController) -> None:

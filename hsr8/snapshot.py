@@ -1,4 +1,4 @@
-"""A run in mid-air as bytes, and back: everything that determines what comes next.
+"""The complete state of a run as bytes, to continue it bit for bit.
 
 Snapshots are data. They are read by an unpickler that knows the classes of the robot, of the
 world and of arrays, and refuses every other name; a checksum tells damage before that.

@@ -27,7 +27,7 @@ Camera = Annotated[
     Literal["egl", "analytic", "all-round"] | None,
     _arg(
         "{egl,analytic,all-round}",
-        "rendered head camera; geometry alone, without OpenGL; that, of all around at once",
+        "egl: rendered; analytic: geometry only, no OpenGL; all-round: analytic with a 360 deg view",
     ),
 ]
 RunPath = Annotated[
@@ -57,8 +57,8 @@ class Run:
         Literal["minimal", "standard", "full"] | None,
         _arg(
             "{minimal,standard,full}",
-            "poses, curves and events; with images and beliefs, as without this option; "
-            "every frame of everything",
+            "minimal: poses, curves, events; standard (default): images and beliefs too; "
+            "full: every frame",
         ),
     ] = None
     view: Annotated[
@@ -119,7 +119,7 @@ class Sweep:
     """Who runs: local, dask, dask://HOST:PORT, ray or ray://HOST:PORT."""
     shard: Annotated[
         str | None,
-        _arg("I/N", "run only the I-th of N parts, from 1; then once without it, to sum up"),
+        _arg("I/N", "run part I of N; afterwards the same line without --shard writes the report"),
     ] = None
     timeout: Annotated[
         float | None,

@@ -78,7 +78,7 @@ class Metrics(Listener):
 
     def __getstate__(self) -> dict[str, Any]:
         """The wall time so far instead of when it began; no record waits."""
-        self._write_pending()
+        self._count_pending()
         return self.__dict__ | {"_started": clock.perf_counter() - self._started}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -87,7 +87,7 @@ class Metrics(Listener):
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
         if self._waiting.add(record):
-            self._write_pending()
+            self._count_pending()
 
     def close(self, exit_reason: str) -> None:
         """Stop the clock."""
@@ -99,7 +99,7 @@ class Metrics(Listener):
         What was not measured, for example the localization of a robot without a camera
         frame, is None.
         """
-        self._write_pending()
+        self._count_pending()
         time = self._last.time if self._last is not None else 0.0
         wall = self._wall if self._wall is not None else clock.perf_counter() - self._started
         collisions = self._episodes.collisions
@@ -145,7 +145,7 @@ class Metrics(Listener):
             **self._walk.result(),
         }
 
-    def _write_pending(self) -> None:
+    def _count_pending(self) -> None:
         """Count the records that wait."""
         records = self._waiting.take()
         for record in records:

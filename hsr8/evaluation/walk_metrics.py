@@ -11,6 +11,7 @@ from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
 from walking.body.joints import JOINT_NAMES
+from walking.state import Phase
 
 Array = NDArray[np.float64]
 Velocity = dict[str, float]
@@ -79,10 +80,10 @@ class StrideMeter:
             self._steps = steps
             return
         if self._begin is None:
-            if steps != self._steps or str(record.walking.phase) == "standing":
+            if steps != self._steps or record.walking.phase is Phase.STANDING:
                 self._start(time, pose, steps)
             return
-        stands = str(record.walking.phase) == "standing" and time - self._begin[0] >= 1.0
+        stands = record.walking.phase is Phase.STANDING and time - self._begin[0] >= 1.0
         if steps - self._steps >= STRIDE or (stands and steps == self._steps):
             self._finish(time, pose)
             self._start(time, pose, steps)

@@ -1,7 +1,6 @@
-"""Records that wait for one another: work done for a second of them at once costs half as much.
+"""Buffers a second of records and handles them in one batch, which halves the cost.
 
-A record comes four control ticks after the one before, and by then the processor has forgotten
-how it was worked off. Many in a row are worked off from its caches.
+The code stays in the processor's caches.
 """
 
 from hsr8.recorder.record import TickRecord

@@ -14,8 +14,7 @@ ABANDONED: list["BlockStream"] = []  # held, for the library would finish what n
 class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typed
     """Recording that keeps its columns back until it is asked to `send` them.
 
-    Between two blocks packed one after the other, Rerun's own code would take the place of ours
-    in the processor's caches, and ours the place of Rerun's.
+    Packing and sending in turn would evict each other's code from the caches.
 
     Args:
         recording_id: of the recording.
@@ -71,10 +70,9 @@ class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typ
             rerun_bindings.send_arrow_chunk(path, times, values, native)
 
     def abandon(self) -> None:
-        """Leave the recording as it is: its file takes no more.
+        """Give the recording up without closing it.
 
-        To finish it the library would wait for a thread that is no more, now, with the next
-        recording or when the process ends.
+        Its writer thread has died, and closing would wait for it for ever.
         """
         ABANDONED.append(self)
         rr.unregister_shutdown()

@@ -11,15 +11,15 @@ def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
     """Content of `path`.
 
     Raises:
-        OSError: it cannot be read, or is larger than it can be; a hole of any size takes no
-            room on a disk, but all memory.
+        OSError: it cannot be read, or is larger than a run can make it (a sparse file fits the
+            disk but not memory).
     """
     must_fit(path, largest)
     return path.read_bytes()
 
 
 def must_fit(path: Path, largest: int = LARGEST) -> None:
-    """Refuse a file that is larger than it can be.
+    """Refuse a file that is larger than a run can make it.
 
     Raises:
         OSError: it is, or there is none.

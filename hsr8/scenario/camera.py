@@ -28,7 +28,8 @@ class Camera(Section):
 
     source: Literal["egl", "analytic", "all-round"] = "egl"
     """egl: rendered pixels; analytic: cylinders projected geometrically (needs no OpenGL);
-    all-round: the same, of everything around at once. No camera is: an upper bound of gazes."""
+    all-round: the same, of everything around at once. No real camera has this; it bounds what any
+    gaze can achieve."""
     width: Annotated[int, Interval(ge=32, le=1920)] = 320
     """Image width [pixel]."""
     height: Annotated[int, Interval(ge=24, le=1080)] = 240

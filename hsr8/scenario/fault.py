@@ -161,7 +161,7 @@ class CameraLate(_Fault):
     kind: Literal["camera-late"]
     """Images arrive late."""
     size: Annotated[float, Interval(ge=0.0, le=0.5)]
-    """Time from capture to arrival besides camera.latency_ms, in camera periods, rounded up [s]."""
+    """Delay on top of camera.latency_ms, rounded up to whole camera periods [s]."""
 
 
 class ImuTilt(_Fault):

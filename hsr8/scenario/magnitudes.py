@@ -10,7 +10,9 @@ from hsr8.scenario.toml_lines import Path
 
 SECTIONS = ("sensors", "walking", "vision", "belief", "navigation")
 LARGEST = 1e6  # of any parameter, in its unit
-SLOWEST = 0.05  # of the robot's speeds [m/s, rad/s, m/s²]: its ways are searched in time, too
+SLOWEST = (
+    0.05  # of the robot's speeds [m/s, rad/s, m/s²]: the certificate's search grows with 1/speed
+)
 SMALLEST = 1e-9  # of any that is not zero
 
 # Parameters that time and memory go with, and what a run can still bear.

@@ -85,7 +85,7 @@ class Scenario(Section):
     sensors: SensorNoise = SensorNoise()
     """Noise of the body's sensors."""
     walking: WalkingParameters = WalkingParameters()
-    """The walking engine; a key left at HSR-VIII's value has the value that suits the robot."""
+    """The walking engine; keys left at their default are scaled to the robot's size."""
     vision: VisionParameters = VisionParameters()
     """The detector."""
     belief: BeliefParameters = BeliefParameters()

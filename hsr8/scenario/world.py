@@ -140,7 +140,7 @@ class World(Section):
     motions: Annotated[tuple[Literal["shuttle", "circle", "wander"], ...], Len(1, 3)] = ("shuttle",)
     """Motions drawn for movers, each as likely as the other."""
     lane: LengthRange = (0.8, 1.8)
-    """Shortest and longest lane of a drawn mover; else the range of its track's extent [m]."""
+    """Range of a drawn mover's lane length (shuttle), diameter (circle) or extent (wander) [m]."""
     encounters: Encounters = Encounters()
     """Further movers, on collision courses with the nominal walk."""
     beacons: bool = True

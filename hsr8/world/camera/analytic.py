@@ -1,9 +1,9 @@
 """A camera without pixels: cylinders projected geometrically, seen with known noise.
 
-An all-round one differs in its field of view alone: occlusion, range, noise and misses stay.
-
 It yields the same detections as vision would and needs no OpenGL. Occlusion, borders,
 range and missed detections are modelled; colours are taken as recognised.
+
+An all-round one differs in its field of view alone: occlusion, range, noise and misses stay.
 """
 
 from collections.abc import Sequence
@@ -120,7 +120,7 @@ class AnalyticCamera:
         seen = look(places, self._sizes[order], self._beacon[order], self._eye)
         found = []
         for i, place, row in zip(order.tolist(), places.tolist(), seen.tolist(), strict=True):
-            thing, (distance, hidden, *box) = self._things[i], row
+            thing, (distance, hidden, *where) = self._things[i], row
             if distance <= thing.radius:
                 continue
             limit = BEACON_RANGE if thing.kind == "beacon" else OBSTACLE_RANGE
@@ -130,9 +130,9 @@ class AnalyticCamera:
                 continue
             if missed and self._fault_rng.random() < missed:
                 continue
-            if box[2]:
+            if where[2]:
                 polar = _polar(place[0], place[1], robot)
-                found.append(_detection(polar, thing, box, hidden=hidden, noise=noise.tolist()))
+                found.append(_detection(polar, thing, where, hidden=hidden, noise=noise.tolist()))
         return found
 
     def _not_there(self, robot: tuple[float, float, float], mean: float) -> list[Detection]:
@@ -171,14 +171,14 @@ def _deviations(distance: float, whole: bool) -> tuple[float, float, float]:
 def _detection(
     polar: tuple[float, float],
     thing: _Thing,
-    box: Sequence[float],
+    where: Sequence[float],
     *,
     hidden: float,
     noise: Sequence[float],
 ) -> Detection:
     """A noisy look at a thing at true (distance, bearing) in R."""
     distance, true_bearing = polar
-    left, top, right, bottom, cut = box
+    left, top, right, bottom, cut = where
     beacon = thing.kind == "beacon"
     whole = beacon or (not cut and hidden <= CLEAR)
     range_sigma, bearing_sigma, radius_sigma = _deviations(distance, whole)

@@ -100,7 +100,7 @@ class ContactWatch:
     def _distance(self, data: mujoco.MjData, pair: int, limit: float) -> float:
         """Distance of an obstacle from a geom of the robot, `limit` at most [m].
 
-        A pair counts through the obstacles, and for each through the robot's geoms.
+        `pair` is obstacle * n_geoms + geom.
         """
         number, geom = divmod(pair, len(self._robot_geoms))
         own, least = self._robot_geoms[geom], limit
