@@ -27,7 +27,7 @@ Camera = Annotated[
     Literal["egl", "analytic", "all-round"] | None,
     _arg(
         "{egl,analytic,all-round}",
-        "egl: rendered; analytic: geometry only, no OpenGL; all-round: analytic with a 360 deg view",
+        "egl: rendered; analytic: geometry only, no OpenGL; all-round: analytic, seeing 360 deg",
     ),
 ]
 RunPath = Annotated[

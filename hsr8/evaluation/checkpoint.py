@@ -29,8 +29,8 @@ KEPT = (
 )  # files that are cut back to where they were, and written on
 
 
-class Writes(Protocol):
-    """Writes a file of the run folder."""
+class Flushable(Protocol):
+    """What writes a file of the run folder."""
 
     def flush(self) -> None:
         """Hand everything to the operating system."""
@@ -51,7 +51,7 @@ class Checkpoints:
         metrics: Metrics,
         folder: Path,
         period: int,
-        writers: Sequence[Writes],
+        writers: Sequence[Flushable],
     ) -> None:
         self._metrics = metrics
         self._folder = folder

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import RecordingFailed, SimulationDiverged
-from hsr8.evaluation.checkpoint import Checkpoint, Checkpoints, Writes, read_checkpoint
+from hsr8.evaluation.checkpoint import Checkpoint, Checkpoints, Flushable, read_checkpoint
 from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Check, judge
 from hsr8.gl import require_gl
@@ -118,7 +118,7 @@ class Recording:
             tape = TapeWriter(path / run_folder.TAPE)
             simulation.tape = tape
             writers: list[Listener] = [folder, table]
-            saved: list[Writes] = [folder, table, tape]
+            saved: list[Flushable] = [folder, table, tape]
             if log is not None:
                 require_threads(path)
                 # Loaded where it is needed: runs without a log begin a third of a second sooner.

@@ -10,9 +10,8 @@ from hsr8.scenario.toml_lines import Path
 
 SECTIONS = ("sensors", "walking", "vision", "belief", "navigation")
 LARGEST = 1e6  # of any parameter, in its unit
-SLOWEST = (
-    0.05  # of the robot's speeds [m/s, rad/s, m/s²]: the certificate's search grows with 1/speed
-)
+# Of the robot's speeds [m/s, rad/s, m/s²]; the certificate's search grows with 1/speed.
+SLOWEST = 0.05
 SMALLEST = 1e-9  # of any that is not zero
 
 # Parameters that time and memory go with, and what a run can still bear.
