@@ -19,7 +19,7 @@ from hsr8.errors import UsageError
 from hsr8.file_format import check_magic
 from walking.body.robot_model import RobotModel
 
-MAGIC = b"HSR8SNPE"  # its format last: raise it when classes in it change
+MAGIC = b"HSR8SNPF"  # its format last: raise it when classes in it change
 _LENGTH = struct.Struct("<Q")
 _DIGEST = 32
 LARGEST = 256 * 1024 * 1024  # no snapshot is larger [byte]

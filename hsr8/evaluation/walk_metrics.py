@@ -11,7 +11,7 @@ from hsr8.recorder.walk_tally import WalkTally
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
 from walking.body.joints import JOINT_NAMES
-from walking.state import Phase
+from walking.phase import Phase
 
 Array = NDArray[np.float64]
 Velocity = dict[str, float]
