@@ -59,7 +59,8 @@ def _show(a: Run, b: Run, parts: list[Difference], about: list[Difference]) -> N
     if parts:
         console.print(f"they part   at {first_difference(a, b)}", markup=False, soft_wrap=True)
     else:
-        console.print("they part   nowhere: equal, bit for bit, in every record")
+        told = ", ".join(difference.RECORDS)
+        console.print(f"they part   nowhere: equal, bit for bit ({told})", soft_wrap=True)
     if not (parts or about):
         return
     table = Table("record", escape("first at [s]"))

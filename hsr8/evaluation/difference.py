@@ -2,7 +2,8 @@
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from itertools import zip_longest
 from typing import Any
 
 import mujoco
@@ -10,17 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder import run_folder
+from hsr8.recorder.exact_records import measurements_of, tape_of
 from hsr8.recorder.fingerprints import CHANNELS, DECISIONS
-from hsr8.recorder.measurements import Measured, read_measurements
+from hsr8.recorder.measurements import Measured
 from hsr8.recorder.run_reader import Run
-from hsr8.recorder.tape import Block, read_tape
+from hsr8.recorder.tape import Block
 from hsr8.world.model.models import models_dir
 from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
 
+# Files of what happened.
+RECORDS = ("tape", "trajectory", "measurements", "walking", "frames", "events")
 # Results that depend on the machine and its load.
 CLOCKED = ("wall_time_s", "real_time_factor", "walk_tick_")
 ROOT = ("x", "y", "z", "qw", "qx", "qy", "qz")
@@ -63,13 +66,17 @@ def motion(a: Run, b: Run) -> list[Difference]:
     """The first difference of every record of what happened, the earliest first.
 
     Raises:
-        UsageError: a record is missing or damaged.
+        UsageError: a record is missing, damaged, or cut off though its run ended.
     """
+    tapes, measured = (tape_of(a), tape_of(b)), (measurements_of(a), measurements_of(b))
     found = (
-        _first_set_point(*(_tape(run) for run in (a, b))),
-        _first_hash(*(_tape(run) for run in (a, b))),
+        _first_set_point(*tapes),
+        _first_hash(*tapes),
         _first_row(a, b),
-        _first_frame(*(_measured(run) for run in (a, b))),
+        _first_frame(*measured),
+        _first_walking(a, b),
+        _first_summary(a, b),
+        _first_event(a, b),
     )
     told = [difference for difference in found if difference is not None]
     return sorted(told, key=lambda difference: difference.tick or 0)
@@ -100,29 +107,54 @@ def _first_hash(a: list[Block], b: list[Block]) -> Difference | None:
                 values = getattr(x, channel), getattr(y, channel)
                 name = f"hash of {'the world' if channel == 'world' else 'world and belief'}"
                 return Difference("tape", name, *values, x.tick, x.tick * CONTROL_PERIOD)
-    return None
+    return _longer(
+        "tape", "hashes", *([block.tick * CONTROL_PERIOD for block in tape] for tape in (a, b))
+    )
 
 
 def _first_row(a: Run, b: Run) -> Difference | None:
     p, q = a.trajectory(), b.trajectory()
-    n = min(len(p), len(q))
     if p.qpos.shape[1] != q.qpos.shape[1] or p.movers.shape[1] != q.movers.shape[1]:
         shapes = [f"{t.qpos.shape[1]} coordinates, {t.movers.shape[1]} movers" for t in (p, q)]
         return Difference("trajectory", "columns", shapes[0], shapes[1], 0, 0.0)
-    tables = [
-        np.hstack([t.time[:n, None], t.qpos[:n], t.movers[:n].reshape(n, -1)]) for t in (p, q)
-    ]
-    differ = tables[0].view(np.int64) != tables[1].view(np.int64)
-    rows = np.flatnonzero(differ.any(axis=1))
-    if not len(rows):
-        return None
-    row = int(rows[0])
-    column = int(np.argmax(differ[row]))
     names = ["time [s]", *_qpos_names(p.qpos.shape[1])]
     names += [f"mover {k // 2} {'xy'[k % 2]} [m]" for k in range(2 * p.movers.shape[1])]
-    x, y = (float(table[row, column]) for table in tables)
-    time = float(p.time[row])
-    return Difference("trajectory", names[column], x, y, round(time / CONTROL_PERIOD), time)
+    tables = [np.hstack([t.time[:, None], t.qpos, t.movers.reshape(len(t), -1)]) for t in (p, q)]
+    return _first_value("trajectory", names, *tables)
+
+
+def _first_walking(a: Run, b: Run) -> Difference | None:
+    p, q = a.walking(), b.walking()
+    names = [*p.columns, *(name for name in q.columns if name not in p.columns)]
+    if p.columns.keys() != q.columns.keys():
+        counts = [f"{len(t.columns)} columns" for t in (p, q)]
+        return Difference("walking", "columns", counts[0], counts[1], 0, 0.0)
+    tables = [np.column_stack([t.time, *(t[name] for name in names)]) for t in (p, q)]
+    return _first_value("walking", ["time [s]", *names], *tables)
+
+
+def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> Difference | None:
+    """Of two tables (n, columns), time in the first column."""
+    n = min(len(a), len(b))
+    differ = np.ascontiguousarray(a[:n]).view(np.int64) != np.ascontiguousarray(b[:n]).view(
+        np.int64
+    )
+    rows = np.flatnonzero(differ.any(axis=1))
+    if not len(rows):
+        return _longer(record, "rows", a[:, 0].tolist(), b[:, 0].tolist())
+    row = int(rows[0])
+    column = int(np.argmax(differ[row]))
+    x, y, time = float(a[row, column]), float(b[row, column]), float(a[row, 0])
+    return Difference(record, names[column], x, y, round(time / CONTROL_PERIOD), time)
+
+
+def _longer(record: str, unit: str, a: Sequence[float], b: Sequence[float]) -> Difference | None:
+    """Two records equal as far as both go, with the times of what is in them [s]."""
+    if len(a) == len(b):
+        return None
+    time = max(a, b, key=len)[min(len(a), len(b))]
+    tick = round(time / CONTROL_PERIOD)
+    return Difference(record, f"number of {unit}", len(a), len(b), tick, time)
 
 
 def _first_frame(a: list[Measured], b: list[Measured]) -> Difference | None:
@@ -131,6 +163,27 @@ def _first_frame(a: list[Measured], b: list[Measured]) -> Difference | None:
             tick = round(x.frame.time / CONTROL_PERIOD)
             name = f"{channel}, frame {index}"
             return Difference("measurements", name, u, v, tick, x.frame.time)
+    times = [[measured.frame.time for measured in frames] for frames in (a, b)]
+    return _longer("measurements", "frames", *times)
+
+
+def _first_summary(a: Run, b: Run) -> Difference | None:
+    frames = a.frames(), b.frames()
+    for index, (x, y) in enumerate(zip(*frames, strict=False)):
+        for channel, u, v in _unequal(asdict(x), asdict(y)):
+            name = f"{channel}, frame {index}"
+            return Difference("frames", name, u, v, round(x.time / CONTROL_PERIOD), x.time)
+    return _longer("frames", "frames", *([frame.time for frame in told] for told in frames))
+
+
+def _first_event(a: Run, b: Run) -> Difference | None:
+    for index, (x, y) in enumerate(zip_longest(a.events(), b.events(), fillvalue=None)):
+        for channel, u, v in _unequal(x or {}, y or {}):
+            if channel == "time" and None in (x, y):
+                continue  # the text says what one of them lacks
+            time = min(float(event["time"]) for event in (x, y) if event is not None)
+            name = f"{channel} of event {index}"
+            return Difference("events", name, u, v, round(time / CONTROL_PERIOD), time)
     return None
 
 
@@ -157,14 +210,6 @@ def _values(measured: Measured) -> dict[str, Any]:
     ):
         values |= {f"{kind}: {n}": p.hex() for n, p in zip(names, prints, strict=True)}
     return values
-
-
-def _tape(run: Run) -> list[Block]:
-    return read_tape(run.path / run_folder.TAPE, whole=False)
-
-
-def _measured(run: Run) -> list[Measured]:
-    return read_measurements(run.path / run_folder.MEASUREMENTS, whole=False)
 
 
 def _qpos_names(count: int) -> list[str]:

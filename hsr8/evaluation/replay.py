@@ -8,17 +8,16 @@ import numpy as np
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.errors import SimulationDiverged
-from hsr8.recorder import run_folder
+from hsr8.recorder.exact_records import measurements_of, require_whole, tape_of
 from hsr8.recorder.fingerprints import (
     CHANNELS,
     DECISIONS,
     decision_fingerprints,
     fingerprints,
 )
-from hsr8.recorder.manifest import RUNNING
-from hsr8.recorder.measurements import Measured, read_measurements
+from hsr8.recorder.measurements import Measured
 from hsr8.recorder.run_reader import Run
-from hsr8.recorder.tape import HASH, Block, read_tape
+from hsr8.recorder.tape import HASH, Block
 from hsr8.robot_builder import build_decisions, build_estimator, build_script
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
@@ -61,9 +60,8 @@ def replay(run: Run) -> tuple[Replayed, ...]:
     Raises:
         UsageError: its records are missing or damaged, or its scenario cannot be read.
     """
-    whole = run.manifest.get("exit_reason") != RUNNING
-    tape = read_tape(run.path / run_folder.TAPE, whole=whole)
-    measured = read_measurements(run.path / run_folder.MEASUREMENTS, whole=whole)
+    require_whole(run)
+    tape, measured = tape_of(run), measurements_of(run)
     return replay_physics(run, tape), *replay_mind(run, measured)
 
 

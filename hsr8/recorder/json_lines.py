@@ -10,19 +10,28 @@ from hsr8.recorder.reading import must_fit
 T = TypeVar("T")
 
 
-def read_lines(path: Path, parse: Callable[[str], T]) -> Iterator[T]:
+def read_lines(path: Path, parse: Callable[[str], T], *, whole: bool = False) -> Iterator[T]:
     """What `parse` makes of each whole line.
 
+    Args:
+        path: the file.
+        parse: reads a line.
+        whole: whether the last line must be complete; that of a killed run need not be.
+
     Raises:
-        UsageError: a line is not what it should be; the message names it.
+        UsageError: a line is not what it should be, and the message names it; or the file cannot
+            be read.
     """
     try:
         must_fit(path)
+        file = path.open(encoding="utf-8", errors="replace")
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from error
-    with path.open(encoding="utf-8", errors="replace") as file:
+    with file:
         for number, line in enumerate(file, start=1):
             if not line.endswith("\n"):
+                if whole:
+                    raise UsageError(f"{path}:{number}: the line is cut off")
                 return
             try:
                 yield parse(line)

@@ -5,18 +5,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.file_format import check_number
 from hsr8.recorder import run_folder
 from hsr8.recorder.frame_summary import FrameSummary, from_line
 from hsr8.recorder.json_lines import read_lines
-from hsr8.recorder.manifest import FORMAT
+from hsr8.recorder.manifest import FORMAT, RUNNING
 from hsr8.recorder.reading import LARGEST_JSON, read_bytes
 from hsr8.recorder.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.walking_table import WalkingTable, read_walking_table
+from hsr8.recorder.writing import FAILED
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.version import VERSION
+
+CUT_SHORT = (RUNNING, FAILED, "interrupted", "error")  # ends after which records may lack theirs
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +41,11 @@ class Run:
     def seed(self) -> int:
         """Seed of the run."""
         return int(self.manifest["seed"])
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run came to its end, so that its records are whole."""
+        return self.manifest.get("exit_reason") not in CUT_SHORT
 
     @property
     def scenario_file(self) -> Path:
@@ -72,23 +83,27 @@ class Run:
         """Motion of robot and movers.
 
         Raises:
-            UsageError: there is none.
+            UsageError: there is none, or it is cut off though the run ended.
         """
-        return read_trajectory(self.path / run_folder.TRAJECTORY)
+        trajectory = read_trajectory(self.path / run_folder.TRAJECTORY)
+        self._must_reach_the_end(run_folder.TRAJECTORY, trajectory.time)
+        return trajectory
 
     def walking(self) -> WalkingTable:
         """How the robot walked.
 
         Raises:
-            UsageError: there is no table.
+            UsageError: there is no table, or it is cut off though the run ended.
         """
-        return read_walking_table(self.path / run_folder.WALKING)
+        table = read_walking_table(self.path / run_folder.WALKING)
+        self._must_reach_the_end(run_folder.WALKING, table.time)
+        return table
 
     def frames(self) -> tuple[FrameSummary, ...]:
         """Belief and decisions at every camera frame; empty if there were none.
 
         Raises:
-            UsageError: a line is damaged.
+            UsageError: a line is damaged, or they are cut off though the run ended.
         """
         file = self.path / run_folder.FRAMES
         frames: list[FrameSummary] = []
@@ -97,8 +112,9 @@ class Run:
             return from_line(line, frames[-1] if frames else None)
 
         if file.exists():
-            for frame in read_lines(file, parse):
+            for frame in read_lines(file, parse, whole=self.ended):
                 frames.append(frame)  # `parse` needs it there at once
+            self.must_hold(run_folder.FRAMES, len(frames), "camera_frames", "frames")
         return tuple(frames)
 
     def events(self) -> tuple[dict[str, Any], ...]:
@@ -108,7 +124,27 @@ class Run:
             UsageError: a line is damaged.
         """
         file = self.path / run_folder.EVENTS
-        return tuple(read_lines(file, _event)) if file.exists() else ()
+        return tuple(read_lines(file, _event, whole=self.ended)) if file.exists() else ()
+
+    def must_hold(self, name: str, found: float, result: str, unit: str) -> None:
+        """Refuse a record of a run that ended which holds less than the run's results tell.
+
+        Args:
+            name: of the record's file.
+            found: what it holds [unit].
+            result: name of the result that tells what there was [unit].
+            unit: of both.
+
+        Raises:
+            UsageError: it does.
+        """
+        told = self.metrics().get(result) if self.ended else None
+        if isinstance(told, int | float) and found < told:
+            held = f"it holds {found:g} of {told:g} {unit}"
+            raise UsageError(f"{self.path / name} is cut off: {held}")
+
+    def _must_reach_the_end(self, name: str, time: NDArray[np.float64]) -> None:
+        self.must_hold(name, float(time[-1]) if len(time) else 0.0, "sim_time_s", "s")
 
 
 def open_run(path: str | Path) -> Run:

@@ -144,7 +144,12 @@ def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
     file.write_bytes(content[: places[9] + 3])
     refused("is cut off in frame 9")
     file.write_bytes(content[:8])
+    refused("is cut off: it holds 0 of")
+    manifest = run / "manifest.json"
+    ended = manifest.read_text()
+    manifest.write_text(json.dumps(json.loads(ended) | {"exit_reason": "running"}))
     assert entry(["check", "replay", str(run), "--json"]) == 0  # there is still the physics
+    manifest.write_text(ended)
     capsys.readouterr()
     file.write_bytes(b"something else")
     refused("is no file of measurements")

@@ -39,7 +39,9 @@ def test_the_first_difference_is_where_the_setting_acts(recorded, capsys):
     code, told = diff(capsys, *recorded)
     assert code == 1
     first = told["first"]
-    assert first["record"] == "measurements"
+    assert (first["record"], first["channel"], first["tick"]) == ("events", "kind of event 0", 200)
+    assert (first["a"], first["b"]) == (None, "fault")
+    first = next(d for d in told["differences"] if d["record"] == "measurements")
     assert 1.0 <= first["time"] < 1.1
     assert first["tick"] == round(first["time"] / 0.005)
     assert "number of observations" in first["channel"]
@@ -81,3 +83,67 @@ def test_a_run_without_a_tape_is_a_usage_error(recorded, tmp_path, capsys):
     (copy / "tape.bin").unlink()
     assert entry(["diff", str(recorded[0]), str(copy)]) == 2
     assert "cannot read the tape" in capsys.readouterr().err
+
+
+def _killed(run, to):
+    """Copy of a run that did not come to note its end."""
+    copy = shutil.copytree(run, to)
+    file = copy / "manifest.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | {"exit_reason": "running"}))
+    return copy
+
+
+@pytest.mark.parametrize(
+    ("name", "record", "channel"),
+    [
+        ("trajectory.bin", "trajectory", "number of rows"),
+        ("walking.bin", "walking", "number of rows"),
+        ("frames.jsonl", "frames", "number of frames"),
+        ("measurements.bin", "measurements", "number of frames"),
+    ],
+)
+def test_a_record_that_holds_less_differs(recorded, tmp_path, capsys, name, record, channel):
+    copy = _killed(recorded[0], tmp_path / "copy")
+    content = (copy / name).read_bytes()
+    (copy / name).write_bytes(content[: len(content) // 2])
+    code, told = diff(capsys, recorded[0], copy)
+    assert code == 1
+    (found,) = [d for d in told["differences"] if d["record"] in (record, "tape")]
+    assert (found["record"], found["channel"]) == (record, channel)
+    assert found["a"] > found["b"] > 0
+    assert found["time"] == pytest.approx(1.0, abs=0.2)
+
+
+@pytest.mark.parametrize("name", ["trajectory.bin", "walking.bin", "frames.jsonl", "tape.bin"])
+def test_a_record_of_a_run_that_ended_is_not_read_short(recorded, tmp_path, capsys, name):
+    copy = shutil.copytree(recorded[0], tmp_path / "copy")
+    content = (copy / name).read_bytes()
+    (copy / name).write_bytes(content[: len(content) // 2])
+    assert entry(["diff", str(recorded[0]), str(copy)]) == 2
+    assert f"{name}" in (said := capsys.readouterr().err)
+    assert "cut off" in said
+    assert entry(["check", "replay", str(copy)]) == 2
+    assert "cut off" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["frames.jsonl", "events.jsonl"])
+def test_a_damaged_line_is_a_usage_error(recorded, tmp_path, capsys, name):
+    copy = shutil.copytree(recorded[0], tmp_path / "copy")
+    (copy / name).write_text("garbage\n")
+    assert entry(["diff", str(recorded[0]), str(copy)]) == 2
+    assert f"{name}:1: the line is damaged" in capsys.readouterr().err
+
+
+def test_values_of_walking_and_events_are_compared(recorded, tmp_path, capsys):
+    copy = shutil.copytree(recorded[0], tmp_path / "copy")
+    content = bytearray((copy / "walking.bin").read_bytes())
+    content[-1] ^= 1
+    (copy / "walking.bin").write_bytes(content)
+    with (copy / "events.jsonl").open("a") as events:
+        events.write('{"time": 1.5, "kind": "collision", "text": "made up"}\n')
+    code, told = diff(capsys, recorded[0], copy)
+    assert code == 1
+    found = {d["record"]: d for d in told["differences"]}
+    assert found.keys() == {"walking", "events"}
+    assert found["walking"]["channel"].startswith("torque_")
+    assert (found["events"]["channel"], found["events"]["tick"]) == ("kind of event 0", 300)
