@@ -25,8 +25,8 @@ def main(options: Replay) -> int:
     if options.screenshot is not None:
         require_png("--screenshot", options.screenshot)
         size = parse_size(options.size)
+        time = _time(options, run)
         print("drawing in the viewer, which takes some ten seconds", file=sys.stderr, flush=True)
-        time = options.time if options.time is not None else _middle(run)
         picture = viewer.screenshot(run.log_files, time, size)
         with writing("--screenshot", options.screenshot):
             options.screenshot.write_bytes(picture)
@@ -52,6 +52,14 @@ def main(options: Replay) -> int:
     return 0
 
 
-def _middle(run: Run) -> float:
+def _time(options: Replay, run: Run) -> float:
+    """Simulated time of the picture [s]: what was asked for, or the middle of the run."""
     time = run.trajectory().time
-    return float(time[len(time) // 2]) if len(time) else 0.0
+    if options.time is None:
+        return float(time[len(time) // 2]) if len(time) else 0.0
+    end = float(time[-1]) if len(time) else 0.0
+    if not 0.0 <= options.time <= end:
+        raise UsageError(
+            f"--time {options.time:g}: nothing to draw there: the run goes from 0 s to {end:g} s"
+        )
+    return options.time

@@ -63,3 +63,16 @@ def test_a_picture_is_a_png(run, capsys):
     (run / run_folder.LOG).touch()
     assert entry(["replay", str(run), "--screenshot", "log.jpg"]) == 2
     assert "ends in .png" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("time", ["nan", "inf", "-inf", "1e300", "-1", "1.01"])
+def test_a_time_that_the_run_has_not_is_refused_before_anything_is_drawn(
+    run, monkeypatch, capsys, time
+):
+    (run / run_folder.LOG).touch()
+    monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: pytest.fail("was drawn"))
+    picture = str(run / "log.png")
+    assert entry(["replay", str(run), "--screenshot", picture, f"--time={time}"]) == 2
+    printed = capsys.readouterr().err
+    assert printed.startswith(f"hsr8: --time {float(time):g}: nothing to draw there")
+    assert printed.endswith("from 0 s to 1 s\n")
