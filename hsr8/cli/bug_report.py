@@ -31,10 +31,10 @@ def main(options: BugReport) -> int:
     """Write the ZIP file and say what is in it.
 
     Raises:
-        UsageError: there is no such run, the file exists, or it cannot be written.
+        UsageError: there is no such run, a file of it cannot be read, or the report is there
+            already or cannot be written.
     """
-    if options.out.exists():
-        raise UsageError(f"--out {options.out}: is there already; choose another name")
+    _require_new(options.out)
     folder = None if options.run is None else open_run(options.run).path
     content = contents(folder)
     packed = io.BytesIO()
@@ -51,8 +51,21 @@ def main(options: BugReport) -> int:
     return 0
 
 
+def _require_new(out: Path) -> None:
+    try:
+        there = out.exists()
+    except OSError as error:
+        raise UsageError(f"--out {out}: cannot be written: {error.strerror}") from None
+    if there:
+        raise UsageError(f"--out {out}: is there already; choose another name")
+
+
 def contents(folder: Path | None) -> dict[str, str]:
-    """Text by name; of a run folder only what is there."""
+    """Text by name; of a run folder only what is there.
+
+    Raises:
+        UsageError: a file of it cannot be read.
+    """
     findings = {"findings": [asdict(finding) for finding in examine()]}
     packed = {"README.txt": NOTE, "doctor.json": atomic.dumps(findings, indent=2)}
     if folder is not None:
@@ -67,6 +80,9 @@ def contents(folder: Path | None) -> dict[str, str]:
 
 def _end(file: Path) -> str:
     """The last of a text file, which may be damaged."""
-    with file.open("rb") as stream:
-        stream.seek(max(0, file.stat().st_size - LARGEST))
-        return stream.read(LARGEST).decode("utf-8", errors="replace")
+    try:
+        with file.open("rb") as stream:
+            stream.seek(max(0, file.stat().st_size - LARGEST))
+            return stream.read(LARGEST).decode("utf-8", errors="replace")
+    except OSError as error:
+        raise UsageError(f"cannot read {file}: {error.strerror}") from None

@@ -1,6 +1,8 @@
 """A run folder's checkpoint: where a killed run goes on, to the identical end."""
 
+import os
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -97,22 +99,33 @@ class Checkpoint:
         frame = self.parts.get("_published")
         return frame if isinstance(frame, FrameRecord) else None
 
-    def cut_back(self, folder: Path) -> None:
-        """Forget what the run wrote after the checkpoint.
+    def cut_back(self, run: Run) -> None:
+        """Forget what `run` wrote after the checkpoint.
 
         Raises:
-            UsageError: a file is shorter than it was.
+            UsageError: a file is shorter than it was, damaged before, or may not be written;
+                none has been changed then.
         """
         for name, size in self.sizes.items():
-            file = folder / name
+            file = run.path / name
             found = file.stat().st_size if file.exists() else 0
             if found < size:
                 raise UsageError(
                     f"{file} is shorter than at the checkpoint: {found} < {size} bytes"
                 )
-        for name, size in self.sizes.items():
-            with (folder / name).open("ab") as stream:  # makes an empty one that is gone
-                stream.truncate(size)
+        run.require_lines(self.sizes)
+        if not os.access(run.path, os.W_OK):
+            raise UsageError(f"cannot write the run folder {run.path}: it may only be read")
+        try:
+            with ExitStack() as stack:  # all can be written before any is
+                paths = [run.path / name for name in self.sizes]
+                files = [stack.enter_context(path.open("ab")) for path in paths]
+                for file, size in zip(files, self.sizes.values(), strict=True):
+                    file.truncate(size)
+        except OSError as error:
+            raise UsageError(
+                f"cannot write {error.filename or run.path}: {error.strerror}"
+            ) from None
 
 
 def read_checkpoint(run: Run, simulation: Simulation) -> Checkpoint:
@@ -138,12 +151,19 @@ def read_checkpoint(run: Run, simulation: Simulation) -> Checkpoint:
         known = then if isinstance(then, dict) else {}
         differ = [f"{n} was {known.get(n)}, is {now[n]}" for n in now if known.get(n) != now[n]]
         raise UsageError(f"{file} is of other versions: {'; '.join(differ)}; run it again")
-    if parts.get("scenario") != run.scenario_file.read_bytes():
+    if parts.get("scenario") != _scenario(run):
         raise UsageError(f"{run.scenario_file} is another one than at the checkpoint")
     metrics, sizes = parts.get("metrics"), parts.get("sizes")
     if not isinstance(metrics, Metrics) or not isinstance(sizes, dict) or set(sizes) != set(KEPT):
         raise UsageError(f"{file} holds no whole checkpoint")
     return Checkpoint(parts, metrics, sizes)
+
+
+def _scenario(run: Run) -> bytes:
+    try:
+        return read_bytes(run.scenario_file)
+    except OSError as error:
+        raise UsageError(f"cannot read {run.scenario_file}: {error.strerror}") from error
 
 
 def _made_by() -> dict[str, str]:

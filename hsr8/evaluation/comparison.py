@@ -18,6 +18,7 @@ from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Row
 from hsr8.evaluation.sweep.table import flat
 from hsr8.recorder import run_folder
 from hsr8.recorder.manifest import OWN
+from hsr8.recorder.reading import read_bytes
 from hsr8.recorder.run_reader import open_run
 from hsr8.suggestion import suggestion
 
@@ -108,7 +109,7 @@ def open_side(path: Path) -> Side:
     Raises:
         UsageError: there is neither.
     """
-    if (path / DEFINITION).exists():
+    if _is_sweep(path):
         folder = SweepFolder.read(path)
         rows = {row["seed"]: flat(row) for row in folder.rows() if row["outcome"] != REFUSED}
         return Side(path, folder.definition, rows)
@@ -123,7 +124,7 @@ def open_side(path: Path) -> Side:
     if not metrics:
         raise UsageError(f"{path} has no results: the run did not end")
     try:
-        scenario = run.scenario_file.read_text(encoding="utf-8")
+        scenario = read_bytes(run.scenario_file).decode("utf-8")
         tomllib.loads(scenario)
         definition = Definition(
             name=str(run.manifest["scenario"]),
@@ -134,9 +135,18 @@ def open_side(path: Path) -> Side:
             libraries=dict(run.manifest["libraries"]),
             scenario=scenario,
         )
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except OSError as error:
+        raise UsageError(f"cannot read {error.filename}: {error.strerror}") from error
+    except (KeyError, TypeError, ValueError) as error:
         raise UsageError(f"cannot read the run folder {path}: {error}") from error
     return Side(run.path, definition, {run.seed: {"seed": run.seed, **flat(metrics)}})
+
+
+def _is_sweep(path: Path) -> bool:
+    try:
+        return (path / DEFINITION).exists()
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}") from error
 
 
 def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:

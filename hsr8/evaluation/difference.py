@@ -14,6 +14,7 @@ from hsr8.errors import UsageError
 from hsr8.recorder.exact_records import measurements_of, tape_of
 from hsr8.recorder.fingerprints import CHANNELS, DECISIONS
 from hsr8.recorder.measurements import Measured
+from hsr8.recorder.reading import read_bytes
 from hsr8.recorder.run_reader import Run
 from hsr8.recorder.tape import Block
 from hsr8.world.model.models import models_dir
@@ -227,9 +228,10 @@ def _qpos_names(count: int) -> list[str]:
 
 def _scenario(run: Run) -> Mapping[str, Any]:
     try:
-        with run.scenario_file.open("rb") as file:
-            return tomllib.load(file)
-    except (OSError, ValueError) as error:
+        return tomllib.loads(read_bytes(run.scenario_file).decode("utf-8"))
+    except OSError as error:
+        raise UsageError(f"cannot read {run.scenario_file}: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {run.scenario_file}: {error}") from error
 
 

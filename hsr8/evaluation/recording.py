@@ -151,7 +151,7 @@ class Recording:
             UsageError: there is none, or it cannot be trusted.
         """
         self._checkpoint = read_checkpoint(run, self._simulation)
-        self._checkpoint.cut_back(run.path)
+        self._checkpoint.cut_back(run)
         self._metrics = self._checkpoint.metrics
 
     def run(self) -> Result:

@@ -1,5 +1,6 @@
 """Files with one JSON value a line, read back also where a kill cut the last line off."""
 
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeVar
@@ -10,13 +11,16 @@ from hsr8.recorder.reading import must_fit
 T = TypeVar("T")
 
 
-def read_lines(path: Path, parse: Callable[[str], T], *, whole: bool = False) -> Iterator[T]:
+def read_lines(
+    path: Path, parse: Callable[[str], T], *, whole: bool = False, size: int | None = None
+) -> Iterator[T]:
     """What `parse` makes of each whole line.
 
     Args:
         path: the file.
         parse: reads a line.
         whole: whether the last line must be complete; that of a killed run need not be.
+        size: how much of the file is read; all of it by default [byte].
 
     Raises:
         UsageError: a line is not what it should be, and the message names it; or the file cannot
@@ -24,16 +28,18 @@ def read_lines(path: Path, parse: Callable[[str], T], *, whole: bool = False) ->
     """
     try:
         must_fit(path)
-        file = path.open(encoding="utf-8", errors="replace")
+        file = path.open("rb")
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from error
+    left = sys.maxsize if size is None else size
     with file:
-        for number, line in enumerate(file, start=1):
-            if not line.endswith("\n"):
+        for number, line in enumerate(iter(lambda: file.readline(left), b""), start=1):
+            left -= len(line)
+            if not line.endswith(b"\n"):
                 if whole:
                     raise UsageError(f"{path}:{number}: the line is cut off")
                 return
             try:
-                yield parse(line)
+                yield parse(line.decode("utf-8", errors="replace"))
             except (ValueError, TypeError, KeyError, IndexError) as error:
                 raise UsageError(f"{path}:{number}: the line is damaged ({error})") from error

@@ -1,6 +1,7 @@
 """Files of a run folder, which may come from anywhere, read up to a size."""
 
 import errno
+import stat
 from pathlib import Path
 
 LARGEST = 2**31  # no record of a run is larger [byte]
@@ -19,10 +20,13 @@ def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
 
 
 def must_fit(path: Path, largest: int = LARGEST) -> None:
-    """Refuse a file that is larger than a run can make it.
+    """Refuse a file that is larger than a run can make it, and what is none, as a pipe.
 
     Raises:
         OSError: it is, or there is none.
     """
-    if path.stat().st_size > largest:
+    found = path.stat()
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError(errno.EINVAL, "it is no file", str(path))
+    if found.st_size > largest:
         raise OSError(errno.EFBIG, f"it is larger than {largest:,} bytes", str(path))

@@ -1,9 +1,10 @@
 """Reading a run folder back, also that of a run that was killed."""
 
 import json
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,8 @@ from hsr8.recorder.writing import FAILED
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.version import VERSION
+
+T = TypeVar("T")
 
 CUT_SHORT = (RUNNING, FAILED, "interrupted", "error")  # ends after which records may lack theirs
 
@@ -105,26 +108,47 @@ class Run:
         Raises:
             UsageError: a line is damaged, or they are cut off though the run ended.
         """
-        file = self.path / run_folder.FRAMES
-        frames: list[FrameSummary] = []
-
-        def parse(line: str) -> FrameSummary:
-            return from_line(line, frames[-1] if frames else None)
-
-        if file.exists():
-            for frame in read_lines(file, parse, whole=self.ended):
-                frames.append(frame)  # `parse` needs it there at once
+        frames = self._frames()
+        if frames:
             self.must_hold(run_folder.FRAMES, len(frames), "camera_frames", "frames")
-        return tuple(frames)
+        return frames
 
     def events(self) -> tuple[dict[str, Any], ...]:
         """What happened, each with ``time``, ``kind`` and ``text``.
 
         Raises:
-            UsageError: a line is damaged.
+            UsageError: a line is damaged, or the last one cut off though the run ended.
         """
-        file = self.path / run_folder.EVENTS
-        return tuple(read_lines(file, _event, whole=self.ended)) if file.exists() else ()
+        return self._events()
+
+    def require_lines(self, sizes: Mapping[str, int]) -> None:
+        """Refuse a run whose frames or events are damaged.
+
+        Args:
+            sizes: how much of each file must be whole, by its name [byte].
+
+        Raises:
+            UsageError: they are.
+        """
+        self._frames(sizes[run_folder.FRAMES])
+        self._events(sizes[run_folder.EVENTS])
+
+    def _frames(self, size: int | None = None) -> tuple[FrameSummary, ...]:
+        frames: list[FrameSummary] = []
+
+        def parse(line: str) -> FrameSummary:
+            return from_line(line, frames[-1] if frames else None)
+
+        for frame in self._lines(run_folder.FRAMES, parse, size):
+            frames.append(frame)  # `parse` needs it there at once
+        return tuple(frames)
+
+    def _events(self, size: int | None = None) -> tuple[dict[str, Any], ...]:
+        return tuple(self._lines(run_folder.EVENTS, _event, size))
+
+    def _lines(self, name: str, parse: Callable[[str], T], size: int | None) -> Iterator[T]:
+        file, whole = self.path / name, self.ended or size is not None
+        return read_lines(file, parse, whole=whole, size=size) if file.exists() else iter(())
 
     def must_hold(self, name: str, found: float, result: str, unit: str) -> None:
         """Refuse a record of a run that ended which holds less than the run's results tell.
@@ -189,11 +213,15 @@ def _run(path: Path) -> Run:
 def _must_hold_files_alone(path: Path) -> None:
     """What is read, written or packed lies in the folder, not where a link in it points to."""
     try:
-        links = [file.name for file in path.iterdir() if file.is_symlink()]
+        found = sorted(path.iterdir())
+        links = [file for file in found if file.is_symlink()]
+        others = [file for file in found if not (file.is_file() or file.is_dir())]
     except OSError as error:
         raise UsageError(f"cannot read the run folder {path}: {error.strerror}") from error
-    if links:
-        raise UsageError(f"{path / sorted(links)[0]} is a link; a run folder holds files alone")
+    for file in links:
+        raise UsageError(f"{file} is a link; a run folder holds files alone")
+    for file in others:
+        raise UsageError(f"{file} is no file; a run folder holds files alone")
 
 
 def _event(line: str) -> dict[str, Any]:
@@ -215,7 +243,9 @@ def _known(path: Path) -> str:
 def _json(path: Path) -> dict[str, Any]:
     try:
         value = json.loads(read_bytes(path, LARGEST_JSON).decode("utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {path}: {error}") from error
     if not isinstance(value, dict):
         raise UsageError(f"cannot read {path}: it is no JSON object")

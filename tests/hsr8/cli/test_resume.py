@@ -178,3 +178,21 @@ def test_a_period_is_whole_seconds(tmp_path, capsys, period):
     assert entry(words) == expected
     assert ("whole simulated seconds" in capsys.readouterr().err) == (expected == 2)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["events.jsonl", "frames.jsonl"])
+def test_lines_that_were_damaged_before_the_checkpoint_are_not_gone_on_with(tmp_path, name, capsys):
+    fault = 'fault=[{kind="camera-black",start=0.5,duration=0.2}]'
+    cut = killed(tmp_path, 210, *STAND_INS, "--no-log", "--set", fault)
+    file = cut.path / name
+    file.write_bytes(b"garbage\n" + b"x" * file.stat().st_size)
+    before = {f.name: f.read_bytes() for f in cut.path.iterdir()}
+    assert entry(["run", str(cut.path), "--resume"]) == 2
+    assert f"{file}:1: the line is" in capsys.readouterr().err
+    assert before == {f.name: f.read_bytes() for f in cut.path.iterdir()}
+
+
+def test_a_folder_that_may_not_be_written_is_a_usage_error(cut, monkeypatch, capsys):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    assert entry(["run", str(cut.path), "--resume"]) == 2
+    assert "it may only be read" in capsys.readouterr().err
