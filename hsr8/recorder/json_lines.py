@@ -31,10 +31,10 @@ def read_lines(
         file = path.open("rb")
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from error
-    left = sys.maxsize if size is None else size
+    left, number = sys.maxsize if size is None else size, 0
     with file:
-        for number, line in enumerate(iter(lambda: file.readline(left), b""), start=1):
-            left -= len(line)
+        while line := file.readline(left):
+            left, number = left - len(line), number + 1
             if not line.endswith(b"\n"):
                 if whole:
                     raise UsageError(f"{path}:{number}: the line is cut off")
