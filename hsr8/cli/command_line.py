@@ -45,7 +45,18 @@ def run_command(options: Run | Check, seed: int) -> tuple[str, ...]:
     """Words, quoted for a shell, of the command line that makes exactly this run."""
     head, name, scenario, *rest = run_words(options)
     words = [head, name, scenario, "--seed", str(seed), *rest]
+    if isinstance(options, Run):
+        words += _left_behind(options)
     return tuple(shlex.quote(word) for word in words)
+
+
+def _left_behind(options: Run) -> list[str]:
+    """Words that say what a run writes, and where."""
+    words = [] if options.out == Run.out else ["--out", str(options.out)]
+    words += ["--no-log"] if options.no_log else []
+    words += ["--log-level", options.log_level] if options.log_level else []
+    words += ["--checkpoint", options.checkpoint] if options.checkpoint else []
+    return words
 
 
 def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
@@ -63,6 +74,21 @@ def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
 def log_level(options: Run) -> LogLevel | None:
     """How much is logged; None for nothing."""
     return None if options.no_log else LogLevel(options.log_level or LogLevel.STANDARD)
+
+
+def require_viewed(options: Run, log: LogLevel | None) -> None:
+    """Make sure that there is something for the viewer to show, if one was asked for.
+
+    Args:
+        options: as they were given.
+        log: how much is logged.
+
+    Raises:
+        UsageError: there is nothing.
+    """
+    if options.view is not None and log is None:
+        way = "leave out --no-log" if options.no_log else "give --log-level"
+        raise UsageError(f"--view shows the log, and this run writes none: {way}")
 
 
 def checkpoint_period(options: Run) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import FrameType
 
 from hsr8.cli import report, termination
-from hsr8.cli.command_line import checkpoint_period, log_level, option_tables
+from hsr8.cli.command_line import checkpoint_period, log_level, option_tables, require_viewed
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run
 from hsr8.cli.verify import ENDED, Verified, verify
@@ -96,12 +96,10 @@ def _recording(options: Run, scenario: Scenario) -> tuple[Recording, Simulation]
 @contextmanager
 def _view(options: Run, log: LogLevel | None) -> Iterator[LiveView | None]:
     """The viewer that was asked for, if one was."""
+    require_viewed(options, log)
     if options.view is None:
         yield None
         return
-    if log is None:
-        way = "leave out --no-log" if options.no_log else "give --log-level"
-        raise UsageError(f"--view shows the log, and this run writes none: {way}")
     with termination.like_ctrl_c(), live_view(options.view) as view:
         if view.page:
             print(f"watch it in a browser on this machine:  {view.page}", file=sys.stderr)

@@ -3,15 +3,25 @@
 import sys
 from collections.abc import Sequence
 
-from hsr8.cli.command_line import checkpoint_period, log_level, option_tables, run_command, settings
+from hsr8.cli.command_line import (
+    checkpoint_period,
+    log_level,
+    option_tables,
+    require_viewed,
+    run_command,
+    settings,
+)
 from hsr8.cli.cost import estimate
 from hsr8.cli.loading import loading
 from hsr8.cli.options import Run
 from hsr8.errors import UsageError
+from hsr8.gl import require_gl
+from hsr8.own_file import require_own
 from hsr8.recorder import atomic
+from hsr8.recorder.new_folder import require_new_folder
+from hsr8.render.live_view import require_display
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
-from hsr8.world.field.generator import draw_layout
 
 
 def main(options: Run) -> int:
@@ -34,6 +44,9 @@ def main(options: Run) -> int:
         raise UsageError("--checkpoint: nobody knows how to save a planner or a gaze of one's own")
     command = run_command(options, scenario.seed)
     if options.dry_run:
+        _require_all(options, scenario)
+        command += ("--view", options.view) if options.view else ()
+        command += ("--verify-determinism",) if options.verify_determinism else ()
         _tell_cost(options, scenario, command)
         return 0
     if not options.quiet:
@@ -44,9 +57,28 @@ def main(options: Run) -> int:
     return start(options, scenario, command)
 
 
+def _require_all(options: Run, scenario: Scenario) -> None:
+    """Make sure that the run can begin.
+
+    Raises:
+        UsageError: a part of it cannot be made.
+        RenderingUnavailable: the camera needs OpenGL and there is none.
+    """
+    require_viewed(options, log_level(options))
+    if options.view is not None:
+        require_display(options.view)
+    require_new_folder(options.out / scenario.name, "run folder")
+    require_own(scenario.own)
+    if scenario.camera.source == "egl":
+        require_gl()
+    with loading():
+        from hsr8.loop import Simulation  # noqa: PLC0415  takes seconds
+
+    Simulation(scenario, scenario.seed)
+
+
 def _tell_cost(options: Run, scenario: Scenario, command: Sequence[str]) -> None:
-    """What the run would take; its world is drawn, so that it can be."""
-    draw_layout(scenario, scenario.seed)
+    """What the run would take."""
     cost = estimate(scenario, log=log_level(options))
     folder = options.out / scenario.name
     if options.json:

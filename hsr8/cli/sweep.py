@@ -21,7 +21,7 @@ from hsr8.cli.sweep_cost import tell_cost
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, code_digest
 from hsr8.evaluation.sweep.driver import drive, pending
-from hsr8.evaluation.sweep.executor import open_executor, parse_executor
+from hsr8.evaluation.sweep.executor import open_executor, parse_executor, require_executor
 from hsr8.evaluation.sweep.folder import REPORT, SweepFolder
 from hsr8.evaluation.sweep.job import Job, Row
 from hsr8.evaluation.sweep.progress import SweepProgress
@@ -67,7 +67,11 @@ def main(options: Sweep) -> int:
     for scenario in scenarios.values():
         require_own(scenario.own)
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
+    definitions = _definitions(options, scenarios, variants)
     if options.dry_run:
+        require_executor(options.executor)
+        for name, definition in definitions.items():
+            SweepFolder.require(out / name, definition)
         runs = len(pending(seeds, (), shard))
         tell_cost(
             options,
@@ -78,26 +82,19 @@ def main(options: Sweep) -> int:
             command=_command(options),
         )
         return 0
-    common = Definition.now("", (), "")
     sweeps: dict[str, SweepFolder] = {}
     jobs: list[Job] = []
     with ExitStack() as stack:
         for name, scenario in scenarios.items():
-            definition = replace(
-                common,
-                name=scenario.name,
-                again=run_words(options, variants[name]),
-                libraries=common.libraries | digests(scenario.own),
-                scenario=dump(scenario),
-            )
-            folder = SweepFolder.open(out / name, definition)
+            folder = SweepFolder.open(out / name, definitions[name])
             folder.lock(shard)
             stack.callback(folder.close)
             sweeps[str(folder.path.resolve())] = folder
             jobs += _jobs(options, folder, scenario, pending(seeds, folder.rows(), shard))
         mine = len(pending(seeds, (), shard)) * len(sweeps)
         interrupted = _run(options, jobs, sweeps, workers, mine)
-        if jobs and code_digest() != common.code:
+        made = next(iter(definitions.values()))
+        if jobs and code_digest() != made.code:
             print(CHANGED, file=sys.stderr)
         command = _command(options)
         summaries = {}
@@ -106,9 +103,26 @@ def main(options: Sweep) -> int:
             folder.write_results(write_report(folder.definition, rows, command))
             summaries[name] = summarize(rows)
         if options.vary:
-            _write_values(options, out, summaries, common.made_with(), command)
+            _write_values(options, out, summaries, made.made_with(), command)
     _tell(options, out, summaries, command if interrupted else "")
     return INTERRUPTED if interrupted else _exit_code(list(summaries.values()))
+
+
+def _definitions(
+    options: Sweep, scenarios: dict[str, Scenario], variants: dict[str, tuple[str, ...]]
+) -> dict[str, Definition]:
+    """What the runs of each variant have in common."""
+    common = Definition.now("", (), "")
+    return {
+        name: replace(
+            common,
+            name=scenario.name,
+            again=run_words(options, variants[name]),
+            libraries=common.libraries | digests(scenario.own),
+            scenario=dump(scenario),
+        )
+        for name, scenario in scenarios.items()
+    }
 
 
 def _jobs(

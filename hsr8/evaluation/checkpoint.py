@@ -120,8 +120,8 @@ class Checkpoint:
             with ExitStack() as stack:  # all can be written before any is
                 paths = [run.path / name for name in self.sizes]
                 files = [stack.enter_context(path.open("ab")) for path in paths]
-                for file, size in zip(files, self.sizes.values(), strict=True):
-                    file.truncate(size)
+                for kept, size in zip(files, self.sizes.values(), strict=True):
+                    kept.truncate(size)
         except OSError as error:
             raise UsageError(
                 f"cannot write {error.filename or run.path}: {error.strerror}"

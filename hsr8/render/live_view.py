@@ -40,18 +40,27 @@ def live_view(kind: Kind) -> Iterator[LiveView]:
     Raises:
         UsageError: it cannot be started, for example for want of a display.
     """
-    if kind == "native" and not viewer.has_display():
-        raise UsageError(
-            "--view native: there is no display to open the viewer on"
-            "\n  in a browser, also through `ssh -L`:  --view web"
-            "\n  afterwards:                           hsr8 replay RUN --screenshot log.png"
-        )
+    require_display(kind)
     port, web_port = viewer.free_port(), viewer.free_port()
     with viewer.running(command(kind, port, web_port)) as process:
         viewer.connected(process, port)
         address = f"rerun+http://{LOOPBACK}:{port}/proxy"
         page = f"http://{LOOPBACK}:{web_port}?url={quote(address, safe='')}"
         yield LiveView(address, page if kind == "web" else "", process)
+
+
+def require_display(kind: Kind) -> None:
+    """Make sure that a viewer can be shown.
+
+    Raises:
+        UsageError: it is to have a window, and there is no display.
+    """
+    if kind == "native" and not viewer.has_display():
+        raise UsageError(
+            "--view native: there is no display to open the viewer on"
+            "\n  in a browser, also through `ssh -L`:  --view web"
+            "\n  afterwards:                           hsr8 replay RUN --screenshot log.png"
+        )
 
 
 def command(kind: Kind, port: int, web_port: int) -> list[str]:

@@ -21,6 +21,22 @@ def work(job: Job) -> Row:
     return run_job(job, of_this_process().start, worker=str(get_worker().address))
 
 
+def require_dask() -> None:
+    """Make sure that the extra is there.
+
+    Raises:
+        UsageError: it is not.
+    """
+    try:
+        import dask  # noqa: F401, PLC0415  an extra
+        import distributed  # noqa: F401, PLC0415
+    except ImportError as error:
+        raise UsageError(
+            f"--executor dask needs a package that is missing ({error.name}): "
+            'pip install "hsr8[dask]", or pip install distributed'
+        ) from None
+
+
 class DaskExecutor:
     """Jobs as Dask futures.
 
@@ -34,14 +50,10 @@ class DaskExecutor:
     """
 
     def __init__(self, address: str, workers: int) -> None:
-        try:
-            import dask  # noqa: PLC0415  an extra
-            from distributed import Client, LocalCluster  # noqa: PLC0415
-        except ImportError as error:
-            raise UsageError(
-                f"--executor dask needs a package that is missing ({error.name}): "
-                'pip install "hsr8[dask]", or pip install distributed'
-            ) from None
+        require_dask()
+        import dask  # noqa: PLC0415  an extra
+        from distributed import Client, LocalCluster  # noqa: PLC0415
+
         # A run whose worker died is ours to retry, and to mark.
         dask.config.set({"distributed.scheduler.allowed-failures": 0})
         with ExitStack() as undo:

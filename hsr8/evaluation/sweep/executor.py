@@ -54,6 +54,23 @@ def open_executor(name: str, workers: int) -> Executor:
     return LocalExecutor(workers)
 
 
+def require_executor(name: str) -> None:
+    """Make sure that the packages of the executor called `name` are there; nobody is asked.
+
+    Raises:
+        UsageError: there is no executor of that name, or its package is missing.
+    """
+    kind, _ = parse_executor(name)
+    if kind == "dask":
+        from hsr8.evaluation.sweep.dask_executor import require_dask  # noqa: PLC0415  an extra
+
+        require_dask()
+    if kind == "ray":
+        from hsr8.evaluation.sweep.ray_executor import require_ray  # noqa: PLC0415  an extra
+
+        require_ray()
+
+
 def parse_executor(name: str) -> tuple[str, str]:
     """Kind and address of an executor; the address is empty for one of this machine.
 

@@ -24,6 +24,7 @@ from hsr8.evaluation.sweep.summary import NUMBERS
 from hsr8.evaluation.sweep.table import write_table
 from hsr8.recorder import atomic
 from hsr8.recorder.json_lines import read_lines
+from hsr8.recorder.new_folder import require_new_folder
 from hsr8.recorder.run_folder import SCENARIO
 
 DEFINITION = "sweep.json"
@@ -78,10 +79,7 @@ class SweepFolder:
                     there = cls.read(path)
                     _must_agree(path, there.definition, definition)
                     return there
-                if any(path.glob("*.jsonl")):
-                    raise UsageError(
-                        f"{path} holds results but no {DEFINITION}; choose another with --out"
-                    )
+                _must_hold_no_results(path)
                 atomic.write_text(path / SCENARIO, definition.scenario)
                 atomic.write_json(path / DEFINITION, definition.to_json())
         except OSError as error:
@@ -89,6 +87,19 @@ class SweepFolder:
                 f"cannot write the sweep {path}: {error.strerror}; choose another with --out"
             ) from error
         return cls(path, definition)
+
+    @classmethod
+    def require(cls, path: Path, definition: Definition) -> None:
+        """Make sure that `open` will do, and make nothing.
+
+        Raises:
+            UsageError: as `open`.
+        """
+        require_new_folder(path, "sweep")
+        if (path / DEFINITION).exists():
+            _must_agree(path, cls.read(path).definition, definition)
+        else:
+            _must_hold_no_results(path)
 
     def lock(self, shard: tuple[int, int] | None = None) -> None:
         """Open the ledger for writing; nobody else may write it until `close`.
@@ -178,6 +189,12 @@ def _must_agree(path: Path, there: Definition, now: Definition) -> None:
     more = [f"  and {len(changed) - 12} more"] if len(changed) > 12 else []
     lines = [f"{path} holds runs of something else", *shown, *more]
     raise UsageError("\n".join([*lines, "  choose another folder with --out, or remove that one"]))
+
+
+def _must_hold_no_results(path: Path) -> None:
+    """Of a sweep that nobody knows any more."""
+    if any(path.glob("*.jsonl")):
+        raise UsageError(f"{path} holds results but no {DEFINITION}; choose another with --out")
 
 
 def _cut_torn_line(ledger: TextIO) -> None:

@@ -14,6 +14,21 @@ def work(job: Job) -> Row:
     return run_job(job, of_this_process().start)
 
 
+def require_ray() -> None:
+    """Make sure that the extra is there.
+
+    Raises:
+        UsageError: it is not.
+    """
+    try:
+        import ray  # noqa: F401, PLC0415  an extra
+    except ImportError:
+        raise UsageError(
+            "--executor ray needs a package that is missing: "
+            'pip install "hsr8[ray]", or pip install ray'
+        ) from None
+
+
 class RayExecutor:
     """Jobs as Ray tasks, a CPU each.
 
@@ -28,13 +43,9 @@ class RayExecutor:
 
     def __init__(self, address: str, workers: int) -> None:
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
-        try:
-            import ray  # noqa: PLC0415  an extra
-        except ImportError:
-            raise UsageError(
-                "--executor ray needs a package that is missing: "
-                'pip install "hsr8[ray]", or pip install ray'
-            ) from None
+        require_ray()
+        import ray  # noqa: PLC0415  an extra
+
         self._ray: Any = ray
         try:
             if address:

@@ -1,5 +1,6 @@
 import json
 import os
+import shlex
 import signal
 import tomllib
 
@@ -85,6 +86,38 @@ def test_a_dry_run_says_what_it_would_take_and_leaves_nothing(tmp_path, capsys):
 def test_a_dry_run_finds_the_same_mistakes(tmp_path, capsys):
     assert _run(tmp_path, "--dry-run", "--set", "world.n_moving=-1") == 2
     assert "world.n_moving" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("more", "text"),
+    [
+        (["--no-log", "--view", "web"], "--view shows the log"),
+        (["--view", "native"], "there is no display"),
+        (["--set", "own.planner=nope.py:A"], "cannot read nope.py"),
+        (["--out", "/dev/null"], "cannot write the run folder /dev/null/quick: Not a directory"),
+        (["--set", "walking.gait.swing_height=0.2"], "walking"),
+    ],
+)
+def test_a_dry_run_refuses_what_the_run_would(tmp_path, monkeypatch, capsys, more, text):
+    monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: False)
+    refused = []
+    for dry in (["--dry-run"], []):
+        assert entry([*FAST, "--quiet", "--out", str(tmp_path), *more, *dry]) == 2
+        refused.append(capsys.readouterr().err)
+        assert text in refused[-1]
+    assert refused[0] == refused[1]
+
+
+def test_what_a_dry_run_says_is_the_run(tmp_path, capsys):
+    out = tmp_path / "my runs"
+    more = ["--no-log", "--checkpoint", "every=1", "--seed", "4"]
+    assert entry([*FAST, *more, "--out", str(out), "--dry-run", "--json"]) == 0
+    words = shlex.split(json.loads(capsys.readouterr().out)["command"])
+    assert not out.exists()
+    entry([*words[1:], "--quiet"])
+    manifest = open_run(out).manifest
+    assert (manifest["seed"], manifest["log"], manifest["checkpoint"]) == (4, "", 1)
+    assert shlex.split(manifest["command"]) == words
 
 
 def test_quiet_is_quiet(tmp_path, capsys):

@@ -3,6 +3,7 @@ import os
 import re
 import shlex
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -298,3 +299,24 @@ def test_a_dry_run_tells_the_cost_and_leaves_nothing(tmp_path, monkeypatch, caps
     assert "2 x 10 seeds" in said
     assert said.splitlines()[-1].endswith("--vary world.n_moving=0,2")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_dry_run_refuses_what_the_sweep_would(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    (tmp_path / "afile").touch()
+    (tmp_path / "lost").mkdir()
+    (tmp_path / "lost" / "runs.jsonl").touch()
+    other = ["sweep", "quick", *TINY, "--seeds", "0:2", "--quiet", "--out", "other"]
+    monkeypatch.setattr("hsr8.cli.sweep.drive", lambda *_: None)
+    entry([*other, "--set", "world.n_moving=0"])
+    capsys.readouterr()
+    for more, text in (
+        (["--out", "afile"], "cannot write the sweep afile: "),
+        (["--out", "afile/within"], "cannot write the sweep afile/within: Not a directory"),
+        (["--out", "lost"], "holds results but no sweep.json"),
+        (["--out", "other"], "other holds runs of something else"),
+        (["--executor", "dask"], "needs a package that is missing"),
+    ):
+        assert entry([*other[:-2], *more, "--dry-run"]) == 2
+        assert text in capsys.readouterr().err
