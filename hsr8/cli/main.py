@@ -8,7 +8,6 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import reduce
-from io import TextIOWrapper
 from operator import or_
 from typing import Annotated, Any, TextIO
 
@@ -18,6 +17,7 @@ from hsr8.cli import options
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.guidance import hints, no_command
 from hsr8.cli.loading import loading
+from hsr8.cli.standard_output import nowhere, prepared
 from hsr8.cli.wrong_line import mistakes
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.version import VERSION
@@ -68,9 +68,10 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         3 diverged or internal error, 130 interrupted.
     """
     atexit.register(gc.freeze)  # an ending process has nothing to look for
-    sys.stdout, sys.stderr = _or_nowhere(sys.stdout), _or_nowhere(sys.stderr)
-    if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
-        sys.stdout.reconfigure(errors="backslashreplace")  # as standard error: names are any bytes
+    sys.stdout = prepared(sys.stdout)
+    sys.stderr = sys.stderr or nowhere()
+    if os.environ.get("COLUMNS", "1").strip("0") == "":
+        del os.environ["COLUMNS"]  # no terminal's width: nothing would be shown
     try:
         code = _answer(list(sys.argv[1:] if arguments is None else arguments))
         for stream in (sys.stdout, sys.stderr):
@@ -167,11 +168,6 @@ def parse(arguments: Sequence[str]) -> options.Command:
         config=(tyro.conf.FlagCreatePairsOff,),
     )
     return command
-
-
-def _or_nowhere(stream: TextIO | None) -> TextIO:
-    """Where to write; Python has no stream at all for one that is closed from the beginning."""
-    return open(os.devnull, "w", encoding="utf-8") if stream is None else stream
 
 
 def _drop_unread(stream: TextIO) -> None:

@@ -10,6 +10,8 @@ import pytest
 from hsr8.cli.crash import CrashReport, InternalError
 from hsr8.cli.main import COMMANDS, MODULES, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
+from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.run_folder import RunFolder
 
 HEAVY = (
     "mujoco",
@@ -211,3 +213,45 @@ def test_streams_that_are_closed_from_the_beginning(words, closed, code):
     done = subprocess.run(["sh", "-c", line], capture_output=True, text=True, check=False)
     assert done.returncode == code
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("arguments", [["list"], ["list", "--json"], ["--help"], ["info", "RUN"]])
+def test_a_full_disk_under_standard_output_is_one_message(arguments, tmp_path):
+    if not Path("/dev/full").exists():
+        pytest.skip("no /dev/full")
+    path = RunFolder.create(tmp_path, "quick", 7)
+    RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "", movers=1).close("goal")
+    words = [str(path) if word == "RUN" else word for word in arguments]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "hsr8", *words],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    said = "hsr8: cannot write to standard output: No space left on device\n"
+    assert (done.returncode, done.stderr) == (3, said)
+
+
+def test_a_width_of_no_columns_is_none():
+    words = [sys.executable, "-m", "hsr8", "list"]
+    environment = {k: v for k, v in os.environ.items() if k != "COLUMNS"}
+    wanted = subprocess.run(words, env=environment, capture_output=True, check=True).stdout
+    for width in ("0", "00"):
+        found = subprocess.run(
+            words, env=environment | {"COLUMNS": width}, capture_output=True, check=True
+        )
+        assert found.stdout == wanted
+
+
+@pytest.mark.parametrize("words", [["--help"], ["list"], ["run", "--help"]])
+def test_everything_can_be_told_in_ascii(words):
+    done = subprocess.run(
+        [sys.executable, "-m", "hsr8", *words],
+        env={"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PATH": os.environ["PATH"]},
+        capture_output=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.isascii()
