@@ -18,7 +18,7 @@ from hsr8.cli.crash import CrashReport
 from hsr8.cli.guidance import hints, no_command
 from hsr8.cli.loading import loading
 from hsr8.cli.standard_output import nowhere, prepared
-from hsr8.cli.wrong_line import mistakes
+from hsr8.cli.wrong_line import is_option, mistakes
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.version import VERSION
 
@@ -126,7 +126,7 @@ def _parsed(given: list[str]) -> options.Command | int:
     else:
         _judge(words)
     try:
-        return parse(_with_kind_of_view(words))
+        return parse(_for_the_parser(words))
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else 2
 
@@ -146,11 +146,17 @@ def _judge(words: list[str]) -> None:
         raise UsageError("\n  ".join([*said, *more]))
 
 
-def _with_kind_of_view(given: list[str]) -> list[str]:
-    """``--view`` alone means the window; `tyro` knows no options with an optional value."""
+def _for_the_parser(given: list[str]) -> list[str]:
+    """``--view`` alone means the window, and what follows an option may begin with a dash.
+
+    `tyro` knows no options with an optional value, and takes a value such as -3:3 for an option.
+    """
     words: list[str] = []
     for word, following in zip(given, [*given, ""][1:], strict=True):
-        words += ["--view", "native"] if word == "--view" and following not in VIEWS else [word]
+        if words and words[-1].startswith("--") and word.startswith("-") and not is_option(word):
+            words[-1] += f"={word}"
+        else:
+            words += ["--view", "native"] if word == "--view" and following not in VIEWS else [word]
     return words
 
 

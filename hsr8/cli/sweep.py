@@ -202,8 +202,11 @@ def _folder_name(combination: Sequence[str]) -> str:
 
 
 def _scenario(options: Sweep, more: tuple[str, ...]) -> Scenario:
-    chosen = (*settings(options), *more)
-    return load(options.scenario, chosen, options=option_tables(options))
+    for flag, words in (("--set", settings(options)), ("--vary", more)):
+        for word in words:
+            if word.partition("=")[0].strip() == "seed":
+                raise UsageError(f"{flag} {word}: the seeds of a sweep are given by --seeds")
+    return load(options.scenario, settings(options), options=option_tables(options), varied=more)
 
 
 def _command(options: Sweep) -> str:

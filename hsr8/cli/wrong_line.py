@@ -1,13 +1,16 @@
 """What is wrong with a command line, in a sentence each."""
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from itertools import pairwise
 
 from hsr8.cli.signature import Argument, signature
 from hsr8.suggestion import suggestion
 
 OPTIONAL_VALUE = "--view"  # the only option whose value may be left out
+_NEGATIVE = re.compile(r"-(\.?\d|inf|nan)")  # what a negative number begins with
 NUMBERS = {"whole number": int, "number": float}
 
 
@@ -36,6 +39,9 @@ def mistakes(words: Sequence[str], commands: dict[str, type]) -> list[str]:
     said += _missing(name, reading, arguments, operands)
     if not any(argument.many for argument in operands):
         for word in reading.operands[len(operands) :]:
+            if word == _after(OPTIONAL_VALUE, words):
+                said += _wrong(options[OPTIONAL_VALUE], word)
+                continue
             hint = _other_command(name, reading.operands, commands) or _as_value(word, options)
             takes = " ".join(argument.word for argument in operands) or "options only"
             said.append(f"{name} takes {takes}, there is no place for {word!r}{hint}")
@@ -48,7 +54,7 @@ def _read(name: str, words: Sequence[str], options: dict[str, Argument]) -> _Rea
     reading, rest = _Reading(), list(words)
     while rest:
         word, equals, value = rest.pop(0).partition("=")
-        if not _is_option(word):
+        if not is_option(word):
             reading.operands.append(word + equals + value)
             continue
         option = options.get(word.replace("_", "-"))
@@ -57,7 +63,7 @@ def _read(name: str, words: Sequence[str], options: dict[str, Argument]) -> _Rea
             reading.mistakes.append(
                 f"{name} has no option {word!r}{hint} (it has: {', '.join(options)})"
             )
-            if not equals and rest and not _is_option(rest[0]):
+            if not equals and rest and not is_option(rest[0]):
                 rest.pop(0)
             continue
         reading.given.add(option.word)
@@ -72,7 +78,7 @@ def _taken(option: Argument, rest: list[str]) -> list[str]:
     if option.word == OPTIONAL_VALUE:
         return [rest.pop(0)] if rest and rest[0] in option.choices else [option.choices[0]]
     values: list[str] = []
-    while rest and not _is_option(rest[0]) and (option.many or not values):
+    while rest and not is_option(rest[0]) and (option.many or not values):
         values.append(rest.pop(0))
     return values
 
@@ -133,6 +139,11 @@ def _other_command(name: str, operands: Sequence[str], commands: Iterable[str]) 
     return f"; did you mean 'hsr8 {longer[close[0]]}'?" if close else ""
 
 
+def _after(option: str, words: Sequence[str]) -> str | None:
+    """The word that follows `option`, if one does."""
+    return next((b for a, b in pairwise(words) if a == option), None)
+
+
 def _as_value(word: str, options: dict[str, Argument]) -> str:
     """The option that has such a value, if one has."""
     for option in options.values():
@@ -142,12 +153,6 @@ def _as_value(word: str, options: dict[str, Argument]) -> str:
     return ""
 
 
-def _is_option(word: str) -> bool:
-    """Whether it begins with dashes and is no negative number."""
-    if not word.startswith("-") or word == "-":
-        return False
-    try:
-        float(word)
-    except ValueError:
-        return True
-    return False
+def is_option(word: str) -> bool:
+    """Whether it begins with dashes and is neither a dash alone nor a negative number."""
+    return word.startswith("-") and word != "-" and not _NEGATIVE.match(word)

@@ -23,6 +23,7 @@ BUILT_IN = FilePath(__file__).resolve().parents[1] / "scenarios"
 LARGEST = 1_000_000  # a scenario file is not longer than this [byte]
 KINDS = ("kind", "motion")  # keys that say which other keys a table has
 DEEPEST = 8  # files that may extend one another
+MOST_NESTED = 40  # tables and lists in one another
 
 Table = dict[str, Any]
 
@@ -37,6 +38,7 @@ def load(
     overrides: Sequence[str] | Mapping[str, Any] = (),
     seed: int | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
+    varied: Sequence[str] = (),
 ) -> Scenario:
     """Read a scenario.
 
@@ -47,6 +49,7 @@ def load(
         seed: replaces the seed of the file.
         options: tables given by options of the command line, by the option's name; the
             overrides go over them.
+        varied: ``key=value`` of ``--vary``, over all of these.
 
     Raises:
         ScenarioError: the file or an override is wrong; the message lists every mistake
@@ -56,8 +59,9 @@ def load(
     draft = _read(file, ())
     for option, table in (options or {}).items():
         draft.add(dict(table), option)
-    for override in as_words(overrides):
-        draft.add(_parse_override(override, draft.data), f"--set {override}")
+    for flag, words in (("--set", as_words(overrides)), ("--vary", varied)):
+        for word in words:
+            draft.add(_parse_override(word, draft.data, flag), f"{flag} {word}")
     if seed is not None:
         draft.add({"seed": seed}, "--seed")
     return draft.finish(name_or_path)
@@ -170,13 +174,15 @@ def _find(name_or_path: str) -> FilePath:
 
 def _files(folder: FilePath) -> list[str]:
     """Names of the scenario files in a folder."""
-    return sorted(file.name for file in folder.glob("*.toml"))
+    return sorted(file.name for file in folder.glob("*.toml") if file.is_file())
 
 
 def _read(file: FilePath, above: tuple[FilePath, ...]) -> _Draft:
     try:
         if not file.is_file():
             reason = f"does not exist{suggestion(file.name, _files(file.parent))}"
+            if file.is_symlink():
+                reason = f"is a link to {str(file.readlink())!r}, which does not exist"
             if file.exists():
                 reason = "is no file; give a scenario's name or a .toml file"
             raise ScenarioError(f"scenario file {str(file)!r} {reason}")
@@ -203,6 +209,7 @@ def _layered(
         raise ScenarioError(f"{source}: tables or lists are nested too deeply") from None
     except ValueError as error:
         raise ScenarioError(f"{source}: no valid TOML: {error}") from None
+    _require_shallow(data, source)
     lines = locate(text, data)
     data.setdefault("name", _name(stem))
     draft = _Draft()
@@ -238,13 +245,18 @@ def _parent(name: object, place: str, folder: FilePath, files: tuple[FilePath, .
     return parent
 
 
-def _parse_override(override: str, data: Table) -> Table:
+def _parse_override(override: str, data: Table, flag: str) -> Table:
     """Nested table of ``a.b=value``; lists are copied with one entry changed."""
+    place = f"{flag} {override}"
+    if any("\ud800" <= character <= "\udfff" for character in override):
+        raise ScenarioError(f"{place}: is no UTF-8 text")
     key, equals, text = override.partition("=")
     parts = key.strip().split(".")
     if not equals or not all(parts):
+        raise ScenarioError(f"{place}: must be key=value, for example {flag} camera.period_ms=80")
+    if parts == ["extends"]:
         raise ScenarioError(
-            f"--set {override}: must be key=value, for example --set camera.period_ms=80"
+            f"{place}: a setting cannot change what a scenario extends; give that scenario's name"
         )
     try:
         parsed = tomllib.loads(f"value = {text}")
@@ -252,16 +264,32 @@ def _parse_override(override: str, data: Table) -> Table:
         parsed = {"value": text.strip()}
     value = parsed["value"] if len(parsed) == 1 else text
     for k in range(len(parts) - 1, 0, -1):
-        value = _put(parts[k], value, _at(data, parts[:k]), override)
-    return {parts[0]: value}
+        value = _put(parts[k], value, _at(data, parts[:k]), place)
+    table = {parts[0]: value}
+    _require_shallow(table, place)
+    return table
 
 
-def _put(part: str, value: Any, there: Any, override: str) -> Any:
+def _require_shallow(data: Any, place: str) -> None:
+    """Refuse what goes deeper than can be gone through.
+
+    Raises:
+        ScenarioError: it does.
+    """
+    level = [data]
+    for _ in range(MOST_NESTED):
+        tables = [value for value in level if isinstance(value, dict | list)]
+        level = [v for t in tables for v in (t.values() if isinstance(t, dict) else t)]
+    if level:
+        raise ScenarioError(f"{place}: tables or lists are nested too deeply")
+
+
+def _put(part: str, value: Any, there: Any, place: str) -> Any:
     if not isinstance(there, list):
         return {part: value}
     if not part.isdecimal() or int(part) >= len(there):
         raise ScenarioError(
-            f"--set {override}: {part!r} is no entry of a list of {len(there)}, count from 0"
+            f"{place}: {part!r} is no entry of a list of {len(there)}, count from 0"
         )
     old = there[int(part)]
     if isinstance(old, dict) and isinstance(value, dict):

@@ -37,12 +37,14 @@ def locate(text: str, data: dict[str, Any]) -> dict[Path, int]:
                 lines.setdefault(table, number)
                 table = (*table, counts[table])
             lines[table] = number
+            _outer(lines, (), table, number)
             continue
         assignment = _ASSIGNMENT.match(line)
         if assignment:
             path = _resolve(table, _parts(assignment[1]), counts)
             if _reaches(data, path):
                 lines.setdefault(path, number)
+                _outer(lines, table, path, number)
     return lines
 
 
@@ -52,6 +54,12 @@ def nearest(lines: dict[Path, Any], path: Path) -> Any:
         if path[:end] in lines:
             return lines[path[:end]]
     return None
+
+
+def _outer(lines: dict[Path, int], table: Path, path: Path, number: int) -> None:
+    """Tables that only the dots of `path` tell of, within `table`, are on its line."""
+    for end in range(len(table) + 1, len(path)):
+        lines.setdefault(path[:end], number)
 
 
 def _parts(path: str) -> list[str]:

@@ -255,3 +255,24 @@ def test_everything_can_be_told_in_ascii(words):
     )
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout.isascii()
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("run quick --view foo", "--view foo: choose native or web"),
+        ("sweep quick --seeds -3:3", "'-3:3' is neither a seed nor a range"),
+        ("run quick --duration -1e3", "duration: must be greater than 0, got -1000.0"),
+        ("render RUN --size -5x5", "--size '-5x5': give WIDTHxHEIGHT"),
+        ("render RUN --speed -inf", "--speed -inf: give 0.01 to 1000"),
+    ],
+)
+def test_a_wrong_value_is_one_mistake(line, said, tmp_path, capsys):
+    path = RunFolder.create(tmp_path, "quick", 7)
+    RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "", movers=1).close("goal")
+    words = [str(path) if word == "RUN" else word for word in line.split()]
+    assert entry(words) == 2
+    printed = capsys.readouterr().err
+    assert printed.startswith("hsr8: ")
+    assert said in printed
+    assert "has no option" not in printed

@@ -320,3 +320,9 @@ def test_a_dry_run_refuses_what_the_sweep_would(tmp_path, monkeypatch, capsys):
     ):
         assert entry([*other[:-2], *more, "--dry-run"]) == 2
         assert text in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["--set", "--vary"])
+def test_seeds_are_no_setting_of_a_sweep(instant, capsys, option):
+    assert entry([*FAST, "--seeds", "0:2", option, "seed=1"]) == 2
+    assert f"{option} seed=1: the seeds of a sweep are given by --seeds" in capsys.readouterr().err

@@ -22,7 +22,7 @@ VALUES = {"whole number": ["7", "-3", "7.5", "7s"], "number": ["0.5", "-1", "1e3
         ("run quick --seed", "--seed is without a value"),
         ("run quick --duration 5s", "--duration 5s: give a number, without a unit: simulated"),
         ("run quick --body kinemtic", "choose full or kinematic; did you mean 'kinematic'?"),
-        ("run quick --view webb", "did you mean '--view web'?"),
+        ("run quick --view webb", "--view webb: choose native or web; did you mean 'web'?"),
         ("run quick --json=yes", "--json takes no value"),
         ("run quick --set", "--set is without a value"),
         ("run --seed 3", "run needs SCENARIO"),

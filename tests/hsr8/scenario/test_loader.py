@@ -466,3 +466,41 @@ def test_a_velocity_and_a_footstep_at_once_are_refused():
         load("walk", ["command.vx=0.1", "command.footstep={forward=0.05}"])
     with pytest.raises(ScenarioError, match="not both"):
         load("walk", ["command.stretch=[{duration=1, vx=0.1, footstep={forward=0.05}}]"])
+
+
+def test_what_goes_too_deep_is_refused_wherever_it_is_given(tmp_path):
+    key = ".".join(["a"] * 1000)
+    file = tmp_path / "deep.toml"
+    file.write_text(f'extends = "quick"\n{key} = 1\n')
+    nested = "[" * 90 + "]" * 90
+    for words in ((str(file),), ("quick", [f"{key}=1"]), ("quick", [f"name={nested}"])):
+        with pytest.raises(ScenarioError, match="nested too deeply"):
+            load(*words)
+
+
+def test_no_hint_names_what_was_given(tmp_path):
+    (tmp_path / "dang.toml").symlink_to("nowhere.toml")
+    with pytest.raises(ScenarioError, match=r"is a link to 'nowhere.toml', which does not exist"):
+        load(str(tmp_path / "dang.toml"))
+    with pytest.raises(ScenarioError, match=r"does not exist$"):
+        load(str(tmp_path / "dan.toml"))
+    with pytest.raises(ScenarioError, match="--set extends=course: a setting cannot change"):
+        load("quick", ["extends=course"])
+
+
+def test_bytes_that_are_no_text_are_told_with_their_setting():
+    with pytest.raises(ScenarioError, match="--set name=\udcff: is no UTF-8 text"):
+        load("quick", ["name=\udcff"])
+
+
+def test_mistakes_of_varied_values_are_told_as_theirs():
+    with pytest.raises(ScenarioError, match=r"--vary wold.x=1: wold: unknown key"):
+        load("quick", varied=["wold.x=1"])
+    with pytest.raises(ScenarioError, match="--vary x: must be key=value"):
+        load("quick", varied=["x"])
+
+
+def test_an_unknown_key_with_dots_is_told_with_its_line(tmp_path):
+    (tmp_path / "w.toml").write_text('extends = "quick"\nwold.size = [3, 3]\n')
+    with pytest.raises(ScenarioError, match=r"w\.toml:2: wold: unknown key"):
+        load(str(tmp_path / "w.toml"))

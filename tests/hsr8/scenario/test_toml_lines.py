@@ -43,3 +43,11 @@ def test_what_has_no_line_takes_that_of_its_table():
     assert nearest(lines, ("world", "mover", 1, "speed", 1)) == 15
     assert nearest(lines, ("world", "missing")) == 6
     assert nearest(lines, ("missing",)) is None
+
+
+def test_a_table_that_only_dots_tell_of_is_on_their_line():
+    text = 'extends = "quick"\nwold.size = [3, 3]\n[a.b]\nc.d = 1\n[a]\n'
+    lines = locate(text, tomllib.loads(text))
+    assert lines[("wold",)] == 2
+    assert lines[("a", "b", "c")] == 4
+    assert lines[("a",)] == 5
