@@ -44,7 +44,7 @@ def start(options: Run, scenario: Scenario, command: Sequence[str]) -> int:
     """
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
     log, period = log_level(options), checkpoint_period(options)
-    recording, simulation = _recording(options, scenario)
+    recording, simulation = _recording(scenario, _progress(options, scenario))
     with _view(options, log) as view:
         path = RunFolder.create(options.out, scenario.name, scenario.seed)
         with CrashReport(path), _interruptible(simulation):
@@ -69,10 +69,14 @@ def resume(options: Run) -> int:
     given = options.no_log or options.log_level
     log = log_level(options) if given else manifest.log_level
     period = checkpoint_period(options) or manifest.checkpoint
-    recording, simulation = _recording(options, run.scenario())
+    scenario = run.scenario()
+    progress = _progress(options, scenario)
+    recording, simulation = _recording(scenario, progress)
     with _view(options, log) as view:
         with CrashReport(run.path), _interruptible(simulation):
             recording.resume(run)
+            if progress is not None:
+                progress.recall(run.events())
             recording.into(run.path, manifest, log=log, live=_address(view), checkpoint=period)
             result = recording.run()
         return _told(options, result, manifest, view)
@@ -83,14 +87,18 @@ def _alone(options: Run) -> None:
     given = option_tables(options).keys() | ({"--set"} if options.set else set())
     given |= {"--seed"} if options.seed is not None else set()
     given |= {"--dry-run"} if options.dry_run else set()
+    given |= {"--out"} if options.out != Run.out else set()
     if given:
         raise UsageError(f"{', '.join(sorted(given))} cannot be given with --resume")
 
 
-def _recording(options: Run, scenario: Scenario) -> tuple[Recording, Simulation]:
+def _progress(options: Run, scenario: Scenario) -> Progress | None:
+    return None if options.quiet else Progress(scenario.duration)
+
+
+def _recording(scenario: Scenario, progress: Progress | None) -> tuple[Recording, Simulation]:
     simulation = Simulation(scenario, scenario.seed)
-    watchers = () if options.quiet else (Progress(scenario.duration),)
-    return Recording(simulation, watchers), simulation
+    return Recording(simulation, () if progress is None else (progress,)), simulation
 
 
 @contextmanager

@@ -2,7 +2,8 @@
 
 import sys
 import time as clock
-from typing import TextIO
+from collections.abc import Iterable, Mapping
+from typing import Any, TextIO
 
 from rich.console import Console
 from rich.live import Live
@@ -35,11 +36,21 @@ class Progress:
         self._counts = dict.fromkeys(COUNTED, 0)
         self._started = clock.perf_counter()
         self._shown_at = self._started
+        self._began: float | None = None  # simulated time of the first record [s]
         self._next_line = PLAIN_PERIOD
         self._situation = "starting"
 
+    def recall(self, events: Iterable[Mapping[str, Any]]) -> None:
+        """Count what happened before the run went on; each event has a ``kind``."""
+        for event in events:
+            if event["kind"] in self._counts:
+                self._counts[event["kind"]] += 1
+
     def on_record(self, record: TickRecord) -> None:
         """Show the record, if it is time to."""
+        if self._began is None:
+            self._began = record.time
+            self._next_line = (record.time // PLAIN_PERIOD + 1) * PLAIN_PERIOD
         if record.frame is not None:
             task = record.frame.task
             self._counts["via_point"] = task.index
@@ -71,8 +82,9 @@ class Progress:
     def line(self, record: TickRecord) -> str:
         """The line for `record`."""
         elapsed = max(clock.perf_counter() - self._started, 1e-6)
+        rate = (record.time - (self._began or 0.0)) / elapsed
         return (
-            f"{record.time:6.1f} / {self._duration:.1f} s   {record.time / elapsed:4.1f}x real time"
+            f"{record.time:6.1f} / {self._duration:.1f} s   {rate:4.1f}x real time"
             f"   via points {self._counts['via_point']:3d}   collisions "
             f"{self._counts['collision']}   {record.walking.phase:<8}   {self._situation}"
         )

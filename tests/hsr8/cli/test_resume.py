@@ -1,5 +1,6 @@
 """A run that was killed goes on from its checkpoint, to the identical end."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -107,7 +108,9 @@ def test_without_a_checkpoint_there_is_nothing_to_go_on_from(cut, capsys):
     assert "no checkpoint" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("option", [["--seed", "3"], ["--duration", "9"], ["--set", "seed=1"]])
+@pytest.mark.parametrize(
+    "option", [["--seed", "3"], ["--duration", "9"], ["--set", "seed=1"], ["--out", "elsewhere"]]
+)
 def test_a_run_goes_on_as_what_it_was(cut, option, capsys):
     assert entry(["run", str(cut.path), "--resume", *option]) == 2
     assert f"{option[0]} cannot be given with --resume" in capsys.readouterr().err
@@ -196,3 +199,8 @@ def test_a_folder_that_may_not_be_written_is_a_usage_error(cut, monkeypatch, cap
     monkeypatch.setattr("os.access", lambda path, mode: False)
     assert entry(["run", str(cut.path), "--resume"]) == 2
     assert "it may only be read" in capsys.readouterr().err
+
+
+def test_a_run_that_went_on_can_be_verified(cut, capsys):
+    assert entry(["run", str(cut.path), "--resume", "--verify-determinism", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["deterministic"] is True
