@@ -6,6 +6,8 @@ MuJoCo reads ``MUJOCO_GL`` once, when it is first imported. The package calls
 
 import ctypes
 import os
+import re
+import warnings
 from functools import cache
 
 from hsr8.errors import RenderingUnavailable
@@ -54,18 +56,21 @@ def require_gl() -> str:
     import mujoco  # noqa: PLC0415  the backend is chosen first
 
     try:
-        context = mujoco.GLContext(16, 16)
-        context.make_current()
-        from OpenGL import GL  # noqa: PLC0415  binds to the platform of the context
+        with warnings.catch_warnings(record=True) as said:  # GLFW's way to fail
+            warnings.simplefilter("always")
+            context = mujoco.GLContext(16, 16)
+            context.make_current()
+            from OpenGL import GL  # noqa: PLC0415  binds to the platform of the context
 
-        name = GL.glGetString(GL.GL_RENDERER)
-        context.free()
+            name = GL.glGetString(GL.GL_RENDERER)
+            context.free()
     except (ImportError, AttributeError, OSError, RuntimeError, TypeError, mujoco.FatalError) as e:
         raise RenderingUnavailable(_advice(str(e))) from e
     if name is None:
-        raise RenderingUnavailable(
-            _advice("the context does not answer; was mujoco imported before hsr8?")
-        )
+        reason = "the context does not answer; was mujoco imported before hsr8?"
+        for warning in said[:1]:
+            reason = re.sub(r"\(\d+\) b'(.*)'", r"\1", str(warning.message))
+        raise RenderingUnavailable(_advice(reason))
     return str(name.decode())
 
 

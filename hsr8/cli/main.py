@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import reduce
 from operator import or_
 from typing import Annotated, Any, TextIO
@@ -55,6 +56,17 @@ SIGPIPE_EXIT = 141  # as of a program that SIGPIPE ends
 CALLED: Any = reduce(
     or_, (Annotated[kind, tyro.conf.subcommand(name)] for name, (kind, _) in COMMANDS.items())
 )
+
+
+@dataclass(frozen=True)
+class _Line:
+    """What the parser makes of a command line."""
+
+    command: Annotated[CALLED, tyro.conf.arg(name="")]
+    # Told before the parser is asked; here for the help.
+    version: Annotated[
+        bool, tyro.conf.arg(help="show the version and exit", help_behavior_hint="")
+    ] = False
 
 
 def entry(arguments: Sequence[str] | None = None) -> int:
@@ -166,13 +178,18 @@ def parse(arguments: Sequence[str]) -> options.Command:
     Raises:
         SystemExit: it is wrong, or asks for help; what there is to say has been said.
     """
-    command: options.Command = tyro.cli(
-        CALLED,
+    line = tyro.cli(
+        _Line,
         prog="hsr8",
         description=DESCRIPTION,
         args=arguments,
-        config=(tyro.conf.FlagCreatePairsOff,),
+        config=(
+            tyro.conf.FlagCreatePairsOff,
+            tyro.conf.OmitArgPrefixes,
+            tyro.conf.OmitSubcommandPrefixes,
+        ),
     )
+    command: options.Command = line.command
     return command
 
 

@@ -185,7 +185,7 @@ class BugReport:
     """Pack what helps to find a mistake into one ZIP file: versions, OpenGL, the run."""
 
     run: Positional[
-        Annotated[Path | None, _arg("RUN", "run folder; without one, this machine alone")]
+        Annotated[Path | None, _arg("[RUN]", "run folder; without one, this machine alone")]
     ] = None
     out: Path = Path("hsr8-bug-report.zip")
     """File to write."""

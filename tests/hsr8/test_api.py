@@ -136,3 +136,8 @@ def test_a_run_that_meets_its_criteria_passes():
 def test_an_unknown_name_is_no_part_of_the_package():
     with pytest.raises(AttributeError, match="nonsense"):
         hsr8.nonsense  # noqa: B018
+
+
+def test_what_can_be_had_is_listed():
+    assert set(hsr8.__all__) <= set(dir(hsr8))
+    assert all(hasattr(hsr8, name) for name in dir(hsr8))

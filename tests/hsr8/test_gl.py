@@ -82,3 +82,19 @@ def test_physics_works_without_any_opengl():
 def test_software_renderers_are_recognised():
     assert gl.is_software("llvmpipe (LLVM 15.0.6, 256 bits)")
     assert not gl.is_software("NVIDIA H200/PCIe/SSE2")
+
+
+def test_a_window_without_a_display_is_one_message():
+    script = "from hsr8 import gl; gl.require_gl()"
+    environment = {k: v for k, v in os.environ.items() if "DISPLAY" not in k}
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env=environment | {"MUJOCO_GL": "glfw"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert "RenderingUnavailable: no OpenGL can draw with MUJOCO_GL=glfw" in done.stderr
+    assert "imported before" not in done.stderr
+    assert "GLFWError" not in done.stderr

@@ -276,3 +276,10 @@ def test_a_wrong_value_is_one_mistake(line, said, tmp_path, capsys):
     assert printed.startswith("hsr8: ")
     assert said in printed
     assert "has no option" not in printed
+
+
+def test_the_help_tells_what_may_be_left_out(capsys):
+    entry(["--help"])
+    assert "--version" in capsys.readouterr().out.partition("subcommands")[0]
+    entry(["bug-report", "--help"])
+    assert "hsr8 bug-report [-h] [RUN]" in capsys.readouterr().out
