@@ -13,13 +13,14 @@ import tempfile
 from collections.abc import Sequence
 from concurrent.futures import Future
 from contextlib import suppress
-from threading import Lock, Thread
+from threading import Event, Lock, Thread
 from typing import IO, Any
 
 from hsr8.evaluation.sweep.process import environment
 
 COMMAND = [sys.executable, "-m", "hsr8.cli.fork_server"]
 LONGEST = 1 << 16  # of a message [bytes]
+LOADING = 300.0  # it has loaded by then, or hangs, wall time [s]
 SAID = 2000  # characters kept of what it said at its end
 
 
@@ -44,7 +45,7 @@ class ForkServer:
                 start_new_session=True,  # Ctrl-C is the sweep's to answer
             )
         self._channel = ours
-        self._ready = False
+        self._loaded = Event()
         self._gone = ""
         self._lock = Lock()
         self._numbers = itertools.count()
@@ -79,9 +80,13 @@ class ForkServer:
             raise
         return process
 
+    def wait_until_loaded(self) -> None:
+        """Wait until it can fork, or has ended; not for ever."""
+        self._loaded.wait(LOADING)
+
     def send_signal(self, number: int, which: int) -> None:
         """Send a signal to a run; while it loads there are none, and it ends."""
-        if not self._ready:
+        if not self._loaded.is_set():
             self._process.kill()
             return
         with suppress(OSError):  # it has ended, and its runs with it
@@ -99,7 +104,7 @@ class ForkServer:
         while message := self._received():
             told: dict[str, Any] = json.loads(message)
             if "ready" in told:
-                self._ready = True
+                self._loaded.set()
                 continue
             with self._lock:
                 end = self._ends.pop(told["run"])
@@ -115,6 +120,7 @@ class ForkServer:
             self._gone += said
             left = list(self._ends.values())
             self._ends.clear()
+        self._loaded.set()
         for end in left:
             end.set_exception(OSError(self._gone))
 
@@ -154,10 +160,13 @@ class ForkedProcess:
     def communicate(self, *, timeout: float | None = None) -> tuple[str, str]:
         """Wait for the end; what it wrote to standard output and error.
 
+        What all runs are forked from loads once; that is not the time of the first of them.
+
         Raises:
             OSError: it has no end of its own: it could not be forked, or the server is gone.
             subprocess.TimeoutExpired: it takes longer than `timeout` [s].
         """
+        self._server.wait_until_loaded()
         try:
             self._end.result(timeout)
         except TimeoutError:

@@ -151,3 +151,12 @@ def test_without_room_for_a_process_the_run_is_told(doing):
         process.communicate(timeout=LIMIT)
     assert all(file.closed for file in process.files)
     server.close()
+
+
+def test_what_it_takes_to_load_is_not_the_time_of_a_run(doing):
+    doing("import time; time.sleep(3.0)")
+    server = ForkServer()
+    server.start(["print('done')"]).communicate(timeout=2.0)
+    with pytest.raises(subprocess.TimeoutExpired):
+        server.start(["import signal; signal.pause()"]).communicate(timeout=0.5)
+    server.close()
