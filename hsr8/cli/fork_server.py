@@ -24,7 +24,7 @@ import sys
 from contextlib import suppress
 from typing import Any
 
-from hsr8.cli.attended import ORPHAN, ends_with
+from hsr8.attended import ORPHAN, ends_with
 from hsr8.cli.loading import loading
 from hsr8.cli.main import entry
 from hsr8.evaluation.sweep.fork_server import LONGEST

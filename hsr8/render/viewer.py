@@ -2,18 +2,18 @@
 
 import os
 import re
-import shutil
 import signal
 import socket
 import subprocess
-import sys
 import tempfile
 import time as clock
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, closing, suppress
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hsr8.attended import attended
 from hsr8.errors import UsageError
 from hsr8.gl import VULKAN_LINE
 
@@ -27,16 +27,17 @@ SETTLE = 6.0  # notices fade and views load in this wall time [s]
 
 
 def executable() -> str:
-    """Path of the viewer.
+    """Path of the viewer: the program itself, for the script of that name starts another process.
 
     Raises:
         UsageError: it is not installed.
     """
-    beside = Path(sys.executable).with_name("rerun")
-    found = str(beside) if beside.exists() else shutil.which("rerun")
-    if found is None:
-        raise UsageError("the Rerun viewer is missing; `pip install rerun-sdk` brings it")
-    return found
+    package = find_spec("rerun_cli")
+    if package is not None and package.origin is not None:
+        program = Path(package.origin).with_name("rerun")
+        if program.exists():
+            return str(program)
+    raise UsageError("the Rerun viewer is missing; `pip install rerun-sdk` brings it")
 
 
 def has_display() -> bool:
@@ -46,7 +47,8 @@ def has_display() -> bool:
 
 def show(logs: Sequence[Path]) -> int:
     """Open the `logs` of a run in a window and wait until it is closed; its exit status."""
-    return subprocess.run(_command(logs, free_port()), check=False).returncode
+    command = attended(_command(logs, free_port()))
+    return subprocess.run(command, check=False).returncode
 
 
 def screenshot(logs: Sequence[Path], time: float, size: tuple[int, int]) -> bytes:
@@ -96,9 +98,11 @@ class Viewer:
         # Not a pipe: nobody has to read while it writes.
         self._said = tempfile.TemporaryFile()  # noqa: SIM115  closed by `close`
         try:
-            # The launcher starts a second process: a group of their own ends both.
             self._process = subprocess.Popen(
-                command, stdout=subprocess.DEVNULL, stderr=self._said, start_new_session=True
+                attended(command),
+                stdout=subprocess.DEVNULL,
+                stderr=self._said,
+                start_new_session=True,
             )
         except BaseException:
             self._said.close()
