@@ -25,7 +25,7 @@ VALUE, NAME, TITLE = 20, 13, 14  # size of letters [pixel]
 FRAME, BAND = (18, 19, 22), (28, 30, 34)
 INK, FAINT, ALARM = (238, 239, 241), (150, 155, 164), (255, 130, 90)
 LEAST_PANEL = 120  # a narrower gaze map cannot be read [pixel]
-SHORTEST_NAMED = 44  # a lower band has no room for names above its values [pixel]
+SHORTEST_NAMED = 40  # a lower band has no room for names above its values [pixel]
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@ import pytest
 
 from hsr8.recorder.frame_summary import from_line, to_line
 from hsr8.render.dashboard import Dashboard, Moment
+from hsr8.render.movie import Shot
 from hsr8.render.timeline import Timeline
 from hsr8.scenario.loader import load
 
@@ -49,3 +50,13 @@ def test_collisions_are_told(drawn):
 
 def test_pictures_are_not_drawn_over_each_other(drawn):
     assert np.array_equal(drawn((640, 360))[0], drawn((640, 360))[0])
+
+
+@pytest.mark.parametrize("size", [Shot().size, (1280, 720), (1920, 1080)])
+def test_numbers_have_names_from_the_usual_size_on(drawn, size):
+    picture, board = drawn(size)
+    width, height = board.scene_size
+    band = picture[height:, :width]
+    names = band[: round(0.4 * len(band))].max(axis=2) > 100
+    assert names.any(axis=0).sum() > width // 10
+    assert names[:, width // 2 :].any()
