@@ -42,6 +42,7 @@ IN_SHORT = {
     "sweep": ["--seeds", "0:2"],
     "plot": ["--what", "zmp"],
     "render": ["--size", "64x64", "--fps", "10"],
+    "replay": ["--time", "0.1"],
 }
 # Only read, since they would need what the page cannot give or take seconds.
 ONLY_READ = {"colours", "--resume", "--verify-determinism"}
