@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from hsr8.api import run
     from hsr8.evaluation.recording import Result
     from hsr8.loop import Simulation
-    from hsr8.recorder.log_reader import read_log
-    from hsr8.recorder.run_reader import open_run
+    from hsr8.recorder.log.log_reader import read_log
+    from hsr8.recorder.run.run_reader import open_run
     from hsr8.scenario.loader import load
 
 __version__ = VERSION
@@ -34,8 +34,8 @@ _PLACES = {
     "Result": "hsr8.evaluation.recording",
     "Simulation": "hsr8.loop",
     "load": "hsr8.scenario.loader",
-    "open_run": "hsr8.recorder.run_reader",
-    "read_log": "hsr8.recorder.log_reader",
+    "open_run": "hsr8.recorder.run.run_reader",
+    "read_log": "hsr8.recorder.log.log_reader",
     "run": "hsr8.api",
 }
 

@@ -14,7 +14,7 @@ from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.event_watch import Event, EventWatch
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.recorder.tape import TapeWriter
+from hsr8.recorder.run.tape import TapeWriter
 from hsr8.robot import Robot, SensorFrame
 from hsr8.robot_builder import build_robot, head_camera
 from hsr8.scenario.schema import Scenario

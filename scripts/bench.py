@@ -16,7 +16,7 @@ from collections.abc import Iterable
 
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder import atomic
+from hsr8.recorder.files import atomic
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 

@@ -20,9 +20,9 @@ from pathlib import Path
 from hsr8.evaluation.difference import motion, results
 from hsr8.evaluation.replay import replay
 from hsr8.evaluation.sweep.definition import Definition
-from hsr8.recorder import run_folder
-from hsr8.recorder.run_reader import Run, open_run
-from hsr8.recorder.tape import read_tape
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.tape import read_tape
 from hsr8.scenario.loader import dump, load
 from walking.parameters import CONTROL_PERIOD
 
@@ -33,7 +33,7 @@ AFTER_VIDEO = """
 import sys
 from pathlib import Path
 from hsr8.cli.main import entry
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.run.run_reader import open_run
 out, *words = sys.argv[1:]
 entry([*words, "--duration", "1", "--no-log", "--out", out + "/before"])
 video = ["--camera", "head", "--fps", "5", "--stop", "0.4", "--speed", "1", "--quiet"]

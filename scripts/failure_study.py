@@ -16,8 +16,8 @@ from pathlib import Path
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
 from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.frame_summary import from_line, to_line
 from hsr8.recorder.record import Listener, TickRecord
+from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.png import write_png
 from hsr8.render.top_down import TopDown
 from hsr8.scenario.loader import load

@@ -24,8 +24,8 @@ from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.evaluation import checkpoint
 from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
-from hsr8.recorder import run_folder
-from hsr8.recorder.log_reader import decode
+from hsr8.recorder.log.log_reader import decode
+from hsr8.recorder.run import run_folder
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load, loads
 from hsr8.world.model import models
 from vision.colour import COLOUR_CLASSES, ColourTable

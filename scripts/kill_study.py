@@ -22,12 +22,12 @@ from hsr8.evaluation import checkpoint
 from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.loop import Simulation
-from hsr8.recorder import run_folder
-from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.recorder.run_folder import RunFolder
-from hsr8.recorder.run_reader import open_run
-from hsr8.recorder.tape import read_tape
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.run.tape import read_tape
 from hsr8.scenario.loader import dump, load
 from walking.parameters import CONTROL_PERIOD
 

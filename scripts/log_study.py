@@ -13,8 +13,8 @@ from time import process_time
 
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
+from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.rerun_log import RerunLog
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 

@@ -15,12 +15,12 @@ from pathlib import Path
 from hsr8.evaluation.metrics import Metrics
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.recorder import run_folder
-from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.recorder.rerun_log import RerunLog
-from hsr8.recorder.run_folder import RunFolder
-from hsr8.recorder.walking_table import WalkingTableWriter
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recorder.run.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 from hsr8.world.camera.image_noise import ImageNoise

@@ -6,12 +6,12 @@ from math import atan2, cos, hypot, sin
 from pathlib import Path
 from typing import Any
 
-from hsr8.recorder.frame_summary import FrameSummary
-from hsr8.recorder.measurements import read_measurements
-from hsr8.recorder.run_folder import MEASUREMENTS
-from hsr8.recorder.run_reader import Run, open_run
-from hsr8.recorder.trajectory import Trajectory, rows_at
-from hsr8.recorder.walking_table import WalkingTable
+from hsr8.recorder.run.frame_summary import FrameSummary
+from hsr8.recorder.run.measurements import read_measurements
+from hsr8.recorder.run.run_folder import MEASUREMENTS
+from hsr8.recorder.run.run_reader import Run, open_run
+from hsr8.recorder.run.trajectory import Trajectory, rows_at
+from hsr8.recorder.run.walking_table import WalkingTable
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario

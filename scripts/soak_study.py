@@ -18,8 +18,8 @@ from time import thread_time
 
 from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.loop import TICKS_A_SECOND, Simulation
-from hsr8.recorder.manifest import Manifest
-from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.scenario.loader import load
 
 import mujoco

@@ -9,8 +9,9 @@ from hsr8.cli.doctor import examine
 from hsr8.cli.options import BugReport
 from hsr8.cli.output_file import writing
 from hsr8.errors import UsageError
-from hsr8.recorder import atomic, run_folder
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.run_reader import open_run
 
 FILES = (
     run_folder.MANIFEST,

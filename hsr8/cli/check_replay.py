@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 from hsr8.cli.options import CheckReplay
 from hsr8.errors import UsageError
-from hsr8.recorder import atomic
-from hsr8.recorder.manifest import other_versions
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run.manifest import other_versions
+from hsr8.recorder.run.run_reader import open_run
 
 if TYPE_CHECKING:
     from hsr8.evaluation.replay import Replayed

@@ -9,7 +9,7 @@ from typing import Self
 from hsr8.cli.standard_output import OutputFailed
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.own_file import line_of
-from hsr8.recorder import atomic
+from hsr8.recorder.files import atomic
 
 FILE = "crash.txt"
 EXPECTED = (Hsr8Error, BrokenPipeError, OutputFailed)  # told by the command line itself

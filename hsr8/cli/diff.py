@@ -10,8 +10,8 @@ from rich.table import Table
 from hsr8.cli.options import Diff
 from hsr8.evaluation import difference
 from hsr8.evaluation.difference import Difference
-from hsr8.recorder import atomic
-from hsr8.recorder.run_reader import Run, open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run.run_reader import Run, open_run
 
 DIFFERENT = 1
 LONGEST = 24  # characters of a value that are shown

@@ -15,8 +15,8 @@ from rich.table import Table
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
 from hsr8.gl import APT_LINE, ASKED, BACKENDS, VULKAN_LINE, is_software
-from hsr8.recorder import atomic
-from hsr8.recorder.manifest import versions
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run.manifest import versions
 from hsr8.render import viewer
 from hsr8.version import VERSION
 from hsr8.world.model.models import models_dir

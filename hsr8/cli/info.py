@@ -11,9 +11,9 @@ from hsr8.cli import report
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError
 from hsr8.evaluation.verdict import Check, judge
-from hsr8.recorder import atomic
-from hsr8.recorder.manifest import RUNNING, other_versions
-from hsr8.recorder.run_reader import Run, open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run.manifest import RUNNING, other_versions
+from hsr8.recorder.run.run_reader import Run, open_run
 
 SHOWN = 30  # events in a terminal; all of them with --json
 

@@ -5,8 +5,8 @@ import sys
 from hsr8.cli.options import Plot
 from hsr8.cli.output_file import writing
 from hsr8.errors import UsageError
-from hsr8.recorder import atomic
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run.run_reader import open_run
 
 
 def main(options: Plot) -> int:

@@ -11,18 +11,18 @@ from hsr8.cli import report, termination
 from hsr8.cli.command_line import checkpoint_period, log_level, option_tables, require_viewed
 from hsr8.cli.crash import CrashReport
 from hsr8.cli.options import Run
+from hsr8.cli.progress import Progress
 from hsr8.cli.verify import ENDED, Verified, verify
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import Check, exit_code
 from hsr8.loop import Simulation
-from hsr8.recorder import atomic
+from hsr8.recorder.files import atomic
+from hsr8.recorder.files.writing import FAILED
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.manifest import RUNNING, Manifest
-from hsr8.recorder.progress import Progress
-from hsr8.recorder.run_folder import RunFolder
-from hsr8.recorder.run_reader import open_run
-from hsr8.recorder.writing import FAILED
+from hsr8.recorder.run.manifest import RUNNING, Manifest
+from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.live_view import LiveView, live_view
 from hsr8.scenario.schema import Scenario
 

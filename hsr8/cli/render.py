@@ -11,8 +11,9 @@ from hsr8.cli.output_file import writing
 from hsr8.cli.size import parse_size
 from hsr8.errors import UsageError
 from hsr8.gl import is_software, require_gl
-from hsr8.recorder import atomic, run_folder
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.render import animation
 from hsr8.render.movie import Film, Shot, film
 

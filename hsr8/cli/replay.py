@@ -7,9 +7,9 @@ from hsr8.cli.options import Replay
 from hsr8.cli.output_file import require_png, writing
 from hsr8.cli.size import parse_size
 from hsr8.errors import UsageError
-from hsr8.recorder import atomic
-from hsr8.recorder.manifest import versions
-from hsr8.recorder.run_reader import Run, open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run.manifest import versions
+from hsr8.recorder.run.run_reader import Run, open_run
 from hsr8.render import viewer
 
 

@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from hsr8.evaluation.verdict import Check
-from hsr8.recorder import run_folder
+from hsr8.recorder.run import run_folder
 
 ROWS: tuple[tuple[str, str, str], ...] = (
     ("ended", "exit_reason", "{}"),

@@ -17,8 +17,8 @@ from hsr8.cli.options import Run
 from hsr8.errors import UsageError
 from hsr8.gl import require_gl
 from hsr8.own_file import require_own
-from hsr8.recorder import atomic
-from hsr8.recorder.new_folder import require_new_folder
+from hsr8.recorder.files import atomic
+from hsr8.recorder.files.new_folder import require_new_folder
 from hsr8.render.live_view import require_display
 from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario

@@ -30,7 +30,7 @@ from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.gl import require_gl
 from hsr8.own_file import digests, require_own
-from hsr8.recorder import atomic
+from hsr8.recorder.files import atomic
 from hsr8.scenario.loader import dump, load
 from hsr8.scenario.schema import Scenario
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hsr8.cli.cost import estimate
 from hsr8.cli.options import Sweep
-from hsr8.recorder import atomic
+from hsr8.recorder.files import atomic
 from hsr8.recorder.log_level import LogLevel
 from hsr8.scenario.schema import Scenario
 

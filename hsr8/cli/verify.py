@@ -9,9 +9,9 @@ from pathlib import Path
 
 from hsr8.cli.diff import first_difference
 from hsr8.errors import Hsr8Error
-from hsr8.recorder import run_folder
-from hsr8.recorder.run_reader import open_run
-from hsr8.recorder.tape import read_tape
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.run_reader import open_run
+from hsr8.recorder.run.tape import read_tape
 
 ENDED = (0, 1)  # exit codes of a run that came to its end
 

@@ -11,12 +11,13 @@ from hsr8 import snapshot
 from hsr8.errors import UsageError
 from hsr8.evaluation.metrics import Metrics
 from hsr8.loop import TICKS_A_SECOND, Simulation
-from hsr8.recorder import atomic, run_folder
+from hsr8.recorder.files import atomic
+from hsr8.recorder.files.reading import read_bytes
+from hsr8.recorder.files.writing import writing
 from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.manifest import versions
-from hsr8.recorder.reading import read_bytes
-from hsr8.recorder.run_reader import Run
-from hsr8.recorder.writing import writing
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.manifest import versions
+from hsr8.recorder.run.run_reader import Run
 from hsr8.robot_builder import robot_model
 from hsr8.version import VERSION
 

@@ -16,10 +16,10 @@ from hsr8.evaluation.sweep.definition import Definition, differences, version_di
 from hsr8.evaluation.sweep.folder import DEFINITION, SweepFolder
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Row
 from hsr8.evaluation.sweep.table import flat
-from hsr8.recorder import run_folder
-from hsr8.recorder.manifest import OWN
-from hsr8.recorder.reading import read_bytes
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.files.reading import read_bytes
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.manifest import OWN
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.suggestion import suggestion
 
 METRICS = (

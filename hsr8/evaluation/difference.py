@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.exact_records import measurements_of, tape_of
-from hsr8.recorder.fingerprints import CHANNELS, DECISIONS
-from hsr8.recorder.measurements import Measured
-from hsr8.recorder.reading import read_bytes
-from hsr8.recorder.run_reader import Run
-from hsr8.recorder.tape import Block
+from hsr8.recorder.files.reading import read_bytes
+from hsr8.recorder.run.exact_records import measurements_of, tape_of
+from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS
+from hsr8.recorder.run.measurements import Measured
+from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.tape import Block
 from hsr8.world.model.models import models_dir
 from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD

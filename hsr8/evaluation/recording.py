@@ -13,16 +13,16 @@ from hsr8.evaluation.verdict import Check, judge
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.own_file import digests
-from hsr8.recorder import run_folder
+from hsr8.recorder.files.writing import FAILED
+from hsr8.recorder.log.threads import require_threads
 from hsr8.recorder.log_level import LogLevel
-from hsr8.recorder.manifest import Manifest
 from hsr8.recorder.record import Listener
-from hsr8.recorder.run_folder import RunFolder
-from hsr8.recorder.run_reader import Run
-from hsr8.recorder.tape import TapeWriter
-from hsr8.recorder.threads import require_threads
-from hsr8.recorder.walking_table import WalkingTableWriter
-from hsr8.recorder.writing import FAILED
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder
+from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.tape import TapeWriter
+from hsr8.recorder.run.walking_table import WalkingTableWriter
 from hsr8.scenario.loader import dump
 from hsr8.scenario.schema import Scenario
 
@@ -122,7 +122,7 @@ class Recording:
             if log is not None:
                 require_threads(path)
                 # Loaded where it is needed: runs without a log begin a third of a second sooner.
-                from hsr8.recorder.rerun_log import RerunLog  # noqa: PLC0415
+                from hsr8.recorder.log.rerun_log import RerunLog  # noqa: PLC0415
 
                 size = (scenario.camera.width, scenario.camera.height)
                 name = f"{scenario.name} {scenario.seed}"

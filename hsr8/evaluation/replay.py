@@ -8,16 +8,11 @@ import numpy as np
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.errors import SimulationDiverged
-from hsr8.recorder.exact_records import measurements_of, require_whole, tape_of
-from hsr8.recorder.fingerprints import (
-    CHANNELS,
-    DECISIONS,
-    decision_fingerprints,
-    fingerprints,
-)
-from hsr8.recorder.measurements import Measured
-from hsr8.recorder.run_reader import Run
-from hsr8.recorder.tape import HASH, Block
+from hsr8.recorder.run.exact_records import measurements_of, require_whole, tape_of
+from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
+from hsr8.recorder.run.measurements import Measured
+from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.tape import HASH, Block
 from hsr8.robot_builder import build_decisions, build_estimator, build_script
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout

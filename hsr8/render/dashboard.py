@@ -6,7 +6,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.render.canvas import Image
 from hsr8.render.eye_overlay import EyeOverlay
 from hsr8.render.gaze_panel import GazePanel

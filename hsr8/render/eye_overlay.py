@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.recorder.frame_summary import Blob, FrameSummary
+from hsr8.recorder.run.frame_summary import Blob, FrameSummary
 from hsr8.render.canvas import Colour, Image
 from hsr8.render.lettering import size_of, width_of, write
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from hsr8.recorder import palette
-from hsr8.recorder.frame_summary import FrameSummary
+from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.render.canvas import Image
 from hsr8.render.lettering import size_of, write
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder import run_folder
-from hsr8.recorder.run_reader import Run
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.run_reader import Run
 from hsr8.render.animation import KINDS, AnimationWriter, require_room
 from hsr8.render.png import write_png
 from hsr8.render.scene_pictures import Pictures

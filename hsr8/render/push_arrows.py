@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.recorder.trajectory import Trajectory
-from hsr8.recorder.walking_table import WalkingTable
+from hsr8.recorder.run.trajectory import Trajectory
+from hsr8.recorder.run.walking_table import WalkingTable
 
 Array = NDArray[np.float64]
 Arrow = tuple[Array, Array]

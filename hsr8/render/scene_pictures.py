@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.frame_summary import FrameSummary
-from hsr8.recorder.run_reader import Run
-from hsr8.recorder.trajectory import Trajectory, rows_at
+from hsr8.recorder.run.frame_summary import FrameSummary
+from hsr8.recorder.run.run_reader import Run
+from hsr8.recorder.run.trajectory import Trajectory, rows_at
 from hsr8.render.dashboard import Dashboard, Moment
 from hsr8.render.eye_overlay import EyeOverlay
 from hsr8.render.follow import FollowCamera

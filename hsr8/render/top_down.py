@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
-from hsr8.recorder.frame_summary import FrameSummary, TrackSummary
+from hsr8.recorder.run.frame_summary import FrameSummary, TrackSummary
 from hsr8.render.canvas import Canvas, Image
 from hsr8.render.lettering import size_of, write
 from hsr8.world.field.layout import Layout

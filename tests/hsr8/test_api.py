@@ -6,7 +6,7 @@ import pytest
 
 import hsr8
 from hsr8.errors import RenderingUnavailable, ScenarioError, UsageError
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.run.run_reader import open_run
 from navigation.decision import GazeDecision, MotionDecision
 
 STAND_INS = {"robot.body": "kinematic", "camera.source": "analytic", "duration": 1.0}

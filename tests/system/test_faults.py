@@ -7,7 +7,7 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.loop import Simulation
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.scenario.loader import load
 from hsr8.snapshot import decode, encode
 

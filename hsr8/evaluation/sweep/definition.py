@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ScenarioError
-from hsr8.recorder.manifest import versions
+from hsr8.recorder.run.manifest import versions
 from hsr8.scenario.loader import dump, loads
 from hsr8.version import VERSION
 from hsr8.world.model.models import models_dir

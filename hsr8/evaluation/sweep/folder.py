@@ -22,10 +22,10 @@ from hsr8.evaluation.sweep.definition import Definition, differences, version_di
 from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, Row
 from hsr8.evaluation.sweep.summary import NUMBERS
 from hsr8.evaluation.sweep.table import write_table
-from hsr8.recorder import atomic
-from hsr8.recorder.json_lines import read_lines
-from hsr8.recorder.new_folder import require_new_folder
-from hsr8.recorder.run_folder import SCENARIO
+from hsr8.recorder.files import atomic
+from hsr8.recorder.files.json_lines import read_lines
+from hsr8.recorder.files.new_folder import require_new_folder
+from hsr8.recorder.run.run_folder import SCENARIO
 
 DEFINITION = "sweep.json"
 LEDGER = "runs.jsonl"

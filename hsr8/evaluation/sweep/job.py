@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from hsr8.evaluation.sweep.process import Process
-from hsr8.recorder import atomic, run_folder
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run import run_folder
 
 Row = dict[str, Any]
 Keep = Literal["all", "failed", "none"]

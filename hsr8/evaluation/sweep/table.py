@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.evaluation.sweep.job import Row
-from hsr8.recorder import atomic
+from hsr8.recorder.files import atomic
 
 
 def flat(row: Row, prefix: str = "") -> Row:

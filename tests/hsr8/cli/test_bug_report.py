@@ -7,7 +7,7 @@ import pytest
 from hsr8.cli import bug_report
 from hsr8.cli.doctor import Finding
 from hsr8.cli.main import entry
-from hsr8.recorder.manifest import FORMAT
+from hsr8.recorder.run.manifest import FORMAT
 
 
 @pytest.fixture(autouse=True)

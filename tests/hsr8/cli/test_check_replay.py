@@ -6,7 +6,7 @@ import zlib
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.run.run_reader import open_run
 
 RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
 

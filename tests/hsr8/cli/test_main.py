@@ -10,8 +10,8 @@ import pytest
 from hsr8.cli.crash import CrashReport, InternalError
 from hsr8.cli.main import COMMANDS, MODULES, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
-from hsr8.recorder.manifest import Manifest
-from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder
 
 HEAVY = (
     "mujoco",

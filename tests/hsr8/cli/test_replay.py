@@ -1,9 +1,9 @@
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.recorder import run_folder
-from hsr8.recorder.manifest import Manifest
-from hsr8.recorder.run_folder import RunFolder
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder
 
 
 @pytest.fixture

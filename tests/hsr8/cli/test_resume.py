@@ -10,9 +10,9 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.evaluation.difference import motion, results
-from hsr8.recorder import atomic
-from hsr8.recorder.log_reader import Log
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.files import atomic
+from hsr8.recorder.log.log_reader import Log
+from hsr8.recorder.run.run_reader import open_run
 
 STAND_INS = ["--body", "kinematic", "--camera", "analytic"]
 QUICK = [

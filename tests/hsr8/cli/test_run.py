@@ -11,7 +11,7 @@ from hsr8.cli.main import entry
 from hsr8.cli.options import Run
 from hsr8.errors import SimulationDiverged
 from hsr8.loop import Simulation
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.run.run_reader import open_run
 
 FAST = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
 

@@ -8,7 +8,7 @@ from hsr8.cli import verify as module
 from hsr8.cli.main import entry
 from hsr8.cli.verify import verify
 from hsr8.errors import Hsr8Error
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.run.run_reader import open_run
 
 FAST = [
     "run",

@@ -5,7 +5,7 @@ import pytest
 
 from hsr8.evaluation.recording import Recording
 from hsr8.loop import Simulation
-from hsr8.recorder.manifest import Manifest
+from hsr8.recorder.run.manifest import Manifest
 from hsr8.scenario.loader import load
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hsr8.recorder.frame_summary import from_line, to_line
+from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.dashboard import Dashboard, Moment
 from hsr8.render.movie import Shot
 from hsr8.render.timeline import Timeline

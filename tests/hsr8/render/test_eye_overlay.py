@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import palette
-from hsr8.recorder.frame_summary import Blob, from_line, to_line
+from hsr8.recorder.run.frame_summary import Blob, from_line, to_line
 from hsr8.render import eye_overlay
 from hsr8.render.eye_overlay import EyeOverlay
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import palette
-from hsr8.recorder.frame_summary import from_line, to_line
+from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.gaze_panel import GazePanel
 
 PAN, TILTS = np.radians(90.0), (np.radians(-60.0), np.radians(20.0))

@@ -7,8 +7,8 @@ import pytest
 
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
-from hsr8.recorder import run_folder
-from hsr8.recorder.run_reader import open_run
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.run_reader import open_run
 from hsr8.render.movie import Shot, film, instants
 from hsr8.render.segments import Segments
 

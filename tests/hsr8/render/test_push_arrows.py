@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from hsr8.recorder.trajectory import Trajectory
-from hsr8.recorder.walking_table import COLUMNS, WalkingTable
+from hsr8.recorder.run.trajectory import Trajectory
+from hsr8.recorder.run.walking_table import COLUMNS, WalkingTable
 from hsr8.render.push_arrows import GAP, SHOWN, arrows_at, pushes_of
 
 

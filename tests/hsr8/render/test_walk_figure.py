@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hsr8.errors import UsageError
-from hsr8.recorder.walk_layer import GAIT
-from hsr8.recorder.walking_table import COLUMNS, LEG_JOINTS, LIMITS, WalkingTable
+from hsr8.recorder.log.walk_layer import GAIT
+from hsr8.recorder.run.walking_table import COLUMNS, LEG_JOINTS, LIMITS, WalkingTable
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
 from walking.admission import Limit

@@ -1,0 +1,1 @@
+"""Files that are whole, or say what they lack."""

@@ -1,0 +1,1 @@
+"""The Rerun log: a layer for each thing it shows, written and read back."""

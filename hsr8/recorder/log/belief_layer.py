@@ -1,0 +1,244 @@
+"""What the robot believes, drawn over the true world."""
+
+from collections.abc import Sequence
+from math import pi
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder import ellipse, palette
+from hsr8.recorder.frame_record import FrameRecord
+from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.pace import Pace
+from navigation.belief.belief import Belief, Motion
+from navigation.decision import MotionDecision
+from navigation.observation import CameraView
+
+Array = NDArray[np.float64]
+
+SIGMAS = 2.0  # ellipses show so many standard deviations
+HEADING_LENGTH = 0.35  # [m]
+VELOCITY_SCALE = 2.0  # an arrow shows the way of so many seconds [s]
+VIEW_RANGE = 1.5  # drawn length of the field of view [m]
+MAP_HEIGHT, MARK_HEIGHT = 0.002, 0.012  # heights at which flat things are drawn [m]
+FLAT = 0.004  # and their thickness [m]
+PARTICLE, PARTICLE_SHARES = 0.025, (0.2, 4.0)  # its drawn radius [m], by relative weight
+LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
+SEEN, UNSEEN = 255, 160  # opacity of tracks in view and out of it
+
+
+class BeliefLayer:
+    """Logs pose, tracks, particles, local map, virtual obstacles and destination.
+
+    Args:
+        stream: where it goes.
+        map_period: time between two local maps and clouds of particles at least [s].
+    """
+
+    def __init__(self, stream: BlockStream, map_period: float) -> None:
+        self._stream = stream
+        self._map_pace = Pace(map_period)
+        self._map_shape: tuple[int, ...] = ()
+        self._motion: MotionDecision | None = None  # whose virtual obstacles are shown
+        self._aim: list[float] = []
+        solid = rr.components.FillMode.Solid
+        lines = rr.components.FillMode.MajorWireframe
+        for path, style in (
+            ("/belief/pose", rr.Arrows3D.from_fields(colors=[palette.BELIEF], radii=[0.015])),
+            ("/belief/uncertainty", _rings(palette.BELIEF, lines)),
+            ("/belief/tracks", rr.Cylinders3D.from_fields(fill_mode=solid)),
+            ("/belief/track_uncertainty", _rings(palette.BELIEF, lines)),
+            ("/belief/velocities", rr.Arrows3D.from_fields(colors=[palette.BELIEF], radii=[0.01])),
+            (
+                "/belief/virtual_obstacles",
+                rr.Cylinders3D.from_fields(
+                    colors=[palette.VIRTUAL], fill_mode=lines, line_radii=[0.006]
+                ),
+            ),
+            ("/belief/view", rr.LineStrips3D.from_fields(colors=[palette.VIEW], radii=[0.008])),
+            ("/belief/target", rr.Points3D.from_fields(colors=[palette.TARGET], radii=[0.05])),
+        ):
+            stream.log(path, style, static=True)
+        self._pose = Channel(stream, "/belief/pose", rr.Arrows3D.columns)
+        self._uncertainty = Channel(stream, "/belief/uncertainty", rr.Ellipsoids3D.columns)
+        self._tracks = Channel(stream, "/belief/tracks", rr.Cylinders3D.columns)
+        self._spread = Channel(stream, "/belief/track_uncertainty", rr.Ellipsoids3D.columns)
+        self._velocities = Channel(stream, "/belief/velocities", rr.Arrows3D.columns)
+        self._virtual = Channel(stream, "/belief/virtual_obstacles", rr.Cylinders3D.columns)
+        self._view = Channel(stream, "/belief/view", rr.LineStrips3D.columns)
+        self._target = Channel(stream, "/belief/target", rr.Points3D.columns)
+        self._particles = Channel(stream, "/belief/particles", rr.Points3D.columns)
+        self._map = Channel(stream, "/belief/local_map", rr.GridMap.columns)
+        self._channels = (
+            self._pose,
+            self._uncertainty,
+            self._tracks,
+            self._spread,
+            self._velocities,
+            self._virtual,
+            self._view,
+            self._target,
+            self._particles,
+            self._map,
+        )
+
+    def add(self, frames: Sequence[FrameRecord]) -> None:
+        """Take camera frames."""
+        times, beliefs = [frame.time for frame in frames], [frame.belief for frame in frames]
+        poses = np.array([belief.pose for belief in beliefs])
+        ones = [1] * len(times)
+        centres, ahead = np.full((len(times), 3), MARK_HEIGHT), np.zeros((len(times), 3))
+        centres[:, :2] = poses[:, :2]
+        ahead[:, 0], ahead[:, 1] = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        self._pose.add_rows(times, ones, origins=centres, vectors=HEADING_LENGTH * ahead)
+        covariances = np.array([belief.pose_covariance for belief in beliefs])[:, :2, :2]
+        self._ellipses(self._uncertainty, times, ones, centres, covariances)
+        self._view.add_rows(times, ones, strips=list(_wedges(poses, [b.view for b in beliefs])))
+        self._add_tracks(times, beliefs)
+        for frame in frames:
+            if frame.motion is not self._motion:
+                self._motion = frame.motion
+                self._add_virtual(frame)
+            target = frame.task.target.tolist()
+            if target != self._aim:
+                self._aim = target
+                self._target.add(frame.time, positions=np.array([[*target, 0.05]]))
+            if self._map_pace.due(frame.time):
+                self._add_particles(frame.time, frame.belief)
+                self._add_map(frame.time, frame.belief)
+
+    def flush(self) -> None:
+        """Send the block."""
+        for channel in self._channels:
+            channel.flush()
+
+    def _add_tracks(self, times: list[float], beliefs: Sequence[Belief]) -> None:
+        tracks = [track for belief in beliefs for track in belief.tracks]
+        moments = np.repeat(np.arange(len(times)), [len(belief.tracks) for belief in beliefs])
+        centres = np.full((len(tracks), 3), MARK_HEIGHT)
+        centres[:, :2] = np.reshape([t.position for t in tracks], (-1, 2))
+        colours = [
+            palette.packed(palette.of_label(t.label), SEEN if t.visible else UNSEEN) for t in tracks
+        ]
+        self._tracks.add_rows(
+            times,
+            _counts(times, moments),
+            centers=centres,
+            lengths=np.full(len(tracks), FLAT),
+            radii=np.array([t.radius for t in tracks]),
+            colors=np.array(colours, dtype=np.uint32),
+        )
+        covariances = np.reshape([t.covariance for t in tracks], (-1, 4, 4))[:, :2, :2]
+        known = np.trace(covariances, axis1=1, axis2=2) < LOST_SIGMA**2
+        counts = _counts(times, moments[known])
+        self._ellipses(self._spread, times, counts, centres[known], covariances[known])
+        moving = np.array([t.motion is not Motion.STATIC for t in tracks], dtype=bool)
+        vectors = np.zeros((len(tracks), 3))
+        vectors[:, :2] = np.reshape([t.velocity for t in tracks], (-1, 2))
+        self._velocities.add_rows(
+            times,
+            _counts(times, moments[moving]),
+            origins=centres[moving],
+            vectors=VELOCITY_SCALE * vectors[moving],
+        )
+
+    def _add_particles(self, time: float, belief: Belief) -> None:
+        """Where lost movers may be; a particle is the larger the more likely it is."""
+        clouds = [(t, t.particles) for t in belief.tracks if t.particles is not None]
+        positions = [cloud.positions for _, cloud in clouds]
+        shares = [len(cloud.weights) * cloud.weights for _, cloud in clouds]
+        places = np.concatenate(positions) if clouds else np.zeros((0, 2))
+        weights = np.concatenate(shares) if clouds else np.zeros(0)
+        colours = [
+            palette.packed(palette.darker(palette.of_label(t.label)))
+            for t, cloud in clouds
+            for _ in range(len(cloud.weights))
+        ]
+        self._particles.add(
+            time,
+            positions=np.column_stack([places, np.full(len(places), MARK_HEIGHT)]),
+            radii=PARTICLE * np.sqrt(np.clip(weights, *PARTICLE_SHARES)),
+            colors=np.array(colours, dtype=np.uint32),
+        )
+
+    def _add_virtual(self, frame: FrameRecord) -> None:
+        virtual = frame.motion.virtual_obstacles
+        centres = np.full((len(virtual), 3), MARK_HEIGHT)
+        centres[:, :2] = np.array([o.position for o in virtual]).reshape(-1, 2)
+        self._virtual.add(
+            frame.time,
+            centers=centres,
+            lengths=np.full(len(virtual), FLAT),
+            radii=np.array([o.radius for o in virtual]),
+        )
+
+    def _add_map(self, time: float, belief: Belief) -> None:
+        grid = belief.local_map
+        # The first row of an image is its top, the first row of the map its least y.
+        cells = np.round(255.0 * grid.confidence[::-1]).astype(np.uint8)
+        if cells.shape != self._map_shape:
+            self._map_shape = cells.shape
+            self._stream.log("/belief/local_map", _map_look(grid.cell, cells.shape), static=True)
+        self._map.add(
+            time, data=[cells.ravel()], translation=np.array([[*grid.origin, MAP_HEIGHT]])
+        )
+
+    @staticmethod
+    def _ellipses(
+        channel: Channel,
+        times: list[float],
+        counts: list[int],
+        centres: Array,
+        covariances: Array,
+    ) -> None:
+        half, direction = ellipse.axes(covariances)
+        n = len(half)
+        quaternions = np.zeros((n, 4))
+        quaternions[:, 2], quaternions[:, 3] = np.sin(direction / 2), np.cos(direction / 2)
+        channel.add_rows(
+            times,
+            counts,
+            centers=centres,
+            half_sizes=np.column_stack([SIGMAS * half, np.full(n, FLAT)]),
+            quaternions=quaternions,
+        )
+
+
+def _counts(times: list[float], moments: NDArray[np.intp]) -> list[int]:
+    """How many of `moments` are each of the times, by its number."""
+    counts: list[int] = np.bincount(moments, minlength=len(times)).tolist()
+    return counts
+
+
+def _map_look(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
+    """What never changes of a map of so many rows and columns."""
+    return rr.GridMap.from_fields(
+        format=rr.components.ImageFormat(
+            width=shape[1],
+            height=shape[0],
+            color_model=rr.ColorModel.L,
+            channel_datatype=rr.ChannelDatatype.U8,
+        ),
+        cell_size=cell,
+        opacity=0.35,
+        colormap=rr.components.Colormap.Grayscale,
+    )
+
+
+def _rings(colour: palette.Colour, fill: rr.components.FillMode) -> rr.Ellipsoids3D:
+    return rr.Ellipsoids3D.from_fields(colors=[colour], fill_mode=fill, line_radii=[0.004])
+
+
+def _wedges(poses: Array, views: Sequence[CameraView]) -> Array:
+    """Outlines on the floor of the fields of view from poses (m, 3): (m, n, 3) [m]."""
+    axes = np.array([view.rotation[:, 2] for view in views])
+    middles = poses[:, 2] + np.arctan2(axes[:, 1], axes[:, 0])
+    halves = np.minimum([0.5 * view.horizontal_fov for view in views], pi)
+    angles = middles[:, None] + halves[:, None] * np.linspace(-1.0, 1.0, 9)
+    outlines = np.full((len(poses), 11, 3), MARK_HEIGHT)
+    outlines[:, :, :2] = poses[:, None, :2]
+    outlines[:, 1:-1, 0] += VIEW_RANGE * np.cos(angles)
+    outlines[:, 1:-1, 1] += VIEW_RANGE * np.sin(angles)
+    return outlines

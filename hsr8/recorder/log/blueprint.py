@@ -1,0 +1,165 @@
+"""How the viewer arranges a log."""
+
+import rerun as rr
+import rerun.blueprint as rrb
+
+from hsr8.recorder import palette
+from hsr8.recorder.log.channel import TIMELINE
+
+AROUND = rrb.VisibleTimeRange(
+    TIMELINE,
+    start=rrb.TimeRangeBoundary.cursor_relative(seconds=-2.5),
+    end=rrb.TimeRangeBoundary.cursor_relative(seconds=1.5),
+)
+BACKGROUND = [228, 231, 235]
+# Over the truth in outlines the belief can be told from it.
+TRUTH = (
+    "/world/obstacles/boxes",
+    "/world/obstacles/capsules",
+    "/world/obstacles/cylinders",
+    "/world/movers",
+)
+OUTLINES = rr.Cylinders3D.from_fields(
+    fill_mode=rr.components.FillMode.MajorWireframe, colors=[palette.TRUTH], line_radii=[0.006]
+)
+ABOVE = 6.2  # height of the eye over a field of 5 m [m]
+
+
+def blueprint(field_size: float, *, walking: bool, pictures: bool) -> rrb.Blueprint:
+    """Two tabs: the whole robot, and its walking in detail.
+
+    Args:
+        field_size: longer side of the field [m].
+        walking: whether walking is shown first.
+        pictures: whether there are images, beliefs and plans to show.
+    """
+    return rrb.Blueprint(
+        rrb.Tabs(_overview(field_size, pictures), _walking(), active_tab=1 if walking else 0),
+        rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+    )
+
+
+def _walking() -> rrb.Container:
+    """The robot over its footsteps on the left; curves on the right."""
+    robot = rrb.Spatial3DView(
+        name="Walking",
+        origin="/",
+        contents=["+ /world/**", "- /world/camera/**", "- /world/path"],
+        background=BACKGROUND,
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            position=(-0.5, -0.6, 0.42),
+            look_target=(0.0, 0.0, 0.14),
+            eye_up=(0.0, 0.0, 1.0),
+            tracking_entity="/world/robot/ellipsoids",
+        ),
+    )
+    texts = rrb.Tabs(
+        rrb.TextLogView(name="Altered commands", origin="/admission"),
+        rrb.TextLogView(name="Events", origin="/events"),
+    )
+    zmp = [
+        rrb.TimeSeriesView(
+            name=f"ZMP, CoM, DCM and the edges of the soles: {axis} [m]",
+            origin=f"/plots/zmp_{axis}",
+            time_ranges=AROUND,
+        )
+        for axis in ("left", "forward")
+    ]
+    details = rrb.Tabs(
+        *(
+            rrb.TimeSeriesView(name=name, origin=f"/plots/{entity}", time_ranges=ranges)
+            for name, entity, ranges in (
+                ("Forward", "speed_forward", None),
+                ("Left", "speed_left", None),
+                ("Turn", "speed_turn", None),
+                ("Knee", "torque_knee", AROUND),
+                ("Hip", "torque_hip", AROUND),
+                ("Ankle", "torque_ankle", AROUND),
+                ("Tilt", "tilt", None),
+            )
+        ),
+        active_tab=0,
+    )
+    lanes = ["+ /state/gait", "+ /state/planner"]
+    states = rrb.StateTimelineView(name="States", origin="/state", contents=lanes)
+    curves = rrb.Vertical(*zmp, details, states, row_shares=[3, 3, 2.5, 2])
+    left = rrb.Vertical(robot, texts, row_shares=[4, 1])
+    return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
+
+
+def _overview(field_size: float, pictures: bool) -> rrb.Container:
+    """Robot and belief above; camera, gaze, states and curves below."""
+    height = ABOVE * field_size / 5.0
+    robot = rrb.Spatial3DView(
+        name="HSR-VIII",
+        origin="/",
+        contents=[
+            "+ /world/**",
+            "+ /belief/**",
+            "+ /plan/**",
+            "- /belief/local_map",
+            # The image has a view of its own; here it would hide the robot.
+            "- /world/camera/image",
+            "- /world/camera/detections",
+            "- /world/camera/gaze_window",
+        ],
+        background=BACKGROUND,
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            position=(-1.05, -0.75, 0.75),
+            look_target=(0.05, 0.0, 0.2),
+            eye_up=(0.0, 0.0, 1.0),
+            tracking_entity="/world/robot/ellipsoids",
+        ),
+    )
+    belief = rrb.Spatial3DView(
+        name="Belief over truth",
+        origin="/",
+        contents=[
+            "+ /belief/**",
+            "+ /plan/**",
+            "+ /world/floor",
+            "+ /world/rim/**",
+            "+ /world/obstacles/**",
+            "+ /world/movers/**",
+            "+ /world/beacons/**",
+            "+ /world/way_points/**",
+            "+ /world/path",
+        ],
+        overrides=dict.fromkeys(TRUTH, OUTLINES),
+        background=BACKGROUND,
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            position=(0.0, -0.01, height), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 1.0, 0.0)
+        ),
+    )
+    camera = rrb.Spatial2DView(name="Head camera", origin="/world/camera")
+    gaze = rrb.Spatial2DView(name="Gaze map GM", origin="/gaze")
+    states = rrb.StateTimelineView(name="States", origin="/state")
+    curves = rrb.Tabs(
+        *(
+            rrb.TimeSeriesView(name=name, origin=f"/plots/{entity}")
+            for name, entity in (
+                ("Partial evaluations", "partial"),
+                ("Pose error", "pose_error"),
+                ("ZMP left [m]", "zmp_left"),
+                ("ZMP forward [m]", "zmp_forward"),
+                ("Speed", "speed_forward"),
+                ("Tilt", "tilt"),
+                ("Clearance", "clearance"),
+            )
+        ),
+        rrb.TextLogView(name="Events", origin="/events"),
+        active_tab=0,
+    )
+    name = "Robot and belief"
+    if not pictures:
+        below = rrb.Horizontal(states, curves, column_shares=[1, 1])
+        return rrb.Vertical(robot, below, row_shares=[3, 2], name=name)
+    above = rrb.Horizontal(robot, belief, column_shares=[1.15, 1])
+    sight = rrb.Vertical(states, curves, row_shares=[1.1, 1])
+    below = rrb.Horizontal(camera, gaze, sight, column_shares=[1, 1.1, 2])
+    return rrb.Vertical(above, below, row_shares=[1, 1], name=name)

@@ -1,0 +1,239 @@
+"""Walking in the log: ZMP, CoM, DCM and soles on the floor and over time, torques, pushes."""
+
+from collections import deque
+from collections.abc import Sequence
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from hsr8.recorder import palette
+from hsr8.recorder.arc import mean_velocity
+from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.channel import Channel
+from hsr8.recorder.log.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, VIOLET, Curves, Lane
+from hsr8.recorder.record import TickRecord
+from hsr8.recorder.run.walking_table import LEG_JOINTS, LIGHT, OdometryToWorld
+from navigation.angles import wrap
+from walking.admission import Limit
+from walking.state import WalkingState
+
+Array = NDArray[np.float64]
+
+GAIT = {
+    "standing": GREY,
+    "double": SAND,
+    "left": BLUE,
+    "right": ORANGE,
+    "up": VIOLET,
+    "fallen": RED,
+}
+POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
+FLOOR = 0.006  # height at which things on the floor are drawn [m]
+PIN = 0.16  # points on the floor are shown by pins of this height, seen above the feet [m]
+ARROW = 0.025  # drawn length of a push per newton [m/N]
+GAP = 0.07  # from the point of an arrow to where the push acts [m]
+STRIDE = 2  # footsteps over which the achieved velocity is measured
+PATIENCE = 1.0  # a robot that has not stepped for so long is measured over this time [s]
+ROUTINE = Limit.LANDING_FROZEN  # binds at the end of every step: no news
+TORQUES = ("hip", "knee", "ankle")
+SIDES = {"l": (BLUE, SAND, GREEN), "r": (ORANGE, RED, VIOLET)}
+
+
+class WalkLayer:
+    """Logs how the robot walks."""
+
+    def __init__(self, stream: BlockStream) -> None:
+        stream.log(
+            "/world/walking/points",
+            rr.Arrows3D.from_fields(
+                colors=[colour for _, colour in POINTS],
+                radii=[0.003],
+                vectors=np.tile([0.0, 0.0, FLOOR - PIN], (len(POINTS), 1)),
+            ),
+            static=True,
+        )
+        stream.log(
+            "/world/walking/support",
+            rr.LineStrips3D.from_fields(colors=[palette.TARGET], radii=[0.0025]),
+            static=True,
+        )
+        stream.log(
+            "/world/pushes", rr.Arrows3D.from_fields(colors=[RED], radii=[0.012]), static=True
+        )
+        self._points = Channel(stream, "/world/walking/points", rr.Arrows3D.columns)
+        self._support = Channel(stream, "/world/walking/support", rr.LineStrips3D.columns)
+        self._pushes = Channel(stream, "/world/pushes", rr.Arrows3D.columns)
+        curves = (*POINTS, ("edge of the soles", GREY), ("edge of the soles", GREY))
+        self._zmp = tuple(
+            Curves(stream, f"/plots/zmp_{axis}", curves) for axis in ("forward", "left")
+        )
+        speeds = ("forward [m/s]", "left [m/s]", "turn [rad/s]")
+        self._commanded = tuple(
+            Curves(
+                stream,
+                f"/plots/speed_{name.split()[0]}/commanded",
+                ((f"asked, {name}", GREY), (f"given, {name}", ORANGE)),
+            )
+            for name in speeds
+        )
+        self._achieved = tuple(
+            Curves(
+                stream, f"/plots/speed_{name.split()[0]}/achieved", ((f"achieved, {name}", BLUE),)
+            )
+            for name in speeds
+        )
+        self._torque = tuple(self._torque_curves(stream, group) for group in TORQUES)
+        self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
+        self._phase = Lane(stream, "/state/gait", GAIT)
+        self._said = Channel(stream, "/admission", rr.TextLog.columns)
+        self._meter = _Speedometer()
+        self._stood: tuple[str, int] | None = None
+        self._told: tuple[Limit, ...] = ()
+        self._pushed = False
+        self._parts: tuple[Channel | Curves | Lane, ...] = (
+            self._points,
+            self._support,
+            self._pushes,
+            *self._zmp,
+            *self._commanded,
+            *self._achieved,
+            *(curves for curves, _ in self._torque),
+            self._tilt,
+            self._phase,
+            self._said,
+        )
+
+    def add(self, records: Sequence[TickRecord]) -> None:
+        """Take records at the rate of the plots."""
+        times, truths = [r.time for r in records], [r.truth for r in records]
+        walks = [record.walking for record in records]
+        there = OdometryToWorld(records)
+        known = [(walking.zmp, walking.balance.com, walking.balance.dcm) for walking in walks]
+        planned, com, dcm = there.point(np.array(known)).swapaxes(0, 1)
+        pressed = np.array([truth.foot_force for truth in truths]).sum(axis=1) > LIGHT
+        zmp = np.array([truth.zmp for truth in truths])
+        measured = np.where(pressed[:, None], zmp, np.nan)
+        corners = [len(walking.balance.support) for walking in walks]
+        moments = np.repeat(np.arange(len(walks)), corners)
+        support = there.point(np.concatenate([w.balance.support for w in walks]), moments)
+        points = np.stack([planned, measured, com, dcm], axis=1)
+        self._add_curves(times, np.array([t.robot for t in truths]), points, support, moments)
+        points[:, 1] = np.where(np.isnan(measured[:, :1]), planned, measured)
+        pins = np.full((len(times), len(POINTS), 3), PIN)
+        pins[..., :2] = points
+        self._points.add_rows(times, [len(POINTS)] * len(times), origins=pins.reshape(-1, 3))
+        asked = np.array([record.command.velocity for record in records])
+        given = np.array([walking.given for walking in walks])
+        for curves, a, g in zip(self._commanded, asked.T, given.T, strict=True):
+            curves.add(times, np.column_stack([a, g]))
+        torque = np.array([truth.joint_torque for truth in truths])
+        for curves, columns in self._torque:
+            curves.add(times, torque[:, columns])
+        self._tilt.add(times, np.degrees([(walking.roll, walking.pitch) for walking in walks]))
+        for record, area in zip(records, np.split(support, np.cumsum(corners[:-1])), strict=True):
+            self._add_gait(record.time, record.walking, area)
+            self._tell_admission(record)
+
+    def watch(self, record: TickRecord) -> None:
+        """Take every record: what is too short for the rate of the plots."""
+        measured = self._meter.add(record)
+        if measured is not None:
+            time, velocity = measured
+            for curves, value in zip(self._achieved, velocity, strict=True):
+                curves.add([time], np.array([[value]]))
+        pushes = record.truth.pushes
+        if pushes or self._pushed:
+            self._pushed = bool(pushes)
+            vectors = ARROW * np.array([p.force for p in pushes]).reshape(-1, 3)
+            # The arrow ends at the skin, not inside the body.
+            reach = 1.0 + GAP / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+            origins = np.array([p.point for p in pushes]).reshape(-1, 3) - reach * vectors
+            self._pushes.add(record.time, origins=origins, vectors=vectors)
+
+    def flush(self) -> None:
+        """Send the block."""
+        for part in self._parts:
+            part.flush()
+
+    @staticmethod
+    def _torque_curves(stream: BlockStream, group: str) -> tuple[Curves, list[int]]:
+        columns = [k for k, name in enumerate(LEG_JOINTS) if f"_{group}" in name]
+        named = []
+        shades = {side: iter(colours) for side, colours in SIDES.items()}
+        for k in columns:
+            side, _, joint = LEG_JOINTS[k].partition("_")
+            named.append((f"{side} {joint.replace('_', ' ')} [N m]", next(shades[side])))
+        return Curves(stream, f"/plots/torque_{group}", named), columns
+
+    def _add_curves(
+        self,
+        times: list[float],
+        robot: Array,
+        points: Array,
+        support: Array,
+        moments: NDArray[np.intp],
+    ) -> None:
+        """Points (n, 4, 2), and corners of the soles with the moment of each."""
+        here, yaw = robot[:, :2], robot[:, 2]
+        c, s = np.cos(yaw), np.sin(yaw)
+        x, y = (points - here[:, None]).T
+        edge_x, edge_y = (support - here[moments]).T
+        firsts = np.searchsorted(moments, np.arange(len(times)))
+        # Forward and left of the robot.
+        for curves, (along, across) in zip(self._zmp, ((c, s), (-s, c)), strict=True):
+            edges = along[moments] * edge_x + across[moments] * edge_y
+            ends = np.minimum.reduceat(edges, firsts), np.maximum.reduceat(edges, firsts)
+            curves.add(times, np.column_stack([(along * x + across * y).T, *ends]))
+
+    def _add_gait(self, time: float, walking: WalkingState, support: Array) -> None:
+        """The phase, and with every new one the support polygon (n, 2) in W [m]."""
+        self._phase.add(time, str(walking.phase))
+        standing = (str(walking.phase), walking.step_count)
+        if standing != self._stood:
+            self._stood = standing
+            strip = np.full((len(support) + 1, 3), FLOOR)
+            strip[:, :2] = *support, support[0]
+            self._support.add(time, strips=[strip])
+
+    def _tell_admission(self, record: TickRecord) -> None:
+        admission = record.walking.admission
+        limits = () if admission is None else admission.limits
+        news = tuple(dict.fromkeys(limit for limit in limits if limit is not ROUTINE))
+        if news == self._told or admission is None:
+            return
+        self._told = news
+        asked, given = admission.asked.velocity, record.walking.given.tolist()
+        text = "obeyed" if not news else ", ".join(news)
+        said = f"{text}: asked {_words(asked)}, given {_words(given)}"
+        self._said.add(record.time, text=[said], level=["WARN" if news else "INFO"])
+
+
+class _Speedometer:
+    """Velocity over one stride, each time a footstep ends."""
+
+    def __init__(self) -> None:
+        self._marks: deque[tuple[float, Array]] = deque(maxlen=STRIDE + 1)
+        self._steps = 0
+        self._yaw = 0.0
+
+    def add(self, record: TickRecord) -> tuple[float, list[float]] | None:
+        """Middle of the stride [s] and velocity in it, when there is one."""
+        x, y, yaw = record.truth.robot.tolist()
+        self._yaw += wrap(yaw - self._yaw)
+        waited = not self._marks or record.time - self._marks[-1][0] >= PATIENCE - 1e-9
+        if record.walking.step_count == self._steps and not waited:
+            return None
+        self._steps = record.walking.step_count
+        pose = np.array([x, y, self._yaw])
+        self._marks.append((record.time, pose))
+        first, start = self._marks[0] if not waited else self._marks[max(0, len(self._marks) - 2)]
+        if record.time - first <= 0.0:
+            return None
+        elapsed = record.time - first
+        return first + 0.5 * elapsed, mean_velocity(start, pose, elapsed).tolist()
+
+
+def _words(velocity: tuple[float, ...] | list[float]) -> str:
+    forward, left, turn = velocity
+    return f"{forward:.2f} {left:.2f} m/s {turn:.2f} rad/s"

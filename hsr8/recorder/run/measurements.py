@@ -1,0 +1,187 @@
+"""All that reached the belief and the decisions, exactly, with fingerprints of what came of it.
+
+A guarded file with a payload a frame. Numbers are little-endian doubles as they were computed:
+estimator and planners fed with them again must give the same bits.
+"""
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.decisions import Now
+from hsr8.errors import UsageError
+from hsr8.recorder.files.guarded_file import GuardedWriter, read_payloads
+from hsr8.recorder.frame_record import FrameRecord
+from hsr8.recorder.run.fingerprints import (
+    DECISIONS,
+    FINGERPRINT,
+    decision_fingerprints,
+    fingerprints,
+)
+from navigation.observation import CameraView, Frame, Observation
+
+Array = NDArray[np.float64]
+
+MAGIC = b"HSR8MEA3"
+_COUNT = struct.Struct("<H")
+_VIEW = 9 + 3 + 5  # doubles of a camera view
+_FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame apart from its observations
+_NOW = 1 + 3 + _VIEW  # doubles of the moment of a decision
+_STEP = struct.Struct("<q?")
+_SEEN = struct.Struct("<10d")  # an observation
+_KINDS = ("obstacle", "beacon")
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One recorded frame.
+
+    Attributes:
+        frame: what reached the belief.
+        now: the moment it was decided for.
+        fresh: no decision was in force.
+        fingerprints: of the belief after it, one per channel.
+        decided: of what was decided, one per decision channel.
+    """
+
+    frame: Frame
+    now: Now
+    fresh: bool
+    fingerprints: tuple[bytes, ...]
+    decided: tuple[bytes, ...]
+
+
+class MeasurementWriter:
+    """Appends the measurements of every camera frame to a file.
+
+    Args:
+        path: file to create, or to go on with.
+
+    Raises:
+        RecordingFailed: here and in every method, it cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = GuardedWriter(path, MAGIC)
+
+    def add(self, frame: FrameRecord) -> None:
+        """Append a camera frame."""
+        payload = _packed(frame.measured) + _packed_now(frame.now, frame.decided.fresh)
+        estimate = fingerprints(frame.estimate)
+        known = estimate if frame.belief is frame.estimate else None
+        payload += b"".join(decision_fingerprints(frame.decided, known))
+        payload += b"".join(estimate)
+        self._file.write(payload)
+
+    def flush(self) -> None:
+        """Hand everything to the operating system."""
+        self._file.flush()
+
+    def close(self) -> None:
+        """Finish the file."""
+        self._file.close()
+
+
+def read_measurements(path: Path, *, whole: bool) -> list[Measured]:
+    """Read a file of measurements.
+
+    Args:
+        path: the file.
+        whole: whether its last frame must be complete; that of a killed run need not be.
+
+    Raises:
+        UsageError: it is missing, damaged, or no such file.
+    """
+    frames: list[Measured] = []
+    for where, payload in read_payloads(
+        path, MAGIC, file="file of measurements", payload="frame", whole=whole
+    ):
+        try:
+            frames.append(_unpacked(payload))
+        except (ValueError, IndexError, struct.error) as error:
+            raise UsageError(f"{path} is damaged {where}: {error}") from error
+    return frames
+
+
+def _packed(frame: Frame) -> bytes:
+    numbers = np.concatenate(
+        [
+            [frame.time],
+            frame.odometry,
+            frame.motion_covariance.ravel(),
+            *_view_numbers(frame.view),
+        ],
+        dtype="<f8",
+    )
+    parts = [numbers.tobytes(), _COUNT.pack(len(frame.observations))]
+    for o in frame.observations:
+        label = o.label.encode()
+        flags = _KINDS.index(o.kind) | o.cut << 1 | o.occluded << 2
+        (xx, xy), (yx, yy) = o.covariance.tolist()
+        place, size = (o.distance, o.bearing, xx, xy, yx, yy), (o.radius, o.radius_sigma)
+        seen = _SEEN.pack(*place, *size, *o.by_radius.tolist())
+        parts.append(bytes((flags, len(label))) + label + seen)
+    return b"".join(parts)
+
+
+def _packed_now(now: Now, fresh: bool) -> bytes:
+    numbers = np.concatenate([[now.time], now.odometry, *_view_numbers(now.view)], dtype="<f8")
+    return numbers.tobytes() + _STEP.pack(now.step_count, fresh)
+
+
+def _view_numbers(view: CameraView) -> tuple[Array, ...]:
+    angles = (view.pan, view.tilt, view.horizontal_fov, view.vertical_fov, view.yaw_sigma)
+    return view.rotation.ravel(), view.position, np.array(angles)
+
+
+def _view(numbers: Array) -> CameraView:
+    rotation, position, angles = np.split(numbers, [9, 12])
+    return CameraView(rotation.reshape(3, 3), position, *angles.tolist())
+
+
+def _unpacked(payload: bytes) -> Measured:
+    numbers = np.frombuffer(payload, "<f8", _FIXED).astype(np.float64)
+    time, odometry, motion, view = np.split(numbers, [1, 4, 13])
+    place = 8 * _FIXED
+    (count,) = _COUNT.unpack_from(payload, place)
+    place += _COUNT.size
+    observations = []
+    for _ in range(count):
+        flags, length = payload[place], payload[place + 1]
+        place += 2 + length
+        label = payload[place - length : place].decode()
+        distance, bearing, *rest = _SEEN.unpack_from(payload, place)
+        covariance, (radius, radius_sigma), by_radius = rest[:4], rest[4:6], rest[6:]
+        place += _SEEN.size
+        observations.append(
+            Observation(
+                kind="beacon" if flags & 1 else "obstacle",
+                label=label,
+                distance=distance,
+                bearing=bearing,
+                covariance=np.reshape(covariance, (2, 2)),
+                radius=radius,
+                radius_sigma=radius_sigma,
+                by_radius=np.array(by_radius),
+                cut=bool(flags & 2),
+                occluded=bool(flags & 4),
+            )
+        )
+    frame = Frame(
+        time=float(time[0]),
+        odometry=odometry,
+        motion_covariance=motion.reshape(3, 3),
+        view=_view(view),
+        observations=tuple(observations),
+    )
+    numbers = np.frombuffer(payload, "<f8", _NOW, place).astype(np.float64)
+    place += 8 * _NOW
+    step_count, fresh = _STEP.unpack_from(payload, place)
+    place += _STEP.size
+    now = Now(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
+    prints = [payload[k : k + FINGERPRINT] for k in range(place, len(payload), FINGERPRINT)]
+    decided, believed = prints[: len(DECISIONS)], prints[len(DECISIONS) :]
+    return Measured(frame, now, fresh, tuple(believed), tuple(decided))

@@ -1,0 +1,124 @@
+"""What every servo was told in every control tick, exactly, and a hash of the world each second.
+
+A guarded file with a payload, a block, a second: number of its first tick, hashes of world and
+robot before it, then the set-points of each tick as little-endian doubles. The last block of a
+finished run has no ticks, only the hashes of its end. Physics fed with the set-points again must
+give the same hashes.
+"""
+
+import hashlib
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import UsageError
+from hsr8.recorder.files.guarded_file import GuardedWriter, read_payloads
+from walking.body.joints import JOINT_NAMES
+
+Array = NDArray[np.float64]
+
+MAGIC = b"HSR8TAP1"
+HASH = 16  # bytes of a hash
+_FIRST = struct.Struct("<q")
+_ROW = 8 * len(JOINT_NAMES)
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A second of a run.
+
+    Attributes:
+        tick: number of its first control tick.
+        world: hash of the state of the world before it, hexadecimal.
+        robot: hash of world and belief before it.
+        set_points: of each tick (n, 26) [rad].
+    """
+
+    tick: int
+    world: str
+    robot: str
+    set_points: Array
+
+
+class TapeWriter:
+    """Writes the tape of a run.
+
+    Args:
+        path: file to create, or to go on with.
+
+    Raises:
+        RecordingFailed: here and in every method, it cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = GuardedWriter(path, MAGIC)
+        self._payload = b""
+        self._rows: list[bytes] = []
+
+    def mark(self, tick: int, world: bytes, robot: bytes) -> None:
+        """Begin a block before control tick `tick`.
+
+        Args:
+            tick: its number.
+            world: everything that determines the world's future.
+            robot: digest of what the robot believes.
+        """
+        self.flush()
+        state = hashlib.blake2b(world, digest_size=HASH)
+        self._payload = _FIRST.pack(tick) + state.digest()
+        state.update(robot)
+        self._payload += state.digest()
+
+    def add(self, set_points: Array) -> None:
+        """Append one control tick (26,) [rad]."""
+        self._rows.append(set_points.tobytes())
+
+    def flush(self) -> None:
+        """End the block, if it has any ticks, and hand it to the operating system."""
+        if self._rows:
+            self._write()
+
+    def close(self) -> None:
+        """Finish the file."""
+        try:
+            self._write()
+        finally:
+            self._file.close()
+
+    def _write(self) -> None:
+        if not self._payload:
+            return
+        self._file.write(self._payload + b"".join(self._rows))
+        self._file.flush()
+        self._payload = b""
+        self._rows.clear()
+
+
+def read_tape(path: Path, *, whole: bool) -> list[Block]:
+    """Read a tape.
+
+    Args:
+        path: the file.
+        whole: whether its last block must be complete; that of a killed run need not be.
+
+    Raises:
+        UsageError: it is missing, damaged, or no tape.
+    """
+    blocks: list[Block] = []
+    for where, payload in read_payloads(path, MAGIC, file="tape", payload="block", whole=whole):
+        rows = len(payload) - _FIRST.size - 2 * HASH
+        if rows < 0 or rows % _ROW:
+            raise UsageError(f"{path} is damaged {where}")
+        blocks.append(_block(payload))
+    return blocks
+
+
+def _block(payload: bytes) -> Block:
+    place = _FIRST.size
+    world, robot = payload[place : place + HASH], payload[place + HASH : place + 2 * HASH]
+    rows = np.frombuffer(payload, "<f8", offset=place + 2 * HASH).astype(np.float64)
+    (tick,) = _FIRST.unpack_from(payload)
+    return Block(tick, world.hex(), robot.hex(), rows.reshape(-1, len(JOINT_NAMES)))

@@ -1,0 +1,271 @@
+"""How a run walked, in columns: what plots are drawn from afterwards.
+
+A file of rows: time [s] as a little-endian double, then every other column as a single. Its
+header names the columns and holds what does not change.
+
+Points are in W. What the robot knows in its odometry frame is put there by its true pose of
+the moment, so that planned and true curves can be compared.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from hsr8.errors import UsageError
+from hsr8.recorder.block import Block
+from hsr8.recorder.files.headed_file import HeadedWriter, read_headed
+from hsr8.recorder.record import Listener, TickRecord
+from hsr8.world.model.index import ModelIndex
+from hsr8.world.truth.truth import Truth
+from walking.admission import Limit
+from walking.body.joints import JOINT_NAMES
+from walking.phase import Phase
+from walking.state import WalkingState
+
+Array = NDArray[np.float64]
+
+MAGIC = b"HSR8WLK1"
+LEG_JOINTS = JOINT_NAMES[:12]
+PHASES = tuple(Phase)
+LIMITS = tuple(Limit)
+COLUMNS = (
+    "phase",
+    "steps",
+    *(f"{kind}_{c}" for kind in ("asked", "given") for c in ("vx", "vy", "wz")),
+    *(f"robot_{c}" for c in ("x", "y", "yaw")),
+    *(
+        f"{name}_{c}"
+        for name in ("zmp", "cop", "com", "measured_com", "dcm", "measured_dcm")
+        for c in ("x", "y")
+    ),
+    *(f"{foot}_{c}" for foot in ("left", "right") for c in ("x", "y", "z", "yaw", "force")),
+    "capture_x",
+    "capture_y",
+    "zmp_depth",
+    "roll",
+    "pitch",
+    "limits",
+    *(f"push_{c}" for c in ("x", "y", "z", "fx", "fy", "fz", "begin", "impulse")),
+    *(f"torque_{name}" for name in LEG_JOINTS),
+)
+LIGHT = 1.0  # no centre of pressure is told under feet that carry less [N]
+
+
+@dataclass(frozen=True, slots=True)
+class WalkingTable:
+    """How a run walked.
+
+    Attributes:
+        time: of each row (n,) [s].
+        columns: by name (n,); lengths [m], angles [rad], forces [N], torques [N m].
+        sole: middle ahead of the ankle, half length and half width of a sole [m].
+        torque_limit: of each leg joint [N m].
+    """
+
+    time: Array
+    columns: dict[str, Array]
+    sole: tuple[float, float, float]
+    torque_limit: dict[str, float]
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __getitem__(self, name: str) -> Array:
+        """One column (n,).
+
+        Raises:
+            KeyError: there is no such column.
+        """
+        if name not in self.columns:
+            raise KeyError(f"there is no column {name!r}, but {', '.join(self.columns)}")
+        return self.columns[name]
+
+    def points(self, name: str) -> Array:
+        """Both coordinates of a point (n, 2) [m], for example of ``zmp`` or ``left``.
+
+        Raises:
+            KeyError: there is no such point.
+        """
+        return np.column_stack([self[f"{name}_x"], self[f"{name}_y"]])
+
+    def window(self, start: float, stop: float) -> "WalkingTable":
+        """The rows from `start` to `stop` [s]."""
+        chosen = (self.time >= start - 1e-9) & (self.time <= stop + 1e-9)
+        columns = {name: values[chosen] for name, values in self.columns.items()}
+        return WalkingTable(self.time[chosen], columns, self.sole, self.torque_limit)
+
+    def bound(self) -> dict[Limit, NDArray[np.bool_]]:
+        """Where each constraint altered the command (n,); those that never did are left out."""
+        mask = self["limits"].astype(np.int64)
+        found = {limit: (mask >> k) & 1 == 1 for k, limit in enumerate(LIMITS)}
+        return {limit: rows for limit, rows in found.items() if rows.any()}
+
+
+class WalkingTableWriter(Listener):
+    """Listener that writes the table of a run.
+
+    Args:
+        path: file to create, or to go on with.
+        model: compiled world.
+        index: addresses in it.
+
+    Raises:
+        RecordingFailed: here and in every method, it cannot be written.
+    """
+
+    def __init__(self, path: Path, model: mujoco.MjModel, index: ModelIndex) -> None:
+        sole = index.foot_geoms[0]
+        header = {
+            "columns": COLUMNS,
+            "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
+            "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
+        }
+        self._waiting = Block()
+        self._file = HeadedWriter(path, MAGIC, header)
+
+    def on_record(self, record: TickRecord) -> None:
+        """Append one row."""
+        if self._waiting.add(record):
+            self.flush()
+
+    def flush(self) -> None:
+        """Hand everything to the operating system."""
+        self._write_pending()
+        self._file.flush()
+
+    def close(self, exit_reason: str) -> None:
+        """Finish the file."""
+        try:
+            self._write_pending()
+        finally:
+            self._file.close()
+
+    def _write_pending(self) -> None:
+        """Write the rows of the records that wait."""
+        records = self._waiting.take()
+        table = np.empty(len(records), dtype=_row_type(len(COLUMNS)))
+        table["time"] = [record.time for record in records]
+        if records:
+            table["values"] = _values(records)
+        self._file.write(table.tobytes())
+
+
+def read_walking_table(path: Path) -> WalkingTable:
+    """Read a table, also that of a run that was killed.
+
+    Raises:
+        UsageError: it is missing, or no such table.
+    """
+    if not path.exists():
+        raise UsageError(
+            f"{path.parent} does not tell how it walked: it has no {path.name}; run it again"
+        )
+    header, content = read_headed(path, MAGIC, "walking table")
+    try:
+        names = [str(name) for name in header["columns"]]
+        centre, half_length, half_width = map(float, header["sole"])
+        limits = dict(zip(LEG_JOINTS, map(float, header["torque_limit"]), strict=True))
+    except (ValueError, TypeError, KeyError) as error:
+        raise UsageError(f"{path} has no whole header") from error
+    missing = [name for name in COLUMNS if name not in names]
+    if missing:
+        raise UsageError(
+            f"{path} is of another version of hsr8: it has no column {', '.join(missing)}; "
+            "run it again"
+        )
+    row = _row_type(len(names))
+    table = np.frombuffer(content, dtype=row, count=len(content) // row.itemsize)
+    time, values = table["time"].astype(np.float64), table["values"].astype(np.float64)
+    known = np.isin(values[:, names.index("phase")], range(len(PHASES)))
+    whole = known & np.isfinite(time) & ~np.isinf(values).any(axis=1)
+    if not whole.all():
+        raise UsageError(f"{path} is damaged in row {int(np.argmin(whole))}")
+    return WalkingTable(
+        time=time,
+        columns={name: values[:, k] for k, name in enumerate(names)},
+        sole=(centre, half_length, half_width),
+        torque_limit=limits,
+    )
+
+
+class OdometryToWorld:
+    """Puts what the robot knows in its odometry frame where the robot truly is.
+
+    Args:
+        records: of n moments.
+
+    Attributes:
+        turn: from the odometry frame to W at each moment (n,) [rad].
+    """
+
+    def __init__(self, records: Sequence[TickRecord]) -> None:
+        odometry = [record.walking.odometry for record in records]
+        x, y, yaw = np.reshape([(here.x, here.y, here.yaw) for here in odometry], (-1, 3)).T
+        true_x, true_y, true_yaw = np.reshape([r.truth.robot for r in records], (-1, 3)).T
+        self.turn: Array = true_yaw - yaw
+        self._c, self._s = np.cos(self.turn), np.sin(self.turn)
+        self._x = true_x - self._c * x + self._s * y
+        self._y = true_y - self._s * x - self._c * y
+
+    def point(self, points: Array, moments: NDArray[np.intp] | slice = slice(None)) -> Array:
+        """Points of the odometry frame (n, ..., 2) in W, of every moment or of `moments` [m]."""
+        x, y = points.T
+        c, s = self._c[moments], self._s[moments]
+        there = self._x[moments] + c * x - s * y, self._y[moments] + s * x + c * y
+        return np.array(there).T
+
+    def vector(self, vectors: Array) -> Array:
+        """Directions of the odometry frame (n, ..., 2) in W."""
+        x, y = vectors.T
+        return np.array([self._c * x - self._s * y, self._s * x + self._c * y]).T
+
+
+def _values(records: Sequence[TickRecord]) -> Array:
+    """All columns but the time (n, columns)."""
+    truths, walks = [r.truth for r in records], [r.walking for r in records]
+    balances = [walking.balance for walking in walks]
+    there = OdometryToWorld(records)
+    force = np.array([truth.foot_force for truth in truths])
+    pressed = force.sum(axis=1, keepdims=True) > LIGHT
+    feet = np.array([balance.feet for balance in balances])
+    feet[..., :2], feet[..., 3] = there.point(feet[..., :2]), feet[..., 3] + there.turn[:, None]
+    points = [(b.com, w.com, w.dcm, b.dcm) for w, b in zip(walks, balances, strict=True)]
+    return np.column_stack(
+        [
+            [(PHASES.index(walking.phase), walking.step_count) for walking in walks],
+            [record.command.velocity for record in records],
+            [walking.given for walking in walks],
+            [truth.robot for truth in truths],
+            there.point(np.array([walking.zmp for walking in walks])),
+            np.where(pressed, [truth.zmp for truth in truths], np.nan),
+            there.point(np.array(points)).reshape(len(records), -1),
+            np.dstack([feet, force]).reshape(len(records), -1),
+            there.vector(np.array([balance.capture for balance in balances])),
+            [(w.balance.zmp_depth, w.roll, w.pitch) for w in walks],
+            [_bound(walking) for walking in walks],
+            [_push(truth) for truth in truths],
+            np.array([truth.joint_torque for truth in truths])[:, : len(LEG_JOINTS)],
+        ]
+    )
+
+
+def _bound(walking: WalkingState) -> int:
+    """The constraints that altered the command, a bit each."""
+    limits = walking.admission.limits if walking.admission is not None else ()
+    return sum({1 << LIMITS.index(limit) for limit in limits})
+
+
+def _push(truth: Truth) -> tuple[float, ...]:
+    if not truth.pushes:
+        return (0.0,) * 8
+    push = truth.pushes[0]
+    return (*push.point.tolist(), *push.force.tolist(), push.begin, push.impulse)
+
+
+def _row_type(columns: int) -> np.dtype[np.void]:
+    """A row of the file."""
+    return np.dtype([("time", "<f8"), ("values", "<f4", (columns,))])

@@ -1,0 +1,70 @@
+import io
+
+from hsr8.cli.progress import Progress
+
+HIDE_CURSOR, SHOW_CURSOR, ERASE_LINE = "\x1b[?25l", "\x1b[?25h", "\x1b[2K"
+
+
+def test_without_a_terminal_there_is_a_plain_line_every_ten_seconds(walk):
+    stream = io.StringIO()
+    progress = Progress(30.0, stream)
+    for record in walk(25.0):
+        progress.on_record(record)
+    progress.on_event(3.0, "collision", "l_sole touches obstacle 1")
+    progress.close("timeout")
+    lines = stream.getvalue().splitlines()
+    assert [line.split()[0] for line in lines] == ["10.0", "20.0"]
+    assert "\x1b" not in stream.getvalue()
+
+
+def test_the_line_says_what_goes_on(fake):
+    progress = Progress(30.0, io.StringIO())
+    progress.on_event(1.0, "collision", "l_sole touches obstacle 1")
+    record = fake.record(2.0, frame=fake.frame(2.0, index=3))
+    progress.on_record(record)
+    line = progress.line(record)
+    assert "2.0 / 30.0 s" in line
+    assert "via points   3" in line
+    assert "collisions 1" in line
+    assert "free" in line
+
+
+def test_a_lost_robot_is_called_lost(fake):
+    progress = Progress(30.0, io.StringIO())
+    record = fake.record(2.0, frame=fake.frame(2.0, lost=True))
+    progress.on_record(record)
+    assert progress.line(record).endswith("lost")
+
+
+def test_a_terminal_gets_a_live_line_that_goes_away(fake, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    stream = io.StringIO()
+    monkeypatch.setattr("hsr8.cli.progress.REFRESH", 0.0)
+    progress = Progress(30.0, stream)
+    assert HIDE_CURSOR not in stream.getvalue(), "a run that does not begin leaves the cursor"
+    progress.on_record(fake.record(2.0))
+    progress.on_event(1.0, "fall", "the robot has fallen")
+    assert "2.0 / 30.0 s" in stream.getvalue()
+    before = len(stream.getvalue())
+    progress.close("fall")
+    progress.close("fall")
+    assert "the robot has fallen" in stream.getvalue()
+    assert ERASE_LINE in stream.getvalue()[before:]
+    assert stream.getvalue().count(HIDE_CURSOR) == stream.getvalue().count(SHOW_CURSOR) == 1
+
+
+def test_a_run_that_goes_on_is_told_from_where_it_goes_on(walk, monkeypatch):
+    stream = io.StringIO()
+    monkeypatch.setattr("time.perf_counter", lambda: 0.0)
+    progress = Progress(60.0, stream)
+    monkeypatch.setattr("time.perf_counter", lambda: 5.0)
+    progress.recall([{"kind": "via_point"}, {"kind": "collision"}, {"kind": "fault"}])
+    assert "via points   1   collisions 1" in progress.line(next(walk(1.0)))
+    for record in walk(45.0):
+        if record.time > 32.0:
+            progress.on_record(record)
+    (line,) = stream.getvalue().splitlines()
+    assert line.split()[0] == "40.0"
+    assert "1.6x real time" in line  # 8 s in 5 s
+    assert "collisions 1" in line

@@ -1,0 +1,60 @@
+from math import atan, radians
+
+import numpy as np
+import pytest
+
+from hsr8.recorder.log.camera_layer import image_points, map_points
+from navigation.gaze.gaze_map import GazeGrid
+from navigation.parameters.gaze import GazeParameters
+
+FOCAL, SIZE = 160.0, (320, 240)
+
+
+@pytest.mark.parametrize("head", [(0.0, 0.0), (0.9, -0.6), (-1.2, 0.3)])
+def test_where_the_head_looks_is_the_middle_of_the_image(head):
+    assert image_points(head, np.array([head]), FOCAL, SIZE)[0] == pytest.approx([160.0, 120.0])
+
+
+def test_left_and_up_are_left_and_up_in_the_image():
+    angles = np.array([[atan(0.5), 0.0], [0.0, atan(0.5)]])
+    left, up = image_points((0.0, 0.0), angles, FOCAL, SIZE)
+    assert left == pytest.approx([80.0, 120.0])
+    assert up == pytest.approx([160.0, 40.0])
+
+
+def test_what_lies_beyond_the_image_is_on_its_border():
+    aside, above = image_points((0.0, -0.3), np.radians([[-85.0, 0.0], [0.0, 60.0]]), FOCAL, SIZE)
+    assert aside[0] == 320.0
+    assert above[1] == 0.0
+
+
+def test_nothing_is_drawn_of_what_is_behind():
+    assert image_points((0.0, 0.0), np.array([[radians(170.0), 0.0]]), FOCAL, SIZE) is None
+
+
+@pytest.mark.parametrize(
+    "gaze",
+    [GazeParameters(), GazeParameters(pan_limit=1.0, tilt_min=-0.8, tilt_max=0.11, step=0.13)],
+)
+def test_cells_of_the_gaze_map_are_where_its_picture_has_them(gaze):
+    grid = GazeGrid(
+        pan_limit=gaze.pan_limit,
+        tilt_min=gaze.tilt_min,
+        tilt_max=gaze.tilt_max,
+        step=gaze.step,
+        half_pan=0.5,
+        half_tilt=0.4,
+    )
+    rows, columns = len(grid.tilt), len(grid.pan)
+    pan, tilt = np.meshgrid(grid.pan, grid.tilt)
+    cells = np.column_stack([pan.ravel(), tilt.ravel()])
+    # The picture shows left on its left and up above.
+    v, u = np.mgrid[rows - 0.5 : 0.0 : -1.0, columns - 0.5 : 0.0 : -1.0]
+    found = map_points(cells, (rows, columns), gaze)
+    assert found == pytest.approx(np.column_stack([u.ravel(), v.ravel()]))
+
+
+def test_directions_beyond_the_gaze_map_are_on_its_border():
+    gaze = GazeParameters()
+    beyond = np.array([[gaze.pan_limit + 1.0, gaze.tilt_max + 1.0], [-3.0, -3.0]])
+    assert map_points(beyond, (17, 37), gaze).tolist() == [[0.0, 0.0], [37.0, 17.0]]

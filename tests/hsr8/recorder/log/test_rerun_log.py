@@ -1,0 +1,284 @@
+import gc
+import subprocess
+import sys
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rerun as rr
+from rerun.chunk import RrdReader
+
+from hsr8.errors import RecordingFailed
+from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.log_reader import Log
+from hsr8.recorder.log.rerun_log import PATIENCE, RerunLog
+from hsr8.recorder.log_level import LogLevel
+from hsr8.world.truth.truth import ActivePush
+from navigation.belief.belief import Particles
+from navigation.parameters.gaze import GazeParameters
+from walking.admission import AdmissionReport, Limit
+from walking.command import VelocityCommand
+
+
+@pytest.fixture(autouse=True)
+def strict():
+    """Rerun swallows its errors unless told otherwise."""
+    rr.set_strict_mode(True)
+    yield
+    rr.set_strict_mode(False)
+
+
+def _rows(path):
+    """Number of rows of every entity, static ones included."""
+    rows = Counter()
+    for chunk in RrdReader(str(path)).stream():
+        rows[str(chunk.entity_path)] += chunk.to_record_batch().num_rows
+    return rows
+
+
+@pytest.fixture
+def folder(tmp_path):
+    path = tmp_path / "7-abc"
+    path.mkdir()
+    return path
+
+
+def _logged(folder, model, layout, records, **options):
+    """Log of `records`."""
+    path = folder / "log.rrd"
+    listener = RerunLog(path, model, layout, (320, 240), "test 7", gaze=GazeParameters(), **options)
+    for record in records:
+        listener.on_record(record)
+    listener.close("goal")
+    return path
+
+
+@pytest.fixture
+def log(tmp_path, model, layout):
+    (tmp_path / "7-abc").mkdir()
+    path = tmp_path / "7-abc" / "log.rrd"
+    return path, RerunLog(path, model, layout, (320, 240), "test 7", gaze=GazeParameters())
+
+
+def test_a_run_is_logged_at_its_rates(log, walk):
+    path, listener = log
+    for record in walk(3.0):
+        listener.on_record(record)
+    listener.on_event(1.0, "collision", "l_sole touches obstacle 0")
+    listener.close("goal")
+    rows = _rows(path)
+    assert rows["/events"] == 2
+    # 17 Hz of poses, a third of the camera frames; one row more holds what never changes.
+    assert rows["/world/robot/ellipsoids"] == 51 + 1
+    assert rows["/plots/tilt"] == 51 + 1
+    assert rows["/world/camera/image"] == 17 + 1
+    assert rows["/belief/tracks"] == 17 + 1
+    assert rows["/belief/local_map"] >= 3
+    assert rows["/world/obstacles/cylinders"] == 1
+    assert rows["/world/beacons/cylinders"] == 1
+    assert rows["/world/movers"] == 51 + 1
+    assert rows["/plots/zmp_left"] == rows["/plots/torque_knee"] == 51 + 1
+    assert rows["/world/walking/points"] == 51 + 1
+    # The soles that carry are logged once a phase.
+    assert 9 <= rows["/world/walking/support"] <= 11
+
+
+def test_a_minimal_log_has_poses_curves_and_events_alone(folder, model, layout, walk):
+    rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.MINIMAL))
+    assert rows["/world/robot/ellipsoids"] == rows["/plots/tilt"] == 17 + 1
+    assert rows["/state/planner"] == 1 + 1
+    assert not [path for path in rows if path.startswith(("/belief", "/plan", "/gaze"))]
+    assert "/world/camera/image" not in rows
+
+
+def test_a_full_log_leaves_nothing_out(folder, model, layout, walk):
+    rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.FULL))
+    assert rows["/world/robot/ellipsoids"] == 51 + 1
+    assert rows["/world/camera/image"] == rows["/belief/tracks"] == 17 + 1
+    assert rows["/belief/local_map"] == 17 + 1
+    assert rows["/belief/particles"] == 17
+
+
+class Field:
+    """Leads ahead everywhere."""
+
+    def at(self, points):
+        return np.broadcast_to([2.0, 0.0], np.shape(points))
+
+
+def test_the_field_is_shown_while_there_is_one(folder, model, layout, fake):
+    records = []
+    for k, field in enumerate((Field(), None, None)):
+        frame = fake.frame(0.6 * k)
+        motion = replace(frame.motion, field=field)
+        frame = replace(frame, decided=replace(frame.decided, motion=motion))
+        records.append(fake.record(0.6 * k, frame=frame))
+    path = _logged(folder, model, layout, records)
+    arrows = _values(path, "/plan/field", "Arrows3D:vectors")
+    ways = _values(path, "/plan/way", "LineStrips3D:strips")
+    assert [time for time, _ in arrows] == [time for time, _ in ways] == [0.0, 0.6]
+    assert np.array(arrows[0][1]) == pytest.approx(
+        np.tile([0.13, 0.0, 0.0], (len(arrows[0][1]), 1))
+    )
+    assert len(ways[0][1]) == 1
+    assert arrows[1][1] == ways[1][1] == []
+    assert len(_values(path, "/plan/decision", "Arrows3D:vectors")) == 3
+
+
+def test_particles_show_where_a_lost_mover_may_be(folder, model, layout, fake):
+    places = np.array([[1.0, 0.5], [1.2, -0.5]])
+    cloud = Particles(places, np.zeros((2, 2)), np.zeros(2), np.array([0.1, 0.9]))
+    lost = replace(fake.track(2, 0.0), particles=cloud)
+    record = fake.record(0.0, frame=fake.frame(0.0, tracks=(fake.track(0, 0.0), lost)))
+    path = _logged(folder, model, layout, [record])
+    ((_, shown),) = _values(path, "/belief/particles", "Points3D:positions")
+    assert np.array(shown)[:, :2] == pytest.approx(places)
+    ((_, radii),) = _values(path, "/belief/particles", "Points3D:radii")
+    assert radii[0] < radii[1]
+
+
+@pytest.mark.parametrize("level", LogLevel)
+def test_a_finished_log_is_verified_by_rerun(folder, model, layout, walk, level):
+    program = Path(sys.executable).with_name("rerun")
+    if not program.exists():
+        pytest.skip("there is no rerun executable")
+    path = _logged(folder, model, layout, walk(0.5), level=level)
+    done = subprocess.run(
+        [program, "rrd", "verify", path], check=False, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_viewer_is_shown_what_the_file_holds(folder, model, layout, walk, monkeypatch):
+    asked = []
+
+    def viewer(address):
+        asked.append(address)
+        return rr.FileSink(str(folder / "live.rrd"))
+
+    monkeypatch.setattr(rr, "GrpcSink", viewer)
+    address = "rerun+http://127.0.0.1:1/proxy"
+    path = _logged(folder, model, layout, walk(0.5), live=address)
+    assert asked == [address]
+    assert _rows(folder / "live.rrd") == _rows(path)
+
+
+@pytest.mark.filterwarnings("ignore:RRD file has no footer")
+def test_without_an_index_the_log_holds_the_same(tmp_path, model, layout, walk):
+    logs = []
+    for name, index in (("with", True), ("without", False)):
+        (tmp_path / name).mkdir()
+        logs.append(_logged(tmp_path / name, model, layout, walk(0.5), index=index))
+    with_index, without = logs
+    assert _rows(with_index) == _rows(without)
+    assert with_index.stat().st_size > without.stat().st_size
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted on Linux")
+def test_logs_one_after_the_other_leave_no_threads(folder, model, layout, walk):
+    counts = []
+    for _ in range(4):
+        _logged(folder, model, layout, walk(0.1))
+        gc.collect()
+        counts.append(len(list(Path("/proc/self/task").iterdir())))
+    assert counts[-1] == counts[1]
+
+
+def test_a_log_that_takes_no_more_is_left_and_not_waited_for(log, walk, monkeypatch):
+    _, listener = log
+    left, asked = [], []
+
+    def stalled(stream, *, timeout_sec):
+        asked.append(timeout_sec)
+        if timeout_sec > 0.0:
+            raise RuntimeError("timed out")
+
+    monkeypatch.setattr(BlockStream, "flush", stalled)
+    monkeypatch.setattr(BlockStream, "disconnect", lambda stream: pytest.fail("waits for ever"))
+    monkeypatch.setattr("hsr8.recorder.log.block_stream.ABANDONED", left)
+    monkeypatch.setattr(rr, "unregister_shutdown", lambda: left.append("at the end of the process"))
+    for record in walk(0.1):
+        listener.on_record(record)
+    with pytest.raises(RecordingFailed, match="timed out"):
+        listener.close("goal")
+    assert [type(entry) for entry in left] == [BlockStream, str]
+    listener.close("goal")  # at once, without another wait
+    assert [timeout for timeout in asked if timeout > 0.0] == [PATIENCE]
+
+
+def test_nothing_believed_nothing_seen_is_logged_too(log, fake):
+    path, listener = log
+    frame = fake.frame(0.0, tracks=(), image=None)
+    listener.on_record(fake.record(0.0, frame=frame, zmp=np.full(2, np.nan), clearance=np.inf))
+    listener.close("completed")
+    assert _rows(path)["/belief/tracks"] == 2
+
+
+@pytest.mark.filterwarnings("ignore:RRD file has no footer")  # a kill leaves none
+def test_a_killed_run_leaves_a_log_that_opens(tmp_path):
+    """The process is ended by the system, without a chance to finish the file."""
+    script = """
+import os, sys, rerun as rr
+from hsr8.recorder.log.block_stream import BlockStream
+from hsr8.recorder.log.channel import Channel
+stream = BlockStream("killed")
+stream.save(sys.argv[1])
+channel = Channel(stream, "/plots/x", rr.Scalars.columns)
+for k in range(100):
+    channel.add(0.02 * k, scalars=[float(k)])
+    if k % 50 == 49:
+        channel.flush()
+stream.send()
+stream.flush()
+os.kill(os.getpid(), 9)
+"""
+    file = tmp_path / "log.rrd"
+    done = subprocess.run([sys.executable, "-c", script, str(file)], check=False, timeout=60)
+    assert done.returncode == -9
+    assert _rows(file)["/plots/x"] == 100
+    assert Log([file]).table("/plots/x").array()[:, 0].tolist() == list(range(100))
+
+
+def _values(path, entity, component="Scalars:scalars"):
+    """Times [s] and values of one component."""
+    found = []
+    for chunk in RrdReader(str(path)).stream():
+        batch = chunk.to_record_batch()
+        if str(chunk.entity_path) == entity and component in batch.schema.names:
+            if "sim_time" not in batch.schema.names:
+                continue
+            times = batch.column("sim_time").to_numpy().astype("timedelta64[ns]")
+            found += zip(
+                times / np.timedelta64(1, "s"), batch.column(component).to_pylist(), strict=True
+            )
+    return sorted(found)
+
+
+def test_pushes_and_altered_commands_are_logged_when_they_change(log, fake):
+    path, listener = log
+    asked, given = VelocityCommand(0.5), VelocityCommand(0.3)
+    altered = AdmissionReport(asked, given, (Limit.SPEED, Limit.LANDING_FROZEN))
+    routine = AdmissionReport(given, given, (Limit.LANDING_FROZEN,))
+    push = ActivePush(
+        0, 0.2, 0.05, "torso_link", 0.0, np.array([0.0, 0.0, 0.3]), np.array([4.0, 0.0, 0.0])
+    )
+    for k in range(50):
+        record = fake.record(0.02 * k, pushes=(push,) if 10 <= k < 13 else ())
+        report = altered if 20 <= k < 30 else routine
+        listener.on_record(replace(record, walking=replace(record.walking, admission=report)))
+    listener.close("completed")
+    rows = _rows(path)
+    assert rows["/world/pushes"] == 3 + 1 + 1
+    assert rows["/admission"] == 2
+
+
+def test_the_achieved_velocity_is_logged_once_a_footstep(log, walk):
+    path, listener = log
+    for record in walk(4.0):
+        listener.on_record(record)
+    listener.close("goal")
+    values = _values(path, "/plots/speed_forward/achieved")
+    assert len(values) >= 9
+    assert [v[1][0] for v in values] == pytest.approx([0.2] * len(values))

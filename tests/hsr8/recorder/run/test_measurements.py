@@ -1,0 +1,54 @@
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hsr8.recorder.run.fingerprints import decision_fingerprints, fingerprints
+from hsr8.recorder.run.measurements import MeasurementWriter, read_measurements
+from navigation.observation import Observation
+
+finite = st.floats(allow_nan=False, allow_infinity=False, width=64)
+
+
+@given(
+    numbers=st.lists(finite, min_size=10, max_size=10),
+    label=st.text(min_size=1, max_size=12),
+    flags=st.tuples(st.booleans(), st.booleans(), st.booleans()),
+)
+def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
+    beacon, cut, occluded = flags
+    seen = Observation(
+        "beacon" if beacon else "obstacle",
+        label,
+        *numbers[:2],
+        np.array(numbers[2:6]).reshape(2, 2),
+        *numbers[6:8],
+        cut,
+        occluded,
+        np.array(numbers[8:]),
+    )
+    file = tmp_path_factory.mktemp("m") / "m"
+    frame = fake.frame(0.06, (0.1, 0.2, 0.3))
+    frame = replace(frame, measured=replace(frame.measured, observations=(seen,)))
+    writer = MeasurementWriter(file)
+    writer.add(frame)
+    writer.close()
+    (back,) = read_measurements(file, whole=True)
+    a, b = back.frame, frame.measured
+    assert a.time == b.time
+    for name in ("odometry", "motion_covariance"):
+        assert np.array_equal(getattr(a, name), getattr(b, name))
+    assert np.array_equal(a.view.rotation, b.view.rotation)
+    assert np.array_equal(a.view.position, b.view.position)
+    assert (a.view.pan, a.view.tilt, a.view.yaw_sigma) == (b.view.pan, b.view.tilt, 0.0)
+    (found,) = a.observations
+    assert np.array_equal(found.covariance, seen.covariance)
+    assert np.array_equal(found.by_radius, seen.by_radius)
+    assert replace(found, covariance=seen.covariance, by_radius=seen.by_radius) == seen
+    assert back.fingerprints == fingerprints(frame.estimate)
+    assert back.decided == decision_fingerprints(frame.decided)
+    assert (back.now.time, back.now.step_count) == (frame.now.time, frame.now.step_count)
+    assert np.array_equal(back.now.odometry, frame.now.odometry)
+    assert np.array_equal(back.now.view.rotation, frame.now.view.rotation)
+    assert back.fresh == frame.decided.fresh

@@ -1,0 +1,153 @@
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hsr8.errors import UsageError
+from hsr8.recorder.run import run_folder
+from hsr8.recorder.run.manifest import FORMAT, Manifest
+from hsr8.recorder.run.run_folder import RunFolder, write_metrics
+from hsr8.recorder.run.run_reader import open_run
+
+
+@pytest.fixture
+def folder(tmp_path):
+    path = RunFolder.create(tmp_path, "quick", 7)
+    manifest = Manifest.now("quick", 7, ("hsr8", "run", "quick", "--seed", "7"), "analytic")
+    return RunFolder(path, manifest, 'name = "quick"\n', movers=1)
+
+
+def test_folders_of_equal_runs_are_different(tmp_path):
+    paths = {RunFolder.create(tmp_path, "quick", 7) for _ in range(20)}
+    assert len(paths) == 20
+    assert all(p.parent == tmp_path / "quick" and p.name.startswith("7-") for p in paths)
+
+
+def test_a_finished_run_can_be_read_back(folder, walk, fake):
+    for record in walk(1.0):
+        folder.on_record(record)
+    folder.on_event(0.5, "collision", "l_sole touches obstacle 0")
+    folder.close("goal")
+    write_metrics(folder.path, {"success": True, "time_to_goal_s": float("nan")})
+    run = open_run(folder.path)
+    assert run.seed == 7
+    assert run.manifest["exit_reason"] == "goal"
+    assert run.manifest["libraries"]["mujoco"].startswith("4.0")
+    assert run.metrics() == {"success": True, "time_to_goal_s": None}
+    assert [e["kind"] for e in run.events()] == ["collision"]
+    trajectory = run.trajectory()
+    assert len(trajectory) == 51
+    assert trajectory.qpos[50, 0] == pytest.approx(0.2)
+    assert np.array_equal(
+        trajectory.movers[:, 0], [r.truth.obstacle_positions[2] for r in walk(1.0)]
+    )
+    assert [f.time for f in run.frames()] == pytest.approx([0.06 * k for k in range(17)])
+    assert run.scenario_file.read_text() == 'name = "quick"\n'
+
+
+def test_the_next_log_never_takes_the_place_of_one_that_is_there(tmp_path):
+    """Also where those of earlier parts were removed."""
+    assert run_folder.logs(tmp_path) == []
+    assert run_folder.next_log(tmp_path).name == "log.rrd"
+    for name in ("log.rrd", "log-2.rrd", "log-10.rrd", "log-old.rrd"):
+        (tmp_path / name).touch()
+    assert [file.name for file in run_folder.logs(tmp_path)] == [
+        "log.rrd",
+        "log-2.rrd",
+        "log-10.rrd",
+    ]
+    (tmp_path / "log.rrd").unlink()
+    assert run_folder.next_log(tmp_path).name == "log-11.rrd"
+
+
+def test_a_killed_run_can_be_read_up_to_its_last_second(folder, walk):
+    for record in walk(2.5):
+        folder.on_record(record)
+    folder.on_event(0.5, "via_point", "via point 1 passed")
+    # Nothing is closed: what is on the disk now is what a kill leaves.
+    with (folder.path / run_folder.EVENTS).open("a") as events:
+        events.write('{"time": 2.4, "ki')
+    run = open_run(folder.path)
+    assert run.manifest["exit_reason"] == "running"
+    assert run.metrics() == {}
+    assert [e["kind"] for e in run.events()] == ["via_point"]
+    assert run.trajectory().time[-1] >= 1.5
+    assert run.frames()[-1].time >= 1.5
+
+
+def test_a_run_without_a_camera_frame_has_none(folder, fake):
+    folder.on_record(fake.record(0.0))
+    folder.close("completed")
+    assert open_run(folder.path).frames() == ()
+
+
+def test_the_newest_run_below_a_folder_is_meant(tmp_path):
+    for age, seed in ((300, 1), (100, 2), (200, 3)):
+        path = RunFolder.create(tmp_path, "quick", seed)
+        file = path / run_folder.MANIFEST
+        Manifest.now("quick", seed, (), "analytic").write(file)
+        os.utime(file, (1e9 - age, 1e9 - age))
+    assert open_run(tmp_path).seed == 2
+    assert open_run(tmp_path / "quick").seed == 2
+
+
+def test_no_run_is_a_usage_error_that_names_the_runs_there_are(tmp_path):
+    path = RunFolder.create(tmp_path, "quick", 1)
+    with pytest.raises(UsageError, match="holds no run"):
+        open_run(path)
+    with pytest.raises(UsageError, match=path.name):
+        open_run(tmp_path / "quick" / "1-abc")
+
+
+def test_a_name_that_no_folder_can_have_is_a_usage_error():
+    with pytest.raises(UsageError, match="too long"):
+        open_run(Path("a" * 5000))
+
+
+def test_a_manifest_that_is_gone_is_no_run(tmp_path):
+    (tmp_path / run_folder.MANIFEST).symlink_to(tmp_path / "gone")
+    with pytest.raises(UsageError, match="holds no run"):
+        open_run(tmp_path)
+
+
+def test_a_broken_manifest_is_a_usage_error(tmp_path):
+    for text in ("{", json.dumps([1]), "{}", json.dumps({"seed": "one"})):
+        (tmp_path / run_folder.MANIFEST).write_text(text)
+        with pytest.raises(UsageError, match="cannot read"):
+            open_run(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("number", "message"),
+    [
+        (None, f"is a run folder of format 1, .* reads format {FORMAT}: run the scenario again"),
+        (FORMAT + 1, f"is a run folder of format {FORMAT + 1}, .* reads format {FORMAT}"),
+        ("two", "its format is no number"),
+    ],
+)
+def test_a_folder_of_another_format_is_refused_by_its_number(folder, number, message):
+    file = folder.path / run_folder.MANIFEST
+    manifest = json.loads(file.read_text())
+    assert manifest.pop("format") == FORMAT
+    file.write_text(json.dumps(manifest | ({"format": number} if number else {})))
+    with pytest.raises(UsageError, match=message):
+        open_run(folder.path)
+
+
+@pytest.mark.parametrize("name", [run_folder.EVENTS, run_folder.FRAMES])
+def test_a_damaged_line_is_a_usage_error(folder, fake, name):
+    folder.on_record(fake.record(0.0, frame=fake.frame(0.0)))
+    folder.close("completed")
+    with (folder.path / name).open("a") as file:
+        file.write("{}\n")
+    run = open_run(folder.path)
+    with pytest.raises(UsageError, match=name):
+        run.events() if name == run_folder.EVENTS else run.frames()
+
+
+def test_a_folder_that_cannot_be_made_is_a_usage_error(tmp_path):
+    (tmp_path / "runs").write_text("a file, not a folder")
+    with pytest.raises(UsageError, match="--out"):
+        RunFolder.create(tmp_path / "runs", "quick", 1)

@@ -1,0 +1,101 @@
+import os
+import shutil
+
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder, write_metrics
+from hsr8.recorder.run.run_reader import open_run
+
+COMMANDS = [
+    ["info"],
+    ["info", "--json"],
+    ["diff", "SAME"],
+    ["compare", "SAME"],
+    ["check", "replay"],
+    ["plot"],
+    ["bug-report", "--out", "report.zip"],
+    ["run", "--resume"],
+]
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    out = tmp_path_factory.mktemp("runs")
+    words = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "1"]
+    entry([*words, "--no-log", "--quiet", "--out", str(out)])
+    return open_run(out).path
+
+
+def said(command, run, capsys):
+    """Exit code and what a command says of a run."""
+    words = [str(run) if word == "SAME" else word for word in command]
+    place = 2 if words[:2] == ["check", "replay"] else 1
+    code = entry([*words[:place], str(run), *words[place:]])
+    return code, capsys.readouterr().err
+
+
+def spoil(file, kind):
+    file.unlink(missing_ok=True)
+    if kind == "folder":
+        file.mkdir()
+    elif kind == "pipe":
+        os.mkfifo(file)
+    else:
+        file.touch(mode=0o000)
+
+
+@pytest.mark.timeout(60)  # who opens a pipe waits for ever
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+@pytest.mark.parametrize("kind", ["folder", "pipe", "unreadable"])
+def test_what_cannot_be_read_is_one_clear_error(
+    recorded, tmp_path, monkeypatch, capsys, command, kind
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("hsr8.cli.bug_report.examine", list)
+    for name in sorted(file.name for file in recorded.iterdir()):
+        run = shutil.copytree(recorded, tmp_path / "run")
+        spoil(run / name, kind)
+        if kind == "unreadable" and os.access(run / name, os.R_OK):
+            pytest.skip("root may read everything")
+        code, told = said(command, run, capsys)
+        assert code in (0, 2) or (code == 1 and "diff" in command)
+        assert "internal error" not in told
+        if code == 2:
+            assert told.count("hsr8: ") == 1
+        if kind == "pipe":
+            assert code == 2
+            assert f"{name} is no file" in told or "holds no run" in told
+        shutil.rmtree(run)
+        (tmp_path / "report.zip").unlink(missing_ok=True)
+
+
+def test_a_sweep_that_may_not_be_looked_at_is_one_clear_error(tmp_path, capsys):
+    closed = tmp_path / "closed"
+    closed.mkdir(mode=0o000)
+    if os.access(closed, os.R_OK):
+        pytest.skip("root may read everything")
+    assert entry(["compare", str(closed), str(closed)]) == 2
+    assert capsys.readouterr().err == f"hsr8: cannot read {closed}: Permission denied\n"
+
+
+def test_only_a_run_that_ended_must_be_whole(tmp_path, walk):
+    for end, ended in (
+        ("goal", True),
+        ("fall", True),
+        ("diverged", True),
+        ("running", False),
+        ("failed", False),
+        ("interrupted", False),
+        ("error", False),
+    ):
+        path = RunFolder.create(tmp_path, "quick", 7)
+        folder = RunFolder(path, Manifest.now("quick", 7, (), "analytic"), "", movers=1)
+        for record in walk(1.0):
+            folder.on_record(record)
+        folder.close(end)
+        write_metrics(path, {"sim_time_s": 1.0, "camera_frames": 17})
+        run = open_run(path)
+        assert run.ended == ended
+        assert (len(run.trajectory()), len(run.frames())) == (51, 17)

@@ -1,0 +1,100 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from hsr8.errors import UsageError
+from hsr8.recorder.run.tape import TapeWriter, read_tape
+
+ROWS = hnp.arrays(
+    np.float64,
+    st.tuples(st.integers(1, 3), st.just(26)),
+    elements=st.floats(allow_nan=False, width=64),
+)
+
+
+def write(file, blocks):
+    tape = TapeWriter(file)
+    tick = 0
+    for rows in blocks:
+        tape.mark(tick, b"world%d" % tick, b"robot")
+        for row in rows:
+            tape.add(row)
+        tick += len(rows)
+    tape.mark(tick, b"end", b"robot")
+    tape.close()
+
+
+@given(blocks=st.lists(ROWS, min_size=1, max_size=3))
+def test_round_trip_is_exact(tmp_path_factory, blocks):
+    file = tmp_path_factory.mktemp("t") / "tape.bin"
+    write(file, blocks)
+    *back, end = read_tape(file, whole=True)
+    assert [b.set_points.tobytes() for b in back] == [rows.tobytes() for rows in blocks]
+    assert [b.tick for b in back] == np.cumsum([0, *map(len, blocks)])[:-1].tolist()
+    assert end.set_points.shape == (0, 26)
+    assert len({b.world for b in (*back, end)}) == len(back) + 1
+
+
+def test_world_and_robot_have_hashes_of_their_own(tmp_path):
+    def hashes(world, robot):
+        file = tmp_path / f"{world!r}{robot!r}"
+        file.unlink(missing_ok=True)
+        tape = TapeWriter(file)
+        tape.mark(0, world, robot)
+        tape.close()
+        (block,) = read_tape(file, whole=True)
+        return block.world, block.robot
+
+    first = hashes(b"a", b"b")
+    assert hashes(b"a", b"b") == first
+    assert hashes(b"a", b"c")[0] == first[0]
+    assert hashes(b"a", b"c")[1] != first[1]
+    assert hashes(b"x", b"b")[0] != first[0]
+
+
+def test_a_second_mark_without_ticks_replaces_the_first(tmp_path):
+    tape = TapeWriter(tmp_path / "t")
+    tape.mark(0, b"a", b"")
+    tape.mark(0, b"b", b"")
+    tape.close()
+    assert len(read_tape(tmp_path / "t", whole=True)) == 1
+
+
+def test_a_tape_is_gone_on_with(tmp_path):
+    rows = np.arange(52.0).reshape(2, 26)
+    for tick in (0, 1):
+        tape = TapeWriter(tmp_path / "t")
+        tape.mark(tick, b"w", b"r")
+        tape.add(rows[tick])
+        tape.close()
+    back = read_tape(tmp_path / "t", whole=True)
+    assert np.array_equal(np.concatenate([b.set_points for b in back]), rows)
+    assert [b.tick for b in back] == [0, 1]
+
+
+@given(cut=st.integers(9, 1000), whole=st.booleans())
+def test_a_tape_cut_anywhere_loses_its_last_block_alone(tmp_path_factory, cut, whole):
+    file = tmp_path_factory.mktemp("t") / "tape.bin"
+    write(file, [np.ones((2, 26)), np.ones((1, 26))])
+    content = file.read_bytes()
+    ends = [8, 8 + 48 + 2 * 208, 8 + 2 * 48 + 3 * 208, len(content)]
+    cut = min(cut, len(content))
+    file.write_bytes(content[:cut])
+    if whole and cut not in ends:
+        with pytest.raises(UsageError, match="cut off"):
+            read_tape(file, whole=True)
+    else:
+        assert len(read_tape(file, whole=whole)) == sum(end <= cut for end in ends[1:])
+
+
+@given(place=st.integers(8, 500), value=st.integers(1, 255))
+def test_damage_is_never_read_as_data(tmp_path_factory, place, value):
+    file = tmp_path_factory.mktemp("t") / "tape.bin"
+    write(file, [np.ones((2, 26)), np.ones((1, 26))])
+    content = bytearray(file.read_bytes())
+    content[place] ^= value
+    file.write_bytes(content)
+    with pytest.raises(UsageError, match=r"damaged|cut off"):
+        read_tape(file, whole=True)

@@ -1,0 +1,146 @@
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from hsr8.errors import UsageError
+from hsr8.recorder.run.walking_table import (
+    COLUMNS,
+    OdometryToWorld,
+    WalkingTableWriter,
+    _row_type,
+    read_walking_table,
+)
+from hsr8.world.model.index import ModelIndex
+from hsr8.world.truth.truth import ActivePush
+from walking.admission import AdmissionReport, Limit
+from walking.body.odometry import Odometry
+from walking.command import VelocityCommand
+
+
+@pytest.fixture
+def written(tmp_path, model, walk):
+    """A walk of one second, its file, and its records."""
+    path, records = tmp_path / "walking.bin", list(walk(1.0))
+    writer = WalkingTableWriter(path, model, ModelIndex.of(model, 2, 1))
+    for record in records:
+        writer.on_record(record)
+    writer.close("goal")
+    return path, records
+
+
+def test_what_was_recorded_is_read_back(written):
+    path, records = written
+    table = read_walking_table(path)
+    assert table.time.tolist() == [r.time for r in records]
+    assert set(table.columns) == set(COLUMNS)
+    assert table["robot_x"] == pytest.approx([r.truth.robot[0] for r in records])
+    assert table["given_vx"] == pytest.approx([0.2] * len(records))
+    assert table["left_y"] == pytest.approx([0.042] * len(records))
+    assert table["left_force"] == pytest.approx([17.0] * len(records))
+    assert table.sole == pytest.approx((0.01, 0.0525, 0.03))
+    assert table.torque_limit["l_knee"] == 6.0
+
+
+def test_a_column_that_there_is_not_is_told_with_those_there_are(written):
+    table = read_walking_table(written[0])
+    for ask in (lambda: table["zmp"], lambda: table.points("zpm")):
+        with pytest.raises(KeyError, match=r"no column 'z.*zmp_x, zmp_y"):
+            ask()
+
+
+def test_a_cut_file_loses_its_last_row(written):
+    path, records = written
+    path.write_bytes(path.read_bytes()[:-5])
+    assert len(read_walking_table(path)) == len(records) - 1
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [("time", np.nan), ("roll", np.inf), ("phase", np.nan), ("phase", 99.0), ("limits", -np.inf)],
+)
+def test_a_row_that_no_run_writes_is_told(written, column, value):
+    path, records = written
+    rows = _row_type(len(COLUMNS))
+    content = path.read_bytes()
+    start = len(content) - len(records) * rows.itemsize
+    table = np.frombuffer(content[start:], rows).copy()
+    if column == "time":
+        table["time"][7] = value
+    else:
+        table["values"][7, COLUMNS.index(column)] = value
+    path.write_bytes(content[:start] + table.tobytes())
+    with pytest.raises(UsageError, match="is damaged in row 7"):
+        read_walking_table(path)
+
+
+def test_a_window_holds_both_ends(written):
+    table = read_walking_table(written[0]).window(0.2, 0.4)
+    assert table.time[[0, -1]].tolist() == pytest.approx([0.2, 0.4])
+    assert len(table["phase"]) == len(table) == 11
+
+
+def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
+    asked = VelocityCommand(0.5)
+    report = AdmissionReport(asked, asked, (Limit.SPEED, Limit.BALANCE, Limit.SPEED))
+    push = ActivePush(
+        0, 0.0, 0.05, "torso_link", 0.0, np.array([0.1, 0.2, 0.3]), np.array([1.0, -2.0, 0.0])
+    )
+    records = [fake.record(0.0), fake.record(0.02, pushes=(push,))]
+    records[1] = replace(records[1], walking=replace(records[1].walking, admission=report))
+    writer = WalkingTableWriter(tmp_path / "w.bin", model, ModelIndex.of(model, 2, 1))
+    for record in records:
+        writer.on_record(record)
+    writer.close("goal")
+    table = read_walking_table(tmp_path / "w.bin")
+    assert {k: v.tolist() for k, v in table.bound().items()} == {
+        Limit.SPEED: [False, True],
+        Limit.BALANCE: [False, True],
+    }
+    assert table["push_fy"].tolist() == [0.0, -2.0]
+    assert table["push_z"] == pytest.approx([0.0, 0.3])
+
+
+def test_the_odometry_frame_is_put_where_the_robot_is(fake):
+    record = fake.record(0.0, (1.0, 2.0, pi / 2))
+    walking = replace(record.walking, odometry=Odometry(0.5, 0.0, 0.0, np.eye(3)))
+    there = OdometryToWorld([replace(record, walking=walking), fake.record(0.02)])
+    assert there.turn.tolist() == [pi / 2, 0.0]
+    points = np.array([[[0.5, 0.0], [0.6, 0.0]], [[0.5, 0.0], [0.6, 0.0]]])
+    placed = there.point(points)
+    assert placed[0] == pytest.approx(np.array([[1.0, 2.0], [1.0, 2.1]]))
+    assert placed[1] == pytest.approx(points[1])
+    assert there.point(points[0], np.array([0, 0])) == pytest.approx(placed[0])
+    assert there.vector(np.array([[1.0, 0.0]] * 2)) == pytest.approx(np.array([[0, 1], [1, 0]]))
+
+
+@pytest.mark.parametrize(
+    ("content", "wanted"),
+    [
+        (None, "run it again"),
+        (b"HSR8TRJ1", "no walking table"),
+        (b"HSR8WLK1" + b"x" * 8, "no whole header"),
+    ],
+)
+def test_no_table_is_told(tmp_path, content, wanted):
+    path = tmp_path / "walking.bin"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(UsageError, match=wanted):
+        read_walking_table(path)
+
+
+def test_a_table_cut_in_its_header_is_refused(tmp_path, model):
+    path = tmp_path / "walking.bin"
+    WalkingTableWriter(path, model, ModelIndex.of(model, 2, 1)).close("killed")
+    path.write_bytes(path.read_bytes()[:-1])
+    with pytest.raises(UsageError, match="no whole header"):
+        read_walking_table(path)
+
+
+def test_a_table_of_other_columns_is_told(written):
+    path, _ = written
+    path.write_bytes(path.read_bytes().replace(b'"zmp_depth"', b'"zmp_deepn"'))
+    with pytest.raises(UsageError, match="no column zmp_depth"):
+        read_walking_table(path)
