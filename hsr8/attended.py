@@ -1,6 +1,6 @@
 """A process that ends with the one that started it, even if that one is killed.
 
-python -m hsr8.attended PARENT PROGRAM ARGUMENT...
+python attended.py PARENT PROGRAM ARGUMENT...
 """
 
 import ctypes
@@ -28,7 +28,8 @@ def ends_with(parent: int) -> bool:
 
 def attended(command: Sequence[str]) -> list[str]:
     """Command line of a process that becomes `command`, and ends with this process."""
-    return [sys.executable, "-m", "hsr8.attended", str(os.getpid()), *command]
+    alone = (sys.executable, "-I", "-S", __file__)  # not with modules of the present folder
+    return [*alone, str(os.getpid()), *command]
 
 
 def main(arguments: list[str]) -> int:

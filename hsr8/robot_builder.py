@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 
 from hsr8.decisions import Decisions, GazeController, Goes, MotionPlanner
-from hsr8.errors import UsageError
+from hsr8.errors import ScenarioError, UsageError
 from hsr8.own_decisions import OwnGaze, OwnPlanner
 from hsr8.own_file import made_from
 from hsr8.robot import Robot
@@ -24,6 +24,7 @@ from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.own_body import BodyPart
 from walking.body.robot_model import RobotModel
+from walking.parameters import WalkingParameters
 from walking.similarity import parameters_for
 from walking.walker import Walker
 
@@ -34,6 +35,7 @@ ARM_Y = (0.087, 0.096, 0.106)
 ARM_Z = (0.378, 0.305, 0.225)
 ARM_RADII = (0.029, 0.032, 0.045)
 ALL_ROUND = (2.0 * pi, pi)  # field of view of a camera that sees everything [rad]
+MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
 START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m, m, rad]
 
 
@@ -58,7 +60,7 @@ def build_robot(
     body = robot_model()
     script = build_script(scenario, named_rng(seed, "command"))
     return Robot(
-        walking=Walker(body, parameters_for(body, scenario.walking)),
+        walking=Walker(body, walking_parameters(body, scenario)),
         fov=field_of_view(scenario, camera),
         vision=Detector(camera, scenario.vision, arms()),
         pose=scenario.vision.pose,
@@ -67,6 +69,24 @@ def build_robot(
         decisions=build_decisions(scenario, layout, seed, script, planner=planner, gaze=gaze),
         script=script,
     )
+
+
+def walking_parameters(body: RobotModel, scenario: Scenario) -> WalkingParameters:
+    """Parameters of walking for the robot `body`.
+
+    Raises:
+        ScenarioError: a margin leaves nothing of its soles.
+    """
+    parameters = parameters_for(body, scenario.walking)
+    half = body.sole.half_width
+    for section, margin in MARGINS:
+        kept = getattr(getattr(parameters, section), margin)
+        if kept >= half:
+            raise ScenarioError(
+                f"walking.{section}.{margin}: {kept:g} must be below half the width of the "
+                f"robot's sole, {half:g}"
+            )
+    return parameters
 
 
 @reading_models()

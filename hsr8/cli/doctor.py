@@ -75,7 +75,7 @@ def probe(backend: str) -> str | None:
     environment.pop("PYOPENGL_PLATFORM", None)
     try:
         tried = subprocess.run(
-            [sys.executable, "-c", PROBE],
+            [sys.executable, "-P", "-c", PROBE],
             env=environment,
             capture_output=True,
             text=True,

@@ -46,7 +46,7 @@ def verify(folder: Path) -> Verified:
     out = Path(tempfile.mkdtemp(prefix="hsr8-verify-"))
     difference = ""
     try:
-        words = [sys.executable, "-m", "hsr8", "run", str(first.scenario_file)]
+        words = [sys.executable, "-P", "-m", "hsr8", "run", str(first.scenario_file)]
         words += ["--no-log", "--quiet", "--out", str(out)]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         if done.returncode not in ENDED:

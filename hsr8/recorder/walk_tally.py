@@ -49,7 +49,7 @@ class WalkTally:
             self.altered += 1
             for limit in dict.fromkeys(limits):  # several parts may tell of the same
                 self.by_limit[limit] += 1
-        depth = walking.zmp_depth
+        depth = float(walking.zmp_depth)  # NumPy's where no kernel is compiled
         self.least_depth = min(self.least_depth, depth)
         self.outside += depth < -ROUNDING
 

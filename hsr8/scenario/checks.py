@@ -13,7 +13,6 @@ from hsr8.scenario.section import Point
 from hsr8.scenario.toml_lines import Path
 from hsr8.scenario.world import ROBOT_RADIUS, CircleMover, Mover, ShuttleMover
 from vision.errors import VisionError
-from walking.robot_measures import HSR_VIII
 
 MOST_CELLS = 1000
 """Largest side of the local map, which every frame goes through [cells]."""
@@ -29,7 +28,6 @@ NOT_ABOVE: tuple[tuple[Path, str, str], ...] = (
     (("navigation", "univector"), "side_clear", "side_set"),
     (("navigation", "evaluation"), "d_nm", "d_fm"),
 )
-MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
 
 
 def check(scenario: Scenario) -> list[Problem]:
@@ -38,7 +36,6 @@ def check(scenario: Scenario) -> list[Problem]:
         *_speeds(scenario),
         *_colours(scenario),
         *_ordered(scenario),
-        *_sole(scenario),
         *_local_map(scenario),
         *magnitudes(scenario),
         *_mission(scenario),
@@ -92,17 +89,6 @@ def _bounds(scenario: Scenario, section: Path, lower: str, upper: str) -> tuple[
     for key in section:
         part = getattr(part, str(key))
     return getattr(part, lower), getattr(part, upper)
-
-
-def _sole(scenario: Scenario) -> Iterator[Problem]:
-    """Of a sole something is left within its margin."""
-    for section, margin in MARGINS:
-        kept = getattr(getattr(scenario.walking, section), margin)
-        if kept >= HSR_VIII.sole:
-            yield Problem(
-                ("walking", section, margin),
-                f"{kept:g} must be below half the width of a sole, {HSR_VIII.sole:g}",
-            )
 
 
 def _local_map(scenario: Scenario) -> Iterator[Problem]:

@@ -47,3 +47,9 @@ def test_a_program_that_is_attended_ends_with_its_parent():
 def test_a_program_that_is_attended_keeps_its_exit_code():
     words = attended(["/bin/sh", "-c", "exit 7"])
     assert subprocess.run(words, check=False, timeout=60).returncode == 7
+
+
+def test_modules_of_the_present_folder_are_not_its_own(tmp_path):
+    (tmp_path / "signal.py").write_text("raise SystemExit('not this one')")
+    words = attended(["/bin/sh", "-c", "exit 7"])
+    assert subprocess.run(words, check=False, timeout=60, cwd=tmp_path).returncode == 7

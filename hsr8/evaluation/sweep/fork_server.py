@@ -18,7 +18,7 @@ from typing import IO, Any
 
 from hsr8.evaluation.sweep.process import environment
 
-COMMAND = [sys.executable, "-m", "hsr8.cli.fork_server"]
+COMMAND = [sys.executable, "-P", "-m", "hsr8.cli.fork_server"]
 LONGEST = 1 << 16  # of a message [bytes]
 LOADING = 300.0  # it has loaded by then, or hangs, wall time [s]
 SAID = 2000  # characters kept of what it said at its end

@@ -159,7 +159,7 @@ def read_log(run: Run | str | Path) -> Log:
     files = (run if isinstance(run, Run) else open_run(run)).log_files
     for file in files:
         script = f"from {__name__} import decode; import sys; decode(sys.argv[1])"
-        words = [sys.executable, "-c", script, str(file)]
+        words = [sys.executable, "-P", "-c", script, str(file)]
         if subprocess.run(words, capture_output=True, check=False).returncode < 0:
             raise _damaged(file, "it cannot be decoded")
     return Log(files)

@@ -104,11 +104,6 @@ mode = "deadlin"
             COURSE + "[walking.stabilizer]\nshaken_error = 0.015",
             "walking.stabilizer.calm_error: 0.015 must be below shaken_error = 0.015",
         ),
-        (
-            COURSE + "[walking.pattern]\nsole_margin = 0.03",
-            "walking.pattern.sole_margin: 0.03 must be below half the width of a sole, 0.03",
-        ),
-        (COURSE + "[walking.stabilizer]\nsole_margin = 0.05", "half the width of a sole"),
         (COURSE + '[camera]\nlens = "wide"\nvertical_fov_deg = 60', "lens = 'custom'"),
         (COURSE + "[camera]\nshutter_ms = 80", "is longer than period_ms = 60"),
         (COURSE + "[navigation.planner.dwa]\nhorizon = 1e6", "must be from 0.01 to 50"),
