@@ -33,10 +33,7 @@ def _run(out, *more):
 
 @pytest.fixture
 def full_device():
-    device = Path("/dev/full")
-    if not device.exists():
-        pytest.skip("no /dev/full")
-    return device
+    return Path("/dev/full")
 
 
 @pytest.fixture

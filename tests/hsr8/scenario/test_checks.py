@@ -1,0 +1,141 @@
+import pytest
+
+from hsr8.errors import ScenarioError
+from hsr8.scenario.loader import load, loads
+
+COURSE = 'mission = {kind = "course"}\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        (COURSE + "[robot.speed]\nforward = 0.9", "walking.limits.forward"),
+        (COURSE + "[vision]\nmin_radius = 0.2", "must be below max_radius = 0.12"),
+        (COURSE + "[belief.local_map]\ncell = 1e-9", "more than 1000 cells"),
+        (
+            COURSE + "[navigation.mission]\nr_release = 0.04",
+            "navigation.mission.r_goal: 0.05 must not be above r_release = 0.04",
+        ),
+        (
+            COURSE + "[navigation.univector]\nside_clear = 2.5",
+            "navigation.univector.side_clear: 2.5 must not be above side_set = 2.304",
+        ),
+        (
+            COURSE + "[navigation.evaluation]\nd_nm = 1.5",
+            "navigation.evaluation.d_nm: 1.5 must not be above d_fm = 1.3",
+        ),
+        (
+            COURSE + "[walking.gait]\nswing_start = 0.97",
+            "walking.gait.swing_start: 0.97 must be below swing_end = 0.97",
+        ),
+        (
+            COURSE + "[walking.stabilizer]\nshaken_error = 0.015",
+            "walking.stabilizer.calm_error: 0.015 must be below shaken_error = 0.015",
+        ),
+        (COURSE + '[camera]\nlens = "wide"\nvertical_fov_deg = 60', "lens = 'custom'"),
+        (COURSE + "[camera]\nshutter_ms = 80", "is longer than period_ms = 60"),
+        (COURSE + "[navigation.planner.dwa]\nhorizon = 1e6", "must be from 0.01 to 50"),
+        (
+            'mission = {kind = "tour"}\n[criteria]\ngoal_reached = true',
+            'criteria.goal_reached: a mission of kind "tour" has no goal',
+        ),
+        (
+            'mission = {kind = "points", points = [[0, 0], [1, 1]], endless = true}\n'
+            "[criteria]\ngoal_reached = true",
+            'criteria.goal_reached: an endless mission of kind "points" has no goal',
+        ),
+        (
+            'mission = {kind = "points", points = [[0, 0], [1, 1]]}\n'
+            "[criteria]\nmin_via_points = 2",
+            "criteria.min_via_points: 2 are more than before the goal, 1",
+        ),
+        (COURSE + "[criteria]\nmin_via_points = 5", "5 are more than before the goal, 4"),
+        (
+            COURSE
+            + "[robot.start]\nposition = [0.0, 0.0]\n"
+            + "[[world.obstacle]]\nposition = [0.1, 0.0]",
+            "is on the start of the robot",
+        ),
+        (
+            COURSE
+            + "[robot.start]\nposition = [0.5, 0.0]\n"
+            + '[[world.mover]]\nmotion = "circle"\ncentre = [0.0, 0.0]\npath_radius = 0.6',
+            "world.mover[0].centre: begins on the start of the robot",
+        ),
+        (COURSE + "[[world.obstacle]]\nposition = [9.0, 0.0]", "is outside the field"),
+        (
+            COURSE
+            + "[robot.start]\nposition = [0.5, 0.1]\n"
+            + "[[world.row]]\nstart = [-1.0, 0.0]\nend = [1.0, 0.0]",
+            "world.row[0]: stands on the start of the robot at [0.5, 0.1]",
+        ),
+        (
+            'mission = {kind = "points", points = [[0.0, 0.9]]}\n'
+            "[[world.row]]\nstart = [0.0, 0.0]\nend = [0.0, 2.0]",
+            "world.row[0]: stands on mission.points[0]",
+        ),
+        (
+            COURSE + "[[world.row]]\nstart = [0.0, 0.0]\nend = [0.0, 2.6]",
+            "world.row[0].end: [0.0, 2.6] is outside the field",
+        ),
+        (
+            COURSE + "[[world.row]]\nstart = [0.0, 0.0]\nend = [0.0, 2.0]\ngap = 0.3",
+            "world.row[0].gap",
+        ),
+        (
+            'mission = {kind = "walk"}\n[command]\nvx = 0.1\n[world.encounters]\nn = 2',
+            "has no way to meet on",
+        ),
+        (
+            COURSE + '[[world.mover]]\nmotion = "shuttle"\nstart = [0, 0]\nend = [0, 0]',
+            "is the same point as start",
+        ),
+        (
+            'mission = {kind = "points", points = [[1.0, 1.0]]}\n'
+            "[[world.obstacle]]\nposition = [1.0, 1.1]",
+            "stands on mission.points[0]",
+        ),
+    ],
+)
+def test_keys_that_contradict_each_other_are_told_with_their_line(text, wanted):
+    with pytest.raises(ScenarioError) as caught:
+        loads(text, "file.toml")
+    (line,) = str(caught.value).splitlines()[1:]
+    assert wanted in line
+    assert line.startswith("  file.toml:")
+
+
+@pytest.mark.parametrize(
+    ("name", "override", "wanted"),
+    [
+        ("walk", "command.vz=0.1", "known here: vx, vy, wz"),
+        ("walk", "command.vx=3", "allowed: ≥ -1 and ≤ 1"),
+        ("walk", "command.footstep={forward=0.05, lift=1}", "known here: single_support"),
+        ("walk", "command.random.vx=[0.3, 0.1]", "the smaller bound comes first"),
+        ("walk", "command.stretch=[]", "nothing is asked"),
+        ("course", "command.vx=0.1", 'mission.kind = "walk" obeys them'),
+        ("walk", 'fault=[{kind="push"}]', "fault[0].size: is missing"),
+        ("walk", 'fault=[{kind="push",start=99,size=1}]', "not before the end of the run"),
+        ("walk", 'fault=[{kind="push",size=1,body="torso"}]', "did you mean"),
+        ("walk", "disturbance.push=[{time=1, impulse=1}]", "known here: random"),
+    ],
+)
+def test_commands_and_pushes_that_make_no_sense_are_named(name, override, wanted):
+    with pytest.raises(ScenarioError) as caught:
+        load(name, [override])
+    assert wanted in str(caught.value)
+    assert override.partition("=")[0].split(".")[0] in str(caught.value)
+
+
+def test_a_body_without_dynamics_cannot_be_pushed():
+    push = "disturbance.random={}"
+    assert load("walk", [push]).disturbance.random.impulse == (0.2, 0.8)
+    with pytest.raises(ScenarioError, match="has no dynamics to push"):
+        load("walk", [push, "robot.body=kinematic"])
+
+
+def test_a_velocity_and_a_footstep_at_once_are_refused():
+    with pytest.raises(ScenarioError, match="not both"):
+        load("walk", ["command.vx=0.1", "command.footstep={forward=0.05}"])
+    with pytest.raises(ScenarioError, match="not both"):
+        load("walk", ["command.stretch=[{duration=1, vx=0.1, footstep={forward=0.05}}]"])
