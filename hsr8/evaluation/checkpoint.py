@@ -152,19 +152,12 @@ def read_checkpoint(run: Run, simulation: Simulation) -> Checkpoint:
         known = then if isinstance(then, dict) else {}
         differ = [f"{n} was {known.get(n)}, is {now[n]}" for n in now if known.get(n) != now[n]]
         raise UsageError(f"{file} is of other versions: {'; '.join(differ)}; run it again")
-    if parts.get("scenario") != _scenario(run):
+    if parts.get("scenario") != run.scenario_bytes():
         raise UsageError(f"{run.scenario_file} is another one than at the checkpoint")
     metrics, sizes = parts.get("metrics"), parts.get("sizes")
     if not isinstance(metrics, Metrics) or not isinstance(sizes, dict) or set(sizes) != set(KEPT):
         raise UsageError(f"{file} holds no whole checkpoint")
     return Checkpoint(parts, metrics, sizes)
-
-
-def _scenario(run: Run) -> bytes:
-    try:
-        return read_bytes(run.scenario_file)
-    except OSError as error:
-        raise UsageError(f"cannot read {run.scenario_file}: {error.strerror}") from error
 
 
 def _made_by() -> dict[str, str]:

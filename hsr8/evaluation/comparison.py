@@ -16,7 +16,6 @@ from hsr8.evaluation.sweep.definition import Definition, differences, version_di
 from hsr8.evaluation.sweep.folder import DEFINITION, SweepFolder
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Row
 from hsr8.evaluation.sweep.table import flat
-from hsr8.recorder.files.reading import read_bytes
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import OWN
 from hsr8.recorder.run.run_reader import open_run
@@ -124,7 +123,7 @@ def open_side(path: Path) -> Side:
     if not metrics:
         raise UsageError(f"{path} has no results: the run did not end")
     try:
-        scenario = read_bytes(run.scenario_file).decode("utf-8")
+        scenario = run.scenario_bytes().decode("utf-8")
         tomllib.loads(scenario)
         definition = Definition(
             name=str(run.manifest["scenario"]),
@@ -135,8 +134,6 @@ def open_side(path: Path) -> Side:
             libraries=dict(run.manifest["libraries"]),
             scenario=scenario,
         )
-    except OSError as error:
-        raise UsageError(f"cannot read {error.filename}: {error.strerror}") from error
     except (KeyError, TypeError, ValueError) as error:
         raise UsageError(f"cannot read the run folder {path}: {error}") from error
     return Side(run.path, definition, {run.seed: {"seed": run.seed, **flat(metrics)}})

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.files.reading import read_bytes
 from hsr8.recorder.run.exact_records import measurements_of, tape_of
 from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS
 from hsr8.recorder.run.measurements import Measured
@@ -228,9 +227,7 @@ def _qpos_names(count: int) -> list[str]:
 
 def _scenario(run: Run) -> Mapping[str, Any]:
     try:
-        return tomllib.loads(read_bytes(run.scenario_file).decode("utf-8"))
-    except OSError as error:
-        raise UsageError(f"cannot read {run.scenario_file}: {error.strerror}") from error
+        return tomllib.loads(run.scenario_bytes().decode("utf-8"))
     except (ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {run.scenario_file}: {error}") from error
 

@@ -55,6 +55,17 @@ class Run:
         """The resolved scenario."""
         return self.path / run_folder.SCENARIO
 
+    def scenario_bytes(self) -> bytes:
+        """The resolved scenario as it stands in the folder.
+
+        Raises:
+            UsageError: it cannot be read.
+        """
+        try:
+            return read_bytes(self.scenario_file)
+        except OSError as error:
+            raise UsageError(f"cannot read {self.scenario_file}: {error.strerror}") from error
+
     def scenario(self) -> Scenario:
         """What was run, with the seed of the run.
 
