@@ -15,11 +15,11 @@ from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command
 from hsr8.seeds import named_rng
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.models import models_dir, reading_models
+from navigation.baselines.choice import build_planner
 from navigation.belief.estimator import Estimator
 from navigation.gaze.planner import GazePlanner
 from navigation.mission import Mission
 from navigation.motion.landmark_obstacles import LandmarkObstacles
-from navigation.peers.choice import build_planner
 from vision.camera import PinholeCamera
 from vision.detector import Detector
 from vision.own_body import BodyPart

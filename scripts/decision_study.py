@@ -21,13 +21,13 @@ from hsr8.scenario.loader import load
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.generator import draw_layout
 from navigation.angles import wrap
+from navigation.baselines.choice import build_planner
 from navigation.belief.belief import Belief
 from navigation.belief.estimator import Estimator
 from navigation.decision import MotionDecision, Task
 from navigation.gaze.planner import GazePlanner
 from navigation.mission import Mission
 from navigation.observation import Frame
-from navigation.peers.choice import build_planner
 
 import numpy as np
 import tyro

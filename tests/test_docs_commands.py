@@ -273,7 +273,7 @@ def test_every_command_of_the_page_works(page, stand_ins, capsys, monkeypatch):
         "hsr8 compare runs/quick sweeps/nothing",
         "python scripts/world_study.py --sed 0-9",
         "python scripts/belief_study.py course --sed 0-9",
-        "python scripts/tune_peers.py tun",
+        "python scripts/tune_baselines.py tun",
         "python scripts/write_scenario_reference.py --now",
         "python scripts/no_such_study.py",
         "make coffee",

@@ -46,7 +46,7 @@ class NavigationParameters:
     gaze: GazeParameters = field(default_factory=GazeParameters)
     """Gaze."""
     planner: PlannerParameters = field(default_factory=PlannerParameters)
-    """Choice of the planner, and the peers."""
+    """Choice of the planner, and the baselines."""
     univector: UnivectorParameters = field(default_factory=UnivectorParameters)
     """Univector field."""
     mover: MoverParameters = field(default_factory=MoverParameters)

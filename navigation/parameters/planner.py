@@ -1,6 +1,6 @@
-"""Parameters of the planners: which one, and those of the peers.
+"""Parameters of the planners: which one, and those of the baselines.
 
-The defaults of every peer are those found by `scripts/tune_peers.py`.
+The defaults of every baseline are those found by `scripts/tune_baselines.py`.
 """
 
 from dataclasses import dataclass, field
@@ -128,14 +128,14 @@ class MppiParameters:
 
 @dataclass(frozen=True)
 class PlannerParameters:
-    """Which planner moves the robot, and the parameters of the peers."""
+    """Which planner moves the robot, and the parameters of the baselines."""
 
     method: Method = "univector"
-    """Planner: the modified univector field of the profile, or a peer."""
+    """Planner: the modified univector field of the profile, or a baseline."""
     memory: Positive = 4.0
-    """Time unseen after which a peer forgets what may move [s]."""
+    """Time unseen after which a baseline forgets what may move [s]."""
     sigma_limit: NonNegative = 0.06
-    """Largest part of an obstacle's position uncertainty a peer adds to its radius [m]."""
+    """Largest part of an obstacle's position uncertainty a baseline adds to its radius [m]."""
     univector_plain: PlainUnivectorParameters = field(default_factory=PlainUnivectorParameters)
     """Univector field alone."""
     n_posture: NPostureParameters = field(default_factory=NPostureParameters)

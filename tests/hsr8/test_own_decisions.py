@@ -9,9 +9,9 @@ from hsr8.own_decisions import OwnGaze, OwnPlanner
 from hsr8.robot_builder import field_of_view, head_camera, known_beacons
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
+from navigation.baselines.choice import build_planner
 from navigation.decision import GazeDecision, MotionDecision
 from navigation.gaze.planner import GazePlanner
-from navigation.peers.choice import build_planner
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=3.0"]
 FORMS = (list, tuple, np.array, lambda values: np.array(values, np.float32))

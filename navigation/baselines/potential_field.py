@@ -9,9 +9,9 @@ method", Autonomous Robots 13, 2002; the tangential part after A. De Luca, G. Or
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.baselines.planning_scene import PlanningScene
 from navigation.motion.univector import normalized
 from navigation.parameters.planner import ApfParameters
-from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 

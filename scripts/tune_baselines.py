@@ -1,13 +1,13 @@
-"""Tunes every peer planner with the same budget, in the 2-D loop of the decision study.
+"""Tunes every baseline planner with the same budget, in the 2-D loop of the decision study.
 
-Each peer gets `candidates` parameter sets, the first by hand and the others drawn, on
+Each baseline gets `candidates` parameter sets, the first by hand and the others drawn, on
 `seeds` worlds; the best `finalists` get `more` worlds, and the best over all of them wins.
 A run scores the share of its legs walked without contact, one for a success. The worlds are
 the course with twice its movers. Sensing is without a camera but not perfect: correlated
 errors of pose, positions and velocities, velocities that lag, and no sight beyond 2.5 m.
 
-    python scripts/tune_peers.py tune --out runs/peers
-    python scripts/tune_peers.py compare --out runs/peers --first 1000 --runs 40
+    python scripts/tune_baselines.py tune --out runs/baselines
+    python scripts/tune_baselines.py compare --out runs/baselines --first 1000 --runs 40
 """
 
 import json
@@ -156,7 +156,7 @@ class Blurred(Run):
 
 
 def section(method: str) -> str:
-    """Name of a peer's section."""
+    """Name of a baseline's section."""
     return method.replace("-", "_")
 
 
@@ -185,7 +185,7 @@ def walk(
 
 
 def lines(method: str, values: Settings) -> tuple[str, ...]:
-    """Settings of a scenario for these values of a peer's parameters."""
+    """Settings of a scenario for these values of a baseline's parameters."""
     return tuple(f"navigation.planner.{section(method)}.{k}={v}" for k, v in values.items())
 
 
@@ -204,12 +204,12 @@ def tune(
     finalists: int = 3,
     more: int = 10,
 ) -> None:
-    """Tune peers and print a table; resumes where it stopped.
+    """Tune baselines and print a table; resumes where it stopped.
 
     Args:
         out: folder of tune.jsonl.
-        methods: peers.
-        candidates: parameter sets per peer, the one by hand among them.
+        methods: baselines.
+        candidates: parameter sets per baseline, the one by hand among them.
         seeds: worlds for each of them, seeds from 0.
         finalists: sets that go on.
         more: further worlds for those.

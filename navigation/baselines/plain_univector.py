@@ -6,9 +6,9 @@ from math import atan2, hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.baselines.planning_scene import PlanningScene
 from navigation.motion.motion_field import FieldScene, MotionField
 from navigation.parameters.navigation import NavigationParameters
-from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""What every peer must do, whatever its method."""
+"""What every baseline must do, whatever its method."""
 
 from dataclasses import replace
 from math import pi
@@ -7,6 +7,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from navigation.baselines.baseline_planner import BaselinePlanner
+from navigation.baselines.choice import build_planner
 from navigation.decision import Task
 from navigation.mission import Mission
 from navigation.motion.landmark_obstacles import LandmarkObstacles
@@ -14,11 +16,9 @@ from navigation.motion.planner import Planner
 from navigation.parameters.motion import LandmarkParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.parameters.planner import Method, PlannerParameters
-from navigation.peers.choice import build_planner
-from navigation.peers.peer_planner import PeerPlanner
 
-PEERS = [m for m in get_args(Method) if m != "univector"]
-EACH = pytest.mark.parametrize("method", PEERS)
+BASELINES = [m for m in get_args(Method) if m != "univector"]
+EACH = pytest.mark.parametrize("method", BASELINES)
 MIRROR = np.array([1.0, -1.0, -1.0])
 FOOTSTEP, REACH = 0.34, 0.12
 
@@ -52,7 +52,7 @@ def scene(rng):
 
 def test_every_method_is_built(limits):
     assert isinstance(planner("univector", limits), Planner)
-    assert all(isinstance(planner(m, limits), PeerPlanner) for m in PEERS)
+    assert all(isinstance(planner(m, limits), BaselinePlanner) for m in BASELINES)
 
 
 @EACH
@@ -173,7 +173,7 @@ def test_a_goal_before_a_known_landmark_is_arrived_at(method, away, belief, limi
 
 
 # The plain field knows no future: a mover that crosses is a disc that jumps.
-@pytest.mark.parametrize("method", [m for m in PEERS if m != "univector-plain"])
+@pytest.mark.parametrize("method", [m for m in BASELINES if m != "univector-plain"])
 def test_it_does_not_touch_a_mover_that_crosses(method, belief, task, track, limits):
     walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
     mover, velocity = np.array([0.85, -0.5]), np.array([0.0, 0.11])
@@ -228,9 +228,9 @@ def test_samples_come_from_the_generator_alone(belief, task, track, limits):
     assert not np.array_equal(first, other)
 
 
-def test_each_peer_obeys_its_own_section(belief, task, track, limits):
+def test_each_baseline_obeys_its_own_section(belief, task, track, limits):
     b, t = belief([track((0.5, 0.1))]), task()
-    for method in PEERS:
+    for method in BASELINES:
         name = method.replace("-", "_")
         near = PlannerParameters(method=method)
         far = replace(near, **{name: replace(getattr(near, name), margin=0.25)})

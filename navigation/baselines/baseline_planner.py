@@ -1,4 +1,4 @@
-"""All that the peers share: the way to the destination, arrival, turning at the goal."""
+"""All that the baselines share: the way to the destination, arrival, turning at the goal."""
 
 from math import atan2, hypot
 from typing import Protocol
@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
+from navigation.baselines.planning_scene import BodyEnvelope, PlanningScene
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.motion.body_command import idle_velocity
@@ -14,13 +15,12 @@ from navigation.motion.facing import arriving
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
-from navigation.peers.planning_scene import BodyEnvelope, PlanningScene
 
 Array = NDArray[np.float64]
 
 
-class Avoids(Protocol):
-    """What distinguishes one peer from another."""
+class Avoidance(Protocol):
+    """What distinguishes one baseline from another."""
 
     margin: float
 
@@ -28,7 +28,7 @@ class Avoids(Protocol):
         """Body velocity for the next footstep (3,) [m/s, m/s, rad/s]."""
 
 
-class PeerPlanner:
+class BaselinePlanner:
     """A published way to avoid obstacles with our way to arrive.
 
     Direction and speed towards the destination, the turn to the goal's heading near it,
@@ -36,14 +36,14 @@ class PeerPlanner:
     """
 
     def __init__(
-        self, parameters: NavigationParameters, limits: SpeedLimits, avoidance: Avoids
+        self, parameters: NavigationParameters, limits: SpeedLimits, avoidance: Avoidance
     ) -> None:
         """Start standing.
 
         Args:
             parameters: profile; univector, body and planner are used.
             limits: envelope of the walking layer.
-            avoidance: the peer.
+            avoidance: the baseline.
         """
         self._parameters = parameters
         self._limits = limits

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
+from navigation.baselines.planning_scene import PlanningScene
+from navigation.baselines.roll_out import contact_cost, gaps, roll_out
 from navigation.parameters.planner import DwaParameters
-from navigation.peers.planning_scene import PlanningScene
-from navigation.peers.roll_out import contact_cost, gaps, roll_out
 
 Array = NDArray[np.float64]
 

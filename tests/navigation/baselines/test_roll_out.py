@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from navigation.baselines.planning_scene import BodyEnvelope, PlanningScene
+from navigation.baselines.roll_out import contact_cost, gaps, roll_out
 from navigation.decision import Task
 from navigation.obstacle_set import ObstacleSet
-from navigation.peers.planning_scene import BodyEnvelope, PlanningScene
-from navigation.peers.roll_out import contact_cost, gaps, roll_out
 
 DT = 0.34
 

@@ -1,4 +1,4 @@
-"""What a peer is told: the same belief, task, envelope and delays as our planner."""
+"""What a baseline is told: the same belief, task, envelope and delays as our planner."""
 
 from dataclasses import dataclass, replace
 from math import cos, sin

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
+from navigation.baselines.planning_scene import PlanningScene
 from navigation.motion.univector import normalized
 from navigation.parameters.planner import NPostureParameters
-from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 

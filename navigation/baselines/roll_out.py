@@ -1,9 +1,9 @@
-"""Sequences of footsteps rolled out over time, for the peers that sample."""
+"""Sequences of footsteps rolled out over time, for the baselines that sample."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.peers.planning_scene import PlanningScene
+from navigation.baselines.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 

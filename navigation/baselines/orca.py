@@ -5,9 +5,9 @@ from math import cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.baselines.half_planes import HalfPlane, orca_plane, solve
+from navigation.baselines.planning_scene import PlanningScene
 from navigation.parameters.planner import OrcaParameters
-from navigation.peers.half_planes import HalfPlane, orca_plane, solve
-from navigation.peers.planning_scene import PlanningScene
 
 Array = NDArray[np.float64]
 

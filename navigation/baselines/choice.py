@@ -4,21 +4,21 @@ from collections.abc import Callable
 
 import numpy as np
 
+from navigation.baselines.baseline_planner import Avoidance, BaselinePlanner
+from navigation.baselines.dynamic_window import DynamicWindow
+from navigation.baselines.n_posture import NPosture
+from navigation.baselines.orca import Orca
+from navigation.baselines.path_integral import PathIntegral
+from navigation.baselines.plain_univector import PlainUnivector
+from navigation.baselines.potential_field import PotentialField
 from navigation.decision import SpeedLimits
 from navigation.motion.planner import Planner
 from navigation.parameters.navigation import NavigationParameters
-from navigation.peers.dynamic_window import DynamicWindow
-from navigation.peers.n_posture import NPosture
-from navigation.peers.orca import Orca
-from navigation.peers.path_integral import PathIntegral
-from navigation.peers.peer_planner import Avoids, PeerPlanner
-from navigation.peers.plain_univector import PlainUnivector
-from navigation.peers.potential_field import PotentialField
 
 
 def build_planner(
     parameters: NavigationParameters, limits: SpeedLimits, rng: np.random.Generator
-) -> Planner | PeerPlanner:
+) -> Planner | BaselinePlanner:
     """The planner named by `parameters.planner.method`.
 
     Args:
@@ -29,7 +29,7 @@ def build_planner(
     p, s_robot = parameters.planner, parameters.univector.s_robot
     if p.method == "univector":
         return Planner(parameters, limits)
-    peers: dict[str, Callable[[], Avoids]] = {
+    baselines: dict[str, Callable[[], Avoidance]] = {
         "univector-plain": lambda: PlainUnivector(parameters),
         "n-posture": lambda: NPosture(p.n_posture, s_robot),
         "apf": lambda: PotentialField(p.apf, s_robot),
@@ -37,4 +37,4 @@ def build_planner(
         "dwa": lambda: DynamicWindow(p.dwa, s_robot),
         "mppi": lambda: PathIntegral(p.mppi, s_robot, rng),
     }
-    return PeerPlanner(parameters, limits, peers[p.method]())
+    return BaselinePlanner(parameters, limits, baselines[p.method]())
