@@ -14,6 +14,7 @@ from hsr8.errors import ScenarioError
 from hsr8.scenario.checks import check
 from hsr8.scenario.presets import expand_presets
 from hsr8.scenario.problem import Problem, problems_of
+from hsr8.scenario.renamed import renamed
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.toml_lines import Path, locate, nearest
 from hsr8.scenario.toml_writer import toml_value, write_toml
@@ -119,6 +120,8 @@ class _Draft:
 
     def finish(self, name: str) -> Scenario:
         """Check everything."""
+        if problems := list(renamed(self.data)):
+            raise self._error(name, problems)
         data = expand_presets(self.data)
         try:
             scenario = Scenario.model_validate_json(json.dumps(data, default=str))

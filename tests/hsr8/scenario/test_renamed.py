@@ -1,0 +1,51 @@
+import pytest
+
+from hsr8.errors import ScenarioError
+from hsr8.scenario import renamed
+from hsr8.scenario.loader import load, loads
+
+TEXT = """\
+mission = {kind = "course"}
+[world]
+old_size = 3
+[navigation.gate]
+enabled = true
+[[world.row]]
+start = [0.0, 0.0]
+[constants.navigation.gate]
+width = 3.0
+[[fault]]
+kind = "late"
+size = 1.0
+"""
+
+
+@pytest.fixture(autouse=True)
+def _names(monkeypatch):
+    keys = {
+        "fault.size": "fault.magnitude",
+        "navigation.gate": "navigation.unseen_ground",
+        "world.old_size": "world.size",
+        "world.row": "world.wall",
+    }
+    monkeypatch.setattr(renamed, "RENAMED", keys)
+    monkeypatch.setattr(renamed, "RENAMED_VALUES", {"fault.kind": {"late": "latency"}})
+
+
+def test_an_old_key_is_refused_with_its_line_and_its_new_name():
+    with pytest.raises(ScenarioError) as error:
+        loads(TEXT, "file.toml")
+    assert [line.strip() for line in str(error.value).splitlines()[1:]] == [
+        "file.toml:3: world.old_size: renamed to world.size",
+        "file.toml:6: world.row: renamed to world.wall",
+        "file.toml:5: navigation.gate.enabled: renamed to navigation.unseen_ground.enabled",
+        "file.toml:9: constants.navigation.gate.width: renamed to "
+        "constants.navigation.unseen_ground.width",
+        'file.toml:11: fault[0].kind: "late" is renamed to "latency"',
+        "file.toml:12: fault[0].size: renamed to fault.magnitude",
+    ]
+
+
+def test_an_old_key_of_a_setting_is_refused():
+    with pytest.raises(ScenarioError, match=r"--set navigation.gate.enabled=true: .*renamed to"):
+        load("quick", ["navigation.gate.enabled=true"])
