@@ -5,7 +5,7 @@
     result = hsr8.run("course", seed=7)
     print(result.passed, result.metrics["time_to_goal_s"])
 
-`run` and `Result` make runs at once, `load` and `Simulation` tick by tick; `open_run` and
+`run` and `Result` make runs at once, `load_scenario` and `Simulation` tick by tick; `open_run` and
 `read_log` read them back. `docs/python.md` shows how a planner or a gaze of one's own takes part,
 `docs/log.md` what a log holds.
 """
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from hsr8.loop import Simulation
     from hsr8.recorder.log.log_reader import read_log
     from hsr8.recorder.run.run_reader import open_run
-    from hsr8.scenario.loader import load
+    from hsr8.scenario.loader import load_scenario
 
 __version__ = VERSION
-__all__ = ["Result", "Simulation", "load", "open_run", "read_log", "run"]
+__all__ = ["Result", "Simulation", "load_scenario", "open_run", "read_log", "run"]
 
 # Imported when they are asked for: MuJoCo and SciPy take seconds.
 _PLACES = {
     "Result": "hsr8.evaluation.recording",
     "Simulation": "hsr8.loop",
-    "load": "hsr8.scenario.loader",
+    "load_scenario": "hsr8.scenario.loader",
     "open_run": "hsr8.recorder.run.run_reader",
     "read_log": "hsr8.recorder.log.log_reader",
     "run": "hsr8.api",
@@ -44,6 +44,8 @@ choose_kernel_cache()
 
 
 def __getattr__(name: str) -> Any:
+    if name == "load":
+        raise AttributeError("hsr8.load: renamed to load_scenario")
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_PLACES[name]), name)

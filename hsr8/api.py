@@ -13,7 +13,7 @@ from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.record import Listener
 from hsr8.recorder.run.manifest import OWN, Manifest
 from hsr8.recorder.run.run_folder import SCENARIO, RunFolder
-from hsr8.scenario.loader import as_words, load
+from hsr8.scenario.loader import as_words, load_scenario
 from hsr8.scenario.schema import Scenario
 
 
@@ -50,7 +50,7 @@ def run(
         KeyboardInterrupt: Ctrl-C; the run folder is complete up to then.
     """
     level = _level(log)
-    loaded = scenario if isinstance(scenario, Scenario) else load(str(scenario), settings)
+    loaded = scenario if isinstance(scenario, Scenario) else load_scenario(str(scenario), settings)
     if isinstance(scenario, Scenario) and settings:
         raise TypeError("settings go with a scenario's name or file, not with a loaded one")
     loaded = loaded if seed is None else loaded.with_seed(seed)

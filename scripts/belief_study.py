@@ -18,7 +18,7 @@ from typing import Annotated
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.robot_builder import build_estimator
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
@@ -107,7 +107,7 @@ def main(
     """
     score = Score()
     for seed in seeds_of(seeds):
-        settings = load(scenario, [f"duration={duration}", *set], seed)
+        settings = load_scenario(scenario, [f"duration={duration}", *set], seed)
         if kept is not None:
             moments = pickle.loads((kept / f"{seed}.pkl").read_bytes())
         else:

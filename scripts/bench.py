@@ -17,7 +17,7 @@ from collections.abc import Iterable
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder.files import atomic
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
 from loop_bench import Bench
@@ -61,7 +61,7 @@ def growth(options: argparse.Namespace, settings: list[str]) -> list[str]:
 
     def worlds(changes: Iterable[list[str]]) -> Iterable[Scenario]:
         for change in changes:
-            yield load(options.scenario, [*settings, *change], options.seed)
+            yield load_scenario(options.scenario, [*settings, *change], options.seed)
 
     lines: list[str] = []
     if options.obstacles:
@@ -71,20 +71,20 @@ def growth(options: argparse.Namespace, settings: list[str]) -> list[str]:
         lit = worlds([f"world.beacons={str(n > 0).lower()}"] for n in options.beacons)
         lines += grown("beacons", options.beacons, lit)
     if options.seconds:
-        tours = (load(ENDLESS, [f"duration={s}"], options.seed) for s in options.seconds)
+        tours = (load_scenario(ENDLESS, [f"duration={s}"], options.seed) for s in options.seconds)
         lines += grown(f"`{ENDLESS}` [s]", options.seconds, tours)
     return lines
 
 
 def warm(scenario: str, seed: int) -> None:
     """Kernels are compiled, or read from where they are kept, before anything is timed."""
-    Simulation(load(scenario, ["duration=3"], seed), seed).run()
+    Simulation(load_scenario(scenario, ["duration=3"], seed), seed).run()
 
 
 def ratios(rounds: int) -> dict[str, float]:
     """Least ratio of every stage to the floor in so many runs: other work only adds."""
     name, seed, length = CHECKED
-    runs = [Bench(load(name, [length], seed), seed).ratios() for _ in range(rounds)]
+    runs = [Bench(load_scenario(name, [length], seed), seed).ratios() for _ in range(rounds)]
     return {stage: min(run[stage] for run in runs) for stage in runs[0]}
 
 
@@ -132,7 +132,7 @@ def main() -> None:
         atomic.write_json(BASELINE, {"run": CHECKED, "of": environment(PACKAGES), "ratios": found})
         return
     settings = [f"duration={options.duration:g}", *options.set]
-    bench = Bench(load(options.scenario, settings, options.seed), options.seed)
+    bench = Bench(load_scenario(options.scenario, settings, options.seed), options.seed)
     lines = [
         f"`{options.scenario}`, seed {options.seed}, {bench.simulated:g} s: "
         f"{bench.simulated / bench.loop:.2f} times real time, the floor "

@@ -15,7 +15,7 @@ from math import atan2, hypot, radians, tan
 
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 import numpy as np
 from study_page import add_seeds
@@ -75,7 +75,7 @@ def main() -> None:
         there[camera], seen[camera] = Counter(), Counter()
         for seed in arguments.seeds:
             settings = [f"camera.source={camera}", *arguments.set]
-            simulation = Simulation(load(arguments.scenario, settings, seed), seed)
+            simulation = Simulation(load_scenario(arguments.scenario, settings, seed), seed)
             tally = Tally(simulation)
             simulation.listeners.append(tally)
             simulation.run()

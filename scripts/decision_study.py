@@ -17,7 +17,7 @@ from time import perf_counter, process_time
 from typing import Annotated, Literal
 
 from hsr8.evaluation.wilson import wilson
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.generator import draw_layout
 from navigation.angles import wrap
@@ -265,7 +265,7 @@ def main(
     episodes = []
     begin = perf_counter()
     for seed in range(first, first + runs):
-        episode = Run(load(scenario, settings, seed), seed, sensing).run()
+        episode = Run(load_scenario(scenario, settings, seed), seed, sensing).run()
         episodes.append(episode)
         if not episode.success and not quiet:
             print(episode, flush=True)

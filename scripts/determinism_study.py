@@ -23,7 +23,7 @@ from hsr8.evaluation.sweep.definition import Definition
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import Run, open_run
 from hsr8.recorder.run.tape import read_tape
-from hsr8.scenario.loader import dump, load
+from hsr8.scenario.loader import dump, load_scenario
 from walking.parameters import CONTROL_PERIOD
 
 from study_page import command_line, seeds_of
@@ -218,7 +218,7 @@ def main() -> None:
         folder = Path(name)
         ways, runs, equal = compare([*light, *full], folder, replays)
         kills = resumed([*light, *full], arguments.kills, folder)
-    made_with = Definition.now("course", (), dump(load("course"))).made_with()
+    made_with = Definition.now("course", (), dump(load_scenario("course"))).made_with()
     lines = [
         "# Same seed, same run",
         "",

@@ -20,7 +20,7 @@ from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.png import write_png
 from hsr8.render.top_down import TopDown
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import Contact, Truth
 from navigation.angles import wrap
 from navigation.belief.belief import Motion, Track
@@ -174,7 +174,7 @@ def _is_free(watch: Watch, truth: Truth) -> bool:
 
 def run(scenario: str, settings: list[str], seed: int, picture: Path) -> Failure | None:
     """One run; its failure, and the world at that moment as `picture`."""
-    simulation = Simulation(load(scenario, settings, seed), seed)
+    simulation = Simulation(load_scenario(scenario, settings, seed), seed)
     watch = Watch(simulation)
     simulation.listeners.append(watch)
     simulation.run()

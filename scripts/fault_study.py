@@ -25,7 +25,7 @@ from hsr8.errors import SimulationDiverged
 from hsr8.evaluation.wilson import wilson
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.world import ROBOT_RADIUS
 
 import numpy as np
@@ -119,7 +119,7 @@ class Watch(Listener):
 def run(settings: list[str], seed: int) -> tuple[str, Watch]:
     """Exit reason and what was seen."""
     watch = Watch()
-    simulation = Simulation(load("quick", settings), seed, [watch])
+    simulation = Simulation(load_scenario("quick", settings), seed, [watch])
     try:
         return simulation.run().exit_reason, watch
     except SimulationDiverged:

@@ -26,7 +26,7 @@ from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
 from hsr8.recorder.log.log_reader import decode
 from hsr8.recorder.run import run_folder
-from hsr8.scenario.loader import BUILT_IN, built_in_names, load, loads
+from hsr8.scenario.loader import BUILT_IN, built_in_names, load_scenario, loads
 from hsr8.world.model import models
 from vision.colour import COLOUR_CLASSES, ColourTable
 from vision.colour_file import load_table, save_table
@@ -86,7 +86,7 @@ def table_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> 
     settings = []
     for key, node in rng.sample(schema, rng.randrange(1, 4)):
         settings.append(f"{key}={written(near(rng, node))}")
-    load(rng.choice(built_in_names()), settings)
+    load_scenario(rng.choice(built_in_names()), settings)
 
 
 def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
@@ -94,7 +94,7 @@ def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> 
     settings = ['camera.source="analytic"', "camera.width=64", "camera.height=48"]
     for key, node in rng.sample(schema, rng.randrange(1, 3)):
         settings.append(f"{key}={written(near(rng, node))}")
-    scenario = load(rng.choice(built_in_names()), settings)
+    scenario = load_scenario(rng.choice(built_in_names()), settings)
     if scenario.camera.source == "egl":
         return
     with Simulation(scenario, rng.randrange(3)) as simulation:
@@ -106,7 +106,7 @@ def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> 
 def model_case(rng: random.Random) -> None:
     """The first ticks of a run whose model of robot or field is damaged."""
     body = rng.choice(("full", "kinematic"))
-    scenario = load("quick", (f'robot.body="{body}"', 'camera.source="analytic"'))
+    scenario = load_scenario("quick", (f'robot.body="{body}"', 'camera.source="analytic"'))
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch) / "models"
         shutil.copytree(models.models_dir(), copy)
@@ -127,7 +127,7 @@ def setting_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -
     word = f"{key}={written(value(rng))}"
     if rng.random() < 0.7:
         word = mutated(rng, word.encode()).decode("utf-8", errors="replace")
-    load(rng.choice(built_in_names()), (word,))
+    load_scenario(rng.choice(built_in_names()), (word,))
 
 
 class Folders:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hsr8.evaluation.wilson import wilson
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 import numpy as np
 from decision_study import Run
@@ -44,7 +44,7 @@ TABLES = {"gazes": GAZES, "sweeps": SWEEPS}
 
 def walk(scenario: str, arm: str, settings: Sequence[str], seed: int) -> dict[str, object]:
     """One run as a row."""
-    episode = Run(load(scenario, settings, seed), seed, "camera").run()
+    episode = Run(load_scenario(scenario, settings, seed), seed, "camera").run()
     return {"scenario": scenario, "arm": arm, **vars(episode)}
 
 

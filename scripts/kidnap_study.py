@@ -17,7 +17,7 @@ from unittest.mock import patch
 from hsr8 import robot_builder
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
 from navigation.angles import wrap
@@ -138,7 +138,7 @@ def main(
             carried.append(Carried(build(*arguments), interval, kidnaps, rng))
             return carried[0]
 
-        settings = load(scenario, [f"duration={interval * (kidnaps + 1)}", *set], seed)
+        settings = load_scenario(scenario, [f"duration={interval * (kidnaps + 1)}", *set], seed)
         watcher = Watcher(carried)
         if kept is not None:
             built(settings, draw_layout(settings, seed), named_rng(seed, "belief"))

@@ -28,7 +28,7 @@ from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.recorder.run.tape import read_tape
-from hsr8.scenario.loader import dump, load
+from hsr8.scenario.loader import dump, load_scenario
 from walking.parameters import CONTROL_PERIOD
 
 from study_page import STAND_INS, command_line
@@ -74,7 +74,7 @@ class Left:
 
 def run(out: str, watch: str, settings: tuple[str, ...], seed: int) -> None:
     """A run with log and checkpoints, in a process of its own."""
-    scenario = load("quick", settings, seed=seed)
+    scenario = load_scenario("quick", settings, seed=seed)
     simulation = Simulation(scenario, seed)
     recording = Recording(simulation, [Watch(Path(watch))])
     path = RunFolder.create(Path(out), scenario.name, seed)
@@ -161,13 +161,13 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
     draw, rows = random.Random(arguments.seed), []
-    made_with = Definition.now("quick", (), dump(load("quick"))).made_with()
+    made_with = Definition.now("quick", (), dump(load_scenario("quick"))).made_with()
     for k in range(arguments.kills):
         seed, full = arguments.seed + k, k < arguments.full
         length = f"duration={arguments.duration}"
         settings = (length,) if full else (length, *STAND_INS)
         after = draw.uniform(0.0, arguments.duration - 0.5)
-        scenario = load("quick", settings, seed=seed)
+        scenario = load_scenario("quick", settings, seed=seed)
         whole = Simulation(scenario, seed).run().state_hash
         with tempfile.TemporaryDirectory() as folder:
             left = killed(Path(folder), settings, seed, after, whole)

@@ -11,7 +11,7 @@ from pathlib import Path
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 from hsr8.cli.colours import MASK, mask_colours
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.camera.rendered import RenderedCamera
@@ -30,7 +30,7 @@ LOOKS = ((-0.9, -0.3), (-0.3, -0.4), (0.3, -0.3), (0.9, -0.2))  # pan and tilt [
 
 def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
     """A noisy image of the world of `seed`, and its mask."""
-    scenario = load("course")
+    scenario = load_scenario("course")
     layout = draw_layout(scenario, seed)
     camera = scenario.camera
     fov = camera.vertical_fov

@@ -15,7 +15,7 @@ from hsr8.gl import require_gl
 from hsr8.loop import Simulation
 from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.log_level import LogLevel
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
 from stopwatch import Stopwatch
@@ -61,7 +61,7 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=30.0, help="simulated [s]")
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
     options = parser.parse_args()
-    scenario = load(options.scenario, [f"duration={options.duration:g}"], options.seed)
+    scenario = load_scenario(options.scenario, [f"duration={options.duration:g}"], options.seed)
     lines = [
         "| level | whole loop [ms/s] | log [ms/s] | share [%] | log [MB/min] |",
         "|---|---|---|---|---|",

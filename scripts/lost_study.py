@@ -10,7 +10,7 @@ reaches one beacon at most. Every turn rate is given the same worlds and places.
 import argparse
 from math import atan2, hypot, inf, pi
 
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from navigation.angles import wrap
 
 import numpy as np
@@ -25,7 +25,7 @@ FOUND, FOUND_TURN = 0.10, 0.09  # errors of a robot that knows where it is [m, r
 
 def search(scenario: str, settings: list[str], seed: int) -> float:
     """Time until the pose is known again after it was lost [s], infinite for never."""
-    run = Run(load(scenario, settings, seed), seed, "camera")
+    run = Run(load_scenario(scenario, settings, seed), seed, "camera")
     rng = np.random.default_rng([seed, 2])
     corner = PLACE * rng.choice([-1.0, 1.0], 2)
     heading = atan2(corner[1], corner[0]) + rng.uniform(-pi / 4, pi / 4)

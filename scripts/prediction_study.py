@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from hsr8.loop import Simulation
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from navigation.belief.belief import Belief, Motion, Track
 from navigation.motion.bend_kernel import mean_velocity
 
@@ -40,7 +40,7 @@ class Score(NamedTuple):
 
 def scores(scenario: str, settings: list[str], seed: int) -> Iterator[tuple[str, str, Score]]:
     """Kind of motion, age and errors of every track in every frame of a run."""
-    with Simulation(load(scenario, [*STAND_INS, *settings], seed), seed) as simulation:
+    with Simulation(load_scenario(scenario, [*STAND_INS, *settings], seed), seed) as simulation:
         layout = simulation.layout
         kinds = [type(o.motion).__name__.lower() for o in layout.obstacles if o.motion]
         movers = layout.motion()

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from hsr8.loop import Simulation
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
 import numpy as np
@@ -59,7 +59,7 @@ def run(name: str, settings: tuple[str, ...], seed: int, duration: float) -> Rec
         seed: of world and noise.
         duration: simulated time [s].
     """
-    scenario = load(name, [*settings, f"duration={duration}"])
+    scenario = load_scenario(name, [*settings, f"duration={duration}"])
     simulation = Simulation(scenario, seed)
     kept = RecordedRun(len(simulation.layout.movers), scenario)
     simulation.listeners.append(kept)

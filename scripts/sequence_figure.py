@@ -13,7 +13,7 @@ from hsr8.recorder.run.run_reader import Run, open_run
 from hsr8.recorder.run.trajectory import Trajectory, rows_at
 from hsr8.recorder.run.walking_table import WalkingTable
 from hsr8.render.walk_panels import INK, LEFT, RIGHT, contacts, outline
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.layout import Layout
@@ -80,7 +80,7 @@ class Tour:
 def tour(path: Path) -> Tour:
     """Read a run folder; the row is named by its profile."""
     run: Run = open_run(path)
-    scenario = load(str(run.scenario_file), [])
+    scenario = load_scenario(str(run.scenario_file), [])
     measured = next(iter(read_measurements(run.path / MEASUREMENTS, whole=False)))
     return Tour(
         f"profile {scenario.navigation.profile}",

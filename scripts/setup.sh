@@ -77,7 +77,7 @@ fi
 
 say "compiling the kernels (once, about half a minute)"
 env -u MUJOCO_GL "$venv/bin/python" -c "import hsr8
-scenario = hsr8.load('quick', ['duration=6', 'camera.source=$source'])
+scenario = hsr8.load_scenario('quick', ['duration=6', 'camera.source=$source'])
 hsr8.Simulation(scenario, scenario.seed).run()"
 
 echo "$fingerprint" >"$stamp"

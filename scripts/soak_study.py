@@ -20,7 +20,7 @@ from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.loop import TICKS_A_SECOND, Simulation
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.run_folder import RunFolder
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 import mujoco
 import numpy as np
@@ -89,7 +89,7 @@ class Watch:
 
 
 def simulation_of(name: str, seed: int, duration: float, settings: tuple[str, ...]) -> Simulation:
-    return Simulation(load(name, [*settings, f"duration={duration}"], seed=seed), seed)
+    return Simulation(load_scenario(name, [*settings, f"duration={duration}"], seed=seed), seed)
 
 
 def recorded(simulation: Simulation, folder: str) -> str:

@@ -19,7 +19,7 @@ from time import process_time
 from typing import Any
 
 from hsr8.evaluation.wilson import wilson
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
@@ -173,7 +173,7 @@ def drawn(method: str, count: int) -> Iterator[Settings]:
 
 @cache
 def base(scenario: str, settings: tuple[str, ...]) -> Scenario:
-    return load(scenario, settings)
+    return load_scenario(scenario, settings)
 
 
 def walk(

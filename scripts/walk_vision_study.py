@@ -16,7 +16,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.model.assembly import HEAD_CAMERA
 from vision.camera import PinholeCamera
 
@@ -148,7 +148,7 @@ def main() -> None:
     study = Study()
     errors = []
     for seed in args.seeds:
-        scenario = load(args.scenario, [f"duration={args.duration}", *args.set])
+        scenario = load_scenario(args.scenario, [f"duration={args.duration}", *args.set])
         simulation = Simulation(scenario, seed)
         referee = Referee(simulation, study, args.verbose)
         simulation.listeners.append(referee)

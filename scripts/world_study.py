@@ -11,7 +11,7 @@ from time import perf_counter
 
 from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import least_clearance, straight_length
@@ -46,7 +46,7 @@ def main() -> None:
         print(table[-1], flush=True)
     if options.write:
         for name in PICTURED.split():
-            scenario = load(name)
+            scenario = load_scenario(name)
             world = draw_world(scenario, scenario.seed)
             picture = PlanView(world.layout, PICTURE, world.certificate).draw()
             write_png(PICTURES / f"{name}.png", picture)
@@ -55,7 +55,7 @@ def main() -> None:
 
 def row(name: str, seeds: list[int]) -> str:
     """One family."""
-    scenario = load(name)
+    scenario = load_scenario(name)
     rejected, crowded, hits, cost, ways = 0, 0, 0, [], []
     for seed in seeds:
         begin = perf_counter()

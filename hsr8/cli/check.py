@@ -16,7 +16,7 @@ from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
 from hsr8.scenario.command import Command
 from hsr8.scenario.disturbance import RandomPushes
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.certificate import Certificate, least_clearance, straight_length
@@ -34,7 +34,7 @@ def main(options: Check) -> int:
         ScenarioError: the scenario is wrong or its world cannot be drawn.
         UsageError: a planner or a gaze that it names cannot be made, or the picture not written.
     """
-    scenario = load(options.scenario, settings(options), options.seed)
+    scenario = load_scenario(options.scenario, settings(options), options.seed)
     require_own(scenario.own)
     if options.picture is not None:
         require_png("--picture", options.picture)

@@ -53,9 +53,9 @@ def load_everything() -> None:
     with loading():
         import hsr8.cli.recorded_run  # noqa: F401, PLC0415  MuJoCo was to wait for the backend
         from hsr8.loop import Simulation  # noqa: PLC0415
-        from hsr8.scenario.loader import load  # noqa: PLC0415
+        from hsr8.scenario.loader import load_scenario  # noqa: PLC0415
 
-    Simulation(load("quick", FIRST, 0), 0).run()
+    Simulation(load_scenario("quick", FIRST, 0), 0).run()
     gc.collect()
     gc.freeze()  # collections leave alone what all runs share
 

@@ -7,13 +7,13 @@ from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.options import List
-from hsr8.scenario.loader import built_in_names, load
+from hsr8.scenario.loader import built_in_names, load_scenario
 from hsr8.scenario.schema import Scenario
 
 
 def main(options: List) -> int:
     """Print every built-in scenario with what it is about."""
-    scenarios = [load(name) for name in built_in_names()]
+    scenarios = [load_scenario(name) for name in built_in_names()]
     if options.json:
         print(json.dumps({"scenarios": [_entry(s) for s in scenarios]}))
         return 0

@@ -20,7 +20,7 @@ from hsr8.own_file import require_own
 from hsr8.recorder.files import atomic
 from hsr8.recorder.files.new_folder import require_new_folder
 from hsr8.render.live_view import require_display
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 
 
@@ -37,7 +37,7 @@ def main(options: Run) -> int:
             from hsr8.cli.recorded_run import resume  # noqa: PLC0415  takes seconds
 
         return resume(options)
-    scenario = load(
+    scenario = load_scenario(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
     if period and scenario.own.named:

@@ -31,7 +31,7 @@ from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.gl import require_gl
 from hsr8.own_file import digests, require_own
 from hsr8.recorder.files import atomic
-from hsr8.scenario.loader import dump, load
+from hsr8.scenario.loader import dump, load_scenario
 from hsr8.scenario.schema import Scenario
 
 START = 60.0  # a process may need so long to begin [s]
@@ -206,7 +206,9 @@ def _scenario(options: Sweep, more: tuple[str, ...]) -> Scenario:
         for word in words:
             if word.partition("=")[0].strip() == "seed":
                 raise UsageError(f"{flag} {word}: the seeds of a sweep are given by --seeds")
-    return load(options.scenario, settings(options), options=option_tables(options), varied=more)
+    return load_scenario(
+        options.scenario, settings(options), options=option_tables(options), varied=more
+    )
 
 
 def _command(options: Sweep) -> str:

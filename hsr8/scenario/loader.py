@@ -34,7 +34,7 @@ def built_in_names() -> list[str]:
     return sorted(path.stem for path in BUILT_IN.glob("*.toml"))
 
 
-def load(
+def load_scenario(
     name_or_path: str,
     overrides: Sequence[str] | Mapping[str, Any] = (),
     seed: int | None = None,
@@ -91,7 +91,7 @@ def loads(text: str, name: str = "scenario") -> Scenario:
     """Read a scenario from TOML text; it may extend built-in scenarios only.
 
     Raises:
-        ScenarioError: as `load`.
+        ScenarioError: as `load_scenario`.
     """
     return _layered(text, name, name, BUILT_IN, ()).finish(name)
 

@@ -50,7 +50,7 @@ def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
         return again.metrics["state_hash"] == result.metrics["state_hash"]
 
     assert repeated("name", "quick", seed=3, settings=STAND_INS)
-    loaded = hsr8.load("quick", [f"{key}={json.dumps(v)}" for key, v in STAND_INS.items()])
+    loaded = hsr8.load_scenario("quick", [f"{key}={json.dumps(v)}" for key, v in STAND_INS.items()])
     assert repeated("loaded", loaded, seed=4)
 
 
@@ -118,7 +118,7 @@ def test_settings_are_words_or_a_table():
 
 
 def test_a_loaded_scenario_takes_no_settings():
-    scenario = hsr8.load("quick")
+    scenario = hsr8.load_scenario("quick")
     with pytest.raises(TypeError, match="settings"):
         hsr8.run(scenario, settings=STAND_INS)
 

@@ -21,7 +21,7 @@ from hsr8.evaluation.sweep.folder import LEDGER, SweepFolder
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.loop import Simulation
 from hsr8.render import viewer
-from hsr8.scenario.loader import dump, load, loads
+from hsr8.scenario.loader import dump, load_scenario, loads
 from vision.colour_file import LARGEST, load_table
 from vision.errors import VisionError
 
@@ -78,7 +78,7 @@ def test_any_colour_table_is_read_or_refused(tmp_path):
 def test_any_sweep_is_read_or_refused(run, tmp_path, monkeypatch):
     sweep = tmp_path / "sweep"
     row = {"seed": 0, "outcome": "passed", "time_to_goal_s": 3.5}
-    folder = SweepFolder.open(sweep, Definition.now("quick", (), dump(load("quick"))))
+    folder = SweepFolder.open(sweep, Definition.now("quick", (), dump(load_scenario("quick"))))
     (sweep / LEDGER).write_text(f"{json.dumps(row)}\n{json.dumps(row | {'seed': 1})}\n")
     assert len(folder.rows()) == 2
     monkeypatch.setattr(fuzz, "ON_SWEEPS", fuzz.ON_SWEEPS[:2])
@@ -111,7 +111,7 @@ NUMBERS = [
 )
 def test_no_number_is_out_of_all_bounds(key, value):
     with pytest.raises(ScenarioError, match=key.split(".")[-1]):
-        load("quick", (f"{key}={value}",))
+        load_scenario("quick", (f"{key}={value}",))
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_no_number_is_out_of_all_bounds(key, value):
 )
 def test_what_would_take_all_memory_or_time_is_refused_by_name(setting):
     with pytest.raises(ScenarioError, match=setting.split("=")[0]):
-        load("quick", (setting,))
+        load_scenario("quick", (setting,))
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,9 @@ def test_what_would_take_all_memory_or_time_is_refused_by_name(setting):
     ],
 )
 def test_a_run_bears_what_is_just_allowed(setting):
-    scenario = load("course", ['robot.body="kinematic"', 'camera.source="analytic"', setting])
+    scenario = load_scenario(
+        "course", ['robot.body="kinematic"', 'camera.source="analytic"', setting]
+    )
     with Simulation(scenario, 1) as simulation:
         for _ in range(100):
             simulation.step()

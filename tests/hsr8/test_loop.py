@@ -5,14 +5,14 @@ from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import RenderingUnavailable
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from navigation.decision import GazeDecision, MotionDecision
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
 
 
 def quick(duration=1.0):
-    return load("quick", [*STAND_INS, f"duration={duration}"])
+    return load_scenario("quick", [*STAND_INS, f"duration={duration}"])
 
 
 class Spin:
@@ -66,7 +66,7 @@ def test_a_run_that_cannot_begin_closes_its_listeners(fake, monkeypatch):
 
     monkeypatch.setattr("hsr8.loop.RenderedCamera", none)
     listener = Closes()
-    simulation = Simulation(load("quick"), 4, [listener])
+    simulation = Simulation(load_scenario("quick"), 4, [listener])
     with pytest.raises(RenderingUnavailable):
         simulation.run()
     assert listener.reason == "error"

@@ -53,7 +53,7 @@ class Computes:
 
 
 def quick(*settings):
-    return hsr8.load("quick", [*STAND_INS, *settings])
+    return hsr8.load_scenario("quick", [*STAND_INS, *settings])
 
 
 @given(values=st.tuples(speeds, speeds, speeds), form=st.sampled_from(FORMS))

@@ -180,7 +180,7 @@ def test_a_run_with_own_decisions_has_no_checkpoints(folder, capsys):
 
 def test_a_walk_asks_no_planner(folder):
     with pytest.raises(hsr8.errors.ScenarioError, match="asks no planner"):
-        hsr8.load("walk", ["own.planner=mine.py:Ahead"])
+        hsr8.load_scenario("walk", ["own.planner=mine.py:Ahead"])
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.scenario.command import Command, RandomCommands
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
 from walking.command import CommandState, VelocityCommand
 
@@ -16,7 +16,7 @@ class At:
 
 
 def script_of(*overrides, duration=10.0, seed=0):
-    command = load("walk", list(overrides)).command
+    command = load_scenario("walk", list(overrides)).command
     return command_script(command, duration, np.random.default_rng(seed))
 
 

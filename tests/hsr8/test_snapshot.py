@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
 from hsr8.loop import Simulation
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.snapshot import MAGIC, decode, encode
 from navigation.belief.belief import Motion
 from walking.get_up.get_up import Outcome
@@ -47,7 +47,7 @@ def test_enumerations_need_no_names_but_their_own(monkeypatch):
 @pytest.mark.parametrize("tick", [1, 77, 260])
 def test_a_run_goes_on_from_any_tick(tick):
     settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=2.0"]
-    scenario = load("quick", settings)
+    scenario = load_scenario("quick", settings)
     with Simulation(scenario, 5) as first:
         while first.tick < tick:
             first.step()
@@ -83,7 +83,7 @@ class Loads:
     """A function of the project that opens a file."""
 
     def __reduce__(self):
-        return load, ("/etc/hostname",)
+        return load_scenario, ("/etc/hostname",)
 
 
 @pytest.mark.parametrize("what", [Evil, Reads, Gets, Loads])

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from hsr8.loop import Simulation
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 # `scaled_model` is an experiment, and the experiments are no package.
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
@@ -43,7 +43,7 @@ def simulate():
         if duration is not None:
             settings.append(f"duration={duration}")
         recorded = Recorded()
-        simulation = Simulation(load(name, settings), seed, [recorded])
+        simulation = Simulation(load_scenario(name, settings), seed, [recorded])
         return simulation.run(), recorded, simulation
 
     return run

@@ -2,7 +2,7 @@ import numpy as np
 
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 SEED = 3  # two obstacles stand behind the robot at 1.1 and 1.3 m
 
@@ -17,7 +17,7 @@ def test_an_all_round_camera_knows_what_stands_behind_without_looking():
     settings = ["robot.body=kinematic", "camera.source=all-round", "duration=1.2"]
     settings.append("navigation.gaze.mode=fixed")
     last = Last()
-    simulation = Simulation(load("course", settings, SEED), SEED, [last])
+    simulation = Simulation(load_scenario("course", settings, SEED), SEED, [last])
     simulation.run()
     belief = last.frame.belief
     offset = np.array([t.position for t in belief.tracks]) - belief.pose[:2]

@@ -8,7 +8,7 @@ import pytest
 
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from vision.colour_file import save_table
 from vision.colour_learning import learn
 
@@ -139,7 +139,7 @@ def test_a_table_learnt_from_rendered_images_sees_as_well_as_the_declared_one(tm
                 if record.frame is not None:
                     seen.append(sorted(d.label for d in record.frame.detections))
 
-        scenario = load("course", ["duration=0.6", 'robot.body="kinematic"', *setting])
+        scenario = load_scenario("course", ["duration=0.6", 'robot.body="kinematic"', *setting])
         Simulation(scenario, 3, [Counter()]).run()
         counts.append(seen)
     declared, learnt = counts

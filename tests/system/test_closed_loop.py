@@ -5,7 +5,7 @@ import pytest
 
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 
 def wrap(angle):
@@ -76,7 +76,7 @@ def test_an_interrupted_run_ends_at_once_and_closes_its_listeners(simulate):
             self.reason = exit_reason
 
     listener = Stops()
-    scenario = load("quick", ['robot.body="kinematic"', 'camera.source="analytic"'])
+    scenario = load_scenario("quick", ['robot.body="kinematic"', 'camera.source="analytic"'])
     simulation = Simulation(scenario, 0, [listener])
     outcome = simulation.run()
     assert outcome.exit_reason == listener.reason == "interrupted"
@@ -103,5 +103,5 @@ def test_every_listener_is_closed_though_one_fails():
     last = Closes()
     settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=0.1"]
     with pytest.raises(OSError, match="disk full"):
-        Simulation(load("quick", settings), 0, [Fails(), last]).run()
+        Simulation(load_scenario("quick", settings), 0, [Fails(), last]).run()
     assert last.reason == "timeout"

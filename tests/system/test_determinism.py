@@ -7,13 +7,13 @@ from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.log.rerun_log import RerunLog
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.record import Listener
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
 
 
 def final_hash(seed, settings, duration, listeners=()):
-    scenario = load("course", [*settings, f"duration={duration}"])
+    scenario = load_scenario("course", [*settings, f"duration={duration}"])
     return Simulation(scenario, seed, listeners).run().state_hash
 
 
@@ -33,7 +33,7 @@ def test_same_seed_same_end_whoever_listens():
 
 
 def test_a_log_of_everything_changes_nothing(tmp_path):
-    scenario = load("course", [*STAND_INS, "duration=3.0"])
+    scenario = load_scenario("course", [*STAND_INS, "duration=3.0"])
     simulation = Simulation(scenario, 3)
     size = (scenario.camera.width, scenario.camera.height)
     for level in LogLevel:

@@ -8,7 +8,7 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.loop import Simulation
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.snapshot import decode, encode
 
 START, LASTS = 0.7, 0.4  # of the faults that are got over [s]
@@ -145,7 +145,7 @@ PHYSICAL = [
 @pytest.mark.parametrize("tick", [70, 130, 170])
 def test_a_run_with_all_faults_goes_on_from_any_tick(tick):
     faults = f"fault=[{','.join([*ALL, *PHYSICAL])}]"
-    scenario = load("quick", ['camera.source="analytic"', "duration=1.2", faults])
+    scenario = load_scenario("quick", ['camera.source="analytic"', "duration=1.2", faults])
     with Simulation(scenario, 2) as first:
         while first.tick < tick:
             first.step()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hsr8.loop import Simulation
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.model.models import models_dir
 from walking.body.robot_model import RobotModel
 from walking.get_up.get_up import GetUp, Outcome
@@ -32,7 +32,7 @@ def lay(body, pitch):
 
 @pytest.mark.parametrize(("pitch", "most"), [(0.5 * pi, 2), (-0.5 * pi, 4)])
 def test_it_rises_from_front_and_back(pitch, most):
-    body = Simulation(load("walk", ['camera.source="analytic"']), 0)._body
+    body = Simulation(load_scenario("walk", ['camera.source="analytic"']), 0)._body
     lay(body, pitch)
     robot = RobotModel.from_mjcf(ROBOT)
     get_up = GetUp(robot, GetUpParameters(attempts=most), np.array(STRAIGHT.angles()))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.loop import Simulation
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import Truth
 
 REFEREE = {"fallen", "contacts", "pushes", "time"}  # what ends a run and what is told as an event
@@ -32,7 +32,7 @@ class Forbidden:
     ],
 )
 def test_the_loop_runs_the_same_without_the_truth(monkeypatch, parts):
-    scenario = load("quick", [*parts, "duration=2.0"])
+    scenario = load_scenario("quick", [*parts, "duration=2.0"])
     expected = Simulation(scenario, 0).run()
     blind = Simulation(scenario, 0)
     body = blind._body

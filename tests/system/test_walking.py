@@ -5,12 +5,12 @@ import pytest
 
 from hsr8.evaluation.metrics import Metrics
 from hsr8.loop import Simulation
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from walking.command import CommandState, VelocityCommand
 
 
 def measured(*overrides, body="full"):
-    scenario = load("walk", ["camera.source=analytic", f"robot.body={body}", *overrides])
+    scenario = load_scenario("walk", ["camera.source=analytic", f"robot.body={body}", *overrides])
     simulation = Simulation(scenario, 0)
     metrics = Metrics(simulation.layout, 0.15, 0.05)
     simulation.listeners.append(metrics)

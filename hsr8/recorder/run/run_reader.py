@@ -19,7 +19,7 @@ from hsr8.recorder.run.frame_summary import FrameSummary, from_line
 from hsr8.recorder.run.manifest import FORMAT, RUNNING
 from hsr8.recorder.run.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.run.walking_table import WalkingTable, read_walking_table
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.version import VERSION
 
@@ -73,7 +73,7 @@ class Run:
             ScenarioError: this version does not understand it.
         """
         try:
-            return load(str(self.scenario_file), seed=self.seed)
+            return load_scenario(str(self.scenario_file), seed=self.seed)
         except ScenarioError as error:
             made_by = (
                 f"hsr8 {self.manifest.get('hsr8', '?')} of {self.manifest.get('started', '?')}"

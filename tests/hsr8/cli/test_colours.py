@@ -8,7 +8,7 @@ from hsr8.cli.colours import main, mask_colours
 from hsr8.cli.main import entry
 from hsr8.cli.options import Colours
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from vision.colour_file import load_table
 
 
@@ -33,7 +33,7 @@ def test_a_table_is_learnt_written_and_named_in_a_scenario(picture, tmp_path, ca
     assert rows["red"]["recognised"] > 0.99
     assert rows["background"]["recognised"] > 0.99
     assert load_table(out).labels.max() == 1
-    assert load("quick", [f"vision.colour_table={out}"]).vision.colour_table == str(out)
+    assert load_scenario("quick", [f"vision.colour_table={out}"]).vision.colour_table == str(out)
     assert main(Colours((picture,), out)) == 0
     assert "red" in capsys.readouterr().out
 
@@ -59,7 +59,7 @@ def test_what_is_missing_or_no_image_is_told(picture, tmp_path):
 
 def test_a_wrong_table_in_a_scenario_is_a_mistake_of_the_scenario(tmp_path):
     with pytest.raises(ScenarioError, match=r"vision\.colour_table.*nowhere\.npz"):
-        load("quick", ["vision.colour_table=nowhere.npz"])
+        load_scenario("quick", ["vision.colour_table=nowhere.npz"])
 
 
 def test_images_are_needed(capsys):

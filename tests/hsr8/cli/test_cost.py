@@ -1,11 +1,11 @@
 import pytest
 
 from hsr8.cli.cost import estimate
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 
 def wall(*settings):
-    return estimate(load("course", settings)).wall
+    return estimate(load_scenario("course", settings)).wall
 
 
 def test_what_is_left_out_costs_nothing():

@@ -13,7 +13,7 @@ from hsr8.cli.options import Sweep
 from hsr8.cli.sweep import _variants
 from hsr8.evaluation.sweep.folder import SweepFolder
 from hsr8.loop import Simulation
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 TINY = ["--body", "kinematic", "--camera", "analytic"]
 FAST = ["sweep", "quick", *TINY, "--duration", "0.3", "--quiet"]
@@ -74,7 +74,7 @@ def test_two_workers_give_the_states_of_single_runs(tmp_path, capsys):
     rows = SweepFolder.read(out).rows()
     overrides = ("robot.body=kinematic", "camera.source=analytic", "duration=0.3")
     for row in rows:
-        alone = Simulation(load("quick", overrides, row["seed"]), row["seed"]).run()
+        alone = Simulation(load_scenario("quick", overrides, row["seed"]), row["seed"]).run()
         assert row["state_hash"] == alone.state_hash
         assert (out / row["run"] / "metrics.json").exists()
         assert not (out / row["run"] / "log.rrd").exists()

@@ -6,7 +6,7 @@ import pytest
 from hsr8.evaluation.recording import Recording
 from hsr8.loop import Simulation
 from hsr8.recorder.run.manifest import Manifest
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def uncollected():
 def recorded(path):
     """A weak reference to the model of a run that is over."""
     settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=1.2"]
-    simulation = Simulation(load("quick", settings), 1)
+    simulation = Simulation(load_scenario("quick", settings), 1)
     model = weakref.ref(simulation.model)
     recording = Recording(simulation)
     manifest = Manifest.now("quick", 1, ("test",), "analytic")

@@ -5,7 +5,7 @@ from hsr8.recorder.run.frame_summary import from_line, to_line
 from hsr8.render.dashboard import Dashboard, Moment
 from hsr8.render.movie import Shot
 from hsr8.render.timeline import Timeline
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 
 
 @pytest.fixture
@@ -13,7 +13,7 @@ def drawn(fake, layout):
     line = to_line(fake.frame(0.6, (0.0, 0.0, 0.0)), fake.record(0.6, (0.0, 0.0, 0.0)).truth)
 
     def draw(size, collisions=0, doing="free"):
-        board = Dashboard(layout, load("quick"), Timeline((), 0.0, 1.0), size, 1.0)
+        board = Dashboard(layout, load_scenario("quick"), Timeline((), 0.0, 1.0), size, 1.0)
         scene = np.full((*board.scene_size[::-1], 3), (200, 0, 0), np.uint8)
         eye = np.full((*board.eye_size[::-1], 3), (0, 200, 0), np.uint8)
         moment = Moment(

@@ -1,14 +1,14 @@
 import numpy as np
 
 from hsr8.render.plan_view import PlanView
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.motion import AWAY
 from vision.colour import COLOUR_CLASSES
 
 
 def test_every_thing_is_drawn_in_its_colour():
-    layout = draw_layout(load("course"), 1)
+    layout = draw_layout(load_scenario("course"), 1)
     image = PlanView(layout, 600).draw()
     assert max(image.shape[:2]) == 600
     for colour in {o.colour for o in layout.obstacles} | {b.top for b in layout.beacons}:
@@ -17,7 +17,7 @@ def test_every_thing_is_drawn_in_its_colour():
 
 
 def test_y_points_up_and_x_to_the_right():
-    scenario = load("walk", ["world.obstacle=[{position=[2.0, 1.5], radius=0.2}]"])
+    scenario = load_scenario("walk", ["world.obstacle=[{position=[2.0, 1.5], radius=0.2}]"])
     image = PlanView(draw_layout(scenario, 0), 600).draw()
     red = np.round(255 * np.asarray(COLOUR_CLASSES["red"].rgb))
     rows, columns = np.nonzero(np.abs(image - red).max(axis=2) <= 1)
@@ -28,12 +28,12 @@ def test_y_points_up_and_x_to_the_right():
 def test_a_mover_that_appears_is_drawn_where_it_does_and_a_bump_where_it_lies():
     faults = '{kind="mover-appears",start=2.0},{kind="bump",size=0.01,place=[1.5,1.5],radius=0.2}'
     usual, faulty = (
-        PlanView(draw_layout(load("quick", [f"fault=[{text}]"]), 2), 600).draw()
+        PlanView(draw_layout(load_scenario("quick", [f"fault=[{text}]"]), 2), 600).draw()
         for text in ('{kind="mover-appears"}', faults)
     )
     rows, columns = np.nonzero((usual != faulty).any(axis=2))
     there = (rows < 0.3 * len(usual)) & (columns > 0.7 * len(usual))
     assert np.count_nonzero(there) > 50
-    moved = draw_layout(load("quick"), 2).movers[0].position
-    gone = draw_layout(load("quick", [f"fault=[{faults}]"]), 2).movers[0].position
+    moved = draw_layout(load_scenario("quick"), 2).movers[0].position
+    gone = draw_layout(load_scenario("quick", [f"fault=[{faults}]"]), 2).movers[0].position
     assert gone[0] - moved[0] == AWAY

@@ -1,7 +1,7 @@
 import pytest
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.loader import load, loads
+from hsr8.scenario.loader import load_scenario, loads
 
 COURSE = 'mission = {kind = "course"}\n'
 
@@ -122,20 +122,20 @@ def test_keys_that_contradict_each_other_are_told_with_their_line(text, wanted):
 )
 def test_commands_and_pushes_that_make_no_sense_are_named(name, override, wanted):
     with pytest.raises(ScenarioError) as caught:
-        load(name, [override])
+        load_scenario(name, [override])
     assert wanted in str(caught.value)
     assert override.partition("=")[0].split(".")[0] in str(caught.value)
 
 
 def test_a_body_without_dynamics_cannot_be_pushed():
     push = "disturbance.random={}"
-    assert load("walk", [push]).disturbance.random.impulse == (0.2, 0.8)
+    assert load_scenario("walk", [push]).disturbance.random.impulse == (0.2, 0.8)
     with pytest.raises(ScenarioError, match="has no dynamics to push"):
-        load("walk", [push, "robot.body=kinematic"])
+        load_scenario("walk", [push, "robot.body=kinematic"])
 
 
 def test_a_velocity_and_a_footstep_at_once_are_refused():
     with pytest.raises(ScenarioError, match="not both"):
-        load("walk", ["command.vx=0.1", "command.footstep={forward=0.05}"])
+        load_scenario("walk", ["command.vx=0.1", "command.footstep={forward=0.05}"])
     with pytest.raises(ScenarioError, match="not both"):
-        load("walk", ["command.stretch=[{duration=1, vx=0.1, footstep={forward=0.05}}]"])
+        load_scenario("walk", ["command.stretch=[{duration=1, vx=0.1, footstep={forward=0.05}}]"])

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario.fault import CameraBlack, Fault, Joint, ServoWeak
-from hsr8.scenario.loader import dump, load, loads
+from hsr8.scenario.loader import dump, load_scenario, loads
 from walking.body.joints import JOINT_NAMES
 
 FULL = 'robot.body="full"'
@@ -71,7 +71,7 @@ def test_it_is_told_to_begin_and_to_end_at_the_ticks_at_which_it_does(start, dur
 
 def test_all_kinds_are_one_vocabulary():
     assert len(set(KINDS)) == len(KINDS) == 20
-    scenario = load("quick", [f"fault=[{','.join(map(fault_of, KINDS))}]"])
+    scenario = load_scenario("quick", [f"fault=[{','.join(map(fault_of, KINDS))}]"])
     assert [f.kind for f in scenario.fault] == KINDS
     assert loads(dump(scenario)) == scenario
 
@@ -102,6 +102,6 @@ def test_all_kinds_are_one_vocabulary():
 )
 def test_what_does_not_fit_is_one_clear_mistake(settings, told):
     with pytest.raises(ScenarioError) as error:
-        load("quick", settings)
+        load_scenario("quick", settings)
     assert "1 mistake in" in str(error.value)
     assert told in str(error.value)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.loader import LARGEST, built_in_names, dump, load, loads
+from hsr8.scenario.loader import LARGEST, built_in_names, dump, load_scenario, loads
 from hsr8.scenario.reference import json_schema
 from hsr8.scenario.toml_writer import write_toml
 
@@ -24,7 +24,7 @@ def mistakes(text):
 
 @pytest.mark.parametrize("name", built_in_names())
 def test_built_in_scenarios_are_right_and_come_back_from_their_text(name):
-    scenario = load(name)
+    scenario = load_scenario(name)
     assert scenario.name == name
     assert scenario.description
     assert loads(dump(scenario)) == scenario
@@ -33,7 +33,7 @@ def test_built_in_scenarios_are_right_and_come_back_from_their_text(name):
 def test_the_scenarios_of_the_issue_exist():
     expected = {"paper", "course", "fig4a", "fig4b", "fig4c", "walk", "quick"}
     assert expected <= set(built_in_names())
-    paper, quick = load("paper"), load("quick")
+    paper, quick = load_scenario("paper"), load_scenario("quick")
     assert (paper.duration, paper.world.n_static, paper.world.n_moving) == (560.2, 12, 4)
     assert quick.duration <= 30.0
 
@@ -104,14 +104,14 @@ def test_lines_of_array_tables():
 
 def test_names_are_suggested():
     with pytest.raises(ScenarioError, match="did you mean 'course'"):
-        load("cours")
+        load_scenario("cours")
 
 
 def test_a_missing_file_and_a_folder(tmp_path):
     with pytest.raises(ScenarioError, match="does not exist"):
-        load(str(tmp_path / "no.toml"))
+        load_scenario(str(tmp_path / "no.toml"))
     with pytest.raises(ScenarioError, match="is no file"):
-        load(str(tmp_path))
+        load_scenario(str(tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -128,13 +128,13 @@ def test_files_that_are_no_scenario(tmp_path, raw, wanted):
     file = tmp_path / "bad.toml"
     file.write_bytes(raw)
     with pytest.raises(ScenarioError, match=wanted):
-        load(str(file))
+        load_scenario(str(file))
 
 
 def test_a_file_extends_a_built_in_scenario(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text('extends = "course"\n[world]\nn_static = 5\n')
-    mine, course = load(str(file)), load("course")
+    mine, course = load_scenario(str(file)), load_scenario("course")
     assert mine.name == "mine"
     assert mine.world.n_static == 5
     assert mine.world.n_moving == course.world.n_moving
@@ -144,24 +144,24 @@ def test_a_file_extends_a_built_in_scenario(tmp_path):
 def test_a_file_extends_a_neighbour_but_nothing_elsewhere(tmp_path):
     (tmp_path / "base.toml").write_text('extends = "course"\nduration = 99.0\n')
     (tmp_path / "mine.toml").write_text('extends = "base.toml"\n')
-    assert load(str(tmp_path / "mine.toml")).duration == 99.0
+    assert load_scenario(str(tmp_path / "mine.toml")).duration == 99.0
     (tmp_path / "mine.toml").write_text('extends = "../base.toml"\n')
     with pytest.raises(ScenarioError, match=r"mine\.toml:1: extends: no scenario is called"):
-        load(str(tmp_path / "mine.toml"))
+        load_scenario(str(tmp_path / "mine.toml"))
 
 
 def test_scenarios_that_extend_each_other_are_an_error(tmp_path):
     (tmp_path / "a.toml").write_text('extends = "b.toml"\n')
     (tmp_path / "b.toml").write_text('extends = "a.toml"\n')
     with pytest.raises(ScenarioError, match="circle"):
-        load(str(tmp_path / "a.toml"))
+        load_scenario(str(tmp_path / "a.toml"))
 
 
 def test_mistakes_in_the_parent_are_told_there(tmp_path):
     (tmp_path / "base.toml").write_text('extends = "course"\nduration = -1.0\n')
     (tmp_path / "mine.toml").write_text('extends = "base.toml"\n[camera]\nperiod_ms = 7\n')
     with pytest.raises(ScenarioError) as caught:
-        load(str(tmp_path / "mine.toml"))
+        load_scenario(str(tmp_path / "mine.toml"))
     assert "base.toml:2: duration" in str(caught.value)
     assert "mine.toml:3: camera.period_ms" in str(caught.value)
 
@@ -169,11 +169,11 @@ def test_mistakes_in_the_parent_are_told_there(tmp_path):
 def test_another_kind_of_mission_keeps_nothing_of_the_old_one(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text('extends = "paper"\n[mission]\nkind = "points"\npoints = [[1.0, 1.0]]\n')
-    assert load(str(file)).mission.points == ((1.0, 1.0),)
+    assert load_scenario(str(file)).mission.points == ((1.0, 1.0),)
 
 
 def test_overrides_change_single_keys():
-    scenario = load(
+    scenario = load_scenario(
         "walk",
         [
             "camera.source=analytic",
@@ -183,7 +183,7 @@ def test_overrides_change_single_keys():
         ],
         seed=77,
     )
-    before = load("walk")
+    before = load_scenario("walk")
     assert scenario.camera.source == "analytic"
     assert scenario.robot.body == "kinematic"
     assert scenario.world.brightness == 0.5
@@ -200,8 +200,8 @@ def test_an_override_changes_one_key_however_deep_in_a_list(tmp_path):
         'mission = {kind = "walk"}\n'
         f"[command]\nstretch = [{{duration = 1.0, footstep = {steps}}}]\n"
     )
-    (old,) = load(str(file)).command.stretch
-    (new,) = load(str(file), ["command.stretch.0.footstep.forward=0.05"]).command.stretch
+    (old,) = load_scenario(str(file)).command.stretch
+    (new,) = load_scenario(str(file), ["command.stretch.0.footstep.forward=0.05"]).command.stretch
     assert new.footstep == old.footstep.model_copy(update={"forward": 0.05})
     assert new.duration == old.duration
 
@@ -213,24 +213,29 @@ def test_another_kind_of_fault_or_mover_keeps_nothing_of_the_old_one(tmp_path):
         '[[fault]]\nkind = "imu-tilt"\nsize = 0.1\nstart = 3.0\n'
         '[[world.mover]]\nmotion = "circle"\ncentre = [1.0, 1.0]\npath_radius = 0.4\n'
     )
-    changed = load(str(file), ["fault.0.kind=imu-frozen", "fault.0.start=4.0"])
+    changed = load_scenario(str(file), ["fault.0.kind=imu-frozen", "fault.0.start=4.0"])
     assert (changed.fault[0].kind, changed.fault[0].start) == ("imu-frozen", 4.0)
     line = ["motion=line", "start=[1.0, 1.0]", "heading_deg=90"]
-    changed = load(str(file), [f"world.mover.0.{setting}" for setting in line])
+    changed = load_scenario(str(file), [f"world.mover.0.{setting}" for setting in line])
     assert changed.world.mover[0].start == (1.0, 1.0)
 
 
 def test_overrides_are_words_one_word_or_a_table():
-    wanted = load("course", ["world.n_moving=3", "world.size=[4.0, 6.0]"])
-    assert load("course", {"world.n_moving": 3, "world.size": (4.0, 6.0)}) == wanted
-    assert load("course", {"world.n_moving": np.int64(3), "world.size": np.array([4, 6])}) == wanted
-    assert load("course", "world.n_moving=3") == load("course", ["world.n_moving=3"])
+    wanted = load_scenario("course", ["world.n_moving=3", "world.size=[4.0, 6.0]"])
+    assert load_scenario("course", {"world.n_moving": 3, "world.size": (4.0, 6.0)}) == wanted
+    assert (
+        load_scenario("course", {"world.n_moving": np.int64(3), "world.size": np.array([4, 6])})
+        == wanted
+    )
+    assert load_scenario("course", "world.n_moving=3") == load_scenario(
+        "course", ["world.n_moving=3"]
+    )
     with pytest.raises(ScenarioError, match=r"world\.n_moving = None"):
-        load("course", {"world.n_moving": None})
+        load_scenario("course", {"world.n_moving": None})
 
 
 def test_later_overrides_win():
-    assert load("course", ["duration=10.0", "duration=20.0"]).duration == 20.0
+    assert load_scenario("course", ["duration=10.0", "duration=20.0"]).duration == 20.0
 
 
 @pytest.mark.parametrize(
@@ -245,13 +250,13 @@ def test_later_overrides_win():
 )
 def test_wrong_overrides_name_themselves(override, wanted):
     with pytest.raises(ScenarioError) as caught:
-        load("walk", [override])
+        load_scenario("walk", [override])
     assert wanted in str(caught.value)
     assert f"--set {override}" in str(caught.value)
 
 
 def test_profile_and_lens_give_defaults_that_single_keys_change():
-    scenario = load(
+    scenario = load_scenario(
         "course", ["navigation.profile=paper", "navigation.gaze.w_lm=0.5", "camera.lens=narrow"]
     )
     assert scenario.navigation.gaze.mode == "integrated"
@@ -260,7 +265,7 @@ def test_profile_and_lens_give_defaults_that_single_keys_change():
     assert scenario.camera.vertical_fov_deg == 45.0
     assert scenario.camera.horizontal_fov_deg == pytest.approx(57.8, abs=0.1)
     assert loads(dump(scenario)) == scenario
-    assert load("course", ["camera.vertical_fov_deg=60.0"]).camera.lens == "custom"
+    assert load_scenario("course", ["camera.vertical_fov_deg=60.0"]).camera.lens == "custom"
 
 
 TABLES = list(json_schema()["properties"])
@@ -295,7 +300,11 @@ def test_any_table_is_a_scenario_or_a_scenario_error(table):
 @settings(max_examples=150)
 @given(st.text(max_size=60))
 def test_any_text_is_a_scenario_or_a_scenario_error(text):
-    for attempt in (lambda: loads(text), lambda: load("course", [text]), lambda: load(text)):
+    for attempt in (
+        lambda: loads(text),
+        lambda: load_scenario("course", [text]),
+        lambda: load_scenario(text),
+    ):
         try:
             attempt()
         except ScenarioError:
@@ -310,7 +319,7 @@ def test_any_text_is_a_scenario_or_a_scenario_error(text):
     st.text(max_size=40),
 )
 def test_numbers_and_text_come_back_exactly(duration, encoder, seed, description):
-    scenario = load("course").model_copy(
+    scenario = load_scenario("course").model_copy(
         update={"duration": duration, "seed": seed, "description": description}
     )
     scenario = scenario.model_copy(update={"sensors": type(scenario.sensors)(encoder=encoder)})
@@ -319,7 +328,7 @@ def test_numbers_and_text_come_back_exactly(duration, encoder, seed, description
 
 def test_reading_a_scenario_needs_no_mujoco():
     code = (
-        "import sys; from hsr8.scenario.loader import load; load('paper');"
+        "import sys; from hsr8.scenario.loader import load_scenario; load_scenario('paper');"
         "sys.exit(any(m in sys.modules for m in ('mujoco', 'rerun', 'cv2', 'pinocchio')))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
@@ -336,9 +345,9 @@ def test_reading_a_scenario_needs_no_mujoco():
 )
 def test_a_file_of_any_name_is_a_scenario(tmp_path, file, name):
     (tmp_path / file).write_text(COURSE)
-    assert load(str(tmp_path / file)).name == name
+    assert load_scenario(str(tmp_path / file)).name == name
     (tmp_path / file).write_text(f'name = "own"\n{COURSE}')
-    assert load(str(tmp_path / file)).name == "own"
+    assert load_scenario(str(tmp_path / file)).name == "own"
 
 
 def test_what_goes_too_deep_is_refused_wherever_it_is_given(tmp_path):
@@ -348,32 +357,32 @@ def test_what_goes_too_deep_is_refused_wherever_it_is_given(tmp_path):
     nested = "[" * 90 + "]" * 90
     for words in ((str(file),), ("quick", [f"{key}=1"]), ("quick", [f"name={nested}"])):
         with pytest.raises(ScenarioError, match="nested too deeply"):
-            load(*words)
+            load_scenario(*words)
 
 
 def test_no_hint_names_what_was_given(tmp_path):
     (tmp_path / "dang.toml").symlink_to("nowhere.toml")
     with pytest.raises(ScenarioError, match=r"is a link to 'nowhere.toml', which does not exist"):
-        load(str(tmp_path / "dang.toml"))
+        load_scenario(str(tmp_path / "dang.toml"))
     with pytest.raises(ScenarioError, match=r"does not exist$"):
-        load(str(tmp_path / "dan.toml"))
+        load_scenario(str(tmp_path / "dan.toml"))
     with pytest.raises(ScenarioError, match="--set extends=course: a setting cannot change"):
-        load("quick", ["extends=course"])
+        load_scenario("quick", ["extends=course"])
 
 
 def test_bytes_that_are_no_text_are_told_with_their_setting():
     with pytest.raises(ScenarioError, match="--set name=\udcff: is no UTF-8 text"):
-        load("quick", ["name=\udcff"])
+        load_scenario("quick", ["name=\udcff"])
 
 
 def test_mistakes_of_varied_values_are_told_as_theirs():
     with pytest.raises(ScenarioError, match=r"--vary wold.x=1: wold: unknown key"):
-        load("quick", varied=["wold.x=1"])
+        load_scenario("quick", varied=["wold.x=1"])
     with pytest.raises(ScenarioError, match="--vary x: must be key=value"):
-        load("quick", varied=["x"])
+        load_scenario("quick", varied=["x"])
 
 
 def test_an_unknown_key_with_dots_is_told_with_its_line(tmp_path):
     (tmp_path / "w.toml").write_text('extends = "quick"\nwold.size = [3, 3]\n')
     with pytest.raises(ScenarioError, match=r"w\.toml:2: wold: unknown key"):
-        load(str(tmp_path / "w.toml"))
+        load_scenario(str(tmp_path / "w.toml"))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import LARGEST_SEED
 from hsr8.scenario.section import Section
 from navigation.parameters.belief import BeliefParameters
@@ -17,7 +17,7 @@ from navigation.parameters.navigation import NavigationParameters
 from vision.parameters import VisionParameters
 from walking.parameters import WalkingParameters
 
-QUICK = load("quick")
+QUICK = load_scenario("quick")
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def test_their_constraints_hold(text):
 
 
 def test_a_scenario_holds_the_libraries_own_parameters():
-    scenario = load("course")
+    scenario = load_scenario("course")
     assert scenario.walking == WalkingParameters()
     assert scenario.vision == VisionParameters()
     assert scenario.belief == BeliefParameters()
@@ -78,14 +78,16 @@ def test_a_scenario_holds_the_libraries_own_parameters():
 
 
 def test_the_profile_paper_is_the_librarys():
-    given = load("course", ["navigation.profile=paper"]).navigation
+    given = load_scenario("course", ["navigation.profile=paper"]).navigation
     paper = NavigationParameters.paper()
     for name in ("mission", "evaluation", "gaze", "univector", "mover", "gate", "filter", "body"):
         assert getattr(given, name) == getattr(paper, name)
 
 
 def test_a_command_lasts_for_one_footstep():
-    scenario = load("course", ["walking.gait.footstep_time=0.4", "robot.speed.forward=0.15"])
+    scenario = load_scenario(
+        "course", ["walking.gait.footstep_time=0.4", "robot.speed.forward=0.15"]
+    )
     limits = scenario.speed_limits()
     assert limits.footstep == 0.4
     assert limits.forward == 0.15
@@ -106,7 +108,7 @@ def test_what_is_no_seed_is_refused(seed):
 
 
 def test_a_scenario_does_not_change():
-    scenario = load("course")
+    scenario = load_scenario("course")
     with pytest.raises(ValidationError):
         scenario.duration = 1.0
     with pytest.raises(FrozenInstanceError):

@@ -6,7 +6,7 @@ from math import atan2, degrees, hypot
 import numpy as np
 import pytest
 
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field import fairness
 from hsr8.world.field.attempt import Attempt, CrowdedError
@@ -41,7 +41,7 @@ def drawn(scenario, seed):
 
 @pytest.fixture(scope="module", params=FAMILIES)
 def family(request):
-    scenario = load(request.param)
+    scenario = load_scenario(request.param)
     return scenario, [drawn(scenario, seed) for seed in SEEDS]
 
 
@@ -93,7 +93,7 @@ def test_points_can_be_stood_on(family):
 
 @pytest.mark.parametrize("name", ["conflict", "behind"])
 def test_encounters_run_into_who_walks_straight_on(name):
-    scenario = load(name)
+    scenario = load_scenario(name)
     encounters = scenario.world.encounters
     layout = drawn(scenario, 5)
     pace = encounters.pace * scenario.robot.speed.forward
@@ -118,18 +118,18 @@ def test_encounters_run_into_who_walks_straight_on(name):
 
 
 def test_a_crowd_shuttles_circles_and_wanders():
-    laws = {type(o.motion) for seed in range(3) for o in drawn(load("crowd"), seed).movers}
+    laws = {type(o.motion) for seed in range(3) for o in drawn(load_scenario("crowd"), seed).movers}
     assert laws == {Shuttle, Circle, Wander}
 
 
 def test_one_way_movers_go_once():
-    layout = drawn(load("conflict"), 1)
+    layout = drawn(load_scenario("conflict"), 1)
     assert {type(o.motion) for o in layout.movers} == {Passage}
 
 
 @pytest.mark.parametrize("name", ["behind", "conflict"])
 def test_nothing_that_stood_sets_off_beside_the_robot(name):
-    scenario = load(name)
+    scenario = load_scenario(name)
     pace = scenario.world.encounters.pace * scenario.robot.speed.forward
     gaps = []
     for seed in range(4):
@@ -144,7 +144,7 @@ def test_nothing_that_stood_sets_off_beside_the_robot(name):
 
 
 def test_the_robot_cannot_slip_through_a_wall():
-    layout = drawn(load("corridor"), 0)
+    layout = drawn(load_scenario("corridor"), 0)
     upper = sorted(o.position for o in layout.static if o.position[1] > 0.0)
     gaps = np.diff([x for x, _ in upper]) - 2.0 * layout.static[0].radius
     assert (gaps < 2.0 * ROBOT_RADIUS).all()

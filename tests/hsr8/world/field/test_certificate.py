@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.robot import SpeedEnvelope
 from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import VIA_REACHED, certify, least_clearance, straight_length
@@ -93,7 +93,7 @@ def mirrored(world):
     "name", ["quick", "course", "crowd", "dense", "conflict", "behind", "corridor"]
 )
 def test_the_path_of_a_certificate_is_walked_without_contact(name):
-    scenario = load(name)
+    scenario = load_scenario(name)
     world = draw_world(scenario, 1001)
     assert world.certificate.solvable
     path = world.certificate.path
@@ -104,7 +104,7 @@ def test_the_path_of_a_certificate_is_walked_without_contact(name):
 
 @pytest.mark.parametrize("name", ["quick", "crowd", "conflict"])
 def test_a_mirrored_world_has_a_mirrored_certificate(name):
-    scenario = load(name)
+    scenario = load_scenario(name)
     world = draw_world(scenario, 1002)
     turned = mirrored(world.layout)
     certificate = certify(turned, scenario.robot.speed)
@@ -131,7 +131,7 @@ def test_a_world_without_a_way_is_drawn_again():
         "mission.via_points=0",
         "mission.leg=[0.3, 2.5]",
     ]
-    scenario = load("quick", changes)
+    scenario = load_scenario("quick", changes)
     worlds = [draw_world(scenario, seed) for seed in range(6)]
     assert any(world.rejected for world in worlds)
     assert all(world.certificate.solvable for world in worlds)
@@ -147,11 +147,11 @@ def test_an_impossible_world_is_an_error_that_says_how_often_it_was_tried():
         "mission.leg=[2.0, 2.9]",
     ]
     with pytest.raises(ScenarioError, match=r"way through it [0-9]+ times"):
-        draw_layout(load("quick", changes), 0)
+        draw_layout(load_scenario("quick", changes), 0)
 
 
 def test_a_world_placed_by_hand_is_what_it_is():
-    scenario = load("fig4c", ["world.row=[{start=[0.0, -2.35], end=[0.0, 2.35]}]"])
+    scenario = load_scenario("fig4c", ["world.row=[{start=[0.0, -2.35], end=[0.0, 2.35]}]"])
     world = draw_world(scenario, 0)
     assert not world.certificate.solvable
     assert world.certificate.points_reached == 0

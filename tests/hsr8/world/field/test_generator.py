@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.field import fairness
 from hsr8.world.field.attempt import Attempt
 from hsr8.world.field.generator import WORLDS, draw_layout
@@ -27,7 +27,7 @@ def drawn(scenario, seed):
 
 @pytest.fixture(scope="module", params=["course", "paper", "quick"])
 def worlds(request):
-    scenario = load(request.param)
+    scenario = load_scenario(request.param)
     return scenario, [drawn(scenario, seed) for seed in SEEDS]
 
 
@@ -100,7 +100,7 @@ def test_movers_turn_about_away_from_the_goal(worlds):
 
 
 def test_same_seed_same_world_other_seed_other_world():
-    scenario = load("course")
+    scenario = load_scenario("course")
     first, again, other = (draw_layout(scenario, seed) for seed in (5, 5, 6))
     assert first.obstacles == again.obstacles
     assert first.start == again.start
@@ -111,25 +111,25 @@ def test_same_seed_same_world_other_seed_other_world():
 
 
 def test_sensors_and_camera_do_not_change_the_world():
-    plain = draw_layout(load("course"), 3)
-    other = draw_layout(load("course", ["camera.lens=narrow", "sensors.gyro=0.0"]), 3)
+    plain = draw_layout(load_scenario("course"), 3)
+    other = draw_layout(load_scenario("course", ["camera.lens=narrow", "sensors.gyro=0.0"]), 3)
     assert plain.obstacles == other.obstacles
 
 
 def test_a_world_without_room_is_an_error_that_says_what_to_change():
     with pytest.raises(ScenarioError, match=r"no fair world.*world\.n_static"):
-        draw_layout(load("quick", ["world.n_static=40"]), 1)
+        draw_layout(load_scenario("quick", ["world.n_static=40"]), 1)
 
 
 def test_movers_without_room_are_given_up_soon():
     with pytest.raises(ScenarioError, match="no fair world") as refused:
-        draw_layout(load("course", ["world.n_moving=30"]), 0)
+        draw_layout(load_scenario("course", ["world.n_moving=30"]), 0)
     attempts = int(re.search(r"(\d+) attempts", str(refused.value))[1])
     assert 1 <= attempts < WORLDS / 2
 
 
 def test_things_placed_by_hand_stand_where_they_are_put():
-    layout = draw_layout(load("fig4c"), 0)
+    layout = draw_layout(load_scenario("fig4c"), 0)
     (mover,) = layout.movers
     assert mover.position == (1.6, 0.02)
     assert mover.motion.velocity(0.0) == pytest.approx((-0.10, 0.0))
@@ -141,7 +141,7 @@ def test_things_placed_by_hand_stand_where_they_are_put():
 def test_drawn_obstacles_keep_clear_of_those_placed_by_hand():
     hand = "world.obstacle=[{position=[0.0, 0.0], radius=0.3}]"
     for seed in SEEDS[:5]:
-        layout = draw_layout(load("course", [hand]), seed)
+        layout = draw_layout(load_scenario("course", [hand]), seed)
         placed, *drawn = layout.static
         assert placed.position == (0.0, 0.0)
         for o in drawn:
@@ -150,14 +150,16 @@ def test_drawn_obstacles_keep_clear_of_those_placed_by_hand():
 
 
 def test_circles_can_be_drawn():
-    layout = draw_layout(load("course", ['world.motions=["circle"]', "world.n_moving=2"]), 1)
+    layout = draw_layout(
+        load_scenario("course", ['world.motions=["circle"]', "world.n_moving=2"]), 1
+    )
     places = np.array([layout.motion().positions(t) for t in (0.0, 3.0)])
     assert (np.abs(places) < 2.5).all()
     assert (np.abs(places[1] - places[0]).max(axis=1) > 0.05).all()
 
 
 def test_a_walk_has_nothing_to_reach():
-    layout = draw_layout(load("walk"), 0)
+    layout = draw_layout(load_scenario("walk"), 0)
     assert layout.waypoints.shape == (0, 2)
     assert not layout.endless
     assert layout.goal_heading is None
@@ -166,7 +168,7 @@ def test_a_walk_has_nothing_to_reach():
 @pytest.mark.parametrize("name", ["fig4a", "fig4b", "fig4c"])
 def test_collision_situations_are_collisions_for_who_does_not_react(name):
     """(a), (c): walking straight on at full speed; (b): standing still."""
-    layout = draw_layout(load(name), 0)
+    layout = draw_layout(load_scenario(name), 0)
     (mover,) = layout.movers
     speed = 0.0 if name == "fig4b" else 0.2
     gaps = [

@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.scenario.loader import load
+from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import Optics, assemble
@@ -13,7 +13,7 @@ from walking.body.joints import JOINT_NAMES
 
 @pytest.fixture(scope="module")
 def layout():
-    return draw_layout(load("course"), 7)
+    return draw_layout(load_scenario("course"), 7)
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +110,7 @@ def test_a_mover_pushes_a_standing_robot():
     hand = (
         'world.mover=[{motion="line", start=[-1.2, 0.0], heading_deg=180, speed=0.3, radius=0.1}]'
     )
-    layout = draw_layout(load("walk", [hand, "robot.speed.forward=0.3"]), 0)
+    layout = draw_layout(load_scenario("walk", [hand, "robot.speed.forward=0.3"]), 0)
     model = assemble(layout, "vision", Optics())
     index = ModelIndex.of(model, 0, 1)
     data, movers = mujoco.MjData(model), layout.motion()
