@@ -2,7 +2,7 @@ import pytest
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario import renamed
-from hsr8.scenario.loader import load, loads
+from hsr8.scenario.loader import load_scenario, loads
 
 TEXT = """\
 mission = {kind = "course"}
@@ -48,4 +48,4 @@ def test_an_old_key_is_refused_with_its_line_and_its_new_name():
 
 def test_an_old_key_of_a_setting_is_refused():
     with pytest.raises(ScenarioError, match=r"--set navigation.gate.enabled=true: .*renamed to"):
-        load("quick", ["navigation.gate.enabled=true"])
+        load_scenario("quick", ["navigation.gate.enabled=true"])
