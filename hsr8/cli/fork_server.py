@@ -24,10 +24,10 @@ import sys
 from contextlib import suppress
 from typing import Any
 
-from hsr8.attended import ORPHAN, ends_with
 from hsr8.cli.loading import loading
 from hsr8.cli.main import entry
 from hsr8.evaluation.sweep.fork_server import LONGEST
+from hsr8.parent_watch import ORPHAN, end_with_parent
 
 # A short run loads what a run loads, compiled kernels too, which come from the disk one by one.
 FIRST = ("robot.body=kinematic", "camera.source=analytic", "duration=1.0")
@@ -120,7 +120,7 @@ def _forked(files: list[int]) -> int | str:
 def _become_a_run(parent: int, files: list[int]) -> None:
     """What tells a run's process from the one that forked it."""
     os.setsid()
-    if not ends_with(parent):
+    if not end_with_parent(parent):
         os._exit(ORPHAN)
     for file, stream in zip(files, (1, 2), strict=True):
         os.dup2(file, stream)

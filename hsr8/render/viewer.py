@@ -13,9 +13,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hsr8.attended import attended
 from hsr8.errors import UsageError
 from hsr8.gl import VULKAN_LINE
+from hsr8.parent_watch import with_parent_watch
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
@@ -47,7 +47,7 @@ def has_display() -> bool:
 
 def show(logs: Sequence[Path]) -> int:
     """Open the `logs` of a run in a window and wait until it is closed; its exit status."""
-    command = attended(_command(logs, free_port()))
+    command = with_parent_watch(_command(logs, free_port()))
     return subprocess.run(command, check=False).returncode
 
 
@@ -99,7 +99,7 @@ class Viewer:
         self._said = tempfile.TemporaryFile()  # noqa: SIM115  closed by `close`
         try:
             self._process = subprocess.Popen(
-                attended(command),
+                with_parent_watch(command),
                 stdout=subprocess.DEVNULL,
                 stderr=self._said,
                 start_new_session=True,

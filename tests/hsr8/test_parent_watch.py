@@ -1,12 +1,12 @@
 import subprocess
 import sys
 
-from hsr8.attended import attended
+from hsr8.parent_watch import with_parent_watch
 
 PARENT = """
 import os, subprocess, sys
-child = "import sys, time; import hsr8.attended as a;"
-child += "print(a.ends_with(PARENT), flush=True); time.sleep(60)"
+child = "import sys, time; import hsr8.parent_watch as a;"
+child += "print(a.end_with_parent(PARENT), flush=True); time.sleep(60)"
 child = child.replace("PARENT", str(os.getpid()))
 process = subprocess.Popen([sys.executable, "-c", child], stdout=subprocess.PIPE, text=True)
 print(process.stdout.readline(), flush=True)
@@ -23,17 +23,17 @@ def test_it_ends_with_a_parent_that_is_killed():
     assert done.stdout.strip() == "True"
 
 
-def test_it_is_told_where_its_parent_is_gone():
-    words = [sys.executable, "-c", "import hsr8.attended as a; print(a.ends_with(1))"]
+def test_a_parent_that_already_ended_is_reported():
+    words = [sys.executable, "-c", "import hsr8.parent_watch as a; print(a.end_with_parent(1))"]
     done = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60)
     assert done.stdout.strip() == "False"
 
 
-def test_a_program_that_is_attended_ends_with_its_parent():
+def test_a_watched_program_ends_with_its_parent():
     """Its standard output is the parent's, which is closed when both have ended."""
     script = (
-        "import os, subprocess; from hsr8.attended import attended;"
-        "child = subprocess.Popen(attended(['/bin/sh', '-c', 'echo here; exec sleep 60']),"
+        "import os, subprocess; from hsr8.parent_watch import with_parent_watch;"
+        "child = subprocess.Popen(with_parent_watch(['/bin/sh', '-c', 'echo here; exec sleep 60']),"
         " stdout=subprocess.PIPE, start_new_session=True);"
         "print(child.stdout.readline(), flush=True); os.kill(os.getpid(), 9)"
     )
@@ -44,12 +44,12 @@ def test_a_program_that_is_attended_ends_with_its_parent():
     assert "here" in done.stdout
 
 
-def test_a_program_that_is_attended_keeps_its_exit_code():
-    words = attended(["/bin/sh", "-c", "exit 7"])
+def test_a_watched_program_keeps_its_exit_code():
+    words = with_parent_watch(["/bin/sh", "-c", "exit 7"])
     assert subprocess.run(words, check=False, timeout=60).returncode == 7
 
 
-def test_modules_of_the_present_folder_are_not_its_own(tmp_path):
+def test_modules_of_the_current_folder_are_not_imported(tmp_path):
     (tmp_path / "signal.py").write_text("raise SystemExit('not this one')")
-    words = attended(["/bin/sh", "-c", "exit 7"])
+    words = with_parent_watch(["/bin/sh", "-c", "exit 7"])
     assert subprocess.run(words, check=False, timeout=60, cwd=tmp_path).returncode == 7
