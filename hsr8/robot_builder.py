@@ -6,8 +6,8 @@ import numpy as np
 
 from hsr8.decisions import Decisions, GazeController, Goes, MotionPlanner
 from hsr8.errors import ScenarioError, UsageError
-from hsr8.own_decisions import OwnGaze, OwnPlanner
-from hsr8.own_file import made_from
+from hsr8.plugin_decisions import PluginGaze, PluginPlanner
+from hsr8.plugin_file import load_plugin
 from hsr8.robot import Robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
@@ -131,11 +131,11 @@ def build_decisions(
         UsageError: a `planner` or a `gaze`, given or named by the scenario, is none, or there is
             a planner beside a `script`.
     """
-    own, navigation, limits = scenario.own, scenario.navigation, scenario.speed_limits()
-    if planner is None and own.planner:
-        planner = made_from(own.planner)
-    if gaze is None and own.gaze:
-        gaze = made_from(own.gaze)
+    plugin, navigation, limits = scenario.plugin, scenario.navigation, scenario.speed_limits()
+    if planner is None and plugin.planner:
+        planner = load_plugin(plugin.planner)
+    if gaze is None and plugin.gaze:
+        gaze = load_plugin(plugin.gaze)
     beacons = known_beacons(scenario, layout)
     mission: Goes
     moves: MotionPlanner
@@ -152,12 +152,12 @@ def build_decisions(
         if planner is None:
             moves = build_planner(navigation, limits, named_rng(seed, "planner"))
         else:
-            moves = OwnPlanner(planner)
+            moves = PluginPlanner(planner)
     if gaze is None:
         fov = field_of_view(scenario, head_camera(scenario))
         looks = GazePlanner(navigation, limits, beacons, *fov)
     else:
-        looks = OwnGaze(gaze)
+        looks = PluginGaze(gaze)
     return Decisions(
         mission=mission,
         planner=moves,

@@ -11,7 +11,7 @@ from hsr8.cli.command_line import run_command, settings
 from hsr8.cli.cost import estimate
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_png, writing
-from hsr8.own_file import require_own
+from hsr8.plugin_file import require_plugins
 from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
 from hsr8.scenario.command import Command
@@ -35,7 +35,7 @@ def main(options: Check) -> int:
         UsageError: a planner or a gaze that it names cannot be made, or the picture not written.
     """
     scenario = load_scenario(options.scenario, settings(options), options.seed)
-    require_own(scenario.own)
+    require_plugins(scenario.plugin)
     if options.picture is not None:
         require_png("--picture", options.picture)
     world = draw_world(scenario, scenario.seed)

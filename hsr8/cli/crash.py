@@ -8,7 +8,7 @@ from typing import Self
 
 from hsr8.cli.standard_output import OutputFailed
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.own_file import line_of
+from hsr8.plugin_file import line_of
 from hsr8.recorder.files import atomic
 
 FILE = "crash.txt"

@@ -16,7 +16,7 @@ from hsr8.cli.loading import loading
 from hsr8.cli.options import Run
 from hsr8.errors import UsageError
 from hsr8.gl import require_gl
-from hsr8.own_file import require_own
+from hsr8.plugin_file import require_plugins
 from hsr8.recorder.files import atomic
 from hsr8.recorder.files.new_folder import require_new_folder
 from hsr8.render.live_view import require_display
@@ -40,7 +40,7 @@ def main(options: Run) -> int:
     scenario = load_scenario(
         options.scenario, settings(options), options.seed, options=option_tables(options)
     )
-    if period and scenario.own.named:
+    if period and scenario.plugin.named:
         raise UsageError("--checkpoint: nobody knows how to save a planner or a gaze of one's own")
     command = run_command(options, scenario.seed)
     if options.dry_run:
@@ -68,7 +68,7 @@ def _require_all(options: Run, scenario: Scenario) -> None:
     if options.view is not None:
         require_display(options.view)
     require_new_folder(options.out / scenario.name, "run folder")
-    require_own(scenario.own)
+    require_plugins(scenario.plugin)
     if scenario.camera.source == "egl":
         require_gl()
     with loading():

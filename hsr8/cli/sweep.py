@@ -29,7 +29,7 @@ from hsr8.evaluation.sweep.report import headline, write_comparison_of_values, w
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.gl import require_gl
-from hsr8.own_file import digests, require_own
+from hsr8.plugin_file import digests, require_plugins
 from hsr8.recorder.files import atomic
 from hsr8.scenario.loader import dump, load_scenario
 from hsr8.scenario.schema import Scenario
@@ -65,7 +65,7 @@ def main(options: Sweep) -> int:
     if kind == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
         require_gl()
     for scenario in scenarios.values():
-        require_own(scenario.own)
+        require_plugins(scenario.plugin)
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
     definitions = _definitions(options, scenarios, variants)
     if options.dry_run:
@@ -118,7 +118,7 @@ def _definitions(
             common,
             name=scenario.name,
             again=run_words(options, variants[name]),
-            libraries=common.libraries | digests(scenario.own),
+            libraries=common.libraries | digests(scenario.plugin),
             scenario=dump(scenario),
         )
         for name, scenario in scenarios.items()

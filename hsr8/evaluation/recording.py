@@ -12,7 +12,7 @@ from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Check, judge
 from hsr8.gl import require_gl
 from hsr8.loop import Simulation
-from hsr8.own_file import digests
+from hsr8.plugin_file import digests
 from hsr8.recorder.files.writing import FAILED
 from hsr8.recorder.log.threads import require_threads
 from hsr8.recorder.log_level import LogLevel
@@ -107,7 +107,7 @@ class Recording:
         simulation, scenario = self._simulation, self._simulation.scenario
         before = None if self._checkpoint is None else self._checkpoint.frame
         movers = len(simulation.layout.movers)
-        libraries = manifest.libraries | digests(scenario.own)
+        libraries = manifest.libraries | digests(scenario.plugin)
         manifest = replace(manifest, libraries=libraries, log=log or "", checkpoint=checkpoint)
         folder = RunFolder(path, manifest, dump(scenario), movers, before)
         self._folder = folder

@@ -117,8 +117,8 @@ def _mission(scenario: Scenario) -> Iterator[Problem]:
         )
     if criteria.min_via_points and isinstance(mission, Walk):
         yield Problem(("criteria", "min_via_points"), 'a mission of kind "walk" has no via points')
-    if scenario.own.planner and isinstance(mission, Walk):
-        yield Problem(("own", "planner"), 'a mission of kind "walk" asks no planner')
+    if scenario.plugin.planner and isinstance(mission, Walk):
+        yield Problem(("plugin", "planner"), 'a mission of kind "walk" asks no planner')
     if scenario.world.encounters.n and isinstance(mission, Walk):
         yield Problem(
             ("world", "encounters", "n"), 'a mission of kind "walk" has no way to meet on'

@@ -8,7 +8,9 @@ from hsr8.scenario.toml_lines import Path
 
 # Old key -> new key, both with dots, without indices of lists; a section covers the keys below it.
 # Sorted, one entry per line.
-RENAMED: dict[str, str] = {}
+RENAMED: dict[str, str] = {
+    "own": "plugin",
+}
 
 # Key -> old value -> new value.
 RENAMED_VALUES: dict[str, dict[str, str]] = {}

@@ -13,7 +13,7 @@ from hsr8.scenario.command import Command
 from hsr8.scenario.disturbance import Disturbance
 from hsr8.scenario.fault import Fault
 from hsr8.scenario.mission import Mission
-from hsr8.scenario.own import Own
+from hsr8.scenario.plugin import Plugin
 from hsr8.scenario.robot import Robot
 from hsr8.scenario.section import PeriodMs, Section
 from hsr8.scenario.sensor_noise import SensorNoise
@@ -92,8 +92,8 @@ class Scenario(Section):
     """Localization, obstacle tracks and local map."""
     navigation: Navigation = Navigation()
     """Gaze and motion planning."""
-    own: Own = Own()
-    """Planner and gaze of one's own."""
+    plugin: Plugin = Plugin()
+    """User-defined planner and gaze."""
     criteria: Criteria = Criteria()
     """What passes."""
     recorder: Recorder = Recorder()

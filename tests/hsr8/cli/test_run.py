@@ -93,7 +93,7 @@ def test_a_dry_run_finds_the_same_mistakes(tmp_path, capsys):
     [
         (["--no-log", "--view", "web"], "--view shows the log"),
         (["--view", "native"], "there is no display"),
-        (["--set", "own.planner=nope.py:A"], "cannot read nope.py"),
+        (["--set", "plugin.planner=nope.py:A"], "cannot read nope.py"),
         (["--out", "/dev/null"], "cannot write the run folder /dev/null/quick: Not a directory"),
         (["--set", "walking.gait.swing_height=0.2"], "walking"),
     ],

@@ -196,7 +196,7 @@ def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_
     [
         [f"navigation.gaze.deadline.{k}=0.25,0.5" for k in ("map_weight", "gate_weight")]
         + [f"belief.tracking.{k}=1.25,1.5" for k in ("process_noise", "forget_after_time")],
-        ["own.planner=a/p.py:P,a_p.py:P"],
+        ["plugin.planner=a/p.py:P,a_p.py:P"],
     ],
 )
 def test_every_combination_has_a_folder_of_its_own(varied):

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from hsr8.errors import UsageError
 
 if TYPE_CHECKING:  # the command line imports this module for its errors alone
-    from hsr8.scenario.own import Own
+    from hsr8.scenario.plugin import Plugin
 
 PREFIX = "own "  # of modules' names: none that an import could mean
 
 
-def made_from(reference: str) -> Any:
+def load_plugin(reference: str) -> Any:
     """A new object of the class that ``FILE.py:CLASS`` names, made without arguments.
 
     The file is run once in a process, as by ``import``; what lies beside it can be imported.
@@ -39,23 +39,23 @@ def made_from(reference: str) -> Any:
         raise UsageError(f"{reference}: {name}() fails: {_told(error, file)}") from error
 
 
-def require_own(own: "Own") -> None:
+def require_plugins(plugin: "Plugin") -> None:
     """See to it that what a scenario names can be made.
 
     Raises:
         UsageError: it cannot.
     """
-    for reference in own.named:
-        made_from(reference)
+    for reference in plugin.named:
+        load_plugin(reference)
 
 
-def digests(own: "Own") -> dict[str, str]:
+def digests(plugin: "Plugin") -> dict[str, str]:
     """First digits of the SHA-256 of each file that a scenario names, by reference.
 
     Raises:
         UsageError: one cannot be read.
     """
-    return {name: hashlib.sha256(_content(name)).hexdigest()[:12] for name in own.named}
+    return {name: hashlib.sha256(_content(name)).hexdigest()[:12] for name in plugin.named}
 
 
 def line_of(error: BaseException) -> str | None:

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 import hsr8
 from hsr8.errors import UsageError
-from hsr8.own_decisions import OwnGaze, OwnPlanner
+from hsr8.plugin_decisions import PluginGaze, PluginPlanner
 from hsr8.robot_builder import field_of_view, head_camera, known_beacons
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
@@ -58,7 +58,7 @@ def quick(*settings):
 
 @given(values=st.tuples(speeds, speeds, speeds), form=st.sampled_from(FORMS))
 def test_a_velocity_arrives_as_it_was_meant_in_any_form(values, form):
-    planner = OwnPlanner(Says(MotionDecision(form(values), np.float32(0.5))))
+    planner = PluginPlanner(Says(MotionDecision(form(values), np.float32(0.5))))
     motion = planner.plan(None, None)
     assert motion.velocity.dtype == np.float64
     assert tuple(motion.velocity) == values
@@ -67,7 +67,7 @@ def test_a_velocity_arrives_as_it_was_meant_in_any_form(values, form):
 
 @given(pan=speeds, number=st.sampled_from((float, np.float32, np.float64, np.array)))
 def test_a_gaze_arrives_as_it_was_meant_or_not_at_all(pan, number):
-    gaze = OwnGaze(Says(GazeDecision(number(pan), 0)))
+    gaze = PluginGaze(Says(GazeDecision(number(pan), 0)))
     if number is np.array:
         with pytest.raises(UsageError, match="pan"):
             gaze.choose(None, None, None)
@@ -93,7 +93,7 @@ def test_a_gaze_arrives_as_it_was_meant_or_not_at_all(pan, number):
 )
 def test_what_is_no_velocity_is_refused_with_what_it_should_be(velocity):
     with pytest.raises(UsageError, match=r"Says: velocity must be .*forward, left and turn \[m/s"):
-        OwnPlanner(Says(MotionDecision(velocity))).plan(None, None)
+        PluginPlanner(Says(MotionDecision(velocity))).plan(None, None)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_what_is_no_velocity_is_refused_with_what_it_should_be(velocity):
 )
 def test_what_is_no_motion_is_refused(answer, told):
     with pytest.raises(UsageError, match=f"the planner Says: .*{told}"):
-        OwnPlanner(Says(answer)).plan(None, None)
+        PluginPlanner(Says(answer)).plan(None, None)
 
 
 @pytest.mark.parametrize(
@@ -128,13 +128,13 @@ def test_what_is_no_motion_is_refused(answer, told):
 )
 def test_what_is_no_gaze_is_refused(answer, told):
     with pytest.raises(UsageError, match=f"the gaze Says: .*{told}"):
-        OwnGaze(Says(answer)).choose(None, None, None)
+        PluginGaze(Says(answer)).choose(None, None, None)
 
 
 def test_arithmetic_in_place_changes_neither_belief_nor_mission(fake):
     frame, other = fake.frame(0.0), fake.frame(0.0)
-    OwnPlanner(Computes()).plan(frame.belief, frame.task)
-    OwnGaze(Computes()).choose(frame.belief, frame.task, frame.motion)
+    PluginPlanner(Computes()).plan(frame.belief, frame.task)
+    PluginGaze(Computes()).choose(frame.belief, frame.task, frame.motion)
     assert np.array_equal(frame.belief.pose, other.belief.pose)
     assert np.array_equal(frame.belief.pose_covariance, other.belief.pose_covariance)
     assert np.array_equal(frame.task.target, other.task.target)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 import hsr8
 from hsr8.cli.main import entry
 from hsr8.errors import UsageError
-from hsr8.own_file import digests, line_of, made_from, require_own
-from hsr8.scenario.own import Own
+from hsr8.plugin_file import digests, line_of, load_plugin, require_plugins
+from hsr8.scenario.plugin import Plugin
 
 FAST = ("--body", "kinematic", "--camera", "analytic", "--quiet")
 SETTINGS = ("robot.body=kinematic", "camera.source=analytic", "duration=3.0")
@@ -84,10 +84,10 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_every_object_is_new_and_the_file_is_run_once(folder):
-    first, second = made_from("mine.py:Ahead"), made_from("mine.py:Ahead")
+    first, second = load_plugin("mine.py:Ahead"), load_plugin("mine.py:Ahead")
     assert first is not second
     assert type(first) is type(second)
-    assert type(made_from(f"{folder}/mine.py:Ahead")) is type(first)
+    assert type(load_plugin(f"{folder}/mine.py:Ahead")) is type(first)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_what_cannot_be_made_is_told_in_a_line(folder, reference, said):
     folder.joinpath("empty.py").write_text("")
     for _ in range(2):  # a file that failed is not taken for one that was run
         with pytest.raises(UsageError, match=f"^{reference}: {said}") as told:
-            require_own(Own(gaze=reference))
+            require_plugins(Plugin(gaze=reference))
         assert "\n" not in str(told.value)
 
 
@@ -118,23 +118,23 @@ def test_what_cannot_be_made_is_told_in_a_line(folder, reference, said):
 def test_digests_tell_files_apart(tmp_path_factory, other):
     file = tmp_path_factory.mktemp("own") / "mine.py"
     file.write_bytes(b"")
-    own = Own(planner=f"{file}:A", gaze=f"{file}:B")
-    before = digests(own)
+    plugin = Plugin(planner=f"{file}:A", gaze=f"{file}:B")
+    before = digests(plugin)
     file.write_bytes(other)
-    after = digests(own)
-    assert set(before) == set(after) == {own.planner, own.gaze}
+    after = digests(plugin)
+    assert set(before) == set(after) == {plugin.planner, plugin.gaze}
     assert all(before[name] != after[name] for name in before)
-    assert digests(Own()) == {}
+    assert digests(Plugin()) == {}
 
 
 def test_a_named_planner_and_gaze_decide_as_given_ones_do(folder):
-    named = {"own.planner": "mine.py:Ahead", "own.gaze": "mine.py:Down"}
+    named = {"plugin.planner": "mine.py:Ahead", "plugin.gaze": "mine.py:Down"}
     fast = dict(setting.split("=") for setting in SETTINGS) | {"duration": 3.0}
     given_ = hsr8.run(
         "quick",
         settings=fast,
-        planner=made_from("mine.py:Ahead"),
-        gaze=made_from("mine.py:Down"),
+        planner=load_plugin("mine.py:Ahead"),
+        gaze=load_plugin("mine.py:Down"),
     )
     usual = hsr8.run("quick", settings=fast)
     found = hsr8.run("quick", settings=fast | named)
@@ -144,21 +144,21 @@ def test_a_named_planner_and_gaze_decide_as_given_ones_do(folder):
 
 def test_a_class_without_the_method_is_refused(folder):
     with pytest.raises(UsageError, match="Silent has no method plan"):
-        hsr8.run("quick", settings=[*SETTINGS, "own.planner=mine.py:Silent"])
+        hsr8.run("quick", settings=[*SETTINGS, "plugin.planner=mine.py:Silent"])
 
 
 def test_a_run_names_the_file_s_digest_and_is_computed_again(folder, capsys):
-    own = ("--set", "own.planner=mine.py:Ahead", "own.gaze=mine.py:Down", "duration=3.0")
+    own = ("--set", "plugin.planner=mine.py:Ahead", "plugin.gaze=mine.py:Down", "duration=3.0")
     assert entry(["run", "quick", *FAST, *own, "--no-log", "--out", "runs"]) == 1
     (manifest,) = folder.glob("runs/quick/*/manifest.json")
     told = json.loads(manifest.read_text())["libraries"]
-    assert digests(Own(planner="mine.py:Ahead")).items() <= told.items()
+    assert digests(Plugin(planner="mine.py:Ahead")).items() <= told.items()
     assert entry(["check", "replay", "runs"]) == 0
 
 
 def test_a_sweep_refuses_to_go_on_with_another_file(folder, capsys):
     sweep = ["sweep", "quick", *FAST, "--seeds", "0:1", "--out", "s"]
-    own = ["--set", "own.planner=mine.py:Ahead", "duration=0.3"]
+    own = ["--set", "plugin.planner=mine.py:Ahead", "duration=0.3"]
     assert entry([*sweep, *own]) == 1
     folder.joinpath("mine.py").write_text(SOURCE + "\n")
     assert entry([*sweep, *own]) == 2
@@ -168,26 +168,26 @@ def test_a_sweep_refuses_to_go_on_with_another_file(folder, capsys):
 @pytest.mark.parametrize("command", [("check",), ("sweep", "--seeds", "0:1"), ("run",)])
 def test_commands_refuse_what_cannot_be_made(folder, capsys, command):
     word, *more = command
-    assert entry([word, "quick", *more, "--set", "own.planner=mine.py:Behind"]) == 2
+    assert entry([word, "quick", *more, "--set", "plugin.planner=mine.py:Behind"]) == 2
     assert "has no class Behind" in capsys.readouterr().err
 
 
 def test_a_run_with_own_decisions_has_no_checkpoints(folder, capsys):
-    own = ("--set", "own.gaze=mine.py:Down")
+    own = ("--set", "plugin.gaze=mine.py:Down")
     assert entry(["run", "quick", *FAST, *own, "--checkpoint", "1"]) == 2
     assert "--checkpoint" in capsys.readouterr().err
 
 
 def test_a_walk_asks_no_planner(folder):
     with pytest.raises(hsr8.errors.ScenarioError, match="asks no planner"):
-        hsr8.load_scenario("walk", ["own.planner=mine.py:Ahead"])
+        hsr8.load_scenario("walk", ["plugin.planner=mine.py:Ahead"])
 
 
 @pytest.mark.parametrize(
     ("name", "told"), [("Trips", "ZeroDivisionError: too near"), ("Leaves", "SystemExit: enough")]
 )
 def test_a_planner_that_fails_is_no_mistake_of_ours(folder, capsys, name, told):
-    own = ("--set", f"own.planner=mine.py:{name}", "duration=3.0")
+    own = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
     assert entry(["run", "quick", *FAST, *own, "--out", "runs"]) == 2
     said = capsys.readouterr().err
     assert f"{folder / 'mine.py'}, line {ERRING}: {told}" in said
@@ -200,7 +200,7 @@ def test_a_planner_that_fails_is_no_mistake_of_ours(folder, capsys, name, told):
 
 def test_when_it_failed_is_told(folder, capsys):
     for name in ("Trips", "Wanders"):
-        own = ("--set", f"own.planner=mine.py:{name}")
+        own = ("--set", f"plugin.planner=mine.py:{name}")
         assert entry(["run", "quick", *FAST, *own, "--no-log", "--out", "runs"]) == 2
         when = re.search(r", at (\S+) s of simulated time$", capsys.readouterr().err, re.MULTILINE)
         assert 0.5 <= float(when[1]) < 1.5
@@ -208,13 +208,13 @@ def test_when_it_failed_is_told(folder, capsys):
 
 def test_a_planner_that_fails_reaches_python_as_it_is(folder):
     with pytest.raises(ZeroDivisionError, match=r"^too near\n") as error:
-        hsr8.run("quick", settings=[*SETTINGS, "own.planner=mine.py:Trips"])
+        hsr8.run("quick", settings=[*SETTINGS, "plugin.planner=mine.py:Trips"])
     assert error.value.args == ("too near",)
 
 
 @pytest.mark.parametrize("name", ["Trips", "Wanders"])
 def test_in_a_sweep_it_is_a_run_that_failed(folder, capsys, name):
-    own = ("--set", f"own.planner=mine.py:{name}", "duration=3.0")
+    own = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
     assert entry(["sweep", "quick", *FAST, "--seeds", "0:2", "--out", "s", *own]) == 3
     rows = [json.loads(line) for line in (folder / "s" / "runs.jsonl").read_text().splitlines()]
     assert {row["seed"] for row in rows} == {0, 1}
@@ -223,7 +223,7 @@ def test_in_a_sweep_it_is_a_run_that_failed(folder, capsys, name):
 
 
 def test_errors_from_elsewhere_have_no_line_of_one_s_own(folder):
-    made_from("mine.py:Ahead")
+    load_plugin("mine.py:Ahead")
     with pytest.raises(ValueError, match="Expecting") as error:
         json.loads("{")
     assert line_of(error.value) is None

@@ -25,7 +25,7 @@ CHOOSE = "choose(belief, task, motion)"
 VELOCITY = "forward, left and turn [m/s, m/s, rad/s]"
 
 
-class OwnPlanner:
+class PluginPlanner:
     """A planner that is given copies and whose answers are checked.
 
     Args:
@@ -57,7 +57,7 @@ class OwnPlanner:
         )
 
 
-class OwnGaze:
+class PluginGaze:
     """A gaze that is given copies and whose answers are checked.
 
     Args:
