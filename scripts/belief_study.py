@@ -60,7 +60,7 @@ def watch(scenario: Scenario, seed: int) -> list[Moment]:
 def score_run(score: Score, scenario: Scenario, seed: int, moments: list[Moment]) -> None:
     """Feed one run to the estimator and add it to the score."""
     layout = draw_layout(scenario, seed)
-    things = [Thing(o.colour, o.radius, o.motion is not None) for o in layout.obstacles]
+    things = [Thing(o.color, o.radius, o.motion is not None) for o in layout.obstacles]
     estimator = build_estimator(scenario, layout, named_rng(seed, "belief"))
     began = process_time()
     beliefs = [estimator.update(m.frame) for m in moments]

@@ -15,7 +15,7 @@ Kind = Literal["obstacle", "beacon"]
 Thing = tuple[Kind, str, Array, float]
 """Kind, label, position in W [m] and radius [m]."""
 
-COLOURS = ("red", "green", "blue", "violet")
+COLORS = ("red", "green", "blue", "violet")
 CAMERA_HEIGHT = 0.47
 HFOV, VFOV = 1.50, 1.22
 FOCAL = 171.0
@@ -118,7 +118,7 @@ class Camera:
             seen.append(
                 Observation(
                     "obstacle",
-                    COLOURS[int(rng.integers(4))],
+                    COLORS[int(rng.integers(4))],
                     float(rng.uniform(0.4, RANGE)),
                     pan + float(rng.uniform(-0.7, 0.7)),
                     np.diag([0.01, 1e-4]),

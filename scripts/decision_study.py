@@ -145,7 +145,7 @@ class Run:
         pan, tilt = self.head.tolist()
         positions, _ = self.world.state(time)
         things = [
-            ("obstacle", o.colour, p, o.radius)
+            ("obstacle", o.color, p, o.radius)
             for o, p in zip(self.world.layout.obstacles, positions, strict=True)
             if self._in_tilt(p, tilt, pan, 0.0, 0.30)
         ]
@@ -218,7 +218,7 @@ class Run:
                 continue
             known = then[-1][3] if back else belief
             truth, true_velocity = (a[index] for a in self.world.state(known.time))
-            same = [t for t in known.tracks if t.label == obstacle.colour]
+            same = [t for t in known.tracks if t.label == obstacle.color]
             best = min(same, key=lambda t: float(np.hypot(*(t.position - truth))), default=None)
             if best is None:
                 looks.append("none")

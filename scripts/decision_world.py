@@ -76,7 +76,7 @@ def perfect_belief(time: float, pose: Array, world: World) -> Belief:
     tracks = tuple(
         Track(
             id=i,
-            label=o.colour,
+            label=o.color,
             position=positions[i],
             velocity=velocities[i],
             covariance=covariance,

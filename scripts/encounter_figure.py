@@ -196,13 +196,13 @@ def _speeds(axes: Axes, shown: Case) -> None:
 
 
 def _paths(axes: Axes, shown: Case) -> None:
-    for ran, colour, z in zip(shown.ran, (ROBOT, STILL), (6, 5), strict=True):
+    for ran, color, z in zip(shown.ran, (ROBOT, STILL), (6, 5), strict=True):
         places = np.array(ran.robot)
-        axes.plot(*places[:, :2].T, color=colour, linewidth=1.4, zorder=z)
+        axes.plot(*places[:, :2].T, color=color, linewidth=1.4, zorder=z)
         for time in np.arange(0.0, ran.time[-1], STAMP):
             k = ran.at(time)
             scale = 0.45 if shown.letter == "b" else 1.0
-            robot(axes, places[k], scale, facecolor=colour, zorder=z)
+            robot(axes, places[k], scale, facecolor=color, zorder=z)
     ran = shown.ran[0]
     movers, radius = np.array(ran.movers)[:, 0], ran.scenario.world.mover[0].radius
     last = ran.time[-1]
@@ -226,8 +226,8 @@ def _paths(axes: Axes, shown: Case) -> None:
 
 
 def _gaps(axes: Axes, shown: Case) -> None:
-    for ran, colour in zip(shown.ran, (ROBOT, STILL), strict=True):
-        axes.plot(ran.time, clearance(ran), color=colour, linewidth=1.3)
+    for ran, color in zip(shown.ran, (ROBOT, STILL), strict=True):
+        axes.plot(ran.time, clearance(ran), color=color, linewidth=1.3)
     axes.axhspan(-1.0, 0.0, color=MOVER, alpha=0.15, linewidth=0)
     axes.axvline(shown.frame.time, color=ROBOT, linewidth=0.8, linestyle=":")
     axes.set(xlabel="time [s]", ylabel="clearance [m]", ylim=(-0.2, 1.6))

@@ -28,8 +28,8 @@ from hsr8.recorder.log.log_reader import decode
 from hsr8.recorder.run import run_folder
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load_scenario, loads
 from hsr8.world.model import models
-from vision.colour import COLOUR_CLASSES, ColourTable
-from vision.colour_file import load_table, save_table
+from vision.color import COLOR_CLASSES, ColorTable
+from vision.color_file import load_table, save_table
 from vision.errors import VisionError
 
 from bad_input import keys, model_changed, mutated, near, value, values_changed, written
@@ -147,8 +147,8 @@ class Folders:
         if sweep is not None:
             names = (sweep_folder.DEFINITION, sweep_folder.LEDGER, run_folder.SCENARIO)
             self._of_sweep = contents_of(sweep, names)
-        save_table(ColourTable(COLOUR_CLASSES), scratch / "colours.npz")
-        self._colours = contents_of(scratch, ("colours.npz",))
+        save_table(ColorTable(COLOR_CLASSES), scratch / "colours.npz")
+        self._colors = contents_of(scratch, ("colours.npz",))
 
     def damaged(self, rng: random.Random, whole: dict[str, bytes]) -> Path:
         """A new copy in which one or two files are not what they were."""
@@ -215,7 +215,7 @@ class Folders:
 
     def colours_case(self, rng: random.Random) -> None:
         """A damaged colour table, read."""
-        load_table(self.damaged(rng, self._colours) / "colours.npz")
+        load_table(self.damaged(rng, self._colors) / "colours.npz")
 
 
 def contents_of(folder: Path, names: tuple[str, ...]) -> dict[str, bytes]:

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 PICTURE = Path(__file__).parents[1] / "docs" / "images" / "deadline-gaze.png"
 LIMITS = SpeedLimits(0.20, 0.10, 0.08, 0.8, 0.3, 0.34)
 BEACONS = {"yellow/cyan": (2.2, 1.6), "cyan/magenta": (1.9, -1.9)}
-COLOUR = {Motion.STATIC: "#8a8a8a", Motion.MOVING: "#c0392b", Motion.UNKNOWN: "#d68910"}
+COLOR = {Motion.STATIC: "#8a8a8a", Motion.MOVING: "#c0392b", Motion.UNKNOWN: "#d68910"}
 
 
 class GroundMap:
@@ -137,10 +137,10 @@ def _draw_world(axes: Axes, belief: Belief, pan: float, bearings: Array, values:
     axes.add_patch(Wedge((0, 0), 1.6, middle - half, middle + half, color="#2e86c1", alpha=0.15))
     for t in belief.tracks:
         x, y = t.position.tolist()
-        colour = COLOUR[t.motion]
+        color = COLOR[t.motion]
         if t.particles is not None:
-            axes.plot(-t.particles.positions[:, 1], t.particles.positions[:, 0], ".", color=colour)
-        axes.add_patch(Circle((-y, x), t.radius, color=colour, alpha=0.3 if t.age > 0.0 else 0.9))
+            axes.plot(-t.particles.positions[:, 1], t.particles.positions[:, 0], ".", color=color)
+        axes.add_patch(Circle((-y, x), t.radius, color=color, alpha=0.3 if t.age > 0.0 else 0.9))
         axes.annotate(f"{t.motion}, {t.age:.1f} s", (-y + 0.12, x), fontsize=8)
     sectors = np.round(bearings / np.radians(15.0))
     for sector in np.unique(sectors):

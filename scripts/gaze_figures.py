@@ -224,10 +224,10 @@ def _draw_scene(axes: Axes, look: Look) -> None:
     s_oe = extended_radius(scene.obstacles, scene.psi_sf, scene.psi_ob, u)
     for k, track in enumerate(frame.belief.tracks):
         at = turn @ (track.position - pose[:2])
-        colour = INK if scene.attended[k] else "#AAAAAA"
+        color = INK if scene.attended[k] else "#AAAAAA"
         disc(axes, at, track.radius, facecolor=STILL, edgecolor="none", alpha=0.8)
-        disc(axes, at, float(s_oe[k]), fill=False, edgecolor=colour, linewidth=1.1)
-        disc(axes, at, float(s_oe[k]) - 0.025, fill=False, edgecolor=colour, linewidth=0.6)
+        disc(axes, at, float(s_oe[k]), fill=False, edgecolor=color, linewidth=1.1)
+        disc(axes, at, float(s_oe[k]) - 0.025, fill=False, edgecolor=color, linewidth=0.6)
         covariance(
             axes, at, turn @ track.covariance[:2, :2] @ turn.T, 3.0, color="#D00000", linewidth=1.0
         )

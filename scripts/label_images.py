@@ -10,7 +10,7 @@ from pathlib import Path
 
 os.environ.setdefault("MUJOCO_GL", "egl")
 
-from hsr8.cli.colours import MASK, mask_colours
+from hsr8.cli.color_table import MASK, mask_colors
 from hsr8.scenario.loader import load_scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.kinematic import KinematicBody
@@ -47,7 +47,7 @@ def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
         renderer.update_scene(body.data, camera=HEAD_CAMERA)
         geoms = renderer.render()[:, :, 0]
     mask = np.zeros((*geoms.shape, 3), np.uint8)
-    paints = {f"paint_{name}": rgb for name, rgb in mask_colours().items()}
+    paints = {f"paint_{name}": rgb for name, rgb in mask_colors().items()}
     for geom in np.unique(geoms[geoms >= 0]).tolist():
         material = int(model.geom_matid[geom])
         name = model.material(material).name if material >= 0 else ""

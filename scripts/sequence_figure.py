@@ -201,10 +201,10 @@ def _snapshot(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
 
 def _footprints(axes: Axes, shown: Tour, time: float) -> None:
     table = shown.walked.window(time - STEPS, time)
-    for foot, colour in (("left", LEFT), ("right", RIGHT)):
+    for foot, color in (("left", LEFT), ("right", RIGHT)):
         soles = [outline(table, foot, rows) for rows in contacts(table, foot)]
         axes.add_collection(
-            PolyCollection(soles, facecolor=colour, edgecolor="none", alpha=0.8, zorder=4)
+            PolyCollection(soles, facecolor=color, edgecolor="none", alpha=0.8, zorder=4)
         )
 
 

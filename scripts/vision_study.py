@@ -17,7 +17,7 @@ from pathlib import Path
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 from vision.camera import CameraPose, PinholeCamera
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 from vision.detection import Detection
 from vision.detector import Detector
 from vision.parameters import VisionParameters
@@ -31,8 +31,8 @@ from vision_truth import Array, Thing, rotation_of, sights
 
 WIDTH, HEIGHT, FOV = 320, 240, radians(70.0)
 CAMERA_HEIGHT = 0.47
-OBSTACLES = tuple(n for n, c in COLOUR_CLASSES.items() if c.kind == "obstacle")
-BEACONS = tuple(n for n, c in COLOUR_CLASSES.items() if c.kind == "beacon")
+OBSTACLES = tuple(n for n, c in COLOR_CLASSES.items() if c.kind == "obstacle")
+BEACONS = tuple(n for n, c in COLOR_CLASSES.items() if c.kind == "beacon")
 NAMES = tuple(f"{a}/{b}" for a in BEACONS for b in BEACONS if a != b)
 FIELD = 2.5  # half side of the field [m]
 RIM = 2.9  # half side of the square the beacons stand on [m]
@@ -66,12 +66,12 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
     things: list[Thing] = []
     robot = rng.uniform(-1.8, 1.8, 2)
 
-    def post(at: tuple[float, float], radius: float, span: tuple[float, float], colour: str) -> int:
+    def post(at: tuple[float, float], radius: float, span: tuple[float, float], color: str) -> int:
         geom = root.add_geom(
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
             pos=(*at, 0.5 * (span[0] + span[1])),
             size=(radius, 0.5 * (span[1] - span[0]), 0),
-            rgba=(*COLOUR_CLASSES[colour].rgb, 1.0),
+            rgba=(*COLOR_CLASSES[color].rgb, 1.0),
         )
         geom.name = f"g{len(root.geoms)}"
         return len(root.geoms) - 1
@@ -82,9 +82,9 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
         clear = all(hypot(x - t.x, y - t.y) > radius + t.radius + 0.05 for t in things)
         if hypot(x, y) < radius + 0.2 or not clear:
             continue
-        colour = OBSTACLES[rng.integers(len(OBSTACLES))]
-        geom = post((x, y), radius, (0.0, 0.30), colour)
-        things.append(Thing("obstacle", colour, x, y, radius, 0.30, (geom,)))
+        color = OBSTACLES[rng.integers(len(OBSTACLES))]
+        geom = post((x, y), radius, (0.0, 0.30), color)
+        things.append(Thing("obstacle", color, x, y, radius, 0.30, (geom,)))
     corners = [(a, b) for a in (-RIM, RIM) for b in (-RIM, 0.0, RIM)]
     for (x0, y0), i in zip(corners, rng.permutation(len(NAMES)).tolist(), strict=True):
         x, y = x0 - robot[0], y0 - robot[1]

@@ -85,7 +85,7 @@ class Referee(Listener):
         """All cylinders in the true robot frame."""
         found = []
         shapes = [
-            *((o.colour, o.radius, o.height) for o in self.layout.obstacles),
+            *((o.color, o.radius, o.height) for o in self.layout.obstacles),
             *((b.name, b.radius, b.height) for b in self.layout.beacons),
         ]
         places = [*positions.tolist(), *(b.position for b in self.layout.beacons)]

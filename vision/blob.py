@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.blob_kernel import regions_of
-from vision.colour import Labels
+from vision.color import Labels
 from vision.value import value
 
 Table = NDArray[np.int32]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 Labels = NDArray[np.uint8]
 Table = NDArray[np.int32]
 
-ROW, START, STOP, COLOUR = range(4)  # columns of a table of runs
+ROW, START, STOP, COLOR = range(4)  # columns of a table of runs
 LEFT, TOP, RIGHT, BOTTOM, AREA, LABEL, RUNS = range(7)  # columns of a table of regions
 
 WORD = 8  # pixels that are compared at once
@@ -60,7 +60,7 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
             end = _end(flat, words, row * width + start, (row + 1) * width) - row * width
             if label == 0:
                 continue
-            runs[n, ROW], runs[n, START], runs[n, STOP], runs[n, COLOUR] = row, start, end, label
+            runs[n, ROW], runs[n, START], runs[n, STOP], runs[n, COLOR] = row, start, end, label
             parent[n] = n
             # What ends before this run starts touches none that comes after it either.
             while above < begin and runs[above, STOP] < start:
@@ -69,7 +69,7 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
             for other in range(above, begin):
                 if runs[other, START] > end:
                     break
-                if runs[other, COLOUR] == label:
+                if runs[other, COLOR] == label:
                     a, b = _root(parent, other), root
                     root = min(a, b)
                     parent[max(a, b)] = root
@@ -91,7 +91,7 @@ def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]
             k = count
             count += 1
             found[k, LEFT], found[k, TOP], found[k, RIGHT] = runs[i, START], runs[i, ROW], 0
-            found[k, AREA], found[k, LABEL], found[k, RUNS] = 0, runs[i, COLOUR], 0
+            found[k, AREA], found[k, LABEL], found[k, RUNS] = 0, runs[i, COLOR], 0
             place[k] = -1
         else:
             k = region[root]

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from vision.beacon import find_posts
 from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
-from vision.colour import OUTSIDE, ColourTable, Labels
-from vision.colour_file import load_table
+from vision.color import OUTSIDE, ColorTable, Labels
+from vision.color_file import load_table
 from vision.cylinder import (
     Candidate,
     Cylinder,
@@ -78,8 +78,8 @@ class Detector:
         self._camera = camera
         self._parameters = parameters
         self._own_body = tuple(own_body)
-        path = parameters.colour_table
-        self._table = load_table(Path(path)) if path else ColourTable()
+        path = parameters.color_table
+        self._table = load_table(Path(path)) if path else ColorTable()
         self._min_area = tuple(
             parameters.min_area if c.kind == "obstacle" else parameters.min_beacon_area
             for c in self._table.classes

@@ -15,7 +15,7 @@ Bools = NDArray[np.bool_]
 Labels = NDArray[np.uint8]
 Table = NDArray[np.int32]
 
-OUTSIDE = 255  # as in `vision.colour`
+OUTSIDE = 255  # as in `vision.color`
 MIN_DEPTH = 1e-3  # of a direction before the camera
 MIN_RUN = 1e-6  # horizontal part of a ray below which its slope is cut off
 LOW_SHARE = 0.25  # share of a side, from below, that tells whether a nearer thing hides it

@@ -42,7 +42,7 @@ class SplitParameters:
 class VisionParameters:
     """What the robot knows of the things it looks for, and how much it trusts pixels."""
 
-    colour_table: str = ""
+    color_table: str = ""
     """File of a colour table, from `hsr8 colours`; the declared colours if empty."""
     obstacle_height: Annotated[float, Gt(0.0)] = 0.30
     """Height of every obstacle [m]."""

@@ -70,7 +70,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> Summary:
                 "moves": o.motion is not None,
                 "position": [round(v, 3) for v in o.position],
                 "radius": round(o.radius, 3),
-                "colour": o.colour,
+                "color": o.color,
                 "speed": round(pace(o.motion), 3) if o.motion else 0.0,
             }
             for i, o in enumerate(layout.obstacles)
@@ -203,5 +203,5 @@ def _obstacles(layout: Layout) -> Table:
         speed = f"{pace(o.motion):.3f}" if o.motion else ""
         motion = type(o.motion).__name__.lower() if o.motion else ""
         x, y = o.position
-        table.add_row(str(i), f"{x:.2f}", f"{y:.2f}", f"{o.radius:.3f}", speed, o.colour, motion)
+        table.add_row(str(i), f"{x:.2f}", f"{y:.2f}", f"{o.radius:.3f}", speed, o.color, motion)
     return table

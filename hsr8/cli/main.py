@@ -42,7 +42,7 @@ COMMANDS: dict[str, tuple[type, str]] = {
     "render": (options.Render, "hsr8.cli.render"),
     "replay": (options.Replay, "hsr8.cli.replay"),
     "plot": (options.Plot, "hsr8.cli.plot"),
-    "colours": (options.Colours, "hsr8.cli.colours"),
+    "colours": (options.Colours, "hsr8.cli.color_table"),
     "schema": (options.Schema, "hsr8.cli.schema"),
     "completion": (options.Completion, "hsr8.cli.completion"),
     "doctor": (options.Doctor, "hsr8.cli.doctor"),

@@ -336,7 +336,7 @@ class Colours:
 
     images: Positional[Annotated[tuple[Path, ...], _arg("IMAGE", "images with masks beside them")]]
     out: Path = Path("colours.npz")
-    """File of the table; name it in a scenario as vision.colour_table."""
+    """File of the table; name it in a scenario as vision.color_table."""
     json: bool = False
     """Print one JSON object."""
 

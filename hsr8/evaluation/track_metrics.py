@@ -27,7 +27,7 @@ class TrackMetrics:
     """
 
     def __init__(self, obstacles: Sequence[Obstacle]) -> None:
-        self._colours = [o.colour for o in obstacles]
+        self._colors = [o.color for o in obstacles]
         self._movers = [_Mover() if o.motion is not None else None for o in obstacles]
         self._static = _Errors()
         self._moving = _Errors()
@@ -40,7 +40,7 @@ class TrackMetrics:
         dt = 0.0 if self._before is None else time - self._before
         self._before = time
         tracks = [t for t in frame.belief.tracks if t.particles is None]
-        owned = owners(tracks, self._colours, truth.obstacle_positions)
+        owned = owners(tracks, self._colors, truth.obstacle_positions)
         for i, track in owned.items():
             mover = self._movers[i]
             if mover is not None:
@@ -120,17 +120,17 @@ class _Errors:
         return self._normalised / self._count if self._count else None
 
 
-def owners(tracks: Sequence[Track], colours: Sequence[str], places: Array) -> dict[int, Track]:
+def owners(tracks: Sequence[Track], colors: Sequence[str], places: Array) -> dict[int, Track]:
     """The track of each obstacle that has one, by the obstacle's index; the nearest first.
 
     Args:
         tracks: to tell apart.
-        colours: of the obstacles (n).
+        colors: of the obstacles (n).
         places: of the obstacles in W (n, 2) [m].
     """
     alike: dict[str, list[tuple[int, float, float]]] = {}
-    for i, (colour, (x, y)) in enumerate(zip(colours, places.tolist(), strict=True)):
-        alike.setdefault(colour, []).append((i, x, y))
+    for i, (color, (x, y)) in enumerate(zip(colors, places.tolist(), strict=True)):
+        alike.setdefault(color, []).append((i, x, y))
     pairs = []
     for k, track in enumerate(tracks):
         believed_x, believed_y = track.position.tolist()

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-Colour = tuple[int, int, int]
+Color = tuple[int, int, int]
 
-LABELS: dict[str, Colour] = {
+LABELS: dict[str, Color] = {
     "red": (214, 60, 52),
     "green": (76, 168, 78),
     "blue": (52, 112, 206),
@@ -16,36 +16,36 @@ LABELS: dict[str, Colour] = {
     "cyan": (44, 184, 200),
     "magenta": (214, 64, 160),
 }
-UNKNOWN: Colour = (150, 150, 150)
+UNKNOWN: Color = (150, 150, 150)
 
-BELIEF: Colour = (20, 150, 240)
-TRUTH: Colour = (60, 60, 64)
-TARGET: Colour = (240, 140, 20)
-VIEW: Colour = (250, 200, 60)
-FIELD: Colour = (112, 128, 144)
-PLAN: Colour = (0, 140, 120)
-VIRTUAL: Colour = (230, 70, 130)
-LEFT_FOOT: Colour = (70, 130, 220)
-RIGHT_FOOT: Colour = (220, 110, 70)
+BELIEF: Color = (20, 150, 240)
+TRUTH: Color = (60, 60, 64)
+TARGET: Color = (240, 140, 20)
+VIEW: Color = (250, 200, 60)
+FIELD: Color = (112, 128, 144)
+PLAN: Color = (0, 140, 120)
+VIRTUAL: Color = (230, 70, 130)
+LEFT_FOOT: Color = (70, 130, 220)
+RIGHT_FOOT: Color = (220, 110, 70)
 
 
-def of_label(label: str) -> Colour:
+def of_label(label: str) -> Color:
     """Colour of an obstacle's class, or of the top of a beacon ``top/bottom``."""
     return LABELS.get(label.partition("/")[0], UNKNOWN)
 
 
-def darker(colour: Colour) -> Colour:
-    """The colour of what lies on a disc of `colour`."""
-    red, green, blue = colour
+def darker(color: Color) -> Color:
+    """The colour of what lies on a disc of `color`."""
+    red, green, blue = color
     return red // 2, green // 2, blue // 2
 
 
-def packed(colour: Colour, alpha: int = 255) -> int:
+def packed(color: Color, alpha: int = 255) -> int:
     """0xRRGGBBAA."""
-    red, green, blue = colour
+    red, green, blue = color
     return (red << 24) | (green << 16) | (blue << 8) | alpha
 
 
-def packed_all(colours: Iterable[Colour]) -> NDArray[np.uint32]:
+def packed_all(colors: Iterable[Color]) -> NDArray[np.uint32]:
     """Opaque colours, each as 0xRRGGBBAA (n,)."""
-    return np.array([packed(colour) for colour in colours], dtype=np.uint32)
+    return np.array([packed(color) for color in colors], dtype=np.uint32)

@@ -12,7 +12,7 @@ from hsr8.render.keeping import AtomicWriter
 
 Image = NDArray[np.uint8]
 
-COLOURS = 96  # of a GIF, chosen for all of its pictures
+COLORS = 96  # of a GIF, chosen for all of its pictures
 WEBP = {"quality": "30", "compression_level": "6", "preset": "picture"}
 KINDS = (".gif", ".webp")
 MOST_PIXELS = 400_000_000  # of all pictures of a GIF: some 2 GB
@@ -108,7 +108,7 @@ def _palette_graph(size: tuple[int, int], fps: int) -> av.filter.Graph:
     template = {"width": size[0], "height": size[1], "format": "rgb24"}
     source = graph.add_buffer(**template, time_base=Fraction(1, fps))
     split = graph.add("split")
-    choose = graph.add("palettegen", f"max_colors={COLOURS}:stats_mode=full")
+    choose = graph.add("palettegen", f"max_colors={COLORS}:stats_mode=full")
     use = graph.add("paletteuse", "dither=bayer:bayer_scale=4:diff_mode=rectangle")
     sink = graph.add("buffersink")
     source.link_to(split)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.run.frame_summary import Blob, FrameSummary
-from hsr8.render.canvas import Colour, Image
+from hsr8.render.canvas import Color, Image
 from hsr8.render.lettering import size_of, width_of, write
 
 Array = NDArray[np.float64]
@@ -117,7 +117,7 @@ class EyeOverlay:
 
 
 def _strokes(
-    picture: Image, points: Array | list[Array] | list[Array | None], colour: Colour, *,
+    picture: Image, points: Array | list[Array] | list[Array | None], color: Color, *,
     closed: bool = False,
 ) -> None:  # fmt: skip
     if any(point is None for point in points):
@@ -125,7 +125,7 @@ def _strokes(
     pixels = np.round(np.array(points) * (1 << SUBPIXEL)).astype(np.int32)
     # A dark edge keeps the strokes apart from walls and obstacles of their own colour.
     width = max(1, round(picture.shape[0] / 240))
-    for shade, thickness in ((TAG, width + 2), (colour, width)):
+    for shade, thickness in ((TAG, width + 2), (color, width)):
         cv2.polylines(picture, [pixels], closed, shade, thickness, cv2.LINE_AA, SUBPIXEL)
 
 
@@ -134,6 +134,6 @@ def _overlap(a: Rectangle, b: Rectangle) -> bool:
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
-def _light(colour: Colour) -> Colour:
+def _light(color: Color) -> Color:
     """Lighter, so that it is read on dark ground."""
-    return tuple((channel + 255) // 2 for channel in colour)
+    return tuple((channel + 255) // 2 for channel in color)

@@ -5,7 +5,7 @@ from typing import Literal
 
 import cv2
 
-from hsr8.render.canvas import Colour, Image
+from hsr8.render.canvas import Color, Image
 
 Side = Literal["left", "middle", "right"]
 
@@ -34,7 +34,7 @@ def write(
     picture: Image,
     at: tuple[int, int],
     text: str,
-    colour: Colour,
+    color: Color,
     size: int,
     *,
     strong: bool = False,
@@ -46,7 +46,7 @@ def write(
         picture: to write into (height, width, 3).
         at: column of the line's left end, middle or right end, and row of its baseline [pixel].
         text: what to write.
-        colour: of the letters.
+        color: of the letters.
         size: of the letters [pixel].
         strong: in heavier letters.
         side: what of the line is at that column.
@@ -56,4 +56,4 @@ def write(
         length = width_of(text, size, strong=strong)
         column -= length if side == "right" else length // 2
     weight = STRONG if strong else REGULAR
-    cv2.putText(picture, text, (column, row), colour, _face(), size, weight)
+    cv2.putText(picture, text, (column, row), color, _face(), size, weight)

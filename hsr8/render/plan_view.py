@@ -5,14 +5,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from hsr8.render.canvas import Canvas, Colour, Image, Point, framed
+from hsr8.render.canvas import Canvas, Color, Image, Point, framed
 from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle
 from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Shuttle
 from hsr8.world.field.passage import Passage
 from hsr8.world.field.wander import Wander
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 
 INK = (60, 58, 55)
 PAPER = (246, 246, 244)
@@ -70,7 +70,7 @@ class PlanView:
         if isinstance(law, Appearing):  # it is drawn where it appears
             obstacle = replace(obstacle, position=law.position(law.start), motion=law.law)
             law = law.law
-        self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.colour))
+        self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.color))
         if law is not None:
             # One that waits shows where it will go.
             depart = law.depart if isinstance(law, Passage) else 0.0
@@ -81,9 +81,9 @@ class PlanView:
     def _route(self) -> None:
         places = [np.asarray(self._layout.start[:2]), *self._layout.waypoints]
         last = len(places) - 1
-        colour = ROUTE if last < FEW else tuple((np.add(ROUTE, FLOOR) // 2).tolist())
+        color = ROUTE if last < FEW else tuple((np.add(ROUTE, FLOOR) // 2).tolist())
         for leg in pairwise(places):
-            self._canvas.line(leg, colour)
+            self._canvas.line(leg, color)
         for k, place in enumerate(places[1:], start=1):
             if k == last and not self._layout.endless:
                 self._canvas.ring(place, 0.10, ROUTE)
@@ -130,10 +130,10 @@ class PlanView:
         self._canvas.ring((x, y), ROBOT_RADIUS, INK)
         self._arrow((x, y), (0.1 * np.cos(heading), 0.1 * np.sin(heading)))
 
-    def _arrow(self, tail: Point, velocity: Point, colour: Colour = INK) -> None:
+    def _arrow(self, tail: Point, velocity: Point, color: Color = INK) -> None:
         """Arrow of two seconds of `velocity`."""
-        self._canvas.arrow(tail, np.add(tail, 2.0 * np.asarray(velocity)), colour)
+        self._canvas.arrow(tail, np.add(tail, 2.0 * np.asarray(velocity)), color)
 
 
-def _rgb(colour: str) -> Colour:
-    return tuple(round(255 * channel) for channel in COLOUR_CLASSES[colour].rgb)
+def _rgb(color: str) -> Color:
+    return tuple(round(255 * channel) for channel in COLOR_CLASSES[color].rgb)

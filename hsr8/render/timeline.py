@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 Image = NDArray[np.uint8]
-Colour = tuple[int, int, int]
+Color = tuple[int, int, int]
 
 HEIGHT = 0.1  # as a share of the picture drawn into
 MARK = 3  # width of an event [pixel]
 AHEAD, DONE = (62, 65, 71), (138, 142, 150)
-MARKS: dict[str, Colour] = {
+MARKS: dict[str, Color] = {
     "via_point": (240, 180, 60),
     "goal": (76, 200, 110),
     "push": (230, 70, 130),
@@ -34,11 +34,11 @@ class Timeline:
 
     def __init__(self, events: Sequence[Mapping[str, Any]], start: float, stop: float) -> None:
         self._start, self._length = start, max(stop - start, 1e-9)
-        self._marks: list[tuple[float, Colour]] = []
-        for kind, colour in MARKS.items():
+        self._marks: list[tuple[float, Color]] = []
+        for kind, color in MARKS.items():
             for event in events:
                 if event["kind"] == kind and start <= event["time"] <= stop:
-                    self._marks.append((event["time"], colour))
+                    self._marks.append((event["time"], color))
 
     def draw(self, picture: Image, time: float) -> None:
         """Draw over the lowest rows of `picture` (height, width, 3) what holds at `time` [s]."""
@@ -46,9 +46,9 @@ class Timeline:
         strip = picture[-max(2, round(HEIGHT * height)) :]
         strip[:] = AHEAD
         strip[:, : self._column(time, width)] = DONE
-        for when, colour in self._marks:
+        for when, color in self._marks:
             column = self._column(when, width)
-            strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = colour
+            strip[:, max(0, column - MARK // 2) : column + MARK // 2 + 1] = color
 
     def _column(self, time: float, width: int) -> int:
         return round((time - self._start) / self._length * width)

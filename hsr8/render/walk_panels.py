@@ -129,7 +129,7 @@ def along(axes: Axes, table: WalkingTable, axis: int) -> None:
         axis: 0 forward, 1 left.
     """
     frame = WalkingFrame(table)
-    for foot, colour in (("left", LEFT), ("right", RIGHT)):
+    for foot, color in (("left", LEFT), ("right", RIGHT)):
         bands = []
         for first, last in contacts(table, foot):
             sole = outline(table, foot, (first, last))
@@ -138,12 +138,12 @@ def along(axes: Axes, table: WalkingTable, axis: int) -> None:
             upper = np.column_stack([table.time[rows], corners.max(axis=0)])
             lower = np.column_stack([table.time[rows], corners.min(axis=0)])
             bands.append(np.vstack([upper, lower[::-1]]))
-        axes.add_collection(PolyCollection(bands, color=colour, alpha=0.16, lw=0))
-    for name, label, colour, width, dash in CURVES:
+        axes.add_collection(PolyCollection(bands, color=color, alpha=0.16, lw=0))
+    for name, label, color, width, dash in CURVES:
         axes.plot(
             table.time,
             frame.seen(table.points(name))[:, axis],
-            color=colour,
+            color=color,
             lw=width,
             ls=dash,
             label=label,
@@ -164,15 +164,15 @@ def sole_legend() -> list[Patch]:
 def footsteps(axes: Axes, table: WalkingTable) -> None:
     """Where the feet stood, seen from above, with the ways of ZMP and CoM."""
     origin, yaw = table.points("robot")[0], float(table["robot_yaw"][0])
-    for foot, colour in (("left", LEFT), ("right", RIGHT)):
+    for foot, color in (("left", LEFT), ("right", RIGHT)):
         stands = contacts(table, foot)
         soles = [turned(outline(table, foot, rows), origin, yaw) for rows in stands]
-        axes.add_collection(PolyCollection(soles, fc=colour, alpha=0.25, lw=0))
-        axes.add_collection(PolyCollection(soles, fc="none", ec=colour, lw=0.7))
-    for name, label, colour, width, dash in CURVES:
+        axes.add_collection(PolyCollection(soles, fc=color, alpha=0.25, lw=0))
+        axes.add_collection(PolyCollection(soles, fc="none", ec=color, lw=0.7))
+    for name, label, color, width, dash in CURVES:
         if name in ("zmp", "cop", "com"):
             x, y = turned(table.points(name), origin, yaw).T
-            axes.plot(x, y, color=colour, lw=width, ls=dash, label=label)
+            axes.plot(x, y, color=color, lw=width, ls=dash, label=label)
     for row in _push_rows(table):
         at = turned(np.array([[table["push_x"][row], table["push_y"][row]]]), origin, yaw)[0]
         force = np.array([[table["push_fx"][row], table["push_fy"][row]]])
@@ -246,12 +246,12 @@ def torque(axes: Axes, table: WalkingTable, group: str) -> None:
     """Torques of one group of leg joints against their limits."""
     most = 0.0
     for joint, dash in zip(JOINTS[group], DASHES, strict=False):
-        for side, colour in (("l", LEFT), ("r", RIGHT)):
+        for side, color in (("l", LEFT), ("r", RIGHT)):
             name = f"{side}_{joint}"
             side_name = "left" if side == "l" else "right"
             label = f"{side_name} {joint.removeprefix(group + '_')}".replace("_", " ")
             axes.plot(
-                table.time, table[f"torque_{name}"], color=colour, lw=0.9, ls=dash, label=label
+                table.time, table[f"torque_{name}"], color=color, lw=0.9, ls=dash, label=label
             )
             most = max(most, table.torque_limit[name])
     for limit in (-most, most):
@@ -262,8 +262,8 @@ def torque(axes: Axes, table: WalkingTable, group: str) -> None:
 
 def tilt(axes: Axes, table: WalkingTable) -> None:
     """Roll and pitch of the trunk as the robot measures them."""
-    for name, colour in (("roll", BLUE), ("pitch", ORANGE)):
-        axes.plot(table.time, np.degrees(table[name]), color=colour, lw=1.0, label=name)
+    for name, color in (("roll", BLUE), ("pitch", ORANGE)):
+        axes.plot(table.time, np.degrees(table[name]), color=color, lw=1.0, label=name)
     most = max(2.0, 1.15 * degrees(float(np.abs([table["roll"], table["pitch"]]).max())))
     axes.set_ylim(-most, most)
     axes.set_ylabel("trunk tilt\n[deg]")
@@ -273,9 +273,9 @@ def lanes(axes: Axes, table: WalkingTable) -> None:
     """Phase of the gait, and which constraints altered the command, over time."""
     end = table.time[-1] + float(np.median(np.diff(table.time)))
     phase = table["phase"].astype(int)
-    for index, colour in enumerate(LANES[p] for p in PHASES):
+    for index, color in enumerate(LANES[p] for p in PHASES):
         axes.broken_barh(
-            _runs(table.time, phase == index, end), (0.0, 0.8), color=colour, alpha=0.75, lw=0
+            _runs(table.time, phase == index, end), (0.0, 0.8), color=color, alpha=0.75, lw=0
         )
     names = ["gait phase"]
     for limit, rows in table.bound().items():

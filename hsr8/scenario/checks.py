@@ -34,7 +34,7 @@ def check(scenario: Scenario) -> list[Problem]:
     """Everything that does not fit together, empty when all does."""
     return [
         *_speeds(scenario),
-        *_colours(scenario),
+        *_colors(scenario),
         *_ordered(scenario),
         *_local_map(scenario),
         *magnitudes(scenario),
@@ -59,17 +59,17 @@ def _speeds(scenario: Scenario) -> Iterator[Problem]:
             )
 
 
-def _colours(scenario: Scenario) -> Iterator[Problem]:
+def _colors(scenario: Scenario) -> Iterator[Problem]:
     """The file of the colour table is one."""
-    path = scenario.vision.colour_table
+    path = scenario.vision.color_table
     if not path:
         return
-    from vision.colour_file import load_table  # noqa: PLC0415 (OpenCV takes its time)
+    from vision.color_file import load_table  # noqa: PLC0415 (OpenCV takes its time)
 
     try:
         load_table(FilePath(path))
     except VisionError as error:
-        yield Problem(("vision", "colour_table"), str(error))
+        yield Problem(("vision", "color_table"), str(error))
 
 
 def _ordered(scenario: Scenario) -> Iterator[Problem]:

@@ -7,7 +7,7 @@ from annotated_types import Interval, Len
 from pydantic import AfterValidator, Field
 
 from hsr8.scenario.section import (
-    Colour,
+    Color,
     Count,
     Degrees,
     LengthRange,
@@ -35,14 +35,14 @@ class StaticObstacle(Section):
     """Axis of the cylinder in W, x and y [m]."""
     radius: Radius = 0.08
     """Radius [m]."""
-    colour: Colour = "red"
+    color: Color = "red"
     """Colour; it says nothing about size or motion."""
 
 
 class _Mover(Section):
     radius: Radius = 0.08
     """Radius [m]."""
-    colour: Colour = "blue"
+    color: Color = "blue"
     """Colour; it says nothing about size or motion."""
     speed: Speed = 0.10
     """Speed along its lane, constant [m/s]."""

@@ -40,7 +40,7 @@ class PathIntegral:
         rho = parameters.persistence
         power = rho ** np.maximum(0, lag[:, None] - lag)
         drive = np.where(lag == 0, 1.0, np.sqrt(1.0 - rho**2))
-        self._colour = np.tril(power) * drive
+        self._color = np.tril(power) * drive
 
     def decide(self, scene: PlanningScene) -> Array:
         """First footstep of the mean sequence (3,) [m/s, m/s, rad/s]."""
@@ -58,7 +58,7 @@ class PathIntegral:
         p = self._parameters
         low, high, change = s.envelope.low(), s.envelope.high(), s.envelope.change()
         white = self._rng.standard_normal((p.samples // 2, p.steps, 3))
-        noise = p.spread * high * np.einsum("ts,ksi->kti", self._colour, white)
+        noise = p.spread * high * np.einsum("ts,ksi->kti", self._color, white)
         still = np.zeros((1, p.steps, 3))
         asked = np.concatenate([self._plan + noise, self._plan + _MIRROR * noise])
         asked = np.concatenate([asked, self._plan[None], still])

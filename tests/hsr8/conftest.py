@@ -66,7 +66,7 @@ def _track(layout, index, time, error=(0.0, 0.0), velocity=None):
     moving = (0.0, 0.0) if law is None else law.velocity(time)
     return Track(
         id=index,
-        label=obstacle.colour,
+        label=obstacle.color,
         position=np.add(position, error),
         velocity=np.array(moving if velocity is None else velocity),
         covariance=np.diag([4e-4, 1e-4, 1e-4, 1e-4]),

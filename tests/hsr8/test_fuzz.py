@@ -22,7 +22,7 @@ from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.loop import Simulation
 from hsr8.render import viewer
 from hsr8.scenario.loader import dump, load_scenario, loads
-from vision.colour_file import LARGEST, load_table
+from vision.color_file import LARGEST, load_table
 from vision.errors import VisionError
 
 CASES = 700  # of each of the three kinds
@@ -68,7 +68,7 @@ def test_any_run_folder_is_read_or_refused(run, tmp_path, monkeypatch):
     assert {fuzz.one(random.Random(k), "folder", folders, SCHEMA) for k in range(50)} == {"valid"}
 
 
-def test_any_colour_table_is_read_or_refused(tmp_path):
+def test_any_color_table_is_read_or_refused(tmp_path):
     folders = fuzz.Folders(tmp_path, tmp_path)
     found = {fuzz.one(random.Random(k), "colours", folders, SCHEMA) for k in range(100)}
     assert "refused" in found
@@ -179,7 +179,7 @@ def test_a_scenario_extends_nothing_outside_its_folder(name):
         loads(f"extends = '{name}'" if "\x00" not in name else 'extends = "x.toml\\u0000"')
 
 
-def test_a_colour_table_is_a_small_file(tmp_path):
+def test_a_color_table_is_a_small_file(tmp_path):
     large = tmp_path / "large.npz"
     large.write_bytes(b"PK" + bytes(LARGEST))
     bomb = tmp_path / "bomb.npz"

@@ -190,11 +190,11 @@ def test_no_geom_adds_mass(robot: mujoco.MjModel) -> None:
     assert all(geom.mass == 0 for geom in spec.geoms)
 
 
-def test_colours_stay_out_of_the_obstacle_classes(robot: mujoco.MjModel) -> None:
+def test_colors_stay_out_of_the_obstacle_classes(robot: mujoco.MjModel) -> None:
     """The robot's own eyes take saturated colours for obstacles and beacons."""
     visual = robot.geom_group == VISUAL_GROUP
-    colours = robot.mat_rgba[robot.geom_matid[visual], :3]
-    saturation = 1 - colours.min(axis=1) / colours.max(axis=1)
+    colors = robot.mat_rgba[robot.geom_matid[visual], :3]
+    saturation = 1 - colors.min(axis=1) / colors.max(axis=1)
     assert (saturation < 0.15).all()
 
 

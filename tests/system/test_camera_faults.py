@@ -9,8 +9,8 @@ import pytest
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load_scenario
-from vision.colour_file import save_table
-from vision.colour_learning import learn
+from vision.color_file import save_table
+from vision.color_learning import learn
 
 SURE = 0.12  # a pose farther from the truth than this must be known to be lost [m]
 AGAIN = 0.06  # so near the truth the robot is again in the end [m]
@@ -121,7 +121,7 @@ def test_a_brightness_step_changes_the_image_and_not_what_is_seen(simulate):
 def test_a_table_learnt_from_rendered_images_sees_as_well_as_the_declared_one(tmp_path):
     script = Path(__file__).parents[2] / "scripts" / "label_images.py"
     labelled = runpy.run_path(str(script))["labelled"]
-    marks = runpy.run_path(str(script))["mask_colours"]()
+    marks = runpy.run_path(str(script))["mask_colors"]()
     pairs = []
     for pan in (-0.9, -0.3, 0.3, 0.9):
         image, mask = labelled(0, pan, -0.3)
@@ -131,7 +131,7 @@ def test_a_table_learnt_from_rendered_images_sees_as_well_as_the_declared_one(tm
         pairs.append((image, labels))
     save_table(learn(pairs), tmp_path / "colours.npz")
     counts = []
-    for setting in ([], [f"vision.colour_table={tmp_path / 'colours.npz'}"]):
+    for setting in ([], [f"vision.color_table={tmp_path / 'colours.npz'}"]):
         seen = []
 
         class Counter(Listener):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vision.camera import CameraPose, PinholeCamera
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 
 FLOOR = (0.62, 0.61, 0.58)
 SKY = (0.05, 0.05, 0.06)
@@ -22,7 +22,7 @@ class Cylinder:
 
     x: float
     y: float
-    colour: str
+    color: str
     radius: float = 0.08
     low: float = 0.0
     high: float = 0.30
@@ -93,17 +93,17 @@ def paint(
             & (lid < nearest)
             & ~(hit & (side < lid))
         )
-        rgb = np.array(COLOUR_CLASSES[thing.colour].rgb)
+        rgb = np.array(COLOR_CLASSES[thing.color].rgb)
         image[hit] = rgb * shade[hit][:, None]
         image[on_lid] = rgb
         nearest = np.where(on_lid, lid, np.where(hit, side, nearest))
     return np.clip(np.round(255.0 * brightness * image), 0, 255).astype(np.uint8)
 
 
-def at(distance: float, bearing_deg: float, colour: str, radius: float = 0.08) -> Cylinder:
+def at(distance: float, bearing_deg: float, color: str, radius: float = 0.08) -> Cylinder:
     """An obstacle at a distance [m] and bearing [degree] from the origin of R."""
     bearing = radians(bearing_deg)
-    return Cylinder(distance * cos(bearing), distance * sin(bearing), colour, radius)
+    return Cylinder(distance * cos(bearing), distance * sin(bearing), color, radius)
 
 
 def true_polar(thing: Cylinder) -> tuple[float, float]:

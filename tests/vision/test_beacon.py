@@ -4,26 +4,26 @@ import pytest
 from tests.vision.scene import CAMERA, HEIGHT, Cylinder, at, beacon, paint, pose
 from vision.beacon import Post, find_posts
 from vision.blob import Blob, find_blobs
-from vision.colour import COLOUR_CLASSES, OUTSIDE, ColourTable
+from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
 from vision.outline import trace
 from vision.parameters import VisionParameters
 from vision.view import View
 
-NAMES = ("", *COLOUR_CLASSES)
+NAMES = ("", *COLOR_CLASSES)
 GAZE = pose(tilt=-0.1)
 
 
 def posts(things: list[Cylinder]) -> tuple[list[Blob], list[Post]]:
-    labels = ColourTable().classify(paint(things, GAZE))
+    labels = ColorTable().classify(paint(things, GAZE))
     blobs = find_blobs(labels, (5,) * 7)
     padded = np.pad(labels, 1, constant_values=OUTSIDE)
     outlines = trace(blobs, padded, View(CAMERA, GAZE), 0.35)
-    indices = [k for k, b in enumerate(blobs) if COLOUR_CLASSES[NAMES[b.label]].kind == "beacon"]
+    indices = [k for k, b in enumerate(blobs) if COLOR_CLASSES[NAMES[b.label]].kind == "beacon"]
     return blobs, find_posts(blobs, outlines, indices, HEIGHT, VisionParameters())
 
 
 @pytest.mark.parametrize("x", [1.2, 2.5, 4.5])
-def test_the_upper_colour_comes_first_and_three_rims_are_seen(x: float) -> None:
+def test_the_upper_color_comes_first_and_three_rims_are_seen(x: float) -> None:
     blobs, (post,) = posts(beacon(x, 0.0, "cyan", "magenta"))
     assert NAMES[blobs[post.upper].label] == "cyan"
     assert NAMES[blobs[post.lower].label] == "magenta"
@@ -37,11 +37,11 @@ def test_a_hidden_foot_leaves_seam_and_head() -> None:
     assert [cue.height for cue in post.candidate.rims] == pytest.approx([0.30, 0.60])
 
 
-def test_colours_side_by_side_are_no_post() -> None:
+def test_colors_side_by_side_are_no_post() -> None:
     halves = [Cylinder(2.0, 0.05, "cyan", 0.05), Cylinder(2.0, -0.05, "magenta", 0.05)]
     assert posts(halves)[1] == []
 
 
-def test_a_narrow_colour_on_a_wide_one_is_no_post() -> None:
+def test_a_narrow_color_on_a_wide_one_is_no_post() -> None:
     stack = [Cylinder(2.0, 0.0, "cyan", 0.1), Cylinder(2.0, 0.0, "yellow", 0.05, 0.30, 0.60)]
     assert posts(stack)[1] == []

@@ -21,7 +21,7 @@ def area(blob: Blob) -> int:
 
 
 @given(seed=st.integers(0, 10_000), share=st.floats(0.0, 1.0))
-def test_blobs_partition_the_coloured_pixels(seed: int, share: float) -> None:
+def test_blobs_partition_the_colored_pixels(seed: int, share: float) -> None:
     rng = np.random.default_rng(seed)
     labels = rng.integers(1, 8, (12, 17)).astype(np.uint8)
     labels[rng.random(labels.shape) < share] = 0

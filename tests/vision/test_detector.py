@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, Cylinder, at, beacon, paint, pose, true_polar
 from vision.camera import PinholeCamera
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 from vision.detection import Detection
 from vision.detector import Detector
 from vision.errors import VisionError
@@ -57,12 +57,12 @@ def test_a_lone_obstacle_is_located_wherever_the_head_looks(
     assert abs(detection.bearing - np.arctan2(thing.y, thing.x)) < radians(0.6)
 
 
-@pytest.mark.parametrize("colour", [n for n, c in COLOUR_CLASSES.items() if c.kind == "obstacle"])
+@pytest.mark.parametrize("color", [n for n, c in COLOR_CLASSES.items() if c.kind == "obstacle"])
 @pytest.mark.parametrize("brightness", [0.4, 1.0, 1.6])
-def test_light_changes_neither_colour_nor_place(colour: str, brightness: float) -> None:
-    (detection,) = see([at(1.2, 10.0, colour)], brightness=brightness)
-    (reference,) = see([at(1.2, 10.0, colour)])
-    assert detection.label == colour
+def test_light_changes_neither_color_nor_place(color: str, brightness: float) -> None:
+    (detection,) = see([at(1.2, 10.0, color)], brightness=brightness)
+    (reference,) = see([at(1.2, 10.0, color)])
+    assert detection.label == color
     assert detection.distance == pytest.approx(reference.distance, abs=1e-9)
     assert detection.bearing == pytest.approx(reference.bearing, abs=1e-9)
 
@@ -74,9 +74,9 @@ def test_light_changes_neither_colour_nor_place(colour: str, brightness: float) 
 )
 def test_a_mirrored_scene_gives_mirrored_detections(distances, tilt) -> None:
     bearings = (-25.0, 2.0, 24.0)
-    colours = ("red", "green", "blue")
-    scene = [at(d, b, c) for d, b, c in zip(distances, bearings, colours, strict=True)]
-    mirror = [Cylinder(c.x, -c.y, c.colour, c.radius) for c in scene]
+    colors = ("red", "green", "blue")
+    scene = [at(d, b, c) for d, b, c in zip(distances, bearings, colors, strict=True)]
+    mirror = [Cylinder(c.x, -c.y, c.color, c.radius) for c in scene]
     seen, seen_mirrored = see(scene, pose(tilt=tilt)), see(mirror, pose(tilt=tilt))
     assert len(seen) == len(seen_mirrored) > 0
     for a, b in zip(seen, seen_mirrored, strict=True):
@@ -164,7 +164,7 @@ def test_an_obstacle_whose_foot_is_out_of_the_image_is_located_by_its_head() -> 
     ],
     ids=["beside", "behind", "far"],
 )
-def test_overlapping_obstacles_of_one_colour_are_told_apart(near: Cylinder, far: Cylinder) -> None:
+def test_overlapping_obstacles_of_one_color_are_told_apart(near: Cylinder, far: Cylinder) -> None:
     first, second = see([near, far], pose(tilt=-0.3))
     assert_located(first, near)
     assert_located(second, far)
@@ -172,7 +172,7 @@ def test_overlapping_obstacles_of_one_colour_are_told_apart(near: Cylinder, far:
     assert first.box == second.box
 
 
-def test_three_obstacles_of_one_colour_in_a_row_are_three() -> None:
+def test_three_obstacles_of_one_color_in_a_row_are_three() -> None:
     scene = [at(0.8, 0.0, "red", 0.07), at(1.2, 5.0, "red", 0.07), at(1.9, 8.5, "red", 0.07)]
     found = see(scene, pose(tilt=-0.3))
     assert len(found) == 3
@@ -198,12 +198,12 @@ def test_a_beacon_behind_an_obstacle_keeps_its_name_or_is_not_seen() -> None:
         assert names == ["yellow/magenta"] or (names == [] and distance > 2.6)
 
 
-def test_one_reserved_colour_alone_is_no_beacon() -> None:
+def test_one_reserved_color_alone_is_no_beacon() -> None:
     half = Cylinder(2.0, 0.1, "yellow", 0.05, 0.0, 0.30)
     assert see([half]) == ()
 
 
-def test_beacons_close_to_each_other_in_the_image_do_not_swap_colours() -> None:
+def test_beacons_close_to_each_other_in_the_image_do_not_swap_colors() -> None:
     names = {"yellow/cyan", "magenta/yellow"}
     for y in np.linspace(0.0, 0.4, 9).tolist():
         scene = beacon(2.5, 0.0, "yellow", "cyan") + beacon(3.2, y, "magenta", "yellow")
@@ -217,9 +217,9 @@ def test_a_grey_image_shows_nothing(value: int) -> None:
     assert DETECTOR.detect(np.full((240, 320, 3), value, np.uint8), pose()) == ()
 
 
-@pytest.mark.parametrize("colour", COLOUR_CLASSES.values(), ids=lambda c: c.name)
-def test_an_image_of_one_colour_locates_nothing(colour) -> None:
-    image = np.broadcast_to((255 * np.array(colour.rgb)).astype(np.uint8), (240, 320, 3))
+@pytest.mark.parametrize("color", COLOR_CLASSES.values(), ids=lambda c: c.name)
+def test_an_image_of_one_color_locates_nothing(color) -> None:
+    image = np.broadcast_to((255 * np.array(color.rgb)).astype(np.uint8), (240, 320, 3))
     assert DETECTOR.detect(image, pose()) == ()
 
 
@@ -271,7 +271,7 @@ def test_radii_must_span_an_interval() -> None:
         Detector(CAMERA, VisionParameters(min_radius=0.1, max_radius=0.1))
 
 
-PAINTS = np.array([(0.0, 0.0, 0.0), *(c.rgb for c in COLOUR_CLASSES.values())])
+PAINTS = np.array([(0.0, 0.0, 0.0), *(c.rgb for c in COLOR_CLASSES.values())])
 LEVEL_OR_NOT = [pose(), pose(0.5, -0.6), pose(0.0, -np.pi / 2), pose(0.1, -0.3, 1.5), pose(0, 1.2)]
 
 

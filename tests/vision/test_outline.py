@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from tests.vision.scene import CAMERA, Cylinder, at, paint, pose
 from vision.blob import find_blobs
 from vision.camera import CameraPose
-from vision.colour import COLOUR_CLASSES, OUTSIDE, ColourTable
+from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
 from vision.cylinder_kernel import independent
 from vision.outline import Outline, trace
 from vision.view import View
 
-NAMES = ("", *COLOUR_CLASSES)
+NAMES = ("", *COLOR_CLASSES)
 PIXEL = 1.0 / CAMERA.focal
 
 
@@ -22,7 +22,7 @@ def outlines(things: list[Cylinder], gaze: CameraPose) -> dict[str, Outline]:
 
 
 def outlines_in(image: np.ndarray, gaze: CameraPose) -> dict[str, Outline]:
-    labels = ColourTable().classify(image)
+    labels = ColorTable().classify(image)
     blobs = find_blobs(labels, (20,) * 7)
     padded = np.pad(labels, 1, constant_values=OUTSIDE)
     traced = trace(blobs, padded, View(CAMERA, gaze), 0.35)
@@ -53,7 +53,7 @@ def test_rims_lie_on_the_floor_and_at_the_height_of_the_head() -> None:
     assert outline.bottom.covered == 0.0
 
 
-def test_edges_next_to_another_colour_are_not_taken_for_the_own() -> None:
+def test_edges_next_to_another_color_are_not_taken_for_the_own() -> None:
     front, back = at(0.9, 4.0, "red", 0.09), at(1.6, 0.0, "green", 0.10)
     seen = outlines([front, back], pose(tilt=-0.3))
     assert seen["green"].left.hidden
@@ -96,7 +96,7 @@ def test_noise_at_the_border_of_the_image_makes_no_edge() -> None:
     image = paint([thing], view)
     clean = outlines_in(image, view)["green"]
     assert not clean.right.trusted
-    rows = np.flatnonzero(ColourTable().classify(image)[:, -1])
+    rows = np.flatnonzero(ColorTable().classify(image)[:, -1])
     image[rows[len(rows) // 2], -1] = 128
     spoiled = outlines_in(image, view)["green"]
     assert not spoiled.right.trusted

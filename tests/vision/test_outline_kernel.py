@@ -3,7 +3,7 @@ import pytest
 
 from tests.vision.scene import CAMERA, at, paint, pose
 from vision.blob import find_blobs
-from vision.colour import OUTSIDE, ColourTable
+from vision.color import OUTSIDE, ColorTable
 from vision.outline_kernel import angles, envelopes, trace
 from vision.view import View
 
@@ -18,7 +18,7 @@ THINGS = [
 def seen(pan, roll):
     """Blobs, padded labels and packed view of the things."""
     gaze = pose(pan=pan, tilt=-0.3, roll=roll)
-    labels = ColourTable().classify(paint(THINGS, gaze))
+    labels = ColorTable().classify(paint(THINGS, gaze))
     blobs = find_blobs(labels, (20,) * 7)
     return blobs, np.pad(labels, 1, constant_values=OUTSIDE), View(CAMERA, gaze).packed
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, Cylinder, at, paint, pose
 from vision.blob import find_blobs
-from vision.colour import OUTSIDE, ColourTable
+from vision.color import OUTSIDE, ColorTable
 from vision.detector import Detector
 from vision.outline import trace
 from vision.parameters import VisionParameters
@@ -16,7 +16,7 @@ GAZE = pose(tilt=-0.3)
 
 
 def parts_of(things: list[Cylinder]) -> list[Part]:
-    labels = ColourTable().classify(paint(things, GAZE))
+    labels = ColorTable().classify(paint(things, GAZE))
     padded = np.pad(labels, 1, constant_values=OUTSIDE)
     view = View(CAMERA, GAZE)
     (blob,) = find_blobs(labels, (20,) * 7)
@@ -52,7 +52,7 @@ def test_the_nearer_of_two_is_whole_and_the_farther_is_occluded(offset: float) -
     assert sorted(part.occluded for part in parts) == [False, True]
 
 
-def test_of_two_of_a_colour_the_hidden_one_is_placed_as_well_as_it_says() -> None:
+def test_of_two_of_a_color_the_hidden_one_is_placed_as_well_as_it_says() -> None:
     """In all positions to each other; a column beside a step belongs to neither."""
     rng = np.random.default_rng(0)
     detector = Detector(CAMERA, VisionParameters())

@@ -119,7 +119,7 @@ class BeliefLayer:
         moments = np.repeat(np.arange(len(times)), [len(belief.tracks) for belief in beliefs])
         centres = np.full((len(tracks), 3), MARK_HEIGHT)
         centres[:, :2] = np.reshape([t.position for t in tracks], (-1, 2))
-        colours = [
+        colors = [
             palette.packed(palette.of_label(t.label), SEEN if t.visible else UNSEEN) for t in tracks
         ]
         self._tracks.add_rows(
@@ -128,7 +128,7 @@ class BeliefLayer:
             centers=centres,
             lengths=np.full(len(tracks), FLAT),
             radii=np.array([t.radius for t in tracks]),
-            colors=np.array(colours, dtype=np.uint32),
+            colors=np.array(colors, dtype=np.uint32),
         )
         covariances = np.reshape([t.covariance for t in tracks], (-1, 4, 4))[:, :2, :2]
         known = np.trace(covariances, axis1=1, axis2=2) < LOST_SIGMA**2
@@ -151,7 +151,7 @@ class BeliefLayer:
         shares = [len(cloud.weights) * cloud.weights for _, cloud in clouds]
         places = np.concatenate(positions) if clouds else np.zeros((0, 2))
         weights = np.concatenate(shares) if clouds else np.zeros(0)
-        colours = [
+        colors = [
             palette.packed(palette.darker(palette.of_label(t.label)))
             for t, cloud in clouds
             for _ in range(len(cloud.weights))
@@ -160,7 +160,7 @@ class BeliefLayer:
             time,
             positions=np.column_stack([places, np.full(len(places), MARK_HEIGHT)]),
             radii=PARTICLE * np.sqrt(np.clip(weights, *PARTICLE_SHARES)),
-            colors=np.array(colours, dtype=np.uint32),
+            colors=np.array(colors, dtype=np.uint32),
         )
 
     def _add_virtual(self, frame: FrameRecord) -> None:
@@ -227,8 +227,8 @@ def _map_look(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
     )
 
 
-def _rings(colour: palette.Colour, fill: rr.components.FillMode) -> rr.Ellipsoids3D:
-    return rr.Ellipsoids3D.from_fields(colors=[colour], fill_mode=fill, line_radii=[0.004])
+def _rings(color: palette.Color, fill: rr.components.FillMode) -> rr.Ellipsoids3D:
+    return rr.Ellipsoids3D.from_fields(colors=[color], fill_mode=fill, line_radii=[0.004])
 
 
 def _wedges(poses: Array, views: Sequence[CameraView]) -> Array:

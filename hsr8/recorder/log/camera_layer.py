@@ -146,8 +146,8 @@ class CameraLayer:
         if top > 0.0:
             shades = np.round(255.0 * gaze_map / top).astype(np.uint8)
         # Left and up in the head are left and up in the picture.
-        coloured = self._heat[shades[::-1, ::-1]]
-        self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", coloured)[1].ravel()])
+        colored = self._heat[shades[::-1, ::-1]]
+        self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", colored)[1].ravel()])
         chosen = np.array([[frame.gaze.pan, frame.gaze.tilt]])
         self._choice.add(
             frame.time,

@@ -37,7 +37,7 @@ _SPHERE, _PLANE = int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_P
 KINDS = {"boxes": (_BOX,), "capsules": (_CAPSULE,), "cylinders": (_CYLINDER,)} | {
     "ellipsoids": (_ELLIPSOID, _SPHERE)
 }
-FLOOR_COLOUR = (206, 204, 198, 255)
+FLOOR_COLOR = (206, 204, 198, 255)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ def shapes(model: mujoco.MjModel, batch: Batch, **pose: Array) -> Any:
     """Rerun archetype of sizes and colours, and of poses where they are given."""
     size = model.geom_size[batch.geoms]
     look: dict[str, Any] = {
-        "colors": colours(model, batch.geoms),
+        "colors": colors(model, batch.geoms),
         "fill_mode": rr.components.FillMode.Solid,
         **pose,
     }
@@ -101,7 +101,7 @@ def shapes(model: mujoco.MjModel, batch: Batch, **pose: Array) -> Any:
     return rr.Ellipsoids3D(half_sizes=np.where(spheres[:, None], size[:, :1], size), **look)
 
 
-def colours(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]:
+def colors(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]:
     """Colours of geoms (n, 4), from their material if they have one."""
     rgba = np.array(model.geom_rgba[geoms])
     material = model.geom_matid[geoms]
@@ -186,7 +186,7 @@ class Scene:
             rr.Boxes3D(
                 half_sizes=[[extent[0] / 2, extent[1] / 2, 0.005]],
                 centers=[[0.0, 0.0, -0.006]],
-                colors=[FLOOR_COLOUR],
+                colors=[FLOOR_COLOR],
                 fill_mode=rr.components.FillMode.Solid,
             ),
             static=True,

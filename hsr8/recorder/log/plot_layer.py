@@ -48,10 +48,10 @@ class Curves:
         self,
         stream: BlockStream,
         path: str,
-        curves: Sequence[tuple[str, palette.Colour]],
+        curves: Sequence[tuple[str, palette.Color]],
     ) -> None:
-        names, colours = zip(*curves, strict=True)
-        stream.log(path, rr.SeriesLines(names=list(names), colors=list(colours)), static=True)
+        names, colors = zip(*curves, strict=True)
+        stream.log(path, rr.SeriesLines(names=list(names), colors=list(colors)), static=True)
         self._channel = Channel(stream, path, rr.Scalars.columns)
 
     def add(self, times: Sequence[float], values: Array) -> None:
@@ -72,7 +72,7 @@ class Lane:
         states: colour of every state.
     """
 
-    def __init__(self, stream: BlockStream, path: str, states: dict[str, palette.Colour]) -> None:
+    def __init__(self, stream: BlockStream, path: str, states: dict[str, palette.Color]) -> None:
         look = rr.StateConfiguration(values=list(states), colors=list(states.values()))
         stream.log(path, look, static=True)
         self._channel = Channel(stream, path, rr.StateChange.columns)

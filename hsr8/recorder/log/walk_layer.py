@@ -47,7 +47,7 @@ class WalkLayer:
         stream.log(
             "/world/walking/points",
             rr.Arrows3D.from_fields(
-                colors=[colour for _, colour in POINTS],
+                colors=[color for _, color in POINTS],
                 radii=[0.003],
                 vectors=np.tile([0.0, 0.0, FLOOR - PIN], (len(POINTS), 1)),
             ),
@@ -160,7 +160,7 @@ class WalkLayer:
     def _torque_curves(stream: BlockStream, group: str) -> tuple[Curves, list[int]]:
         columns = [k for k, name in enumerate(LEG_JOINTS) if f"_{group}" in name]
         named = []
-        shades = {side: iter(colours) for side, colours in SIDES.items()}
+        shades = {side: iter(colors) for side, colors in SIDES.items()}
         for k in columns:
             side, _, joint = LEG_JOINTS[k].partition("_")
             named.append((f"{side} {joint.replace('_', ' ')} [N m]", next(shades[side])))

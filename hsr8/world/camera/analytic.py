@@ -21,7 +21,7 @@ from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import HEAD_CAMERA
 from hsr8.world.rotation import heading
 from vision.camera import PinholeCamera
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 from vision.detection import Detection
 
 OBSTACLE_RANGE = 4.5  # farther obstacles are not reported [m]
@@ -36,7 +36,7 @@ RADIUS_SIGMA = 0.0018  # [m]
 PART_RANGE_SIGMA = 0.0065  # of an obstacle cut by the border or partly hidden [1/m]
 PART_SIDE_SIGMA = 0.012  # of its middle, across the line of sight [m]
 PART_RADIUS_SIGMA = 0.010  # [m]
-OBSTACLE_COLOURS = tuple(c.name for c in COLOUR_CLASSES.values() if c.kind == "obstacle")
+OBSTACLE_COLORS = tuple(c.name for c in COLOR_CLASSES.values() if c.kind == "obstacle")
 CLEAR = 0.04  # hidden share of the outline up to which a thing is seen whole
 FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of what is not there [m]
 FALSE_RANGE = (0.3, 2.5)  # where things seem to be that are not there [m]
@@ -76,7 +76,7 @@ class AnalyticCamera:
         self._faults = faults
         self._movers = layout.motion()
         self._things = [
-            *(_Thing("obstacle", o.colour, o.radius, o.height) for o in layout.obstacles),
+            *(_Thing("obstacle", o.color, o.radius, o.height) for o in layout.obstacles),
             *(_Thing("beacon", b.name, b.radius, b.height) for b in layout.beacons),
         ]
         places = [*(o.position for o in layout.obstacles), *(b.position for b in layout.beacons)]
@@ -142,8 +142,8 @@ class AnalyticCamera:
         half = pi if self._all_round else 0.5 * self._camera.horizontal_fov
         found = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
-            colour = OBSTACLE_COLOURS[rng.integers(len(OBSTACLE_COLOURS))]
-            thing = _Thing("obstacle", colour, FALSE_RADIUS, FALSE_HEIGHT)
+            color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]
+            thing = _Thing("obstacle", color, FALSE_RADIUS, FALSE_HEIGHT)
             polar = (rng.uniform(*FALSE_RANGE), ahead + rng.uniform(-half, half))
             direction = polar[1] + robot[2]
             x = robot[0] + polar[0] * cos(direction) - float(eye[0])

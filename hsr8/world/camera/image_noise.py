@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.camera import CameraNoise
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 
 Image = NDArray[np.uint8]
 
@@ -34,7 +34,7 @@ class ImageNoise:
         self._rng = rng
         self._shape = (*shape, 3)
         self._size = 3 * shape[0] * shape[1]
-        self._colours = np.array([c.rgb for c in COLOUR_CLASSES.values()])
+        self._colors = np.array([c.rgb for c in COLOR_CLASSES.values()])
         self._grain: tuple[Image, Image] | None = None
         if noise.pixel > 0.0:
             # Drawing every image's grain afresh would cost half as much as rendering it.
@@ -80,6 +80,6 @@ class ImageNoise:
         centre = (int(rng.integers(width)), int(rng.integers(height)))
         low, high = (max(1, round(scale * pixels)) for pixels in BLOB_PIXELS)
         axes = (int(rng.integers(low, high + 1)), int(rng.integers(low, high + 1)))
-        rgb = self._colours[rng.integers(len(self._colours))] * rng.uniform(*BLOB_LIGHT)
-        colour = np.round(255.0 * rgb).tolist()
-        cv2.ellipse(image, centre, axes, 0.0, 0.0, 360.0, colour, -1)
+        rgb = self._colors[rng.integers(len(self._colors))] * rng.uniform(*BLOB_LIGHT)
+        color = np.round(255.0 * rgb).tolist()
+        cv2.ellipse(image, centre, axes, 0.0, 0.0, 360.0, color, -1)

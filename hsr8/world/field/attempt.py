@@ -38,7 +38,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
-COLOURS = ("red", "green", "blue", "violet")
+COLORS = ("red", "green", "blue", "violet")
 BATCH = 64  # candidates drawn at a time
 TRIES = 30  # batches for one thing
 LANE_TRIES = 300  # for one mover
@@ -80,15 +80,15 @@ class Attempt:
         world = self._world
         start = self._scenario.robot.start.position
         points = self._given_points()
-        self._lanes = [Lane.of(motion_law(m), m.radius, m.colour) for m in world.mover]
+        self._lanes = [Lane.of(motion_law(m), m.radius, m.color) for m in world.mover]
         self._static = [
-            Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.colour) for o in world.obstacle
+            Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.color) for o in world.obstacle
         ]
         for row in world.row:
             for k, place in enumerate(row.positions()):
                 # Neighbours differ in colour, so that vision can tell them apart.
-                colour = COLOURS[k % len(COLOURS)]
-                self._static.append(Obstacle(place, row.radius, OBSTACLE_HEIGHT, colour))
+                color = COLORS[k % len(COLORS)]
+                self._static.append(Obstacle(place, row.radius, OBSTACLE_HEIGHT, color))
         for _ in range(world.n_moving):
             self._lanes.append(self._draw_mover(start, points))
         self._draw_static(start, points)
@@ -159,7 +159,7 @@ class Attempt:
 
             room = radius + OBSTACLE_TO_RIM
             position = self._draw_point("static obstacles", clear, room)
-            self._static.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._colour()))
+            self._static.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._color()))
 
     def _draw_points(self, start: Point) -> list[Point]:
         """Via points of a tour, or via points and goal of a course."""
@@ -198,7 +198,7 @@ class Attempt:
             law = self._draw_law(route)
             if law is None:
                 continue
-            lane = Lane.of(law, self._radius(), self._colour())
+            lane = Lane.of(law, self._radius(), self._color())
             if self._lane_clear(lane, start, goal):
                 return lane
         raise CrowdedError("moving obstacles")
@@ -272,7 +272,7 @@ class Attempt:
                 law = passage_through(place, course, time, (reach_x, reach_y))
                 if law is None or _startles(law, walk, radius):
                     continue
-                lane = Lane.of(law, radius, self._colour())
+                lane = Lane.of(law, radius, self._color())
                 # It stays where it arrives, which must be out of everybody's way.
                 apart = distance(lane.ends, points) - radius
                 if (apart >= LANE_TO_GOAL).all() and self._lane_clear(lane, start, None):
@@ -315,8 +315,8 @@ class Attempt:
     def _radius(self) -> float:
         return float(self._rng.uniform(*self._world.radius))
 
-    def _colour(self) -> str:
-        return COLOURS[int(self._rng.integers(len(COLOURS)))]
+    def _color(self) -> str:
+        return COLORS[int(self._rng.integers(len(COLORS)))]
 
 
 def _startles(law: Passage, walk: NominalWalk, radius: float) -> bool:

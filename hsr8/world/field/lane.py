@@ -38,9 +38,9 @@ class Lane:
     crosses: bool = False
 
     @classmethod
-    def of(cls, law: MotionLaw, radius: float, colour: str) -> "Lane":
+    def of(cls, law: MotionLaw, radius: float, color: str) -> "Lane":
         """Lane of a mover of some `radius` [m] that follows `law`."""
-        obstacle = Obstacle(law.position(0.0), radius, OBSTACLE_HEIGHT, colour, law)
+        obstacle = Obstacle(law.position(0.0), radius, OBSTACLE_HEIGHT, color, law)
         if isinstance(law, Shuttle):
             path = np.linspace(law.start, law.end, SAMPLES)
             return cls(obstacle, path, path[[0, -1]])

@@ -16,7 +16,7 @@ OBSTACLE_HEIGHT = 0.30  # [m]
 BEACON_RADIUS = 0.05  # [m]
 BEACON_HEIGHT = 0.60  # [m]
 BEACON_OFFSET = 0.3  # distance of the beacons from the rim of the field [m]
-BEACON_COLOURS = ("yellow", "cyan", "magenta")
+BEACON_COLORS = ("yellow", "cyan", "magenta")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,14 +27,14 @@ class Obstacle:
         position: its axis in W, of a mover at time zero [m].
         radius: [m].
         height: [m].
-        colour: name of its colour class.
+        color: name of its colour class.
         motion: how it moves; None when it stands still.
     """
 
     position: Point
     radius: float
     height: float
-    colour: str
+    color: str
     motion: MotionLaw | None = None
 
 
@@ -112,7 +112,7 @@ def standard_beacons(field_size: Point) -> tuple[Beacon, ...]:
     from its centre, so that the same two colours never stand side by side.
     """
     half = 0.5 * np.asarray(field_size, dtype=float) + BEACON_OFFSET
-    y, c, m = BEACON_COLOURS
+    y, c, m = BEACON_COLORS
     pairs = ((y, c), (c, m), (m, y), (c, y), (m, c), (y, m))
     beacons = []
     for k, (top, bottom) in enumerate(pairs):

@@ -17,7 +17,7 @@ from hsr8.scenario.fault import Bump
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.model.model_check import require_sound
 from hsr8.world.model.models import models_dir, reading_models
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 
 Quality = Literal["vision", "show"]
 
@@ -178,11 +178,11 @@ def _add_cameras(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
     )
 
 
-def _paint(spec: mujoco.MjSpec, colour: str, quality: Quality) -> str:
+def _paint(spec: mujoco.MjSpec, color: str, quality: Quality) -> str:
     """Name of the material of a colour class, made when first asked for."""
-    name = f"paint_{colour}"
+    name = f"paint_{color}"
     if spec.material(name) is None:
-        rgb = np.asarray(COLOUR_CLASSES[colour].rgb)
+        rgb = np.asarray(COLOR_CLASSES[color].rgb)
         if quality == "show":
             rgb = rgb**BRIGHTER
         material = spec.add_material(name=name, rgba=[*rgb, 1.0])
@@ -201,7 +201,7 @@ def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Q
         name=name,
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
         size=[obstacle.radius, 0.5 * obstacle.height, 0.0],
-        material=_paint(spec, obstacle.colour, quality),
+        material=_paint(spec, obstacle.color, quality),
         **_SOLID,
     )
     if moves and quality == "show":
@@ -219,13 +219,13 @@ def _add_beacon(spec: mujoco.MjSpec, beacon: Beacon, quality: Quality) -> None:
     quarter = 0.25 * beacon.height
     name = f"beacon_{beacon.top}_{beacon.bottom}"
     body = spec.worldbody.add_body(name=name, pos=[*beacon.position, 0.0])
-    for half, colour, z in (("bottom", beacon.bottom, quarter), ("top", beacon.top, 3 * quarter)):
+    for half, color, z in (("bottom", beacon.bottom, quarter), ("top", beacon.top, 3 * quarter)):
         body.add_geom(
             name=f"{name}_{half}",
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
             pos=[0.0, 0.0, z],
             size=[beacon.radius, quarter, 0.0],
-            material=_paint(spec, colour, quality),
+            material=_paint(spec, color, quality),
             **_SOLID,
         )
 

@@ -56,7 +56,7 @@ def test_a_mover_out_of_view_says_nothing(metrics, fake):
     assert metrics.result()["mover_velocity_rmse_mps"] is None
 
 
-def test_the_nearest_track_of_the_colour_owns_an_obstacle(fake):
+def test_the_nearest_track_of_the_color_owns_an_obstacle(fake):
     places = np.array([[0.8, 0.6], [0.9, 0.6], [5.0, 5.0]])
     a, b = fake.track(0, 0.0, error=(0.01, 0.0)), fake.track(0, 0.0, error=(0.04, 0.0))
     assert owners([b, a], ["red", "red", "red"], places) == {0: a, 1: b}

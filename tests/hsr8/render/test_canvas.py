@@ -20,9 +20,9 @@ def _at(image, x, y):
     return tuple(image[row, column].tolist())
 
 
-def _centre(image, colour):
+def _centre(image, color):
     """Of the pixels of a colour, in W [m]."""
-    rows, columns = np.nonzero((image == colour).all(axis=-1))
+    rows, columns = np.nonzero((image == color).all(axis=-1))
     x = (columns.mean() - 0.5 * image.shape[1]) / 100
     return x, (0.5 * image.shape[0] - rows.mean()) / 100
 

@@ -83,7 +83,7 @@ def _tags(frame, size=(640, 480)):
     """Rectangles of the dark plates of the tags, whatever is written on them."""
     plates = []
 
-    def noted(picture, place, text, colour, letters):
+    def noted(picture, place, text, color, letters):
         plates.append((text, place[0], place[1] - letters, place[0] + 60, place[1]))
 
     with pytest.MonkeyPatch.context() as patch:

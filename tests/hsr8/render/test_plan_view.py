@@ -4,22 +4,22 @@ from hsr8.render.plan_view import PlanView
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.field.motion import AWAY
-from vision.colour import COLOUR_CLASSES
+from vision.color import COLOR_CLASSES
 
 
-def test_every_thing_is_drawn_in_its_colour():
+def test_every_thing_is_drawn_in_its_color():
     layout = draw_layout(load_scenario("course"), 1)
     image = PlanView(layout, 600).draw()
     assert max(image.shape[:2]) == 600
-    for colour in {o.colour for o in layout.obstacles} | {b.top for b in layout.beacons}:
-        rgb = np.round(255 * np.asarray(COLOUR_CLASSES[colour].rgb))
+    for color in {o.color for o in layout.obstacles} | {b.top for b in layout.beacons}:
+        rgb = np.round(255 * np.asarray(COLOR_CLASSES[color].rgb))
         assert (np.abs(image - rgb).max(axis=2) <= 1).sum() > 20
 
 
 def test_y_points_up_and_x_to_the_right():
     scenario = load_scenario("walk", ["world.obstacle=[{position=[2.0, 1.5], radius=0.2}]"])
     image = PlanView(draw_layout(scenario, 0), 600).draw()
-    red = np.round(255 * np.asarray(COLOUR_CLASSES["red"].rgb))
+    red = np.round(255 * np.asarray(COLOR_CLASSES["red"].rgb))
     rows, columns = np.nonzero(np.abs(image - red).max(axis=2) <= 1)
     assert rows.mean() < 0.3 * image.shape[0]
     assert columns.mean() > 0.7 * image.shape[1]

@@ -17,8 +17,8 @@ def summary(fake):
     return make
 
 
-def _centre_of(image, colour):
-    rows, columns = np.nonzero((image == colour).all(axis=-1))
+def _centre_of(image, color):
+    rows, columns = np.nonzero((image == color).all(axis=-1))
     return columns.mean(), rows.mean()
 
 

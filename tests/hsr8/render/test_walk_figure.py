@@ -41,7 +41,7 @@ def table():
     return WalkingTable(time, columns, (0.01, 0.0525, 0.03), dict.fromkeys(LEG_JOINTS, 6.0))
 
 
-def test_every_phase_has_a_colour_and_a_name():
+def test_every_phase_has_a_color_and_a_name():
     assert set(walk_panels.LANES) == set(walk_panels.PHASE_NAMES) == set(Phase)
     assert set(GAIT) == {str(phase) for phase in Phase}
 

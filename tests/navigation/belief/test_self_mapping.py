@@ -13,8 +13,8 @@ from navigation.transform import sighting
 DT = 0.1
 MOTION = (4e-6, 4e-6, 4e-7)  # variances per frame, forward, left and turn
 SIGMA = (0.01, 0.004)
-COLOURS = ("red", "green", "blue", "violet")
-POSTS = [(1.6 * cos(a), 1.6 * sin(a), COLOURS[i % 4]) for i, a in enumerate(np.arange(8) * pi / 4)]
+COLORS = ("red", "green", "blue", "violet")
+POSTS = [(1.6 * cos(a), 1.6 * sin(a), COLORS[i % 4]) for i, a in enumerate(np.arange(8) * pi / 4)]
 
 
 def tracks(track, numbers, motion=Motion.STATIC, visible=True):

@@ -144,7 +144,7 @@ def test_a_reversal_out_of_sight_turns_the_velocity_round(stage):
     assert track.velocity[1] < -0.08
 
 
-def test_neighbours_of_one_colour_keep_their_identity(stage):
+def test_neighbours_of_one_color_keep_their_identity(stage):
     stage.watch(3.0, (1.2, 0.0, 0.0, 0.0), (1.2, 0.4, 0.0, 0.0), (0.9, 0.2, 0.0, 0.0))
     places = {t.id: t.position for t in stage.tracks}
     for k in range(100):
@@ -167,7 +167,7 @@ def test_a_mover_survives_passing_behind_another_obstacle(stage):
     assert any(t.motion is Motion.MOVING for t in stage.tracks)
 
 
-def test_colours_are_never_mixed(stage):
+def test_colors_are_never_mixed(stage):
     for _ in range(50):
         stage.show((1.2, 0.0, "red"), (1.2, 0.05, "blue"))
     assert sorted(t.label for t in stage.tracks) == ["blue", "red"]

@@ -6,7 +6,7 @@ from hsr8.recorder.log.geometry import (
     _BOX,
     BASE,
     batches,
-    colours,
+    colors,
     multiply,
     rotate,
     sole_outline,
@@ -58,12 +58,12 @@ def test_poses_of_geoms_follow_their_bodies(model, robot):
         np.testing.assert_allclose(place, data.geom_xpos[batch.geoms], atol=1e-9)
 
 
-def test_colours_come_from_the_material(model):
+def test_colors_come_from_the_material(model):
     red = model.geom("obstacle_00").id
     material = model.geom_matid[red]
     assert material >= 0
     expected = np.round(255 * model.mat_rgba[material]).tolist()
-    assert colours(model, np.array([red]))[0].tolist() == expected
+    assert colors(model, np.array([red]))[0].tolist() == expected
 
 
 def test_a_kind_that_does_not_occur_has_no_batch(model):

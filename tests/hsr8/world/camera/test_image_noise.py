@@ -54,10 +54,10 @@ def test_shares_and_rates_are_kept_on_average():
     assert np.std(lights) == pytest.approx(0.05, rel=0.1)
 
 
-def test_false_blobs_are_painted_in_colours_of_things():
+def test_false_blobs_are_painted_in_colors_of_things():
     noise = make()
     spoiled = noise.spoil(grey(128), 20.0)
     painted = (spoiled != 128).any(axis=2)
     assert 0.02 < painted.mean() < 1.0
-    colours = spoiled[painted].astype(int)
-    assert np.all(colours.max(axis=1) > 1.5 * colours.min(axis=1))
+    colors = spoiled[painted].astype(int)
+    assert np.all(colors.max(axis=1) > 1.5 * colors.min(axis=1))

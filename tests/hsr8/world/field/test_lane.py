@@ -35,7 +35,7 @@ def test_the_nearest_is_the_nearest(first, second):
 
 def test_a_heading_of_a_right_angle_is_one():
     law = motion_law(
-        LineMover(motion="line", colour="red", radius=0.1, start=(0, 0), heading_deg=90, speed=0.1)
+        LineMover(motion="line", color="red", radius=0.1, start=(0, 0), heading_deg=90, speed=0.1)
     )
     assert law.velocity(0.0) == (0.0, 0.1)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.world.field.layout import (
-    BEACON_COLOURS,
+    BEACON_COLORS,
     BEACON_OFFSET,
     standard_beacons,
     with_first_moved,
@@ -19,14 +19,14 @@ def test_beacons_stand_on_the_rectangle_around_the_field(size):
         assert share.max() == pytest.approx(1.0, abs=1e-3)
 
 
-def test_every_ordered_pair_of_colours_is_one_beacon():
+def test_every_ordered_pair_of_colors_is_one_beacon():
     beacons = standard_beacons((5.0, 5.0))
     pairs = {(b.top, b.bottom) for b in beacons}
-    assert pairs == set(itertools.permutations(BEACON_COLOURS, 2))
+    assert pairs == set(itertools.permutations(BEACON_COLORS, 2))
     assert [b.name for b in beacons] == [f"{b.top}/{b.bottom}" for b in beacons]
 
 
-def test_beacons_of_the_same_two_colours_are_far_apart():
+def test_beacons_of_the_same_two_colors_are_far_apart():
     by_name = {b.name: np.asarray(b.position) for b in standard_beacons((5.0, 5.0))}
     for beacon in standard_beacons((5.0, 5.0)):
         twin = by_name[f"{beacon.bottom}/{beacon.top}"]

@@ -13,9 +13,9 @@ from rich.table import Table
 from hsr8.cli.options import Colours
 from hsr8.cli.output_file import writing
 from hsr8.errors import UsageError
-from vision.colour import COLOUR_CLASSES, ColourTable, Labels
-from vision.colour_file import SUFFIX, save_table
-from vision.colour_learning import IGNORED, learn
+from vision.color import COLOR_CLASSES, ColorTable, Labels
+from vision.color_file import SUFFIX, save_table
+from vision.color_learning import IGNORED, learn
 from vision.errors import VisionError
 
 Image = NDArray[np.uint8]
@@ -24,11 +24,11 @@ MASK = ".mask.png"
 WHITE = (255, 255, 255)  # in a mask: not judged
 
 
-def mask_colours() -> dict[str, tuple[int, int, int]]:
+def mask_colors() -> dict[str, tuple[int, int, int]]:
     """RGB with which masks mark each colour class."""
     return {
         name: (round(255 * c.rgb[0]), round(255 * c.rgb[1]), round(255 * c.rgb[2]))
-        for name, c in COLOUR_CLASSES.items()
+        for name, c in COLOR_CLASSES.items()
     }
 
 
@@ -51,7 +51,7 @@ def main(options: Colours) -> int:
         save_table(table, options.out)
     rows = list(_recognised(table, pairs))
     if options.json:
-        print(json.dumps({"colour_table": str(options.out), "classes": rows}))
+        print(json.dumps({"color_table": str(options.out), "classes": rows}))
         return 0
     shown = Table(title=f"Colour table from {len(pairs)} images", title_justify="left")
     for heading in ("class", "pixels", "recognised %", "taken for another %"):
@@ -65,9 +65,7 @@ def main(options: Colours) -> int:
         )
     console = Console()
     console.print(shown)
-    console.print(
-        f"Use it: hsr8 run quick --set vision.colour_table={options.out}", highlight=False
-    )
+    console.print(f"Use it: hsr8 run quick --set vision.color_table={options.out}", highlight=False)
     return 0
 
 
@@ -80,12 +78,12 @@ def _read(path: Path) -> tuple[Image, Labels]:
             f"{mask_path} is {mask.shape[1]}x{mask.shape[0]}, "
             f"but {path} is {image.shape[1]}x{image.shape[0]}"
         )
-    labels = np.full(mask.shape[:2], len(COLOUR_CLASSES) + 1, np.uint8)
-    legend = {"background": (0, 0, 0), **mask_colours()}
+    labels = np.full(mask.shape[:2], len(COLOR_CLASSES) + 1, np.uint8)
+    legend = {"background": (0, 0, 0), **mask_colors()}
     for label, rgb in enumerate(legend.values()):
         labels[(mask == rgb).all(axis=2)] = label
     labels[(mask == WHITE).all(axis=2)] = IGNORED
-    unknown = np.argwhere(labels == len(COLOUR_CLASSES) + 1)
+    unknown = np.argwhere(labels == len(COLOR_CLASSES) + 1)
     if len(unknown):
         y, x = unknown[0].tolist()
         known = ", ".join(f"{name} {rgb}" for name, rgb in legend.items())
@@ -111,12 +109,12 @@ def _picture(path: Path) -> Image:
 
 
 def _recognised(
-    table: ColourTable, pairs: list[tuple[Image, Labels]]
+    table: ColorTable, pairs: list[tuple[Image, Labels]]
 ) -> Iterator[dict[str, str | int | float]]:
     """Pixels of each class, and the shares recognised and taken for another class."""
     seen = np.concatenate([table.classify(image).ravel() for image, _ in pairs])
     true = np.concatenate([labels.ravel() for _, labels in pairs])
-    for label, name in enumerate(("background", *COLOUR_CLASSES)):
+    for label, name in enumerate(("background", *COLOR_CLASSES)):
         found = seen[true == label]
         n = max(len(found), 1)
         other = (found != label) & (found != 0)

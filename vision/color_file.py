@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vision.colour import COLOUR_CLASSES, ColourTable
+from vision.color import COLOR_CLASSES, ColorTable
 from vision.errors import VisionError
 
 SUFFIX = ".npz"
@@ -13,7 +13,7 @@ LARGEST = 1_000_000  # neither the file nor what it unpacks to is larger [byte]
 SHOWN = 200  # characters of another file's classes that are told
 
 
-def save_table(table: ColourTable, path: Path) -> None:
+def save_table(table: ColorTable, path: Path) -> None:
     """Write `table` to `path`.
 
     Raises:
@@ -25,7 +25,7 @@ def save_table(table: ColourTable, path: Path) -> None:
         )
 
 
-def load_table(path: Path) -> ColourTable:
+def load_table(path: Path) -> ColorTable:
     """Read a table.
 
     Nothing but a small regular file is opened, and nothing in it is run.
@@ -47,13 +47,13 @@ def load_table(path: Path) -> ColourTable:
             f"{path} is no colour table: it must hold the arrays 'labels' and 'names' "
             "(`hsr8 colours` writes such files)"
         ) from None
-    if names != list(COLOUR_CLASSES):
+    if names != list(COLOR_CLASSES):
         raise VisionError(
             f"{path} was made for the colour classes {', '.join(map(str, names))[:SHOWN]}; "
-            f"those of this version are {', '.join(COLOUR_CLASSES)}"
+            f"those of this version are {', '.join(COLOR_CLASSES)}"
         )
     try:
-        return ColourTable(COLOUR_CLASSES, labels)
+        return ColorTable(COLOR_CLASSES, labels)
     except VisionError as error:
         raise VisionError(f"{path}: {error}") from None
 

@@ -3,11 +3,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vision.colour import COLOUR_CLASSES, ColourClass, ColourTable
+from vision.color import COLOR_CLASSES, ColorClass, ColorTable
 from vision.errors import VisionError
 
-TABLE = ColourTable()
-NAMES = ("", *COLOUR_CLASSES)
+TABLE = ColorTable()
+NAMES = ("", *COLOR_CLASSES)
 
 
 def label_of(rgb: tuple[float, ...], light: float) -> str:
@@ -15,18 +15,18 @@ def label_of(rgb: tuple[float, ...], light: float) -> str:
     return NAMES[TABLE.classify(pixel[None, None])[0, 0]]
 
 
-@pytest.mark.parametrize("name", COLOUR_CLASSES)
+@pytest.mark.parametrize("name", COLOR_CLASSES)
 @pytest.mark.parametrize("brightness", [0.4, 0.6, 0.8, 1.0, 1.3, 1.6])
 @pytest.mark.parametrize("shade", [0.4, 0.7, 1.0])
 def test_painted_things_keep_their_class_in_any_light(
     name: str, brightness: float, shade: float
 ) -> None:
-    assert label_of(COLOUR_CLASSES[name].rgb, brightness * shade) == name
+    assert label_of(COLOR_CLASSES[name].rgb, brightness * shade) == name
 
 
-@pytest.mark.parametrize("colour", COLOUR_CLASSES.values(), ids=lambda c: c.name)
-def test_paint_is_never_so_bright_that_strong_light_clips_it(colour: ColourClass) -> None:
-    assert all(0.05 <= channel <= 0.65 for channel in colour.rgb)
+@pytest.mark.parametrize("color", COLOR_CLASSES.values(), ids=lambda c: c.name)
+def test_paint_is_never_so_bright_that_strong_light_clips_it(color: ColorClass) -> None:
+    assert all(0.05 <= channel <= 0.65 for channel in color.rgb)
 
 
 @given(
@@ -40,11 +40,11 @@ def test_greys_and_pale_floors_have_no_class(
     assert label_of(tuple(t * grey / 255.0 for t in tint), light) == ""
 
 
-def test_classes_that_claim_the_same_colour_are_refused() -> None:
-    red = COLOUR_CLASSES["red"]
-    pink = ColourClass("pink", "obstacle", (0.6, 0.1, 0.2), (160.0, 175.0))
+def test_classes_that_claim_the_same_color_are_refused() -> None:
+    red = COLOR_CLASSES["red"]
+    pink = ColorClass("pink", "obstacle", (0.6, 0.1, 0.2), (160.0, 175.0))
     with pytest.raises(VisionError, match=r"'red'.*'pink'"):
-        ColourTable({"red": red, "pink": pink})
+        ColorTable({"red": red, "pink": pink})
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
 import cv2
 import numpy as np
 
-from vision.colour import TABLE_SIZE
-from vision.colour_kernel import classify
+from vision.color import TABLE_SIZE
+from vision.color_kernel import classify
 
 RNG = np.random.default_rng(0)
 

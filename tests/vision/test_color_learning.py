@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from tests.vision.scene import CAMERA, at, beacon, paint, pose
-from vision.colour import COLOUR_CLASSES, ColourTable
-from vision.colour_file import save_table
-from vision.colour_learning import IGNORED, learn
+from vision.color import COLOR_CLASSES, ColorTable
+from vision.color_file import save_table
+from vision.color_learning import IGNORED, learn
 from vision.detector import Detector
 from vision.errors import VisionError
 from vision.parameters import VisionParameters
@@ -27,15 +27,15 @@ def noisy(image: np.ndarray, seed: int, sigma: float = 3.0) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def learnt() -> ColourTable:
+def learnt() -> ColorTable:
     image = paint(SCENE, VIEW)
-    return learn([(noisy(image, 1), ColourTable().classify(image))])
+    return learn([(noisy(image, 1), ColorTable().classify(image))])
 
 
 @pytest.mark.parametrize("brightness", [0.5, 1.0, 1.6])
 def test_a_learnt_table_sees_what_the_declared_one_sees(learnt, tmp_path, brightness) -> None:
     save_table(learnt, tmp_path / "colours.npz")
-    with_table = VisionParameters(colour_table=str(tmp_path / "colours.npz"))
+    with_table = VisionParameters(color_table=str(tmp_path / "colours.npz"))
     image = noisy(paint(SCENE, VIEW, brightness), 2)
     found, expected = (
         {d.label: d for d in Detector(CAMERA, parameters).detect(image, VIEW)}
@@ -49,7 +49,7 @@ def test_a_learnt_table_sees_what_the_declared_one_sees(learnt, tmp_path, bright
         )
 
 
-def test_colours_unlike_every_label_are_background(learnt) -> None:
+def test_colors_unlike_every_label_are_background(learnt) -> None:
     orange = np.full((4, 4, 3), (200, 100, 20), np.uint8)
     assert not learnt.classify(orange).any()
     assert not learnt.classify(np.full((4, 4, 3), 5, np.uint8)).any()
@@ -57,7 +57,7 @@ def test_colours_unlike_every_label_are_background(learnt) -> None:
 
 def test_pixels_nobody_judged_teach_nothing() -> None:
     image = paint(SCENE, VIEW)
-    labels = ColourTable().classify(image)
+    labels = ColorTable().classify(image)
     labels[labels == 1] = IGNORED
     assert not (learn([(image, labels)]).labels == 1).any()
 
@@ -66,7 +66,7 @@ def test_pixels_nobody_judged_teach_nothing() -> None:
     ("labels", "message"),
     [
         (np.zeros((4, 5), np.uint8), "shape"),
-        (np.full((4, 4), len(COLOUR_CLASSES) + 1, np.uint8), "means no class"),
+        (np.full((4, 4), len(COLOR_CLASSES) + 1, np.uint8), "means no class"),
         (np.zeros((4, 4), np.uint8), "no pixel"),
     ],
 )

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision.colour import COLOUR_CLASSES, ColourClass, ColourTable, Labels, table_colours
+from vision.color import COLOR_CLASSES, ColorClass, ColorTable, Labels, table_colors
 from vision.errors import VisionError
 
 Array = NDArray[np.float64]
@@ -29,8 +29,8 @@ IGNORED = 255  # label of pixels that nobody has judged
 
 def learn(
     images: Iterable[tuple[NDArray[np.uint8], Labels]],
-    classes: Mapping[str, ColourClass] = COLOUR_CLASSES,
-) -> ColourTable:
+    classes: Mapping[str, ColorClass] = COLOR_CLASSES,
+) -> ColorTable:
     """Table that recognises the classes as they are labelled in some images.
 
     Args:
@@ -55,26 +55,26 @@ def learn(
         np.add.at(counts.reshape(len(counts), -1), (labels.ravel()[chosen], cells[chosen]), 1.0)
     if not counts[1:].any():
         raise VisionError("no pixel of the labelled images is of a colour class")
-    colours = table_colours()
-    cells, bright = _cells(colours)
-    total = colours.sum(axis=1, dtype=np.int64)
-    table = np.zeros(len(colours), np.uint8)
+    colors = table_colors()
+    cells, bright = _cells(colors)
+    total = colors.sum(axis=1, dtype=np.int64)
+    table = np.zeros(len(colors), np.uint8)
     for low, high in pairwise(BRIGHTNESS):
         level = bright & (total >= low) & (total < high)
         blur = BLUR + NOISE * CELLS / max(low, DARKEST)
         density = np.stack([_blurred(plane, blur) for plane in counts])
         at = density.reshape(len(density), -1)[:, cells[level]]
         table[level] = np.where(at.max(axis=0) < FAINTEST, 0, at.argmax(axis=0))
-    return ColourTable(classes, table)
+    return ColorTable(classes, table)
 
 
-def _cells(colours: NDArray[np.uint8]) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+def _cells(colors: NDArray[np.uint8]) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """Cell of each RGB colour (n, 3), and whether it is bright enough to have one."""
-    rgb = colours.astype(np.float64)
+    rgb = colors.astype(np.float64)
     total = np.maximum(rgb.sum(axis=1), 1.0)
     red, green = ((CELLS - 1) * rgb[:, k] / total for k in (0, 1))
     cell = np.round(red).astype(np.intp) * CELLS + np.round(green).astype(np.intp)
-    return cell, colours.max(axis=1) >= DARKEST
+    return cell, colors.max(axis=1) >= DARKEST
 
 
 def _blurred(counts: Array, sigma: float) -> Array:

@@ -1,19 +1,19 @@
 import numpy as np
 import pytest
 
-from vision.colour import COLOUR_CLASSES, ColourTable
-from vision.colour_file import load_table, save_table
+from vision.color import COLOR_CLASSES, ColorTable
+from vision.color_file import load_table, save_table
 from vision.errors import VisionError
 
 
 def test_a_table_comes_back_as_it_was(tmp_path) -> None:
-    save_table(ColourTable(), tmp_path / "t.npz")
+    save_table(ColorTable(), tmp_path / "t.npz")
     back = load_table(tmp_path / "t.npz")
-    assert np.array_equal(back.labels, ColourTable().labels)
-    assert [c.name for c in back.classes] == list(COLOUR_CLASSES)
+    assert np.array_equal(back.labels, ColorTable().labels)
+    assert [c.name for c in back.classes] == list(COLOR_CLASSES)
 
 
-NAMES = np.array(list(COLOUR_CLASSES))
+NAMES = np.array(list(COLOR_CLASSES))
 
 
 @pytest.mark.parametrize(

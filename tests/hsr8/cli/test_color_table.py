@@ -4,12 +4,12 @@ import cv2
 import numpy as np
 import pytest
 
-from hsr8.cli.colours import main, mask_colours
+from hsr8.cli.color_table import main, mask_colors
 from hsr8.cli.main import entry
 from hsr8.cli.options import Colours
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.scenario.loader import load_scenario
-from vision.colour_file import load_table
+from vision.color_file import load_table
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def picture(tmp_path):
     image = rng.normal(140.0, 3.0, (40, 50, 3))
     mask = np.zeros((40, 50, 3), np.uint8)
     image[10:20, 10:30] = rng.normal((150.0, 25.0, 22.0), 3.0, (10, 20, 3))
-    mask[10:20, 10:30] = mask_colours()["red"]
+    mask[10:20, 10:30] = mask_colors()["red"]
     cv2.imwrite(str(tmp_path / "a.png"), image[:, :, ::-1].astype(np.uint8))
     cv2.imwrite(str(tmp_path / "a.mask.png"), mask[:, :, ::-1])
     return tmp_path / "a.png"
@@ -33,12 +33,12 @@ def test_a_table_is_learnt_written_and_named_in_a_scenario(picture, tmp_path, ca
     assert rows["red"]["recognised"] > 0.99
     assert rows["background"]["recognised"] > 0.99
     assert load_table(out).labels.max() == 1
-    assert load_scenario("quick", [f"vision.colour_table={out}"]).vision.colour_table == str(out)
+    assert load_scenario("quick", [f"vision.color_table={out}"]).vision.color_table == str(out)
     assert main(Colours((picture,), out)) == 0
     assert "red" in capsys.readouterr().out
 
 
-def test_a_mask_colour_that_marks_nothing_is_told_with_its_place(picture):
+def test_a_mask_color_that_marks_nothing_is_told_with_its_place(picture):
     path = picture.with_name("a.mask.png")
     mask = cv2.imread(str(path))
     mask[3, 7] = (0, 0, 250)
@@ -58,8 +58,8 @@ def test_what_is_missing_or_no_image_is_told(picture, tmp_path):
 
 
 def test_a_wrong_table_in_a_scenario_is_a_mistake_of_the_scenario(tmp_path):
-    with pytest.raises(ScenarioError, match=r"vision\.colour_table.*nowhere\.npz"):
-        load_scenario("quick", ["vision.colour_table=nowhere.npz"])
+    with pytest.raises(ScenarioError, match=r"vision\.color_table.*nowhere\.npz"):
+        load_scenario("quick", ["vision.color_table=nowhere.npz"])
 
 
 def test_images_are_needed(capsys):

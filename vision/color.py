@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from vision import colour_kernel
+from vision import color_kernel
 from vision.errors import VisionError
 
 Labels = NDArray[np.uint8]
@@ -18,7 +18,7 @@ OUTSIDE = 255  # label of what lies beyond the border of an image
 
 
 @dataclass(frozen=True, slots=True)
-class ColourClass:
+class ColorClass:
     """A colour that means something.
 
     Attributes:
@@ -47,22 +47,22 @@ class ColourClass:
         return (hue >= first) | (hue <= last)
 
 
-COLOUR_CLASSES: Mapping[str, ColourClass] = {
+COLOR_CLASSES: Mapping[str, ColorClass] = {
     c.name: c
     for c in (
-        ColourClass("red", "obstacle", (0.62, 0.09, 0.09), (168.0, 13.0)),
-        ColourClass("green", "obstacle", (0.09, 0.56, 0.13), (44.0, 78.0)),
-        ColourClass("blue", "obstacle", (0.10, 0.18, 0.64), (105.0, 125.5)),
-        ColourClass("violet", "obstacle", (0.35, 0.09, 0.62), (126.0, 144.0)),
-        ColourClass("yellow", "beacon", (0.62, 0.57, 0.08), (19.0, 40.0)),
-        ColourClass("cyan", "beacon", (0.08, 0.57, 0.61), (82.0, 103.0)),
-        ColourClass("magenta", "beacon", (0.62, 0.09, 0.55), (145.0, 165.0)),
+        ColorClass("red", "obstacle", (0.62, 0.09, 0.09), (168.0, 13.0)),
+        ColorClass("green", "obstacle", (0.09, 0.56, 0.13), (44.0, 78.0)),
+        ColorClass("blue", "obstacle", (0.10, 0.18, 0.64), (105.0, 125.5)),
+        ColorClass("violet", "obstacle", (0.35, 0.09, 0.62), (126.0, 144.0)),
+        ColorClass("yellow", "beacon", (0.62, 0.57, 0.08), (19.0, 40.0)),
+        ColorClass("cyan", "beacon", (0.08, 0.57, 0.61), (82.0, 103.0)),
+        ColorClass("magenta", "beacon", (0.62, 0.09, 0.55), (145.0, 165.0)),
     )
 }
 """Every colour vision knows; label k of a classified image is the k-th of them, from 1."""
 
 
-class ColourTable:
+class ColorTable:
     """Look-up table from RGB555 colours to labels.
 
     Args:
@@ -75,7 +75,7 @@ class ColourTable:
     """
 
     def __init__(
-        self, classes: Mapping[str, ColourClass] = COLOUR_CLASSES, labels: Labels | None = None
+        self, classes: Mapping[str, ColorClass] = COLOR_CLASSES, labels: Labels | None = None
     ) -> None:
         self.classes = tuple(classes.values())
         if labels is None:
@@ -103,32 +103,30 @@ class ColourTable:
                 "an image must be an RGB array of uint8 of shape (height, width, 3), "
                 f"got {image.dtype} of shape {image.shape}"
             )
-        return colour_kernel.classify(np.ascontiguousarray(image), self.labels)
+        return color_kernel.classify(np.ascontiguousarray(image), self.labels)
 
 
-def table_colours() -> NDArray[np.uint8]:
+def table_colors() -> NDArray[np.uint8]:
     """RGB in the middle of each bin of a table (32768, 3), in the order of the codes."""
     code = np.arange(TABLE_SIZE)
     rgb = np.stack([(code >> 10) & 31, (code >> 5) & 31, code & 31], axis=-1) * 8 + 4
     return rgb.astype(np.uint8)
 
 
-def _declared(classes: Sequence[ColourClass]) -> Labels:
+def _declared(classes: Sequence[ColorClass]) -> Labels:
     """Labels from the hues, the saturation and the value that the classes declare."""
     labels = np.zeros(TABLE_SIZE, dtype=np.uint8)
     hue, saturation, value = _hsv_of_table()
-    for label, colour in enumerate(classes, start=1):
+    for label, color in enumerate(classes, start=1):
         claimed = (
-            colour.contains(hue)
-            & (saturation >= colour.min_saturation)
-            & (value >= colour.min_value)
+            color.contains(hue) & (saturation >= color.min_saturation) & (value >= color.min_value)
         )
         rivals = np.unique(labels[claimed & (labels > 0)]).tolist()
         if rivals:
             other = classes[rivals[0] - 1]
             raise VisionError(
-                f"colour classes {other.name!r} and {colour.name!r} overlap: "
-                f"hues {other.hue} and {colour.hue}"
+                f"colour classes {other.name!r} and {color.name!r} overlap: "
+                f"hues {other.hue} and {color.hue}"
             )
         labels[claimed] = label
     return labels
@@ -136,6 +134,6 @@ def _declared(classes: Sequence[ColourClass]) -> Labels:
 
 def _hsv_of_table() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Hue [half degree], saturation and value 0..255 in the middle of each RGB555 bin."""
-    rgb = (table_colours()[None] / 255.0).astype(np.float32)
+    rgb = (table_colors()[None] / 255.0).astype(np.float32)
     hsv = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV)[0].astype(np.float64)
     return 0.5 * hsv[:, 0], 255.0 * hsv[:, 1], 255.0 * hsv[:, 2]
