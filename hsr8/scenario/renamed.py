@@ -10,6 +10,9 @@ from hsr8.scenario.toml_lines import Path
 # Sorted, one entry per line.
 RENAMED: dict[str, str] = {
     "own": "plugin",
+    "vision.colour_table": "vision.color_table",
+    "world.mover.colour": "world.mover.color",
+    "world.obstacle.colour": "world.obstacle.color",
 }
 
 # Key -> old value -> new value.
