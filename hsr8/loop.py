@@ -352,7 +352,7 @@ class Simulation:
             time=self._body.time,
             truth=truth,
             walking=self._robot.walking_state(),
-            tally=self._robot.tally,
+            counters=self._robot.counters,
             command=self._robot.command,
             head=self._robot.head,
             frame=frame,

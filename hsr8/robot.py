@@ -9,7 +9,7 @@ import numpy as np
 
 from hsr8.decisions import Decisions, Now
 from hsr8.recorder.frame_record import FrameRecord, Image
-from hsr8.recorder.walk_tally import WalkTally
+from hsr8.recorder.walk_counters import WalkCounters
 from navigation.belief.belief import Belief
 from navigation.observation import CameraView, Frame, Observation
 from vision.camera import CameraPose
@@ -108,7 +108,7 @@ class Robot:
         self._state: WalkingState | None = None  # after this tick, once it was asked for
         self._odometry: Odometry | None = None
         self.command: Command = VelocityCommand()
-        self.tally = WalkTally()
+        self.counters = WalkCounters()
         self.head = HeadTarget()
         self.frame: FrameRecord | None = None
 
@@ -120,7 +120,7 @@ class Robot:
         targets = self._walking.step(sensed.body, self.command, self.head)
         self._state = None
         if not self._walking.down:
-            self.tally.add(self._walking, perf_counter() - started)
+            self.counters.add(self._walking, perf_counter() - started)
         if sensed.shutter:
             self._taken.append((sensed.time, self.walking_state()))
         if sensed.image is not None or sensed.detections is not None:

@@ -17,8 +17,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from hsr8.evaluation.difference import motion, results
 from hsr8.evaluation.replay import replay
+from hsr8.evaluation.run_difference import motion, results
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import Run, open_run

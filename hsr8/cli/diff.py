@@ -8,8 +8,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.options import Diff
-from hsr8.evaluation import difference
-from hsr8.evaluation.difference import Difference
+from hsr8.evaluation import run_difference
+from hsr8.evaluation.run_difference import RunDifference
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.run_reader import Run, open_run
 
@@ -28,8 +28,8 @@ def main(options: Diff) -> int:
         UsageError: there is no such run, or its records cannot be read.
     """
     a, b = open_run(options.a), open_run(options.b)
-    parts = difference.motion(a, b)
-    about = [*difference.settings(a, b), *difference.results(a, b)]
+    parts = run_difference.motion(a, b)
+    about = [*run_difference.settings(a, b), *run_difference.results(a, b)]
     if options.json:
         told = {
             "a": str(a.path),
@@ -46,20 +46,20 @@ def main(options: Diff) -> int:
 
 def first_difference(a: Run, b: Run) -> str:
     """Where two runs part, in a sentence; empty where they do not."""
-    parts = difference.motion(a, b)
+    parts = run_difference.motion(a, b)
     if not parts:
         return ""
     d = parts[0]
     return f"tick {d.tick} ({d.time:.3f} s), {d.channel}: {_said(d.a)} and {_said(d.b)}"
 
 
-def _show(a: Run, b: Run, parts: list[Difference], about: list[Difference]) -> None:
+def _show(a: Run, b: Run, parts: list[RunDifference], about: list[RunDifference]) -> None:
     console = Console(highlight=False)
     console.print(f"A           {a.path}\nB           {b.path}", markup=False, soft_wrap=True)
     if parts:
         console.print(f"they part   at {first_difference(a, b)}", markup=False, soft_wrap=True)
     else:
-        told = ", ".join(difference.RECORDS)
+        told = ", ".join(run_difference.RECORDS)
         console.print(f"they part   nowhere: equal, bit for bit ({told})", soft_wrap=True)
     if not (parts or about):
         return

@@ -15,7 +15,7 @@ from hsr8.recorder.files import atomic
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.render import animation
-from hsr8.render.movie import Film, Shot, film
+from hsr8.render.run_video import RenderedVideo, VideoOptions, render_run
 
 KINDS = (".mp4", *animation.KINDS, ".png")
 
@@ -34,7 +34,7 @@ def main(options: Render) -> int:
     run = open_run(options.run)
     renderer = require_gl()
     out = _checked(options.out or run.path / run_folder.VIDEO)
-    shot = Shot(
+    video = VideoOptions(
         camera=options.camera,
         size=parse_size(options.size),
         fps=options.fps,
@@ -52,8 +52,8 @@ def main(options: Render) -> int:
         task = bar.add_task("drawing", total=None)
         try:
             with writing("--out", out):
-                made = film(
-                    run, shot, out, lambda n, total: bar.update(task, completed=n, total=total)
+                made = render_run(
+                    run, video, out, lambda n, total: bar.update(task, completed=n, total=total)
                 )
         except KeyboardInterrupt:
             if out.suffix.lower() == ".mp4":
@@ -74,7 +74,7 @@ def _checked(out: Path) -> Path:
     return out
 
 
-def _tell(made: Film, wall: float, options: Render) -> None:
+def _tell(made: RenderedVideo, wall: float, options: Render) -> None:
     if options.json:
         result = {
             "video": str(made.video),

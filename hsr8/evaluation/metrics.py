@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from hsr8.evaluation.track_metrics import TrackMetrics
 from hsr8.evaluation.walk_metrics import WalkMetrics
-from hsr8.recorder.block import Block
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import Listener, TickRecord
+from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.field.layout import Layout
 from hsr8.world.truth.episodes import Episodes
 from hsr8.world.truth.falls import Falls
@@ -47,7 +47,7 @@ class Metrics(Listener):
         self._r_goal = r_goal
         self._started = clock.perf_counter()
         self._wall: float | None = None
-        self._waiting = Block()
+        self._waiting = RecordBuffer()
         self._episodes = Episodes()
         self._via = 0
         self._via_missed = 0

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.arc import mean_velocity
 from hsr8.recorder.record import TickRecord
-from hsr8.recorder.walk_tally import WalkTally
+from hsr8.recorder.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation, SaturationWatch
 from navigation.angles import wrap
 from walking.body.joints import JOINT_NAMES
@@ -114,7 +114,7 @@ class WalkMetrics:
     def __init__(self) -> None:
         self._meter = StrideMeter()
         self._steps = 0
-        self._tally: WalkTally | None = None
+        self._counters: WalkCounters | None = None
         self._saturation: SaturationWatch | None = None
         self._pushes = 0
 
@@ -125,7 +125,7 @@ class WalkMetrics:
         else:
             self._meter.add(record)
         self._steps = record.walking.step_count
-        self._tally = record.tally
+        self._counters = record.counters
         self._saturation = record.truth.saturation
         for push in record.truth.pushes:
             self._pushes = max(self._pushes, push.number + 1)
@@ -138,12 +138,12 @@ class WalkMetrics:
         """
         results: dict[str, object] = {"steps": self._steps, "pushes": self._pushes}
         results |= self._velocities()
-        if self._tally is not None and self._tally.ticks:
-            results |= _counted(self._tally)
+        if self._counters is not None and self._counters.ticks:
+            results |= _counted(self._counters)
         if self._saturation is not None:
             results |= _saturated(self._saturation.so_far())
-            if self._tally is not None and self._tally.ticks:
-                results |= _timed(self._tally)
+            if self._counters is not None and self._counters.ticks:
+                results |= _timed(self._counters)
         return results
 
     def _velocities(self) -> dict[str, object]:
@@ -164,26 +164,26 @@ def _named(velocity: Array) -> Velocity:
     return dict(zip(COMPONENTS, velocity.tolist(), strict=True))
 
 
-def _counted(tally: WalkTally) -> dict[str, object]:
-    ticks = tally.ticks
+def _counted(counters: WalkCounters) -> dict[str, object]:
+    ticks = counters.ticks
     return {
         "walk_ticks": ticks,
-        "zmp_outside_sole_ticks": tally.outside,
-        "zmp_least_margin_m": tally.least_depth if isfinite(tally.least_depth) else None,
-        "altered_commands": tally.altered / ticks,
+        "zmp_outside_sole_ticks": counters.zmp_outside,
+        "zmp_least_margin_m": counters.min_zmp_depth if isfinite(counters.min_zmp_depth) else None,
+        "altered_commands": counters.limited / ticks,
         "altered_by": {
             limit.value.replace(" ", "_"): count / ticks
-            for limit, count in tally.by_limit.most_common()
+            for limit, count in counters.by_limit.most_common()
         },
     }
 
 
-def _timed(tally: WalkTally) -> dict[str, object]:
-    wall = tally.wall
+def _timed(counters: WalkCounters) -> dict[str, object]:
+    wall = counters.wall_times
     return {
         "walk_tick_mean_ms": 1000.0 * wall.mean,
         "walk_tick_p999_ms": 1000.0 * wall.quantile(0.999),
-        "walk_tick_max_ms": 1000.0 * wall.greatest,
+        "walk_tick_max_ms": 1000.0 * wall.max,
     }
 
 

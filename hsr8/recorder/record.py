@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from hsr8.recorder.frame_record import FrameRecord
-from hsr8.recorder.walk_tally import WalkTally
+from hsr8.recorder.walk_counters import WalkCounters
 from hsr8.world.truth.truth import Truth
 from walking.command import Command, HeadTarget
 from walking.state import WalkingState
@@ -19,7 +19,7 @@ class TickRecord:
         time: simulated time [s].
         truth: state of the world.
         walking: what the walking engine knows of itself.
-        tally: what was counted in every tick since the start; it counts on.
+        counters: what was counted in every tick since the start; it counts on.
         command: velocity or footsteps asked of it.
         head: gaze asked of it.
         frame: the camera frame that arrived since the last record, if any.
@@ -29,7 +29,7 @@ class TickRecord:
     time: float
     truth: Truth
     walking: WalkingState
-    tally: WalkTally
+    counters: WalkCounters
     command: Command
     head: HeadTarget
     frame: FrameRecord | None

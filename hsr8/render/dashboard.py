@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder.run.frame_summary import FrameSummary
+from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.canvas import Image
-from hsr8.render.eye_overlay import EyeOverlay
 from hsr8.render.gaze_panel import GazePanel
-from hsr8.render.lettering import size_of, width_of, write
+from hsr8.render.text import draw_text, font_size, text_width
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TopDown
 from hsr8.scenario.schema import Scenario
@@ -29,7 +29,7 @@ SHORTEST_NAMED = 40  # a lower band has no room for names above its values [pixe
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class DashboardFrame:
     """What the dashboard tells of an instant.
 
     Attributes:
@@ -77,7 +77,7 @@ class Dashboard:
         self.scene_size: Size = (width - side - gap, height - self._bar)
         self.eye_size: Size = (side, eye_height)
         self._left, self._below = width - side, eye_height + gap
-        self._overlay = EyeOverlay(
+        self._overlay = CameraOverlay(
             (camera.width, camera.height), self.eye_size, camera.vertical_fov
         )
         self._above = TopDown(layout, (side, height - self._below))
@@ -88,7 +88,7 @@ class Dashboard:
         self._with_panel = panel >= LEAST_PANEL and panel < self.scene_size[0]
         self._picture: Image = np.full((height, width, 3), FRAME, np.uint8)
 
-    def draw(self, scene: Image, eye: Image, moment: Moment) -> Image:
+    def draw(self, scene: Image, eye: Image, moment: DashboardFrame) -> Image:
         """The picture (height, width, 3); it is the caller's.
 
         Args:
@@ -117,18 +117,20 @@ class Dashboard:
     def _write_titles(self, picture: Image) -> None:
         if self._bar < SHORTEST_NAMED:
             return
-        letters, pad = size_of(TITLE * self._unit), round(8 * self._unit)
+        letters, pad = font_size(TITLE * self._unit), round(8 * self._unit)
         column = self._left + pad
         row = self.eye_size[1] - pad
-        right = column + width_of("head camera", letters, strong=True) + pad
+        right = column + text_width("head camera", letters, strong=True) + pad
         picture[row - letters - pad // 2 : row + pad, self._left : right] = BAND
-        write(picture, (column, row), "head camera", INK, letters, strong=True)
+        draw_text(picture, (column, row), "head camera", INK, letters, strong=True)
         row = self._below + pad + letters
-        write(picture, (column, row), "belief", BAND, letters, strong=True)
+        draw_text(picture, (column, row), "belief", BAND, letters, strong=True)
         place = (self._size[0] - pad, row)
-        write(picture, place, "filled: believed    outlined: true", BAND, letters - 2, side="right")
+        draw_text(
+            picture, place, "filled: believed    outlined: true", BAND, letters - 2, side="right"
+        )
 
-    def _write_numbers(self, band: Image, moment: Moment) -> None:
+    def _write_numbers(self, band: Image, moment: DashboardFrame) -> None:
         """A line of values, each under its name."""
         frame = moment.frame
         error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
@@ -143,15 +145,15 @@ class Dashboard:
             ("doing", moment.doing),
         ]
         named = self._bar >= SHORTEST_NAMED
-        letters, names = size_of(VALUE * self._unit), size_of(NAME * self._unit)
+        letters, names = font_size(VALUE * self._unit), font_size(NAME * self._unit)
         pad = round(MARGIN * self._unit)
         base = round(0.78 * self._bar) if named else (self._bar + letters) // 2 - 2
         step = (band.shape[1] - 2 * pad) / len(numbers)
         for k, (name, value) in enumerate(numbers):
             column = pad + round(k * step)
             alarm = name == "collisions" and moment.collisions > 0
-            if width_of(value, letters, strong=True) > step and not named:
+            if text_width(value, letters, strong=True) > step and not named:
                 continue
-            write(band, (column, base), value, ALARM if alarm else INK, letters, strong=True)
+            draw_text(band, (column, base), value, ALARM if alarm else INK, letters, strong=True)
             if named:
-                write(band, (column, round(0.36 * self._bar)), name, FAINT, names)
+                draw_text(band, (column, round(0.36 * self._bar)), name, FAINT, names)

@@ -8,7 +8,7 @@ import numpy as np
 from hsr8.recorder import palette
 from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.render.canvas import Image
-from hsr8.render.lettering import size_of, write
+from hsr8.render.text import draw_text, font_size
 
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)
@@ -29,7 +29,7 @@ class GazePanel:
     def __init__(self, width: int, pan_limit: float, tilts: tuple[float, float]) -> None:
         self._pan_limit, self._tilts = pan_limit, tilts
         self._pad = pad = max(4, width // 28)
-        self._letters = size_of(width / 21)
+        self._letters = font_size(width / 21)
         self._map = (
             width - 2 * pad,
             max(8, round((width - 2 * pad) * (tilts[1] - tilts[0]) / (2.0 * pan_limit))),
@@ -47,8 +47,8 @@ class GazePanel:
         panel = picture[top : top + height, left : left + width]
         panel[:] = cv2.addWeighted(panel, 1.0 - OPACITY, np.full_like(panel, PANEL), OPACITY, 0.0)
         pad, base = self._pad, self._pad + self._letters - 1
-        write(panel, (pad, base), "gaze map", INK, self._letters, strong=True)
-        write(panel, (width - pad, base), _told(frame.look), FAINT, self._letters, side="right")
+        draw_text(panel, (pad, base), "gaze map", INK, self._letters, strong=True)
+        draw_text(panel, (width - pad, base), _told(frame.look), FAINT, self._letters, side="right")
         self._draw_map(panel, frame)
         self._draw_evaluations(panel, frame)
 
@@ -73,7 +73,7 @@ class GazePanel:
         thick = max(2, pad // 2)
         for k, (name, value) in enumerate(zip(EVALUATIONS, frame.psi, strict=True)):
             column = pad + k * step
-            write(panel, (column, row - 1), name, FAINT, self._letters)
+            draw_text(panel, (column, row - 1), name, FAINT, self._letters)
             groove = panel[row + thick : row + 2 * thick, column : column + step - pad]
             groove[:] = GROOVE
             groove[:, : round(min(1.0, max(0.0, value)) * groove.shape[1])] = palette.VIEW

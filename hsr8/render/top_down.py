@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.run.frame_summary import FrameSummary, TrackSummary
 from hsr8.render.canvas import Canvas, Image
-from hsr8.render.lettering import size_of, write
+from hsr8.render.text import draw_text, font_size
 from hsr8.world.field.layout import Layout
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ class TopDown:
         self._layout = layout
         self._size = size
         self._width = max(FINER, round(FINER * size[1] / STROKE))
-        self._letters = FINER * size_of(size[1] / 27)
+        self._letters = FINER * font_size(size[1] / 27)
         self._ground = Canvas(layout.field_size, (FINER * size[0], FINER * size[1]), PAPER)
         self._ground.field(FIELD, RIM, self._width)
         for beacon in layout.beacons:
@@ -91,7 +91,7 @@ class TopDown:
             canvas.ring(point, 0.05, palette.TARGET, self._width)
             u, v = canvas.pixel(point)
             place = (u + self._letters // 2, v - self._letters // 2)
-            write(canvas.image, place, str(number + 1), NUMBER, self._letters, strong=True)
+            draw_text(canvas.image, place, str(number + 1), NUMBER, self._letters, strong=True)
 
     def _draw_track(self, canvas: Canvas, track: TrackSummary) -> None:
         strong = palette.of_label(track.label)

@@ -8,7 +8,7 @@ import av
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.render.keeping import AtomicWriter
+from hsr8.render.atomic_writer import AtomicWriter
 
 Image = NDArray[np.uint8]
 

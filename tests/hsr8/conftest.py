@@ -9,7 +9,7 @@ import pytest
 from hsr8.decisions import Decided, Now
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import TickRecord
-from hsr8.recorder.walk_tally import WalkTally
+from hsr8.recorder.walk_counters import WalkCounters
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.field.motion import Shuttle
 from hsr8.world.model.assembly import Optics, assemble
@@ -210,7 +210,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
             fallen=fallen,
             balance=_balance(x, y, yaw),
         ),
-        tally=WalkTally(),
+        counters=WalkCounters(),
         command=VelocityCommand(0.2, 0.0, 0.0),
         head=HeadTarget(),
         frame=frame,

@@ -11,7 +11,7 @@ from hsr8.recorder import ellipse, palette
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.log.pace import Pace
+from hsr8.recorder.log.throttle import Throttle
 from navigation.belief.belief import Belief, Motion
 from navigation.decision import MotionDecision
 from navigation.observation import CameraView
@@ -39,7 +39,7 @@ class BeliefLayer:
 
     def __init__(self, stream: BlockStream, map_period: float) -> None:
         self._stream = stream
-        self._map_pace = Pace(map_period)
+        self._map_throttle = Throttle(map_period)
         self._map_shape: tuple[int, ...] = ()
         self._motion: MotionDecision | None = None  # whose virtual obstacles are shown
         self._aim: list[float] = []
@@ -105,7 +105,7 @@ class BeliefLayer:
             if target != self._aim:
                 self._aim = target
                 self._target.add(frame.time, positions=np.array([[*target, 0.05]]))
-            if self._map_pace.due(frame.time):
+            if self._map_throttle.due(frame.time):
                 self._add_particles(frame.time, frame.belief)
                 self._add_map(frame.time, frame.belief)
 

@@ -11,7 +11,7 @@ from hsr8.recorder import palette
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.log.pace import Pace
+from hsr8.recorder.log.throttle import Throttle
 from navigation.decision import DirectionField, MotionDecision
 from navigation.motion.univector import normalized
 
@@ -33,7 +33,7 @@ class PlanLayer:
     """
 
     def __init__(self, stream: BlockStream, period: float) -> None:
-        self._pace = Pace(period)
+        self._throttle = Throttle(period)
         self._motion: MotionDecision | None = None
         self._shown = False
         for path, style in (
@@ -70,7 +70,7 @@ class PlanLayer:
             if self._shown:
                 self._draw(frame.time, np.zeros((0, 2)), np.zeros((0, 2)), [])
             self._shown = False
-        elif self._pace.due(frame.time):
+        elif self._throttle.due(frame.time):
             self._shown = True
             here = frame.belief.pose[:2]
             points = grid(here)

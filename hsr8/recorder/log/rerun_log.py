@@ -11,7 +11,6 @@ import rerun_bindings
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.recorder.block import PERIOD, Block
 from hsr8.recorder.files.writing import refusal
 from hsr8.recorder.log.belief_layer import BeliefLayer
 from hsr8.recorder.log.block_stream import BlockStream
@@ -19,12 +18,13 @@ from hsr8.recorder.log.blueprint import blueprint
 from hsr8.recorder.log.camera_layer import CameraLayer
 from hsr8.recorder.log.channel import TIMELINE, Channel
 from hsr8.recorder.log.geometry import Scene, sole_outline
-from hsr8.recorder.log.pace import Pace
 from hsr8.recorder.log.plan_layer import PlanLayer
 from hsr8.recorder.log.plot_layer import PlotLayer
+from hsr8.recorder.log.throttle import Throttle
 from hsr8.recorder.log.walk_layer import WalkLayer
 from hsr8.recorder.log_level import RATES, LogLevel
 from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record_buffer import PERIOD, RecordBuffer
 from hsr8.recorder.run.walking_table import OdometryToWorld
 from hsr8.world.field.layout import Layout
 from navigation.parameters.gaze import GazeParameters
@@ -72,8 +72,8 @@ class RerunLog:
         index: bool = True,
     ) -> None:
         rates = RATES[level]
-        self._pose_pace, self._frame_pace = Pace(rates.pose), Pace(rates.frame)
-        self._trail_pace = Pace(TRAIL_PERIOD)
+        self._pose_throttle, self._frame_throttle = Throttle(rates.pose), Throttle(rates.frame)
+        self._trail_throttle = Throttle(TRAIL_PERIOD)
         # Rerun keeps the threads of a stream that nobody holds any more until it is asked.
         rerun_bindings.flush_and_cleanup_orphaned_recordings()
         self._stream = BlockStream(path.parent.name)
@@ -109,7 +109,7 @@ class RerunLog:
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D.columns)
         self._trail: list[list[float]] = []
         self._log_way_points(layout)
-        self._waiting = Block(LIVE_BLOCK if live else PERIOD)
+        self._waiting = RecordBuffer(LIVE_BLOCK if live else PERIOD)
         self._time = 0.0
 
     def on_record(self, record: TickRecord) -> None:
@@ -141,7 +141,7 @@ class RerunLog:
 
     def _add(self, records: Sequence[TickRecord]) -> None:
         self._time = records[-1].time
-        shown = [record for record in records if self._pose_pace.due(record.time)]
+        shown = [record for record in records if self._pose_throttle.due(record.time)]
         for record in shown:
             truth = record.truth
             movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
@@ -154,7 +154,7 @@ class RerunLog:
         for record in records:
             self._walk.watch(record)
         with_frame = [record for record in records if record.frame is not None]
-        seen = [record for record in with_frame if self._frame_pace.due(record.time)]
+        seen = [record for record in with_frame if self._frame_throttle.due(record.time)]
         if seen:
             self._add_frames(seen)
 
@@ -167,7 +167,7 @@ class RerunLog:
             layer.add(frames)
         self._plots.add_frames(pairs)
         for record in records:
-            if self._trail_pace.due(record.time):
+            if self._trail_throttle.due(record.time):
                 x, y, _ = record.truth.robot.tolist()
                 self._trail.append([x, y, 0.003])
         self._add_footsteps(records, [frame.time for frame in frames])

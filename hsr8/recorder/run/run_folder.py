@@ -30,11 +30,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.block import Block
 from hsr8.recorder.files import atomic
 from hsr8.recorder.files.writing import NO_ROOM, failure, writing
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import TickRecord
+from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.recorder.run import frame_summary
 from hsr8.recorder.run.manifest import Manifest
 from hsr8.recorder.run.measurements import MeasurementWriter
@@ -86,7 +86,7 @@ class RunFolder:
         self._trajectory: TrajectoryWriter | None = None
         # Told last; a gaze rests for many frames.
         self._gaze_map: Array | None = None if before is None else before.gaze.gaze_map
-        self._waiting = Block()
+        self._waiting = RecordBuffer()
         with writing(path):
             manifest.write(path / MANIFEST)
             atomic.write_text(path / SCENARIO, scenario)

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.block import Block
 from hsr8.recorder.files.headed_file import HeadedWriter, read_headed
 from hsr8.recorder.record import Listener, TickRecord
+from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
 from walking.admission import Limit
@@ -124,7 +124,7 @@ class WalkingTableWriter(Listener):
             "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
             "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
         }
-        self._waiting = Block()
+        self._waiting = RecordBuffer()
         self._file = HeadedWriter(path, MAGIC, header)
 
     def on_record(self, record: TickRecord) -> None:

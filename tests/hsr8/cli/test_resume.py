@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.evaluation.difference import motion, results
+from hsr8.evaluation.run_difference import motion, results
 from hsr8.recorder.files import atomic
 from hsr8.recorder.log.log_reader import Log
 from hsr8.recorder.run.run_reader import open_run

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.evaluation.walk_metrics import WalkMetrics
-from hsr8.recorder.walk_tally import WalkTally
+from hsr8.recorder.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush
 from walking.admission import Limit
@@ -29,7 +29,7 @@ def integrated(start, velocity, time):
 
 def records(fake, velocity, duration, *, given=None, steps=True):
     """An arc walked at `velocity`, the body swaying by 2 cm with the gait, over the wrap of yaw."""
-    tally = WalkTally()
+    counters = WalkCounters()
     for k in range(round(duration * 50) + 1):
         time = 0.02 * k
         x, y, yaw = integrated(np.array([0.0, 0.0, 3.0]), velocity, max(time, 1e-9)).tolist()
@@ -42,7 +42,9 @@ def records(fake, velocity, duration, *, given=None, steps=True):
             phase=Phase.DOUBLE_SUPPORT if steps else Phase.STANDING,
             given=np.array(velocity if given is None else given),
         )
-        yield replace(record, walking=walking, tally=tally, command=VelocityCommand(*velocity))
+        yield replace(
+            record, walking=walking, counters=counters, command=VelocityCommand(*velocity)
+        )
 
 
 def results_of(stream):
@@ -99,10 +101,10 @@ def test_a_run_too_short_to_tell_says_so(fake):
 
 
 def test_counts_are_shares_of_the_ticks(fake):
-    tally = WalkTally()
+    counters = WalkCounters()
     for limits in ((), (Limit.ACCELERATION,), (Limit.ACCELERATION, Limit.ZMP_REGION), ()):
-        tally.add(SimpleNamespace(limits=limits, zmp_depth=0.01), 0.002)
-    results = results_of([replace(fake.record(0.0), tally=tally)])
+        counters.add(SimpleNamespace(limits=limits, zmp_depth=0.01), 0.002)
+    results = results_of([replace(fake.record(0.0), counters=counters)])
     assert results["altered_commands"] == 0.5
     assert results["altered_by"] == {"acceleration": 0.5, "zmp_region": 0.25}
     assert results["zmp_outside_sole_ticks"] == 0
@@ -110,8 +112,8 @@ def test_counts_are_shares_of_the_ticks(fake):
 
 
 def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
-    tally = WalkTally()
-    tally.add(SimpleNamespace(limits=(), zmp_depth=0.01), 0.002)
+    counters = WalkCounters()
+    counters.add(SimpleNamespace(limits=(), zmp_depth=0.01), 0.002)
     ticks, peak = np.zeros(26, dtype=np.int64), np.zeros(26)
     ticks[3], peak[3] = 7, 1.0
     none = np.zeros(26, dtype=np.int64)
@@ -119,7 +121,7 @@ def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
     push = ActivePush(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
     watch = SimpleNamespace(so_far=lambda: saturation)
     record = fake.record(0.0, saturation=watch, pushes=(push,))
-    results = results_of([replace(record, tally=tally)])
+    results = results_of([replace(record, counters=counters)])
     assert results["torque_saturated_by"] == results["clipped_target_by"] == {"l_knee": 7}
     assert (results["clipped_target_ticks"], results["joint_stop_by"]) == (7, {})
     assert (results["peak_torque_joint"], results["peak_joint_speed_radps"]) == ("l_knee", 5.0)

@@ -27,16 +27,16 @@ def test_mean_count_and_greatest_are_exact(seconds):
     histogram = counted(seconds)
     assert histogram.count == len(seconds)
     assert histogram.mean == pytest.approx(np.mean(seconds), rel=1e-12)
-    assert histogram.greatest == max(seconds) == histogram.quantile(1.0)
+    assert histogram.max == max(seconds) == histogram.quantile(1.0)
 
 
 def test_what_is_shorter_or_longer_than_the_bins_is_counted_too():
     histogram = counted([0.0, SHORTEST / 10, 10 * LONGEST])
-    assert (histogram.count, histogram.greatest) == (3, 10 * LONGEST)
+    assert (histogram.count, histogram.max) == (3, 10 * LONGEST)
     assert histogram.quantile(0.5) <= SHORTEST * RATIO * (1 + 1e-9)
     assert histogram.quantile(1.0) == 10 * LONGEST
 
 
 def test_nothing_took_no_time():
     empty = TimeHistogram()
-    assert (empty.mean, empty.quantile(0.999), empty.greatest) == (0.0, 0.0, 0.0)
+    assert (empty.mean, empty.quantile(0.999), empty.max) == (0.0, 0.0, 0.0)

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from hsr8.recorder.run.frame_summary import from_line, to_line
-from hsr8.render.dashboard import Dashboard, Moment
-from hsr8.render.movie import Shot
+from hsr8.render.dashboard import Dashboard, DashboardFrame
+from hsr8.render.run_video import VideoOptions
 from hsr8.render.timeline import Timeline
 from hsr8.scenario.loader import load_scenario
 
@@ -16,7 +16,7 @@ def drawn(fake, layout):
         board = Dashboard(layout, load_scenario("quick"), Timeline((), 0.0, 1.0), size, 1.0)
         scene = np.full((*board.scene_size[::-1], 3), (200, 0, 0), np.uint8)
         eye = np.full((*board.eye_size[::-1], 3), (0, 200, 0), np.uint8)
-        moment = Moment(
+        moment = DashboardFrame(
             time=0.6,
             frame=from_line(line),
             movers=np.array([[1.0, 1.0]]),
@@ -52,7 +52,7 @@ def test_pictures_are_not_drawn_over_each_other(drawn):
     assert np.array_equal(drawn((640, 360))[0], drawn((640, 360))[0])
 
 
-@pytest.mark.parametrize("size", [Shot().size, (1280, 720), (1920, 1080)])
+@pytest.mark.parametrize("size", [VideoOptions().size, (1280, 720), (1920, 1080)])
 def test_numbers_have_names_from_the_usual_size_on(drawn, size):
     picture, board = drawn(size)
     width, height = board.scene_size

@@ -1,18 +1,15 @@
-"""Buffers a second of records and handles them in one batch, which halves the cost.
-
-The code stays in the processor's caches.
-"""
+"""Buffer of records: work done once a second in one batch keeps code in the caches."""
 
 from hsr8.recorder.record import TickRecord
 
-PERIOD = 1.0  # of a block; a killed run loses so much of its records at most [s]
+PERIOD = 1.0  # a killed run loses at most this much of its records [s]
 
 
-class Block:
-    """Records that have not been worked off.
+class RecordBuffer:
+    """Records that are still to be written or evaluated.
 
     Args:
-        period: from the first of them to the last [s].
+        period: from the first record in the buffer to the last [s].
     """
 
     __slots__ = ("_begin", "_period", "_records")
@@ -23,17 +20,13 @@ class Block:
         self._records: list[TickRecord] = []
 
     def add(self, record: TickRecord) -> bool:
-        """Take one record.
-
-        Returns:
-            Whether it is time to `take` them all.
-        """
+        """Append a record and return whether the buffer is due to be emptied by `take`."""
         if not self._records:
             self._begin = record.time
         self._records.append(record)
         return record.time - self._begin >= self._period - 1e-9
 
     def take(self) -> list[TickRecord]:
-        """All records since the last call; they wait no longer."""
+        """Remove and return all records."""
         records, self._records = self._records, []
         return records

@@ -30,7 +30,7 @@ ROOT = ("x", "y", "z", "qw", "qx", "qy", "qz")
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class RunDifference:
     """The first difference in one record of two runs.
 
     Attributes:
@@ -49,20 +49,20 @@ class Difference:
     time: float | None = None
 
 
-def settings(a: Run, b: Run) -> Iterator[Difference]:
+def settings(a: Run, b: Run) -> Iterator[RunDifference]:
     """Every key of the scenario that differs."""
     for key, x, y in _unequal(_flat(_scenario(a)), _flat(_scenario(b))):
-        yield Difference("settings", key, x, y)
+        yield RunDifference("settings", key, x, y)
 
 
-def results(a: Run, b: Run) -> Iterator[Difference]:
+def results(a: Run, b: Run) -> Iterator[RunDifference]:
     """Every result that differs, but those of the clock on the wall."""
     for key, x, y in _unequal(_flat(a.metrics()), _flat(b.metrics())):
         if not key.startswith(CLOCKED):
-            yield Difference("results", key, x, y)
+            yield RunDifference("results", key, x, y)
 
 
-def motion(a: Run, b: Run) -> list[Difference]:
+def motion(a: Run, b: Run) -> list[RunDifference]:
     """The first difference of every record of what happened, the earliest first.
 
     Raises:
@@ -82,7 +82,7 @@ def motion(a: Run, b: Run) -> list[Difference]:
     return sorted(told, key=lambda difference: difference.tick or 0)
 
 
-def _first_set_point(a: list[Block], b: list[Block]) -> Difference | None:
+def _first_set_point(a: list[Block], b: list[Block]) -> RunDifference | None:
     none = np.empty((0, len(JOINT_NAMES)))
     rows = [np.concatenate([none, *(block.set_points for block in tape)]) for tape in (a, b)]
     n = min(map(len, rows))
@@ -93,47 +93,47 @@ def _first_set_point(a: list[Block], b: list[Block]) -> Difference | None:
         joint = int(np.argmax(differ[tick]))
         x, y = (float(table[tick, joint]) for table in rows)
         channel = f"set-point of {JOINT_NAMES[joint]} [rad]"
-        return Difference("tape", channel, x, y, tick, tick * CONTROL_PERIOD)
+        return RunDifference("tape", channel, x, y, tick, tick * CONTROL_PERIOD)
     if len(rows[0]) != len(rows[1]):
         x, y = map(len, rows)
-        return Difference("tape", "number of ticks", x, y, n, n * CONTROL_PERIOD)
+        return RunDifference("tape", "number of ticks", x, y, n, n * CONTROL_PERIOD)
     return None
 
 
-def _first_hash(a: list[Block], b: list[Block]) -> Difference | None:
+def _first_hash(a: list[Block], b: list[Block]) -> RunDifference | None:
     for x, y in zip(a, b, strict=False):
         for channel in ("world", "robot"):
             if x.tick == y.tick and getattr(x, channel) != getattr(y, channel):
                 values = getattr(x, channel), getattr(y, channel)
                 name = f"hash of {'the world' if channel == 'world' else 'world and belief'}"
-                return Difference("tape", name, *values, x.tick, x.tick * CONTROL_PERIOD)
+                return RunDifference("tape", name, *values, x.tick, x.tick * CONTROL_PERIOD)
     return _longer(
         "tape", "hashes", *([block.tick * CONTROL_PERIOD for block in tape] for tape in (a, b))
     )
 
 
-def _first_row(a: Run, b: Run) -> Difference | None:
+def _first_row(a: Run, b: Run) -> RunDifference | None:
     p, q = a.trajectory(), b.trajectory()
     if p.qpos.shape[1] != q.qpos.shape[1] or p.movers.shape[1] != q.movers.shape[1]:
         shapes = [f"{t.qpos.shape[1]} coordinates, {t.movers.shape[1]} movers" for t in (p, q)]
-        return Difference("trajectory", "columns", shapes[0], shapes[1], 0, 0.0)
+        return RunDifference("trajectory", "columns", shapes[0], shapes[1], 0, 0.0)
     names = ["time [s]", *_qpos_names(p.qpos.shape[1])]
     names += [f"mover {k // 2} {'xy'[k % 2]} [m]" for k in range(2 * p.movers.shape[1])]
     tables = [np.hstack([t.time[:, None], t.qpos, t.movers.reshape(len(t), -1)]) for t in (p, q)]
     return _first_value("trajectory", names, *tables)
 
 
-def _first_walking(a: Run, b: Run) -> Difference | None:
+def _first_walking(a: Run, b: Run) -> RunDifference | None:
     p, q = a.walking(), b.walking()
     names = [*p.columns, *(name for name in q.columns if name not in p.columns)]
     if p.columns.keys() != q.columns.keys():
         counts = [f"{len(t.columns)} columns" for t in (p, q)]
-        return Difference("walking", "columns", counts[0], counts[1], 0, 0.0)
+        return RunDifference("walking", "columns", counts[0], counts[1], 0, 0.0)
     tables = [np.column_stack([t.time, *(t[name] for name in names)]) for t in (p, q)]
     return _first_value("walking", ["time [s]", *names], *tables)
 
 
-def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> Difference | None:
+def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> RunDifference | None:
     """Of two tables (n, columns), time in the first column."""
     n = min(len(a), len(b))
     differ = np.ascontiguousarray(a[:n]).view(np.int64) != np.ascontiguousarray(b[:n]).view(
@@ -145,45 +145,45 @@ def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> Diffe
     row = int(rows[0])
     column = int(np.argmax(differ[row]))
     x, y, time = float(a[row, column]), float(b[row, column]), float(a[row, 0])
-    return Difference(record, names[column], x, y, round(time / CONTROL_PERIOD), time)
+    return RunDifference(record, names[column], x, y, round(time / CONTROL_PERIOD), time)
 
 
-def _longer(record: str, unit: str, a: Sequence[float], b: Sequence[float]) -> Difference | None:
+def _longer(record: str, unit: str, a: Sequence[float], b: Sequence[float]) -> RunDifference | None:
     """Two records equal as far as both go, with the times of what is in them [s]."""
     if len(a) == len(b):
         return None
     time = max(a, b, key=len)[min(len(a), len(b))]
     tick = round(time / CONTROL_PERIOD)
-    return Difference(record, f"number of {unit}", len(a), len(b), tick, time)
+    return RunDifference(record, f"number of {unit}", len(a), len(b), tick, time)
 
 
-def _first_frame(a: list[Measured], b: list[Measured]) -> Difference | None:
+def _first_frame(a: list[Measured], b: list[Measured]) -> RunDifference | None:
     for index, (x, y) in enumerate(zip(a, b, strict=False)):
         for channel, u, v in _unequal(_values(x), _values(y)):
             tick = round(x.frame.time / CONTROL_PERIOD)
             name = f"{channel}, frame {index}"
-            return Difference("measurements", name, u, v, tick, x.frame.time)
+            return RunDifference("measurements", name, u, v, tick, x.frame.time)
     times = [[measured.frame.time for measured in frames] for frames in (a, b)]
     return _longer("measurements", "frames", *times)
 
 
-def _first_summary(a: Run, b: Run) -> Difference | None:
+def _first_summary(a: Run, b: Run) -> RunDifference | None:
     frames = a.frames(), b.frames()
     for index, (x, y) in enumerate(zip(*frames, strict=False)):
         for channel, u, v in _unequal(asdict(x), asdict(y)):
             name = f"{channel}, frame {index}"
-            return Difference("frames", name, u, v, round(x.time / CONTROL_PERIOD), x.time)
+            return RunDifference("frames", name, u, v, round(x.time / CONTROL_PERIOD), x.time)
     return _longer("frames", "frames", *([frame.time for frame in told] for told in frames))
 
 
-def _first_event(a: Run, b: Run) -> Difference | None:
+def _first_event(a: Run, b: Run) -> RunDifference | None:
     for index, (x, y) in enumerate(zip_longest(a.events(), b.events(), fillvalue=None)):
         for channel, u, v in _unequal(x or {}, y or {}):
             if channel == "time" and None in (x, y):
                 continue  # the text says what one of them lacks
             time = min(float(event["time"]) for event in (x, y) if event is not None)
             name = f"{channel} of event {index}"
-            return Difference("events", name, u, v, round(time / CONTROL_PERIOD), time)
+            return RunDifference("events", name, u, v, round(time / CONTROL_PERIOD), time)
     return None
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hsr8.recorder import palette
 from hsr8.recorder.run.frame_summary import Blob, FrameSummary
 from hsr8.render.canvas import Color, Image
-from hsr8.render.lettering import size_of, width_of, write
+from hsr8.render.text import draw_text, font_size, text_width
 
 Array = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom [pixel]
@@ -25,7 +25,7 @@ BEHIND = 0.1  # cosine below which a direction is no longer drawn
 TAG = (24, 26, 30)
 
 
-class EyeOverlay:
+class CameraOverlay:
     """Draws over one camera's images.
 
     Args:
@@ -41,7 +41,7 @@ class EyeOverlay:
         self._half_fov = np.array(
             [np.arctan(0.5 * camera[0] * self._scale / self._focal), 0.5 * vertical_fov]
         )
-        self._letters = size_of(size[1] / 26)
+        self._letters = font_size(size[1] / 26)
 
     def draw(self, picture: Image, frame: FrameSummary) -> None:
         """Draw over `picture` (height, width, 3) what holds at a camera frame."""
@@ -72,7 +72,7 @@ class EyeOverlay:
         left, top, right, bottom = map(round, self._box(blob))
         boxes = [self._box(other) for other in nearer]
         text, letters = f"{blob.distance:.2f} m", self._letters
-        length = width_of(text, letters)
+        length = text_width(text, letters)
         last = max(2, self._size[0] - length - 4)
         rows = ((top - 4, tags), (bottom + letters + 3, [*tags, *boxes]))
         for (row, taken), start in product(rows, (left, right - length)):
@@ -82,7 +82,9 @@ class EyeOverlay:
             if inside and not any(_overlap(tag, other) for other in taken):
                 tags.append(tag)
                 picture[tag[1] : tag[3], max(0, tag[0]) : tag[2]] = TAG
-                write(picture, (column, row), text, _light(palette.of_label(blob.label)), letters)
+                draw_text(
+                    picture, (column, row), text, _light(palette.of_label(blob.label)), letters
+                )
                 return
 
     def _draw_window(

@@ -5,8 +5,8 @@ import pytest
 
 from hsr8.recorder import palette
 from hsr8.recorder.run.frame_summary import Blob, from_line, to_line
-from hsr8.render import eye_overlay
-from hsr8.render.eye_overlay import EyeOverlay
+from hsr8.render import camera_overlay
+from hsr8.render.camera_overlay import CameraOverlay
 
 FOV = np.radians(60.0)
 FOCAL = 120.0 / np.tan(FOV / 2)  # of a picture 240 pixels high
@@ -26,7 +26,7 @@ def summary(fake):
 
 def _drawn(frame, size=(320, 240)):
     picture = np.zeros((size[1], size[0], 3), np.uint8)
-    EyeOverlay((320, 240), size, FOV).draw(picture, frame)
+    CameraOverlay((320, 240), size, FOV).draw(picture, frame)
     return picture
 
 
@@ -87,7 +87,7 @@ def _tags(frame, size=(640, 480)):
         plates.append((text, place[0], place[1] - letters, place[0] + 60, place[1]))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(eye_overlay, "write", noted)
+        patch.setattr(camera_overlay, "draw_text", noted)
         _drawn(frame, size)
     return plates
 

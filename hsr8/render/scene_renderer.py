@@ -26,7 +26,7 @@ EDGE = 24  # a pixel that differs so much from the mean of its neighbours is on 
 LARGEST = 8192  # side of what is drawn before it is scaled down [pixel]
 
 
-class Stage:
+class SceneRenderer:
     """Draws a layout with the robot and the movers where a recording had them.
 
     Use it as a context manager and in one thread only.

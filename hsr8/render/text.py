@@ -18,19 +18,19 @@ def _face() -> cv2.FontFace:
     return cv2.FontFace("sans")
 
 
-def size_of(share: float) -> int:
+def font_size(share: float) -> int:
     """Size of letters that would be `share` [pixel], but never too small to be read."""
     return max(SMALLEST, round(share))
 
 
-def width_of(text: str, size: int, *, strong: bool = False) -> int:
+def text_width(text: str, size: int, *, strong: bool = False) -> int:
     """Length of a line [pixel]."""
     weight = STRONG if strong else REGULAR
     box = cv2.getTextSize((0, 0), text, (0, 0), _face(), size, weight)
     return int(box[2])
 
 
-def write(
+def draw_text(
     picture: Image,
     at: tuple[int, int],
     text: str,
@@ -53,7 +53,7 @@ def write(
     """
     column, row = at
     if side != "left":
-        length = width_of(text, size, strong=strong)
+        length = text_width(text, size, strong=strong)
         column -= length if side == "right" else length // 2
     weight = STRONG if strong else REGULAR
     cv2.putText(picture, text, (column, row), color, _face(), size, weight)

@@ -1,8 +1,8 @@
-from hsr8.recorder.block import Block
+from hsr8.recorder.record_buffer import RecordBuffer
 
 
 def test_records_wait_until_the_period_is_over_and_leave_in_order(fake):
-    block = Block(0.1)
+    block = RecordBuffer(0.1)
     records = [fake.record(0.02 * k) for k in range(12)]
     assert [block.add(record) for record in records[:6]] == [False] * 5 + [True]
     assert block.take() == records[:6]
@@ -10,7 +10,7 @@ def test_records_wait_until_the_period_is_over_and_leave_in_order(fake):
 
 
 def test_a_new_block_begins_with_its_first_record(fake):
-    block = Block(0.1)
+    block = RecordBuffer(0.1)
     block.add(fake.record(0.0))
     block.take()
     assert [block.add(fake.record(t)) for t in (5.0, 5.08, 5.1)] == [False, False, True]

@@ -1,4 +1,4 @@
-"""Pictures of a run at given instants, from one camera or as a dashboard."""
+"""RunImages of a run at given instants, from one camera or as a dashboard."""
 
 from bisect import bisect_right
 from collections.abc import Callable
@@ -12,11 +12,11 @@ from hsr8.errors import UsageError
 from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.trajectory import Trajectory, rows_at
-from hsr8.render.dashboard import Dashboard, Moment
-from hsr8.render.eye_overlay import EyeOverlay
+from hsr8.render.camera_overlay import CameraOverlay
+from hsr8.render.dashboard import Dashboard, DashboardFrame
 from hsr8.render.follow import FollowCamera
 from hsr8.render.push_arrows import SHOWN, Arrow, SeenPush, arrows_at, pushes_of
-from hsr8.render.stage import Image, Stage
+from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
 from hsr8.scenario.schema import Scenario
@@ -30,7 +30,7 @@ FINER = {True: 2.0, False: 1.0}  # fine and quick pictures are drawn so much fin
 SMALL = 1.5  # as is the head camera's view in the dashboard: it costs little
 
 
-class Pictures:
+class RunImages:
     """Draws the run at the instants of a video.
 
     Args:
@@ -100,10 +100,12 @@ class Pictures:
         stage.require_camera(name)
         return lambda i: self._placed(stage, i).draw(name, self._arrows(i))
 
-    def _stage(self, quality: Quality, size: tuple[int, int], finer: float | None = None) -> Stage:
+    def _stage(
+        self, quality: Quality, size: tuple[int, int], finer: float | None = None
+    ) -> SceneRenderer:
         stage = self._stack.enter_context(
             closing(
-                Stage(
+                SceneRenderer(
                     self._layout,
                     quality,
                     size,
@@ -121,7 +123,7 @@ class Pictures:
             )
         return stage
 
-    def _placed(self, stage: Stage, index: int) -> Stage:
+    def _placed(self, stage: SceneRenderer, index: int) -> SceneRenderer:
         stage.place(*self._state(int(self._rows[index])))
         return stage
 
@@ -135,7 +137,9 @@ class Pictures:
         if not self._frames:
             return lambda i: self._placed(stage, i).draw(HEAD_CAMERA)
         camera = self._scenario.camera
-        overlay = EyeOverlay((camera.width, camera.height), self._size, self._optics.vertical_fov)
+        overlay = CameraOverlay(
+            (camera.width, camera.height), self._size, self._optics.vertical_fov
+        )
 
         def draw(index: int) -> Image:
             frame = self._frames[self._frame(index)]
@@ -170,13 +174,13 @@ class Pictures:
 
         return draw
 
-    def _moment(self, index: int, frame: FrameSummary) -> Moment:
+    def _moment(self, index: int, frame: FrameSummary) -> DashboardFrame:
         time, row = float(self._times[index]), int(self._rows[index])
         pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
         doing = "lost" if frame.lost else frame.situation.replace("_", " ")
         if pushed:
             doing = f"push {pushed[-1].impulse:.2f} N s"
-        return Moment(
+        return DashboardFrame(
             time=time,
             frame=frame,
             movers=self._trajectory.movers[row],

@@ -3,7 +3,7 @@
 from math import inf
 
 
-class Pace:
+class Throttle:
     """Tells which moments to take.
 
     Args:

@@ -9,27 +9,27 @@ from hsr8.cli.main import entry
 from hsr8.errors import UsageError
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.render.movie import Shot, film, instants
+from hsr8.render.run_video import VideoOptions, instants, render_run
 from hsr8.render.segments import Segments
 
 TIME = 0.02 * np.arange(50 * 100 + 1)  # 100 s
 
 
 def test_a_short_video_runs_in_real_time():
-    times, speed = instants(TIME, Shot(stop=60.0))
+    times, speed = instants(TIME, VideoOptions(stop=60.0))
     assert speed == 1.0
     assert len(times) == 60 * 25
     np.testing.assert_allclose(np.diff(times), 0.04)
 
 
 def test_a_long_run_is_sped_up_until_it_is_short_enough():
-    times, speed = instants(0.02 * np.arange(28011), Shot())
+    times, speed = instants(0.02 * np.arange(28011), VideoOptions())
     assert speed == 10.0
     assert len(times) == round(560.2 / 10 * 25)
 
 
 def test_speed_and_cut_are_obeyed():
-    times, speed = instants(TIME, Shot(start=10.0, stop=20.0, speed=0.5, fps=30))
+    times, speed = instants(TIME, VideoOptions(start=10.0, stop=20.0, speed=0.5, fps=30))
     assert speed == 0.5
     assert len(times) == 600
     assert times[0] == 10.0
@@ -37,16 +37,22 @@ def test_speed_and_cut_are_obeyed():
 
 
 @pytest.mark.parametrize(
-    "shot", [Shot(start=100.0), Shot(start=5.0, stop=4.0), Shot(start=-1.0), Shot(start=200.0)]
+    "options",
+    [
+        VideoOptions(start=100.0),
+        VideoOptions(start=5.0, stop=4.0),
+        VideoOptions(start=-1.0),
+        VideoOptions(start=200.0),
+    ],
 )
-def test_nothing_to_draw_is_a_usage_error(shot):
+def test_nothing_to_draw_is_a_usage_error(options):
     with pytest.raises(UsageError, match="ended at 100 s"):
-        instants(TIME, shot)
+        instants(TIME, options)
 
 
 def test_a_run_without_records_is_a_usage_error():
     with pytest.raises(UsageError, match="nothing to draw"):
-        instants(np.zeros(0), Shot())
+        instants(np.zeros(0), VideoOptions())
 
 
 @pytest.fixture(scope="module")
@@ -61,8 +67,8 @@ def run(tmp_path_factory):
 @pytest.mark.parametrize("camera", ["dashboard", "follow", "head", "top", "corner", "front"])
 def test_every_camera_draws(run, camera, tmp_path):
     done = []
-    shot = Shot(camera=camera, size=(192, 108), fps=5)
-    made = film(run, shot, tmp_path / "v.mp4", lambda n, total: done.append((n, total)))
+    options = VideoOptions(camera=camera, size=(192, 108), fps=5)
+    made = render_run(run, options, tmp_path / "v.mp4", lambda n, total: done.append((n, total)))
     assert made.frames == 5
     assert done == [(k, 5) for k in range(1, 6)]
     assert made.video.stat().st_size > 1000
@@ -76,17 +82,17 @@ def _times(path):
 
 @pytest.mark.gl
 def test_an_interrupted_video_goes_on_where_it_stopped(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("hsr8.render.movie.SEGMENT", 4)
-    shot, out, drawn = Shot(camera="top", size=(64, 64), fps=10), tmp_path / "v.mp4", []
+    monkeypatch.setattr("hsr8.render.run_video.SEGMENT", 4)
+    options, out, drawn = VideoOptions(camera="top", size=(64, 64), fps=10), tmp_path / "v.mp4", []
 
     def interrupt(n, _):
         if n == 7:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        film(run, shot, out, interrupt)
+        render_run(run, options, out, interrupt)
     assert not out.exists()
-    made = film(run, shot, out, lambda n, total: drawn.append(n))
+    made = render_run(run, options, out, lambda n, total: drawn.append(n))
     assert (made.frames, made.reused) == (10, 4)
     assert drawn == [4, 5, 6, 7, 8, 9, 10]
     assert _times(out) == pytest.approx([k / 10 for k in range(10)])
@@ -95,7 +101,7 @@ def test_an_interrupted_video_goes_on_where_it_stopped(run, tmp_path, monkeypatc
 
 @pytest.mark.gl
 def test_segments_of_another_shot_are_thrown_away(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("hsr8.render.movie.SEGMENT", 2)
+    monkeypatch.setattr("hsr8.render.run_video.SEGMENT", 2)
     out = tmp_path / "v.mp4"
 
     def interrupt(n, _):
@@ -103,8 +109,10 @@ def test_segments_of_another_shot_are_thrown_away(run, tmp_path, monkeypatch):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        film(run, Shot(camera="top", size=(64, 64), fps=5), out, interrupt)
-    made = film(run, Shot(camera="corner", size=(64, 64), fps=5), out, lambda n, total: None)
+        render_run(run, VideoOptions(camera="top", size=(64, 64), fps=5), out, interrupt)
+    made = render_run(
+        run, VideoOptions(camera="corner", size=(64, 64), fps=5), out, lambda n, total: None
+    )
     assert (made.frames, made.reused) == (5, 0)
 
 
@@ -129,7 +137,7 @@ def test_one_video_is_drawn_by_one_at_a_time(tmp_path):
 @pytest.mark.parametrize("size", [(64, 64), (1280, 64), (64, 720), (640, 480)])
 def test_the_dashboard_fits_every_size(run, size, tmp_path):
     out = tmp_path / "p.png"
-    made = film(run, Shot(size=size, start=0.5), out, lambda n, total: None)
+    made = render_run(run, VideoOptions(size=size, start=0.5), out, lambda n, total: None)
     assert made.frames == 1
     assert made.thumbnail is None
     assert cv2.imread(str(out)).shape == (size[1], size[0], 3)
@@ -138,10 +146,10 @@ def test_the_dashboard_fits_every_size(run, size, tmp_path):
 @pytest.mark.gl
 def test_an_unknown_camera_is_a_usage_error_that_names_the_others(run, tmp_path):
     with pytest.raises(UsageError, match="dashboard, follow, head, top, corner, front, egocentric"):
-        film(run, Shot(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
+        render_run(run, VideoOptions(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(UsageError, match="did you mean 'follow'"):
-        film(run, Shot(camera="fllow"), tmp_path / "v.mp4", lambda n, total: None)
+        render_run(run, VideoOptions(camera="fllow"), tmp_path / "v.mp4", lambda n, total: None)
 
 
 @pytest.mark.gl
@@ -153,4 +161,6 @@ def test_a_trajectory_of_another_scenario_is_a_usage_error(run, tmp_path):
     assert other != scenario
     (copy / run_folder.SCENARIO).write_text(other)
     with pytest.raises(UsageError, match="belongs to another"):
-        film(open_run(copy), Shot(size=(64, 64)), tmp_path / "v.mp4", lambda n, total: None)
+        render_run(
+            open_run(copy), VideoOptions(size=(64, 64)), tmp_path / "v.mp4", lambda n, total: None
+        )

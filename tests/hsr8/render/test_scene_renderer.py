@@ -1,6 +1,6 @@
 import numpy as np
 
-from hsr8.render.stage import soften
+from hsr8.render.scene_renderer import soften
 
 
 def test_edges_become_soft_and_the_rest_stays():

@@ -14,9 +14,9 @@ from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import Run
 from hsr8.render.animation import KINDS, AnimationWriter, require_room
 from hsr8.render.png import write_png
-from hsr8.render.scene_pictures import Pictures
+from hsr8.render.run_images import RunImages
+from hsr8.render.scene_renderer import Image
 from hsr8.render.segments import Segments, join
-from hsr8.render.stage import Image
 from hsr8.render.video import VideoWriter
 from hsr8.version import VERSION
 from hsr8.world.field.generator import draw_layout
@@ -30,7 +30,7 @@ SEGMENT = 150  # frames that an interrupted video loses at most
 
 
 @dataclass(frozen=True, slots=True)
-class Shot:
+class VideoOptions:
     """What to draw.
 
     Attributes:
@@ -52,13 +52,13 @@ class Shot:
 
 
 @dataclass(frozen=True, slots=True)
-class Film:
+class RenderedVideo:
     """What was drawn.
 
     Attributes:
         video: file.
         thumbnail: file of a picture that stands for it; None where it is a picture itself.
-        frames: number of pictures.
+        frames: number of images.
         reused: of these, drawn before by a call that was interrupted.
         duration: of the video [s].
         speed: simulated seconds per second of video.
@@ -72,12 +72,12 @@ class Film:
     speed: float
 
 
-def film(run: Run, shot: Shot, out: Path, tell: Tell) -> Film:
+def render_run(run: Run, options: VideoOptions, out: Path, tell: Tell) -> RenderedVideo:
     """Draw a run as a video, an animation or a picture; the ending of the name says as what.
 
     Args:
         run: recorded run.
-        shot: what to draw; a picture is of its `start`.
+        options: what to draw; a picture is of its `start`.
         out: file to write: ``.mp4``, ``.gif``, ``.webp`` or ``.png``. The thumbnail of a video
             is beside it, a PNG.
         tell: called with the number of frames done and of all.
@@ -88,46 +88,46 @@ def film(run: Run, shot: Shot, out: Path, tell: Tell) -> Film:
             would be too large, or somebody else is drawing the same video.
         RenderingUnavailable: no OpenGL draws here.
     """
-    times, speed = instants(run.trajectory().time, shot)
+    times, speed = instants(run.trajectory().time, options)
     kind = out.suffix.lower()
     if kind == ".png":
         times, speed = times[:1], 1.0
-    require_room(out, shot.size, len(times))
+    require_room(out, options.size, len(times))
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
-    with Pictures(
+    with RunImages(
         run,
         scenario,
         layout,
         times=times,
-        size=shot.size,
-        fps=shot.fps,
+        size=options.size,
+        fps=options.fps,
         speed=speed,
-        fine=shot.fine,
-    ) as pictures:
-        draw = pictures.camera(shot.camera)
+        fine=options.fine,
+    ) as images:
+        draw = images.camera(options.camera)
         thumbnail, reused = None, 0
         if kind == ".png":
             write_png(out, draw(0))
             tell(1, 1)
         elif kind in KINDS:
-            with AnimationWriter(out, shot.size, shot.fps) as animation:
+            with AnimationWriter(out, options.size, options.fps) as animation:
                 for index in range(len(times)):
                     animation.add(draw(index))
                     tell(index + 1, len(times))
         else:
-            with Segments(out, _key(run, shot, speed)) as segments:
-                reused = _shoot(segments, draw, len(times), shot, tell)
+            with Segments(out, _key(run, options, speed)) as segments:
+                reused = _shoot(segments, draw, len(times), options, tell)
                 parts = [segments.path(k) for k in range(len(_lengths(len(times))))]
-                join(parts, _lengths(len(times)), shot.fps, out)
+                join(parts, _lengths(len(times)), options.fps, out)
                 thumbnail = out.with_suffix(".png")
                 segments.thumbnail.replace(thumbnail)
                 segments.remove()
-    return Film(out, thumbnail, len(times), reused, len(times) / shot.fps, speed)
+    return RenderedVideo(out, thumbnail, len(times), reused, len(times) / options.fps, speed)
 
 
 def _shoot(
-    segments: Segments, draw: Callable[[int], Image], count: int, shot: Shot, tell: Tell
+    segments: Segments, draw: Callable[[int], Image], count: int, options: VideoOptions, tell: Tell
 ) -> int:
     """Draw the segments that are not there yet; the number of frames that were."""
     middle, first, reused = count // 2, 0, 0
@@ -137,7 +137,7 @@ def _shoot(
             first += length
             tell(first, count)
             continue
-        with VideoWriter(segments.path(number), shot.size, shot.fps) as video:
+        with VideoWriter(segments.path(number), options.size, options.fps) as video:
             for index in range(first, first + length):
                 picture = draw(index)
                 video.add(picture)
@@ -153,33 +153,33 @@ def _lengths(count: int) -> list[int]:
     return [min(SEGMENT, count - first) for first in range(0, count, SEGMENT)]
 
 
-def _key(run: Run, shot: Shot, speed: float) -> str:
-    """Tells videos apart that are not made of the same pictures."""
+def _key(run: Run, options: VideoOptions, speed: float) -> str:
+    """Tells videos apart that are not made of the same images."""
     files = (run_folder.SCENARIO, run_folder.TRAJECTORY, run_folder.FRAMES)
     stamps = []
     for file in (run.path / name for name in files):
         if file.exists():
             stamps.append([file.name, file.stat().st_size, file.stat().st_mtime_ns])
-    told = json.dumps([VERSION, SEGMENT, speed, asdict(shot), str(run.path.resolve()), stamps])
+    told = json.dumps([VERSION, SEGMENT, speed, asdict(options), str(run.path.resolve()), stamps])
     return hashlib.blake2b(told.encode(), digest_size=16).hexdigest()
 
 
-def instants(time: Array, shot: Shot) -> tuple[Array, float]:
+def instants(time: Array, options: VideoOptions) -> tuple[Array, float]:
     """Simulated time of every frame (n,) [s], and the speed.
 
     Raises:
         UsageError: nothing was recorded between start and stop.
     """
     end = float(time[-1]) if len(time) else 0.0
-    stop = end if shot.stop is None else min(shot.stop, end)
-    if len(time) == 0 or not 0.0 <= shot.start < stop:
+    stop = end if options.stop is None else min(options.stop, end)
+    if len(time) == 0 or not 0.0 <= options.start < stop:
         raise UsageError(
-            f"nothing to draw from {shot.start:g} s to {stop:g} s: the run ended at {end:g} s"
+            f"nothing to draw from {options.start:g} s to {stop:g} s: the run ended at {end:g} s"
         )
-    length = stop - shot.start
-    speed = shot.speed
+    length = stop - options.start
+    speed = options.speed
     if speed is None:
         speed = next((s for s in SPEEDS if length / s <= LENGTH), SPEEDS[-1])
-    count = max(1, round(length / speed * shot.fps))
-    times: Array = shot.start + np.arange(count, dtype=np.float64) * (speed / shot.fps)
+    count = max(1, round(length / speed * options.fps))
+    times: Array = options.start + np.arange(count, dtype=np.float64) * (speed / options.fps)
     return times, speed

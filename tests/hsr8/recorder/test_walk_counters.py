@@ -1,0 +1,21 @@
+from types import SimpleNamespace
+
+import pytest
+
+from hsr8.recorder.walk_counters import WalkCounters
+from walking.admission import Limit
+
+
+def test_every_tick_is_counted_once_and_every_limit_that_bound_too():
+    counters = WalkCounters()
+    for limits, depth in (
+        ((), 0.02),
+        ((Limit.SPEED, Limit.BALANCE), 0.01),
+        ((Limit.SPEED, Limit.SPEED), -0.003),
+        ((), 0.0),
+    ):
+        counters.add(SimpleNamespace(limits=limits, zmp_depth=depth), 0.001)
+    assert (counters.ticks, counters.limited, counters.zmp_outside) == (4, 2, 1)
+    assert counters.by_limit == {Limit.SPEED: 2, Limit.BALANCE: 1}
+    assert counters.min_zmp_depth == -0.003
+    assert (counters.wall_times.count, counters.wall_times.mean) == (4, pytest.approx(0.001))
