@@ -1,4 +1,4 @@
-"""Small values that are made many times for every image."""
+"""Small values that are made many times per frame."""
 
 from dataclasses import dataclass
 from typing import TypeVar, dataclass_transform
@@ -6,11 +6,11 @@ from typing import TypeVar, dataclass_transform
 T = TypeVar("T")
 
 
-@dataclass_transform(frozen_default=True)
+@dataclass_transform(eq_default=False, frozen_default=True)
 def value(cls: type[T]) -> type[T]:
-    """A dataclass with slots that nobody changes once it is made.
+    """Make an immutable dataclass with slots; values compare by identity.
 
-    The type checker holds everybody to that. Nothing does at run time: that would make such a
-    value several times as slow to make, and there are dozens for every image.
+    Only the type checker forbids assignment: a check at run time makes the constructor
+    several times as slow.
     """
-    return dataclass(slots=True, unsafe_hash=True)(cls)
+    return dataclass(slots=True, eq=False)(cls)

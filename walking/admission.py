@@ -3,7 +3,7 @@
 from enum import StrEnum
 
 from walking.command import Command
-from walking.value import value
+from walking.value import comparable_value
 
 
 class Limit(StrEnum):
@@ -27,7 +27,7 @@ class Limit(StrEnum):
     FALLEN = "fallen"
 
 
-@value
+@comparable_value
 class AdmissionReport:
     """One tick's answer to the command.
 

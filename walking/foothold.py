@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from walking.value import value
+from walking.value import comparable_value
 
 
-@value
+@comparable_value
 class Foothold:
     """A foothold in the plan frame; in a `WalkingState`, in the odometry frame.
 

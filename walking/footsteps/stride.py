@@ -1,7 +1,7 @@
 """What a command makes of a footstep: where each foot goes, how long it takes, how high."""
 
 from walking.parameters import CONTROL_PERIOD
-from walking.value import value
+from walking.value import comparable_value
 
 Velocity = tuple[float, float, float]
 """Forward [m/s], left [m/s], turn [rad/s]."""
@@ -12,7 +12,7 @@ Placement = tuple[float, float, float]
 """Landing in the frame of the support foot: x [m], y [m], direction [rad]."""
 
 
-@value
+@comparable_value
 class Strides:
     """Landing of either foot in the frame of the other.
 
@@ -31,7 +31,7 @@ class Strides:
         )
 
 
-@value
+@comparable_value
 class Timing:
     """Clock and lift of a footstep.
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from walking.footsteps.stride import Timing
-from walking.value import value
+from walking.value import comparable_value, value
 
 Point = tuple[float, float]
 
 
-@value
+@comparable_value
 class WeightShift:
     """ZMP and weight on their way to where they are meant to stay, linear in time.
 
@@ -70,7 +70,7 @@ class SwingWindow:
         return anew
 
 
-@value
+@comparable_value
 class SingleSupport:
     """Times of a single support in control ticks since its begin.
 

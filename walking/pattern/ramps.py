@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from walking.foothold import Foothold
-from walking.value import value
+from walking.value import comparable_value
 
 Array = NDArray[np.float64]
 
 
-@value
+@comparable_value
 class ZmpRamp:
     """A stretch of the ZMP reference, linear in time.
 
