@@ -129,7 +129,7 @@ class Simulation:
         self._analytic: AnalyticCamera | None = None
         self._camera_rng = named_rng(self.seed, "camera")
         camera = scenario.camera
-        if camera.source != "egl":
+        if camera.source != "rendered":
             self._analytic = AnalyticCamera(
                 self.layout,
                 head_camera(scenario),

@@ -34,14 +34,14 @@ ARM_X = (0.0, -0.012, 0.018)
 ARM_Y = (0.087, 0.096, 0.106)
 ARM_Z = (0.378, 0.305, 0.225)
 ARM_RADII = (0.029, 0.032, 0.045)
-ALL_ROUND = (2.0 * pi, pi)  # field of view of a camera that sees everything [rad]
+OMNIDIRECTIONAL = (2.0 * pi, pi)  # field of view of a camera that sees everything [rad]
 MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
 START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m, m, rad]
 
 
 def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, float]:
     """Horizontal and vertical field of view of what the robot sees with [rad]."""
-    return ALL_ROUND if scenario.camera.all_round else (camera.horizontal_fov, camera.vertical_fov)
+    return OMNIDIRECTIONAL if scenario.camera.omnidirectional else (camera.horizontal_fov, camera.vertical_fov)
 
 
 def build_robot(

@@ -24,7 +24,7 @@ def value(rng: random.Random, depth: int = 0) -> Any:
         10.0 ** rng.uniform(-300.0, 300.0) * rng.choice((-1, 1)),
         rng.choice((0, -1, 2**31, 2**63 - 1, -(2**63), 10**30)),
         rng.choice((float("nan"), float("inf"), -float("inf"), -0.0, 5e-324, 1e308)),
-        rng.choice(("", "egl", "course", "../x", "/etc/passwd", "a" * 3000, "\x00", "\ud7ff")),
+        rng.choice(("", "rendered", "course", "../x", "/etc/passwd", "a" * 3000, "\x00", "\ud7ff")),
         rng.random() < 0.5,
     )[kind]
 

@@ -1,6 +1,6 @@
 """How far beyond the border of an image its camera still recognises obstacles that are near.
 
-    python scripts/border_study.py behind --seeds 0-3 --cameras egl analytic
+    python scripts/border_study.py behind --seeds 0-3 --cameras rendered analytic
 
 Obstacles to the side of the robot or behind it, by where their middle would be in the image: at 0
 in the centre, at 1 on its left or right border, at 1.2 beyond it by a tenth of the width. What is
@@ -66,7 +66,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenario")
     add_seeds(parser, range(4))
-    parser.add_argument("--cameras", nargs="+", default=["egl", "analytic"])
+    parser.add_argument("--cameras", nargs="+", default=["rendered", "analytic"])
     parser.add_argument("--set", nargs="*", default=[], help="settings, key=value")
     arguments = parser.parse_args()
     there: dict[str, Counter[tuple[float, float]]] = {}

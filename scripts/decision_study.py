@@ -78,8 +78,8 @@ class Run:
         )
         self.planner = build_planner(parameters, limits, streams[4])
         self.gaze = GazePlanner(parameters, limits, self.world.beacons, HFOV, VFOV)
-        self.all_round = scenario.camera.all_round
-        self.fov = 2.0 * pi if self.all_round else HFOV
+        self.omnidirectional = scenario.camera.omnidirectional
+        self.fov = 2.0 * pi if self.omnidirectional else HFOV
         self.period = scenario.camera.period_ms / 1000
         self.frame_ticks = round(self.period / TICK)
         self.camera = Camera(streams[2], self.fov, self.period)
@@ -167,7 +167,7 @@ class Run:
 
     def _in_tilt(self, point: Array, tilt: float, pan: float, low: float, high: float) -> bool:
         """Whether part of a cylinder is within the image's height."""
-        if self.all_round:
+        if self.omnidirectional:
             return True
         dx, dy = (point - self.walker.pose[:2]).tolist()
         off = wrap(atan2(dy, dx) - float(self.walker.pose[2]) - pan)

@@ -43,7 +43,7 @@ def main() -> None:
     parser.add_argument("--seeds", default="1000:1012", help="A:B for A to B-1")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--body", default="kinematic", choices=("full", "kinematic"))
-    parser.add_argument("--camera", default="analytic", choices=("egl", "analytic"))
+    parser.add_argument("--camera", default="analytic", choices=("rendered", "analytic"))
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name}")
     options = parser.parse_args()
     tried = [("local", 1), ("local", options.workers)]

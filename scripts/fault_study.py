@@ -132,7 +132,7 @@ def settings_of(name: str, size: float, seed: int) -> list[str]:
     start = START
     common = [
         f"duration={DURATION}",
-        f'camera.source="{"egl" if kind == "camera-light" else "analytic"}"',
+        f'camera.source="{"rendered" if kind == "camera-light" else "analytic"}"',
         "mission.via_points=0",
     ]
     if kind.startswith("camera") and kind != "camera-light":

@@ -95,7 +95,7 @@ def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> 
     for key, node in rng.sample(schema, rng.randrange(1, 3)):
         settings.append(f"{key}={written(near(rng, node))}")
     scenario = load_scenario(rng.choice(built_in_names()), settings)
-    if scenario.camera.source == "egl":
+    if scenario.camera.source == "rendered":
         return
     with Simulation(scenario, rng.randrange(3)) as simulation:
         for _ in range(TICKS):

@@ -33,7 +33,7 @@ GAZES = {
     "psi-sf": "navigation.gaze.mode=psi-sf",
     "psi-way": "navigation.gaze.mode=psi-way",
     "fixed": "navigation.gaze.mode=fixed",
-    "all-round": "camera.source=all-round",
+    "omnidirectional": "camera.source=omnidirectional",
 }
 SWEEPS = {
     f"{period:g} s, {amplitude:g} rad": SWEEP.format(period, amplitude)

@@ -45,7 +45,7 @@ class Floor(Listener):
         self._model, self._data = model, mujoco.MjData(model)
         mujoco.mj_resetDataKeyframe(model, self._data, model.key("walk_ready").id)
         camera = simulation.scenario.camera
-        self._rendered = camera.source == "egl"
+        self._rendered = camera.source == "rendered"
         self._renderer = mujoco.Renderer(model, camera.height, camera.width)
         self._steps = round(CONTROL_PERIOD / model.opt.timestep)
         self._images = 0

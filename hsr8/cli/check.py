@@ -121,7 +121,7 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     wide, high = camera.horizontal_fov_deg, camera.vertical_fov_deg
     view = (
         ""
-        if camera.all_round
+        if camera.omnidirectional
         else f" {camera.width} x {camera.height}, {wide:.0f} x {high:.0f} deg,"
     )
     facts.add_row("camera", f"{camera.source},{view} every {camera.period_ms} ms")

@@ -45,6 +45,6 @@ def _slowness(scenario: Scenario) -> float:
     slowness = LOOP
     if scenario.robot.body == "full":
         slowness += PHYSICS
-    if scenario.camera.source == "egl":
+    if scenario.camera.source == "rendered":
         slowness += PICTURES
     return slowness

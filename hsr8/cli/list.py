@@ -39,7 +39,7 @@ def main(options: List) -> int:
 
 def _entry(scenario: Scenario) -> dict[str, object]:
     world = scenario.world
-    walls = sum(len(row.positions()) for row in world.row)
+    walls = sum(len(wall.positions()) for wall in world.wall)
     return {
         "name": scenario.name,
         "description": scenario.description,

@@ -24,10 +24,11 @@ Body = Annotated[
     _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
 ]
 Camera = Annotated[
-    Literal["egl", "analytic", "all-round"] | None,
+    Literal["rendered", "analytic", "omnidirectional"] | None,
     _arg(
-        "{egl,analytic,all-round}",
-        "egl: rendered; analytic: geometry only, no OpenGL; all-round: analytic, seeing 360 deg",
+        "{rendered,analytic,omnidirectional}",
+        "rendered: OpenGL images; analytic: geometric projection, no OpenGL; omnidirectional: "
+        "analytic with a 360 deg view",
     ),
 ]
 RunPath = Annotated[

@@ -69,7 +69,7 @@ def _require_all(options: Run, scenario: Scenario) -> None:
         require_display(options.view)
     require_new_folder(options.out / scenario.name, "run folder")
     require_plugins(scenario.plugin)
-    if scenario.camera.source == "egl":
+    if scenario.camera.source == "rendered":
         require_gl()
     with loading():
         from hsr8.loop import Simulation  # noqa: PLC0415  takes seconds

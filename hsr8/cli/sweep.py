@@ -62,7 +62,7 @@ def main(options: Sweep) -> int:
         )
     variants = _variants(options)
     scenarios = {name: _scenario(options, more) for name, more in variants.items()}
-    if kind == "local" and any(s.camera.source == "egl" for s in scenarios.values()):
+    if kind == "local" and any(s.camera.source == "rendered" for s in scenarios.values()):
         require_gl()
     for scenario in scenarios.values():
         require_plugins(scenario.plugin)

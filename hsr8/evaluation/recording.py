@@ -64,7 +64,7 @@ def renderer_of(scenario: Scenario) -> str:
     Raises:
         RenderingUnavailable: nothing does.
     """
-    return require_gl() if scenario.camera.source == "egl" else scenario.camera.source
+    return require_gl() if scenario.camera.source == "rendered" else scenario.camera.source
 
 
 class Recording:

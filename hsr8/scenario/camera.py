@@ -26,10 +26,9 @@ class CameraNoise(Section):
 class Camera(Section):
     """The head camera; walking.head limits how fast it turns, navigation.gaze how far."""
 
-    source: Literal["egl", "analytic", "all-round"] = "egl"
-    """egl: rendered pixels; analytic: cylinders projected geometrically (needs no OpenGL);
-    all-round: the same, of everything around at once. No real camera has this; it bounds what any
-    gaze can achieve."""
+    source: Literal["rendered", "analytic", "omnidirectional"] = "rendered"
+    """rendered: OpenGL images; analytic: cylinders projected geometrically, without OpenGL;
+    omnidirectional: analytic with a 360 deg view, an upper bound for every gaze."""
     width: Annotated[int, Interval(ge=32, le=1920)] = 320
     """Image width [pixel]."""
     height: Annotated[int, Interval(ge=24, le=1080)] = 240
@@ -50,9 +49,9 @@ class Camera(Section):
     """Noise of the images."""
 
     @property
-    def all_round(self) -> bool:
+    def omnidirectional(self) -> bool:
         """Whether it sees everything around at once."""
-        return self.source == "all-round"
+        return self.source == "omnidirectional"
 
     @property
     def vertical_fov(self) -> float:

@@ -44,7 +44,7 @@ def check(scenario: Scenario) -> list[Problem]:
         *fault_problems(scenario),
         *_inside(scenario),
         *_free(scenario),
-        *_rows_free(scenario),
+        *_walls_free(scenario),
     ]
 
 
@@ -179,9 +179,9 @@ def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
         yield ("robot", "start", "position"), scenario.robot.start.position, ROBOT_RADIUS
     for i, obstacle in enumerate(world.obstacle):
         yield ("world", "obstacle", i, "position"), obstacle.position, obstacle.radius
-    for i, row in enumerate(world.row):
-        yield ("world", "row", i, "start"), row.start, row.radius
-        yield ("world", "row", i, "end"), row.end, row.radius
+    for i, wall in enumerate(world.wall):
+        yield ("world", "wall", i, "start"), wall.start, wall.radius
+        yield ("world", "wall", i, "end"), wall.end, wall.radius
     for i, mover in enumerate(world.mover):
         if isinstance(mover, CircleMover):
             room = mover.path_radius + mover.radius
@@ -226,17 +226,17 @@ def _free(scenario: Scenario) -> Iterator[Problem]:
             )
 
 
-def _rows_free(scenario: Scenario) -> Iterator[Problem]:
+def _walls_free(scenario: Scenario) -> Iterator[Problem]:
     """No wall stands on the robot or on a point."""
     start, mission = scenario.robot.start.position, scenario.mission
     places = [("the start of the robot at", start)] if start is not None else []
     if isinstance(mission, Points):
         places += [(f"mission.points[{k}] =", point) for k, point in enumerate(mission.points)]
-    for i, row in enumerate(scenario.world.row):
-        reach = row.radius + ROBOT_RADIUS
+    for i, wall in enumerate(scenario.world.wall):
+        reach = wall.radius + ROBOT_RADIUS
         for name, place in places:
-            if any(_apart(cylinder, place) < reach for cylinder in row.positions()):
-                yield Problem(("world", "row", i), f"stands on {name} {list(place)}")
+            if any(_apart(cylinder, place) < reach for cylinder in wall.positions()):
+                yield Problem(("world", "wall", i), f"stands on {name} {list(place)}")
 
 
 def _begin(mover: Mover) -> tuple[str, Point]:

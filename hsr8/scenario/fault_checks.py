@@ -38,11 +38,11 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
                 f'"{fault.kind}" needs dynamics, which a {body} body has not; '
                 'robot.body = "full" has',
             )
-        if isinstance(fault, CameraLight) and scenario.camera.source != "egl":
+        if isinstance(fault, CameraLight) and scenario.camera.source != "rendered":
             yield Problem(
                 ("fault", i, "kind"),
                 f'"{fault.kind}" needs rendered images, which camera.source = '
-                f'"{scenario.camera.source}" has not; camera.source = "egl" has',
+                f'"{scenario.camera.source}" has not; camera.source = "rendered" has',
             )
         if isinstance(fault, CameraLate):
             late_ticks += ticks(fault.size)

@@ -13,10 +13,13 @@ RENAMED: dict[str, str] = {
     "vision.colour_table": "vision.color_table",
     "world.mover.colour": "world.mover.color",
     "world.obstacle.colour": "world.obstacle.color",
+    "world.row": "world.wall",
 }
 
 # Key -> old value -> new value.
-RENAMED_VALUES: dict[str, dict[str, str]] = {}
+RENAMED_VALUES: dict[str, dict[str, str]] = {
+    "camera.source": {"all-round": "omnidirectional", "egl": "rendered"},
+}
 
 CONSTANTS = "constants"  # the table of constants has the same keys
 

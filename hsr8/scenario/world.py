@@ -85,7 +85,7 @@ class CircleMover(_Mover):
     """Sense of the motion."""
 
 
-class Row(Section):
+class Wall(Section):
     """Static cylinders side by side, too close for the robot: a wall that vision knows."""
 
     start: Point
@@ -151,7 +151,7 @@ class World(Section):
     """Strength of all lights, relative to the usual [1]."""
     obstacle: Annotated[tuple[StaticObstacle, ...], Len(0, 64)] = ()
     """Static obstacles placed by hand."""
-    row: Annotated[tuple[Row, ...], Len(0, 16)] = ()
+    wall: Annotated[tuple[Wall, ...], Len(0, 16)] = ()
     """Walls of static cylinders placed by hand."""
     mover: Annotated[tuple[Mover, ...], Len(0, 64)] = ()
     """Moving obstacles placed by hand."""

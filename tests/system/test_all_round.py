@@ -13,8 +13,8 @@ class Last(Listener):
             self.frame = record.frame
 
 
-def test_an_all_round_camera_knows_what_stands_behind_without_looking():
-    settings = ["robot.body=kinematic", "camera.source=all-round", "duration=1.2"]
+def test_an_omnidirectional_camera_knows_what_stands_behind_without_looking():
+    settings = ["robot.body=kinematic", "camera.source=omnidirectional", "duration=1.2"]
     settings.append("navigation.gaze.mode=fixed")
     last = Last()
     simulation = Simulation(load_scenario("course", settings, SEED), SEED, [last])

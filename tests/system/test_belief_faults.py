@@ -65,7 +65,7 @@ def test_without_beacons_no_fault_of_the_camera_makes_it_believe_that_it_is_lost
 @pytest.mark.gl
 def test_a_biased_imu_leans_the_distances_but_loses_nobody(simulate):
     _, recorded, _ = simulate(
-        "quick", "sensors.pitch_bias=0.0175", body="full", camera="egl", duration=3.0
+        "quick", "sensors.pitch_bias=0.0175", body="full", camera="rendered", duration=3.0
     )
     position, heading, _ = errors(recorded)
     assert position[-1] < 0.3

@@ -103,15 +103,15 @@ def test_late_frames_are_believed_at_their_capture(simulate):
     ids=["darker, then brighter", "black for 1 s", "missed and false", "late and dropped"],
 )
 def test_rendered_images_with_faults(simulate, settings):
-    outcome, recorded, _ = simulate("quick", *settings, camera="egl", seed=1, duration=3.0)
+    outcome, recorded, _ = simulate("quick", *settings, camera="rendered", seed=1, duration=3.0)
     assert_got_over(outcome, recorded, "timeout")
 
 
 @pytest.mark.gl
 def test_a_brightness_step_changes_the_image_and_not_what_is_seen(simulate):
     step = 'fault=[{kind="camera-light",start=0.5,size=0.4}]'
-    _, steady, _ = simulate("quick", camera="egl", duration=0.6)
-    _, stepped, _ = simulate("quick", step, camera="egl", duration=0.6)
+    _, steady, _ = simulate("quick", camera="rendered", duration=0.6)
+    _, stepped, _ = simulate("quick", step, camera="rendered", duration=0.6)
     a, b = steady.frames[-1], stepped.frames[-1]
     assert b.image.mean() == pytest.approx(0.4 * a.image.mean(), rel=0.1)
     assert [d.label for d in a.detections] == [d.label for d in b.detections]

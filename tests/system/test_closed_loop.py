@@ -14,7 +14,7 @@ def wrap(angle):
 
 @pytest.mark.gl
 def test_quick_in_full_physics_through_the_camera(simulate):
-    outcome, recorded, simulation = simulate("quick", body="full", camera="egl", seed=2)
+    outcome, recorded, simulation = simulate("quick", body="full", camera="rendered", seed=2)
     assert outcome.exit_reason == recorded.reason == "goal"
     assert not any(r.truth.fallen for r in recorded.records)
     end = recorded.records[-1].truth

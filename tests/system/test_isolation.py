@@ -28,7 +28,7 @@ class Forbidden:
     "parts",
     [
         ['robot.body="kinematic"', 'camera.source="analytic"'],
-        pytest.param(['robot.body="full"', 'camera.source="egl"'], marks=pytest.mark.gl),
+        pytest.param(['robot.body="full"', 'camera.source="rendered"'], marks=pytest.mark.gl),
     ],
 )
 def test_the_loop_runs_the_same_without_the_truth(monkeypatch, parts):

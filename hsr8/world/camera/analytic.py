@@ -3,7 +3,7 @@
 It yields the same detections as vision would and needs no OpenGL. Occlusion, borders,
 range and missed detections are modelled; colours are taken as recognised.
 
-An all-round one differs in its field of view alone: occlusion, range, noise and misses stay.
+An omnidirectional one differs in its field of view alone: occlusion, range, noise and misses stay.
 """
 
 from collections.abc import Sequence
@@ -72,7 +72,7 @@ class AnalyticCamera:
         self._camera = camera
         self._rng = rng
         self._fault_rng = rng.spawn(1)[0]
-        self._all_round = settings.all_round
+        self._omnidirectional = settings.omnidirectional
         self._faults = faults
         self._movers = layout.motion()
         self._things = [
@@ -85,7 +85,7 @@ class AnalyticCamera:
         self._sizes = np.array([(t.radius, t.height) for t in self._things]).reshape(-1, 2)
         self._beacon = np.array([t.kind == "beacon" for t in self._things], dtype=bool)
         self._eye = np.zeros(16)
-        self._eye[12:] = camera.width, camera.height, camera.focal, self._all_round
+        self._eye[12:] = camera.width, camera.height, camera.focal, self._omnidirectional
         self._index: tuple[int, int] | None = None
 
     def capture(self, body: Body) -> tuple[Detection, ...]:
@@ -139,7 +139,7 @@ class AnalyticCamera:
         """Detections of obstacles that are not there, so many on average."""
         rng, eye = self._fault_rng, self._eye
         ahead = atan2(eye[8], eye[5]) - robot[2]
-        half = pi if self._all_round else 0.5 * self._camera.horizontal_fov
+        half = pi if self._omnidirectional else 0.5 * self._camera.horizontal_fov
         found = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]

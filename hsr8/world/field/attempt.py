@@ -84,11 +84,11 @@ class Attempt:
         self._static = [
             Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.color) for o in world.obstacle
         ]
-        for row in world.row:
-            for k, place in enumerate(row.positions()):
+        for wall in world.wall:
+            for k, place in enumerate(wall.positions()):
                 # Neighbours differ in colour, so that vision can tell them apart.
                 color = COLORS[k % len(COLORS)]
-                self._static.append(Obstacle(place, row.radius, OBSTACLE_HEIGHT, color))
+                self._static.append(Obstacle(place, wall.radius, OBSTACLE_HEIGHT, color))
         for _ in range(world.n_moving):
             self._lanes.append(self._draw_mover(start, points))
         self._draw_static(start, points)
@@ -206,7 +206,7 @@ class Attempt:
     def _draw_law(self, route: Sequence[Point]) -> MotionLaw | None:
         rng, world = self._rng, self._world
         x, y = rng.uniform(-self._half, self._half).tolist()
-        if world.row and route:
+        if world.wall and route:
             # Between walls a mover is of use only where the robot comes.
             walk = NominalWalk(route, 1.0)
             (along_x, along_y), _ = walk.at(walk.duration * float(rng.random()))

@@ -66,21 +66,21 @@ COURSE = 'mission = {kind = "course"}\n'
         (
             COURSE
             + "[robot.start]\nposition = [0.5, 0.1]\n"
-            + "[[world.row]]\nstart = [-1.0, 0.0]\nend = [1.0, 0.0]",
-            "world.row[0]: stands on the start of the robot at [0.5, 0.1]",
+            + "[[world.wall]]\nstart = [-1.0, 0.0]\nend = [1.0, 0.0]",
+            "world.wall[0]: stands on the start of the robot at [0.5, 0.1]",
         ),
         (
             'mission = {kind = "points", points = [[0.0, 0.9]]}\n'
-            "[[world.row]]\nstart = [0.0, 0.0]\nend = [0.0, 2.0]",
-            "world.row[0]: stands on mission.points[0]",
+            "[[world.wall]]\nstart = [0.0, 0.0]\nend = [0.0, 2.0]",
+            "world.wall[0]: stands on mission.points[0]",
         ),
         (
-            COURSE + "[[world.row]]\nstart = [0.0, 0.0]\nend = [0.0, 2.6]",
-            "world.row[0].end: [0.0, 2.6] is outside the field",
+            COURSE + "[[world.wall]]\nstart = [0.0, 0.0]\nend = [0.0, 2.6]",
+            "world.wall[0].end: [0.0, 2.6] is outside the field",
         ),
         (
-            COURSE + "[[world.row]]\nstart = [0.0, 0.0]\nend = [0.0, 2.0]\ngap = 0.3",
-            "world.row[0].gap",
+            COURSE + "[[world.wall]]\nstart = [0.0, 0.0]\nend = [0.0, 2.0]\ngap = 0.3",
+            "world.wall[0].gap",
         ),
         (
             'mission = {kind = "walk"}\n[command]\nvx = 0.1\n[world.encounters]\nn = 2',

@@ -59,7 +59,7 @@ mode = "deadlin"
         r"file\.toml:4: world\.n_statics: unknown key; did you mean 'n_static'\? \(known here: ",
         r"file\.toml:5: world\.radius\[1\]: must be greater than 0, got -0\.2",
         r"file\.toml:7: camera\.period_ms: must be a multiple of 5, got 33",
-        r'file\.toml:8: camera\.source: must be one of "egl", "analytic", "all-round", got "egll"; '
+        r'file\.toml:8: camera\.source: must be one of "rendered", "analytic", "omnidirectional", got "egll"; '
         "did you mean",
         r"file\.toml:10: navigation\.gaze\.mode: must be one of .*did you mean 'deadline'\?",
     ):
@@ -275,7 +275,7 @@ leaves = st.one_of(
     st.floats(),
     st.booleans(),
     st.text(max_size=12),
-    st.sampled_from(["tour", "course", "points", "walk", "egl", "paper", "shuttle"]),
+    st.sampled_from(["tour", "course", "points", "walk", "rendered", "paper", "shuttle"]),
 )
 inner = st.sampled_from(
     ["kind", "n_static", "size", "radius", "mover", "motion", "points", "profile", "lens", "gaze"]

@@ -86,7 +86,7 @@ def test_visibility_moves_with_the_robot(view):
     assert np.array_equal(expected(1.0, -2.0, pi / 3), plain)
 
 
-def test_an_all_round_camera_contains_everything_in_range(view):
+def test_an_omnidirectional_camera_contains_everything_in_range(view):
     rng = np.random.default_rng(2)
     points = rng.uniform(-3.0, 3.0, (50, 2))
     wide = view(0.4, -0.3, hfov=2.0 * np.pi, vfov=np.pi)

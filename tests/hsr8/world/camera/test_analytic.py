@@ -111,10 +111,10 @@ def test_far_things_are_not_reported(see):
 
 
 @pytest.mark.parametrize("bearing", np.radians([0.0, 100.0, -160.0, 180.0]))
-def test_an_all_round_camera_sees_in_every_direction_with_the_noise_of_any(see, bearing):
+def test_an_omnidirectional_camera_sees_in_every_direction_with_the_noise_of_any(see, bearing):
     place = (1.2 * np.cos(bearing), 1.2 * np.sin(bearing))
     thing = Obstacle(place, 0.08, 0.3, "red")
-    frames = see(thing, frames=100, settings=Camera(source="all-round"))
+    frames = see(thing, frames=100, settings=Camera(source="omnidirectional"))
     found = obstacles_in(frames)
     assert len(found) > 85
     for d in found:
@@ -130,5 +130,5 @@ def test_an_all_round_camera_sees_in_every_direction_with_the_noise_of_any(see, 
 def test_what_stands_behind_another_stays_hidden_all_around(see):
     near = Obstacle((-0.8, 0.0), 0.12, 0.3, "red")
     behind = Obstacle((-1.6, 0.0), 0.08, 0.3, "blue")
-    found = obstacles_in(see(near, behind, settings=Camera(source="all-round")))
+    found = obstacles_in(see(near, behind, settings=Camera(source="omnidirectional")))
     assert {d.label for d in found} == {"red"}

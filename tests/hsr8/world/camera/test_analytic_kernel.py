@@ -10,8 +10,8 @@ RADIUS, HEIGHT = 0.08, 0.3
 places = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)).filter(lambda p: np.hypot(*p) > 0.2)
 
 
-def eye(view, all_round=False):
-    size = (CAMERA.width, CAMERA.height, CAMERA.focal, all_round)
+def eye(view, omnidirectional=False):
+    size = (CAMERA.width, CAMERA.height, CAMERA.focal, omnidirectional)
     return np.array([*view.position, *view.rotation.ravel(), *size])
 
 
@@ -24,10 +24,10 @@ def cylinders(seed, n):
     return there, sizes, rng.random(n) < 0.3
 
 
-@pytest.mark.parametrize("all_round", [False, True])
+@pytest.mark.parametrize("omnidirectional", [False, True])
 @pytest.mark.parametrize("seed", range(4))
-def test_compiled_and_plain_agree(seed, all_round):
-    arguments = (*cylinders(seed, 30), eye(pose(0.3 * seed, -0.3), all_round))
+def test_compiled_and_plain_agree(seed, omnidirectional):
+    arguments = (*cylinders(seed, 30), eye(pose(0.3 * seed, -0.3), omnidirectional))
     np.testing.assert_allclose(look(*arguments), look.py_func(*arguments), rtol=1e-12, atol=1e-12)
 
 

@@ -124,7 +124,7 @@ def test_a_robot_that_turns_slower_needs_longer():
 def test_a_world_without_a_way_is_drawn_again():
     # A wall parts the field: goals on the far side cannot be reached.
     changes = [
-        "world.row=[{start=[0.0, -1.85], end=[0.0, 1.85]}]",
+        "world.wall=[{start=[0.0, -1.85], end=[0.0, 1.85]}]",
         "world.n_moving=0",
         "world.n_static=0",
         "robot.start.position=[-1.0, 0.0]",
@@ -140,7 +140,7 @@ def test_a_world_without_a_way_is_drawn_again():
 
 def test_an_impossible_world_is_an_error_that_says_how_often_it_was_tried():
     closed = "[{start=[0.0, -1.85], end=[0.0, 1.85]}]"
-    changes = [f"world.row={closed}", "world.n_moving=0", "world.n_static=0"]
+    changes = [f"world.wall={closed}", "world.n_moving=0", "world.n_static=0"]
     changes += [
         "robot.start.position=[-1.0, 0.0]",
         "mission.via_points=0",
@@ -151,7 +151,7 @@ def test_an_impossible_world_is_an_error_that_says_how_often_it_was_tried():
 
 
 def test_a_world_placed_by_hand_is_what_it_is():
-    scenario = load_scenario("fig4c", ["world.row=[{start=[0.0, -2.35], end=[0.0, 2.35]}]"])
+    scenario = load_scenario("fig4c", ["world.wall=[{start=[0.0, -2.35], end=[0.0, 2.35]}]"])
     world = draw_world(scenario, 0)
     assert not world.certificate.solvable
     assert world.certificate.points_reached == 0
