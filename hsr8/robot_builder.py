@@ -41,7 +41,9 @@ START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m,
 
 def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, float]:
     """Horizontal and vertical field of view of what the robot sees with [rad]."""
-    return OMNIDIRECTIONAL if scenario.camera.omnidirectional else (camera.horizontal_fov, camera.vertical_fov)
+    if scenario.camera.omnidirectional:
+        return OMNIDIRECTIONAL
+    return camera.horizontal_fov, camera.vertical_fov
 
 
 def build_robot(
