@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 PLAN = "plan(belief, task)"
 CHOOSE = "choose(belief, task, motion)"
-VELOCITY = "forward, left and turn [m/s, m/s, rad/s]"
+VELOCITY = "vx, vy and wz [m/s, m/s, rad/s]"
 
 
 class PluginPlanner:

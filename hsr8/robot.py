@@ -151,8 +151,8 @@ class Robot:
         now = Now(sensed.time, _odometry(state), self._view(state), state.step_count)
         decided = self._decisions.make(estimate, measured, now)
         if self._script is None:
-            forward, left, turn = decided.motion.velocity.tolist()
-            self.command = VelocityCommand(forward, left, turn)
+            vx, vy, wz = decided.motion.velocity.tolist()
+            self.command = VelocityCommand(vx, vy, wz)
         self.head = HeadTarget(decided.gaze.pan, decided.gaze.tilt)
         self.frame = FrameRecord(
             index=self._frames,

@@ -103,9 +103,9 @@ class ScriptedPlanner:
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
         """The velocity in force now."""
-        forward, left, turn = self._script.at(belief.time).velocity
+        vx, vy, wz = self._script.at(belief.time).velocity
         return MotionDecision(
-            velocity=np.array([forward, left, turn]),
-            direction=float(belief.pose[2]) + atan2(left, forward),
-            speed=hypot(forward, left),
+            velocity=np.array([vx, vy, wz]),
+            direction=float(belief.pose[2]) + atan2(vy, vx),
+            speed=hypot(vx, vy),
         )

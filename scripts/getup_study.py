@@ -202,7 +202,7 @@ def lie(body: Body, rng: np.random.Generator) -> None:
 
 def score(robot: RobotModel, motions: Motions, seeds: Iterable[int]) -> float:
     """Mean time to get up from the front, failures counting for `PATIENCE` [s]."""
-    parameters = GetUpParameters(attempts=1)
+    parameters = GetUpParameters(max_attempts=1)
     times = []
     for seed in seeds:
         rng = np.random.default_rng([seed, 29])

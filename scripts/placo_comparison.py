@@ -34,7 +34,7 @@ except ImportError:
     raise SystemExit(2) from None
 
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
-BOX = (0.3, 0.1, 0.8)  # forward, left [m/s], turn [rad/s]
+BOX = (0.3, 0.1, 0.8)  # vx, vy [m/s], wz [rad/s]
 STEPS = 4  # footsteps planned ahead
 TOLERANCE = 1e-4  # of a ZMP outside the sole [m]
 
@@ -132,7 +132,7 @@ def settings() -> Any:
     p.planned_timesteps = 48
     p.zmp_margin = pattern.sole_margin
     p.walk_com_height = pattern.lipm_height
-    p.walk_foot_height = gait.lift
+    p.walk_foot_height = gait.swing_height
     p.feet_spacing = 2.0 * gait.half_stance
     p.foot_length, p.foot_width = 2.0 * SOLE.half_length, 2.0 * SOLE.half_width
     p.foot_zmp_target_x = p.foot_zmp_target_y = 0.0

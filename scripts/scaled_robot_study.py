@@ -248,7 +248,7 @@ def steady(walker: Walker, asked: VelocityCommand, seed: int, duration: float) -
     stride = round(walker.parameters.gait.footstep_time / CONTROL_PERIOD)
     velocity = mean_velocity(trace, 3.0 * walker.time, stride)
     command, _ = script(0.0)
-    given = np.array([command.forward, command.left, command.turn])
+    given = np.array(command.velocity)
     main, leg = int(np.argmax(np.abs(given))), walker.model.measures().leg
     unit = sqrt(GRAVITY * leg) if main < 2 else sqrt(GRAVITY / leg)
     reached = float(velocity[main])

@@ -64,7 +64,7 @@ class Walk:
     beyond: int = 0
 
     def velocity(self) -> np.ndarray:
-        """Mean of forward, left, turn once settled, pairs of footsteps [m/s, m/s, rad/s] (3,).
+        """Mean velocity (vx, vy, wz) once settled, pairs of footsteps [m/s, m/s, rad/s] (3,).
 
         In a part of a pair the body sways and turns as it does not on the whole.
         """

@@ -37,7 +37,7 @@ def measured(
     usual = WalkingParameters()
     parameters = replace(
         usual,
-        arms=usual.arms if made["arms"] else ArmParameters(swing=0.0),
+        arms=usual.arms if made["arms"] else ArmParameters(swing_gain=0.0),
         stabilizer=replace(usual.stabilizer, heading_gain=0.0),
     )
     body = Body(np.random.default_rng([seed, 3]), Plant())

@@ -1,7 +1,7 @@
 """Walk the engine in full physics under sensor noise and report how well it does.
 
     python scripts/walk_study.py random --seeds 1000 1001 --duration 120
-    python scripts/walk_study.py steady --forward 0.25 --duration 60
+    python scripts/walk_study.py steady --vx 0.25 --duration 60
     python scripts/walk_study.py profile
 
 Tune on seeds 0-99, report on seeds from 1000.
@@ -74,7 +74,7 @@ def report(name: str, trace: Trace) -> None:
 
 
 def mean_velocity(trace: Trace, settle: float = 3.0, stride: int = 34) -> np.ndarray:
-    """Mean forward, left, turn velocity after `settle` [m/s, m/s, rad/s] (3,).
+    """Mean velocity (vx, vy, wz) after `settle` [m/s, m/s, rad/s] (3,).
 
     Every `stride` samples, two footsteps, so that the sway cancels.
     """
@@ -91,9 +91,9 @@ def main() -> None:
     parser.add_argument("study", choices=("random", "steady", "profile"))
     add_seeds(parser)
     parser.add_argument("--duration", type=float, default=60.0)
-    parser.add_argument("--forward", type=float, default=0.0)
-    parser.add_argument("--left", type=float, default=0.0)
-    parser.add_argument("--turn", type=float, default=0.0)
+    parser.add_argument("--vx", type=float, default=0.0)
+    parser.add_argument("--vy", type=float, default=0.0)
+    parser.add_argument("--wz", type=float, default=0.0)
     parser.add_argument("--noise", type=float, default=1.0, help="multiple of the sensor noise")
     parser.add_argument("--friction", type=float, default=0.8)
     parser.add_argument("--set", nargs="*", default=[], help="parameters, group.name=value")
@@ -101,7 +101,7 @@ def main() -> None:
     robot = RobotModel.from_mjcf(ROBOT)
     parameters = parameters_of(options.set)
     plant = Plant(noise=options.noise, friction=options.friction)
-    command = VelocityCommand(options.forward, options.left, options.turn)
+    command = VelocityCommand(options.vx, options.vy, options.wz)
 
     def engine() -> WalkingEngine:
         return WalkingEngine(robot, parameters)

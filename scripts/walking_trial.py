@@ -14,7 +14,7 @@ from walking_body import Body
 
 SAMPLE = 4  # ticks between two rows of a trace
 SAMPLE_TIME = SAMPLE * CONTROL_PERIOD
-BOX = ((-0.4, 0.4), (-0.15, 0.15), (-2.0, 2.0))  # forward, left [m/s], turn [rad/s]
+BOX = ((-0.4, 0.4), (-0.15, 0.15), (-2.0, 2.0))  # vx, vy [m/s], wz [rad/s]
 
 Script = Callable[[float], tuple[VelocityCommand, HeadTarget]]
 

@@ -11,19 +11,19 @@ class VelocityCommand:
     """Desired velocity of the robot frame R, expressed in R.
 
     Attributes:
-        forward: along x [m/s].
-        left: along y [m/s].
-        turn: about z, counter-clockwise positive [rad/s].
+        vx: forward [m/s].
+        vy: to the left [m/s].
+        wz: yaw rate, counter-clockwise positive [rad/s].
     """
 
-    forward: Annotated[float, SPEED] = 0.0
-    left: Annotated[float, SPEED] = 0.0
-    turn: Annotated[float, RATE] = 0.0
+    vx: Annotated[float, SPEED] = 0.0
+    vy: Annotated[float, SPEED] = 0.0
+    wz: Annotated[float, RATE] = 0.0
 
     @property
     def velocity(self) -> tuple[float, float, float]:
-        """Forward [m/s], left [m/s], turn [rad/s]."""
-        return self.forward, self.left, self.turn
+        """(vx, vy, wz) [m/s, m/s, rad/s]."""
+        return self.vx, self.vy, self.wz
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class CommandState:
 
     @property
     def velocity(self) -> tuple[float, float, float]:
-        """Mean velocity of the stance: forward [m/s], left [m/s], turn [rad/s]."""
+        """Mean velocity of the stance (vx, vy, wz) [m/s, m/s, rad/s]."""
         time = self.single_support + self.double_support
         return self.forward / time, 0.0, self.direction / time
 

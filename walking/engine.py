@@ -36,7 +36,7 @@ from walking.snapshot import camera_pose, plan_seen
 from walking.state import WalkingState
 from walking.targets import JointTargets
 
-SAME_LIFT = 1e-9  # difference of swing heights that is rounding [m]
+SAME_HEIGHT = 1e-9  # difference of swing heights that is rounding [m]
 
 
 class WalkingEngine:
@@ -158,7 +158,7 @@ class WalkingEngine:
         reachable = footing.region(self._parameters.stabilizer.sole_margin)
         self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
         gait.advance(moving=placement.moving)
-        if not gait.double and abs(gait.lift - gait.timing.lift) > SAME_LIFT:
+        if not gait.double and abs(gait.swing_height - gait.timing.swing_height) > SAME_HEIGHT:
             self._bound.append(Limit.SWING_HEIGHT)
         self._catching.touch_down()
         return whole_body.follow(
@@ -240,7 +240,7 @@ class WalkingEngine:
     def _command(self, command: Command, error: tuple[float, float]) -> None:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
         off = hypot(*error)
-        balanced = off < self._parameters.stabilizer.slew_error
+        balanced = off < self._parameters.stabilizer.max_slew_error
         share = self._caution.update(off)
         self._steering.follow(command, share, settled=settled, balanced=balanced)
         gait = self._gait
@@ -262,20 +262,20 @@ class WalkingEngine:
             return steering.wish(STILL)
         begins = self._cycle.begins(gait.support)
         moved = hypot(*self._placement.moved)
-        disturbed = gait.hurried or moved > self._parameters.stabilizer.steady_move
+        disturbed = gait.hurried or moved > self._parameters.stabilizer.max_steady_shift
         self._pressure.update(estimation.pressure_error, begins=begins, disturbed=disturbed)
-        forward, left = self._speed.correction(
+        vx, vy = self._speed.correction(
             estimation.pose,
             steering.velocity,
             begins=begins,
             disturbed=disturbed,
         )
-        return steering.wish((forward, left, self._heading.rate(ahead, renew=begins or disturbed)))
+        return steering.wish((vx, vy, self._heading.rate(ahead, renew=begins or disturbed)))
 
     def _maybe_start(self, error: tuple[float, float]) -> None:
         """Take a first footstep if the command asks for it, or balance."""
         gait, foot = self._gait, self._gait.footholds[0]
-        share = self._parameters.stabilizer.step_error
+        share = self._parameters.stabilizer.step_error_ratio
         pushed = self._stabilizer.exceeds(foot, error, share)
         moving = self._steering.moving
         if self.fallen and moving:

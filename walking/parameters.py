@@ -41,7 +41,7 @@ class GaitParameters:
 
     footstep_time: Annotated[float, Gt(0.0), TIME] = 0.34
     """Duration of a footstep, double support included, while that keeps it short enough [s]."""
-    shortest_time: Annotated[float, Gt(0.0), TIME] = 0.26
+    min_footstep_time: Annotated[float, Gt(0.0), TIME] = 0.26
     """Duration of a footstep at the quickest [s]."""
     double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.15
     """Share of the footstep in double support [1]."""
@@ -53,9 +53,9 @@ class GaitParameters:
     """Standing before the first command is obeyed [s]."""
     half_stance: Annotated[float, Gt(0.0), STANCE] = 0.042
     """Lateral distance of a foot from the middle of the stance [m]."""
-    lift: Annotated[float, Gt(0.0), LENGTH] = 0.025
+    swing_height: Annotated[float, Gt(0.0), LENGTH] = 0.025
     """Height of the swing foot at mid-swing [m]."""
-    lift_speed: Annotated[float, Gt(0.0), SPEED] = 0.2
+    swing_height_rate: Annotated[float, Gt(0.0), SPEED] = 0.2
     """Fastest change of that height while the foot is in the air [m/s]."""
     swing_start: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.05
     """Share of single support after which the foot lifts [1]."""
@@ -67,15 +67,15 @@ class GaitParameters:
     """Fastest move of the landing while the foot is in the air [m/s]."""
     landing_turn: Annotated[float, Gt(0.0), RATE] = 5.0
     """Fastest turn of the landing while the foot is in the air [rad/s]."""
-    shortest_swing: Annotated[float, Gt(0.0), TIME] = 0.05
+    min_swing_time: Annotated[float, Gt(0.0), TIME] = 0.05
     """Time that a foot in the air keeps to come down when a footstep is cut short [s]."""
     swing_speed: Annotated[float, Gt(0.0), SPEED] = 3.0
     """Fastest swing of a foot that hurries to catch a fall [m/s]."""
-    catch_single: Annotated[float, Gt(0.0), TIME] = 0.12
+    capture_single: Annotated[float, Gt(0.0), TIME] = 0.12
     """Shortest single support to catch a fall [s]."""
-    catch_double: Annotated[float, Gt(0.0), TIME] = 0.015
+    capture_double: Annotated[float, Gt(0.0), TIME] = 0.015
     """Shortest double support to catch a fall [s]."""
-    catch_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.020
+    capture_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.020
     """What a footstep that catches a fall keeps for `foot_clearance`: the body is off its plan,
     and a swing foot that meets the other one cannot catch it [m]."""
     foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.012
@@ -142,9 +142,9 @@ class OdometryParameters:
 
     forward_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0004
     """Random walk along the heading while stepping [m/√s]."""
-    left_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0005
+    lateral_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0005
     """Random walk across the heading while stepping [m/√s]."""
-    slip_share: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.5
+    slip_ratio: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.5
     """Unseen displacement per axis, by how far the feet slid against each other [1]."""
     yaw_drift: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.00095
     """Random walk of the IMU's yaw [rad/√s]."""
@@ -165,7 +165,7 @@ class StabilizerParameters:
     """Share of the planned joint torques fed forward [1]."""
     inertia_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the joints' planned acceleration in those torques [1]."""
-    inertia_limit: Annotated[float, Ge(0.0), RATE_CHANGE] = 300.0
+    max_inertia_acceleration: Annotated[float, Ge(0.0), RATE_CHANGE] = 300.0
     """Largest acceleration of a joint in those torques [rad/s²]."""
     velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 0.6
     """Share of the servos' velocity lag fed forward, legs [1]."""
@@ -187,35 +187,35 @@ class StabilizerParameters:
     """What is left per tick of the foot's compensation after touch-down [1]."""
     contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0), LEFT_PER_TICK] = 0.965
     """What is left per tick of the height at which a foot touched down early [1]."""
-    slew_error: Annotated[float, Gt(0.0), LENGTH] = 0.03
+    max_slew_error: Annotated[float, Gt(0.0), LENGTH] = 0.03
     """DCM error beyond which the velocity no longer changes [m]."""
-    calm_error: Annotated[float, Gt(0.0), LENGTH] = 0.015
+    slowdown_start_error: Annotated[float, Gt(0.0), LENGTH] = 0.015
     """DCM error up to which the robot walks as fast as it is told [m]."""
-    shaken_error: Annotated[float, Gt(0.0), LENGTH] = 0.04
+    slowdown_full_error: Annotated[float, Gt(0.0), LENGTH] = 0.04
     """DCM error at which it walks slowest [m]."""
-    caution_share: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.3
+    min_speed_ratio: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.3
     """Share of the commanded velocity that is left then [1]."""
-    caution_time: Annotated[float, Gt(0.0), TIME] = 1.5
+    slowdown_time: Annotated[float, Gt(0.0), TIME] = 1.5
     """Time constant with which a DCM error is forgotten [s]."""
-    step_error: Annotated[float, Gt(0.0), NUMBER] = 1.0
+    step_error_ratio: Annotated[float, Gt(0.0), NUMBER] = 1.0
     """DCM error, as a share of the ZMP room, at which a standing robot steps [1]."""
     heading_gain: Annotated[float, Ge(0.0), RATE] = 2.0
     """Turn rate per error of the heading [1/s]."""
-    heading_rate: Annotated[float, Ge(0.0), RATE] = 0.3
+    max_heading_rate: Annotated[float, Ge(0.0), RATE] = 0.3
     """Largest turn rate of the heading hold [rad/s]."""
     speed_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.5
     """Share of what two footsteps of a steady walk miss of its velocity that is made up for [1]."""
-    speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.06
+    max_speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.06
     """Most that is made up for, forward and sideways [m/s]."""
-    steady_move: Annotated[float, Ge(0.0), LENGTH] = 0.010
+    max_steady_shift: Annotated[float, Ge(0.0), LENGTH] = 0.010
     """Move of a landing for balance up to which a walk is steady: speed, heading and centre of
     pressure are held over two of its footsteps [m]."""
-    pressure_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
+    com_offset_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
     """Share of the centre of pressure's mean error over two footsteps by which the body moves
     against it [1]."""
-    pressure_offset: Annotated[float, Ge(0.0), LENGTH] = 0.015
+    max_com_offset: Annotated[float, Ge(0.0), LENGTH] = 0.015
     """Farthest that the body moves for it, forward and sideways [m]."""
-    pressure_speed: Annotated[float, Ge(0.0), SPEED] = 0.01
+    max_com_offset_rate: Annotated[float, Ge(0.0), SPEED] = 0.01
     """Fastest that it does [m/s]."""
 
 
@@ -223,13 +223,13 @@ class StabilizerParameters:
 class LimitParameters:
     """What may be asked of the legs."""
 
-    forward: Annotated[float, Gt(0.0), SPEED] = 0.55
+    vx: Annotated[float, Gt(0.0), SPEED] = 0.55
     """Fastest walk forward [m/s]."""
-    backward: Annotated[float, Gt(0.0), SPEED] = 0.45
+    vx_backward: Annotated[float, Gt(0.0), SPEED] = 0.45
     """Fastest walk backward [m/s]."""
-    lateral: Annotated[float, Gt(0.0), SPEED] = 0.20
+    vy: Annotated[float, Gt(0.0), SPEED] = 0.20
     """Fastest walk sideways [m/s]."""
-    turn: Annotated[float, Gt(0.0), RATE] = 2.0
+    wz: Annotated[float, Gt(0.0), RATE] = 2.0
     """Fastest turn [rad/s]."""
     combined: Annotated[float, Gt(0.0), NUMBER] = 1.15
     """Largest norm of the velocity with every component in units of its limit [1]."""
@@ -251,13 +251,13 @@ class LimitParameters:
     """Semi-axis of the ellipse of reachable landings, forward [m]."""
     reach_side: Annotated[float, Gt(0.0), LENGTH] = 0.12
     """Semi-axis of the ellipse of reachable landings, sideways [m]."""
-    shortest_single: Annotated[float, Gt(0.0), TIME] = 0.18
+    min_single: Annotated[float, Gt(0.0), TIME] = 0.18
     """Shortest single support of a command state [s]."""
-    longest_single: Annotated[float, Gt(0.0), TIME] = 0.6
+    max_single: Annotated[float, Gt(0.0), TIME] = 0.6
     """Longest single support of a command state [s]."""
-    longest_double: Annotated[float, Gt(0.0), TIME] = 0.3
+    max_double: Annotated[float, Gt(0.0), TIME] = 0.3
     """Longest double support of a command state [s]."""
-    swing_height: Annotated[float, Gt(0.0), LENGTH] = 0.04
+    max_swing_height: Annotated[float, Gt(0.0), LENGTH] = 0.04
     """Highest swing of a command state [m]."""
 
 
@@ -265,9 +265,9 @@ class LimitParameters:
 class HeadParameters:
     """Pan and tilt."""
 
-    rate: Annotated[float, Gt(0.0), RATE] = 6.0
+    max_rate: Annotated[float, Gt(0.0), RATE] = 6.0
     """Fastest turn of the head, each axis [rad/s]."""
-    acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 60.0
+    max_acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 60.0
     """Largest angular acceleration of the head, each axis [rad/s²]."""
 
 
@@ -275,9 +275,9 @@ class HeadParameters:
 class ArmParameters:
     """The counter-swing of the arms."""
 
-    swing: Annotated[float, PER_LENGTH] = 2.0
+    swing_gain: Annotated[float, PER_LENGTH] = 2.0
     """Shoulder pitch per distance between the feet along the heading [rad/m]."""
-    limit: Annotated[float, Ge(0.0), NUMBER] = 0.35
+    max_swing: Annotated[float, Ge(0.0), NUMBER] = 0.35
     """Largest swing from the ready posture [rad]."""
 
 
@@ -288,19 +288,19 @@ class GetUpParameters:
     enabled: bool = False
     """Whether a fallen robot gets up, so that the run goes on. Off, because a fall is to end a run
     of the paper's experiment, not to cost it 10 to 25 s; falls count either way."""
-    attempts: Annotated[int, Ge(1)] = 6
+    max_attempts: Annotated[int, Ge(1)] = 6
     """Motions that are tried, turning over and rising each for one, before it gives up [1]."""
-    joint_speed: Annotated[float, Gt(0.0), RATE] = 12.0
+    max_joint_speed: Annotated[float, Gt(0.0), RATE] = 12.0
     """Fastest turn of a joint on the way from posture to posture [rad/s]."""
-    pace: Annotated[float, Gt(0.0), TIME] = 1.0
+    time_scale: Annotated[float, Gt(0.0), TIME] = 1.0
     """Factor on the durations of the motions [1]."""
-    still_rate: Annotated[float, Gt(0.0), RATE] = 0.3
+    rest_rate: Annotated[float, Gt(0.0), RATE] = 0.3
     """Angular velocity of the trunk below which it is at rest, each axis [rad/s]."""
-    still_time: Annotated[float, Gt(0.0), TIME] = 0.2
+    rest_time: Annotated[float, Gt(0.0), TIME] = 0.2
     """Time for which it must be [s]."""
-    displacement: Annotated[float, Ge(0.0), LENGTH] = 0.2
+    displacement_sigma: Annotated[float, Ge(0.0), LENGTH] = 0.2
     """How far a fall and getting up move the robot unseen, standard deviation per axis [m]."""
-    turn: Annotated[float, Ge(0.0), NUMBER] = 0.02
+    yaw_sigma: Annotated[float, Ge(0.0), NUMBER] = 0.02
     """How much of the turn meanwhile the IMU misses, standard deviation [rad]."""
 
 

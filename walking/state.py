@@ -63,7 +63,7 @@ class WalkingState:
         phase: gait phase.
         odometry: pose of R in the odometry frame.
         camera: estimated pose of the head camera.
-        given: velocity (forward, left, turn) the engine really walks (3,) [m/s, m/s, rad/s].
+        given: velocity (vx, vy, wz) the engine really walks (3,) [m/s, m/s, rad/s].
         footsteps: planned footholds, the support foot first.
         zmp: planned zero-moment point in the odometry frame (2,) [m].
         dcm: planned divergent component of motion in the odometry frame (2,) [m].

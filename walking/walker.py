@@ -119,6 +119,6 @@ class Walker:
         """Back to walking, from the ready posture where the robot now stands."""
         p = self._parameters
         self._steps = self.state().step_count
-        self._odometry.interrupt(p.get_up.displacement, p.get_up.turn)
+        self._odometry.interrupt(p.get_up.displacement_sigma, p.get_up.yaw_sigma)
         self._engine = WalkingEngine(self._robot, p, self._odometry)
         self.get_up = None

@@ -200,7 +200,7 @@ def velocity(axes: Axes, table: WalkingTable, component: int) -> None:
     if len(time):
         axes.plot(time, achieved[:, component], color=BLUE, lw=1.3, label="achieved")
     _at_least(axes, SPANS[component])
-    axes.set_ylabel(("forward\n[m/s]", "left\n[m/s]", "turn\n[rad/s]")[component])
+    axes.set_ylabel(("vx\n[m/s]", "vy\n[m/s]", "wz\n[rad/s]")[component])
 
 
 def achieved_velocity(table: WalkingTable) -> tuple[Array, Array]:

@@ -21,7 +21,7 @@ MOST_CELLS = 1000
 BELOW: tuple[tuple[Path, str, str], ...] = (
     (("vision",), "min_radius", "max_radius"),
     (("walking", "gait"), "swing_start", "swing_end"),
-    (("walking", "stabilizer"), "calm_error", "shaken_error"),
+    (("walking", "stabilizer"), "slowdown_start_error", "slowdown_full_error"),
 )
 NOT_ABOVE: tuple[tuple[Path, str, str], ...] = (
     (("navigation", "mission"), "r_goal", "r_release"),
@@ -50,12 +50,13 @@ def check(scenario: Scenario) -> list[Problem]:
 
 def _speeds(scenario: Scenario) -> Iterator[Problem]:
     speed, limits = scenario.robot.speed, scenario.walking.limits
-    for name in ("forward", "backward", "lateral", "turn"):
-        asked, possible = getattr(speed, name), getattr(limits, name)
+    axes = {"forward": "vx", "backward": "vx_backward", "lateral": "vy", "turn": "wz"}
+    for name, axis in axes.items():
+        asked, possible = getattr(speed, name), getattr(limits, axis)
         if asked > possible:
             yield Problem(
                 ("robot", "speed", name),
-                f"{asked:g} is more than walking can: walking.limits.{name} = {possible:g}",
+                f"{asked:g} is more than walking can: walking.limits.{axis} = {possible:g}",
             )
 
 

@@ -45,10 +45,10 @@ BOUNDS: dict[Path, tuple[float, float]] = {
 LONGEST = 10.0  # of the times of a footstep, which is planned tick by tick [s]
 TIMES = {
     "gait": (
-        *("footstep_time", "shortest_time", "start_time", "stop_time", "settle_time"),
-        *("shortest_swing", "catch_single", "catch_double"),
+        *("footstep_time", "min_footstep_time", "start_time", "stop_time", "settle_time"),
+        *("min_swing_time", "capture_single", "capture_double"),
     ),
-    "limits": ("braking_time", "shortest_single", "longest_single", "longest_double"),
+    "limits": ("braking_time", "min_single", "max_single", "max_double"),
 }
 BOUNDS |= {
     ("walking", part, name): (0.0, LONGEST) for part, names in TIMES.items() for name in names

@@ -92,7 +92,7 @@ def test_a_gaze_arrives_as_it_was_meant_or_not_at_all(pan, number):
     ],
 )
 def test_what_is_no_velocity_is_refused_with_what_it_should_be(velocity):
-    with pytest.raises(UsageError, match=r"Says: velocity must be .*forward, left and turn \[m/s"):
+    with pytest.raises(UsageError, match=r"Says: velocity must be .*vx, vy and wz \[m/s"):
         PluginPlanner(Says(MotionDecision(velocity))).plan(None, None)
 
 

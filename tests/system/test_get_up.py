@@ -35,7 +35,7 @@ def test_it_rises_from_front_and_back(pitch, most):
     body = Simulation(load_scenario("walk", ['camera.source="analytic"']), 0)._body
     lay(body, pitch)
     robot = RobotModel.from_mjcf(ROBOT)
-    get_up = GetUp(robot, GetUpParameters(attempts=most), np.array(STRAIGHT.angles()))
+    get_up = GetUp(robot, GetUpParameters(max_attempts=most), np.array(STRAIGHT.angles()))
     while get_up.outcome is Outcome.UNDER_WAY and body.time < 30.0:
         body.apply(get_up.step(body.sense()))
     assert get_up.outcome is Outcome.UP

@@ -36,7 +36,7 @@ def test_before_the_body_has_settled_nothing_is_given(engine, ideal_body):
 def test_acceleration_binds_until_the_speed_is_reached(engine, ideal_body):
     command = VelocityCommand(0.2)
     reports = walk(engine, ideal_body, command, 2.0)
-    assert any(Limit.ACCELERATION in r.limits and r.given.forward < 0.2 for r in reports)
+    assert any(Limit.ACCELERATION in r.limits and r.given.vx < 0.2 for r in reports)
     assert not any(Limit.ACCELERATION in r.limits for r in reports[-50:])
     assert any(not r.altered and r.given == command for r in reports[-50:])
 
@@ -65,9 +65,9 @@ def test_the_limit_that_binds_is_named(engine, ideal_body, command, limit):
 def test_what_is_given_for_a_command_state_is_within_the_limits(engine, ideal_body):
     given = walk(engine, ideal_body, CommandState(0.05, 2.0, 0.3, 0.1, 0.0, 0.2), 1.0)[-1].given
     assert given.forward == LIMITS.step_forward
-    assert given.single_support == pytest.approx(LIMITS.shortest_single)
-    assert given.double_support == pytest.approx(LIMITS.longest_double)
-    assert given.swing_height == LIMITS.swing_height
+    assert given.single_support == pytest.approx(LIMITS.min_single)
+    assert given.double_support == pytest.approx(LIMITS.max_double)
+    assert given.swing_height == LIMITS.max_swing_height
     wide = walk(engine, ideal_body, CommandState(side=0.4), 1.0)[-1].given
     assert wide.side == pytest.approx(2.0 * HALF_STANCE + LIMITS.step_side)
 

@@ -40,8 +40,8 @@ def twists(now):
     rng = np.random.default_rng([5, int(now / 0.15)])
     if rng.uniform() < 0.2:
         return VelocityCommand()
-    forward, left, turn = rng.uniform((-0.2, -0.1, -1.0), (0.3, 0.1, 1.0)).tolist()
-    return VelocityCommand(forward, left, turn)
+    vx, vy, wz = rng.uniform((-0.2, -0.1, -1.0), (0.3, 0.1, 1.0)).tolist()
+    return VelocityCommand(vx, vy, wz)
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

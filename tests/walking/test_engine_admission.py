@@ -90,7 +90,7 @@ class Observer:
             timely = (
                 abs(timing.double * CONTROL_PERIOD - command.double_support) < HALF_TICK
                 and abs(timing.single * CONTROL_PERIOD - command.single_support) < HALF_TICK
-                and abs(timing.lift - command.swing_height) < ROUNDING
+                and abs(timing.swing_height - command.swing_height) < ROUNDING
             )
         else:
             wanted = self._free.strides(command.velocity, timing.duration)
@@ -109,7 +109,7 @@ class Observer:
         return (
             (not gait.double or gait._shift.end == gait.timing.double)
             and gait._single.ticks == gait.timing.single
-            and (gait.double or abs(gait.lift - gait.timing.lift) < ROUNDING)
+            and (gait.double or abs(gait.swing_height - gait.timing.swing_height) < ROUNDING)
             and self._usual.same(nominal, gait.landing)
         )
 

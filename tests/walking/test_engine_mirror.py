@@ -40,7 +40,7 @@ def sensors(frame):
 
 def mirrored(command):
     if isinstance(command, VelocityCommand):
-        return VelocityCommand(command.forward, -command.left, -command.turn)
+        return VelocityCommand(command.vx, -command.vy, -command.wz)
     return replace(command, direction=-command.direction)
 
 

@@ -55,8 +55,8 @@ def test_a_choice_is_kept_and_the_rest_is_the_robots_own(robot):
 
     made = parameters_for(Giant(), given)
     assert made.gait.footstep_time == 0.4
-    assert made.gait.lift == pytest.approx(4.0 * given.gait.lift)
-    assert made.limits.forward == pytest.approx(2.0 * given.limits.forward)
+    assert made.gait.swing_height == pytest.approx(4.0 * given.gait.swing_height)
+    assert made.limits.vx == pytest.approx(2.0 * given.limits.vx)
     assert made.pattern.generator == given.pattern.generator
 
 
@@ -76,18 +76,18 @@ def test_dimensionless_numbers_stay_what_they_are(size):
 
     def groups(p, y):
         w = sqrt(GRAVITY / p.pattern.lipm_height)
-        step = p.limits.forward * p.gait.footstep_time
+        step = p.limits.vx * p.gait.footstep_time
         return (
             w * p.gait.footstep_time,
-            p.limits.forward**2 / (GRAVITY * y.leg),
+            p.limits.vx**2 / (GRAVITY * y.leg),
             step / p.limits.step_forward,
             p.pattern.pelvis_height / y.leg,
             p.gait.half_stance / y.hip,
-            p.limits.turn * p.gait.footstep_time,
+            p.limits.wz * p.gait.footstep_time,
             p.limits.forward_acceleration / GRAVITY,
             p.estimator.contact_force / y.weight,
             p.pattern.zmp_rate / (y.sole * w),
-            p.arms.swing * step,
+            p.arms.swing_gain * step,
             p.stabilizer.gyro_gain * w,
             p.stabilizer.tilt_decay ** (p.gait.footstep_time / CONTROL_PERIOD),
             (1.0 - p.estimator.tilt_gain) ** (p.gait.footstep_time / CONTROL_PERIOD),

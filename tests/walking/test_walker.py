@@ -15,7 +15,7 @@ from walking.phase import Phase
 from walking.walker import Walker
 
 AHEAD, FORWARD = HeadTarget(), VelocityCommand(0.2, 0.0, 0.0)
-RISING = WalkingParameters(get_up=GetUpParameters(enabled=True, attempts=1))
+RISING = WalkingParameters(get_up=GetUpParameters(enabled=True, max_attempts=1))
 
 
 def tilted(sensors, pitch):
@@ -83,6 +83,6 @@ def test_once_up_it_goes_on_with_the_odometry_and_the_count_of_steps(robot, idea
     moved = np.hypot(after.odometry.x - before.odometry.x, after.odometry.y - before.odometry.y)
     assert moved < 0.2  # what the tipping trunk makes of the legs
     hidden = after.odometry.covariance - before.odometry.covariance
-    assert hidden[0, 0] == pytest.approx(RISING.get_up.displacement**2, rel=0.1)
+    assert hidden[0, 0] == pytest.approx(RISING.get_up.displacement_sigma**2, rel=0.1)
     walk(walker, standing, 400)
     assert walker.state().step_count > after.step_count

@@ -30,7 +30,7 @@ class FootPlacement:
         catching: the pendulum, and that of the plan while the body is being caught.
 
     Attributes:
-        given: velocity that the footsteps really walk (forward, left, turn)
+        given: velocity that the footsteps really walk (vx, vy, wz)
             [m/s, m/s, rad/s].
         bound: constraints that altered the last tick's wish.
         moved: by how much balance moves the landing [m].
@@ -86,7 +86,7 @@ class FootPlacement:
 
         Args:
             wish: strides wanted.
-            velocity: that goes with them (forward, left, turn) [m/s, m/s, rad/s].
+            velocity: that goes with them (vx, vy, wz) [m/s, m/s, rad/s].
             error: of the DCM [m].
             region: where the ZMP may be in this tick.
             moving: whether to go on walking.

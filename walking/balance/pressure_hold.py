@@ -21,9 +21,9 @@ class PressureHold:
     """
 
     def __init__(self, parameters: StabilizerParameters) -> None:
-        self._gain = parameters.pressure_gain
-        self._limit = parameters.pressure_offset
-        self._step = parameters.pressure_speed * CONTROL_PERIOD
+        self._gain = parameters.com_offset_gain
+        self._limit = parameters.max_com_offset
+        self._step = parameters.max_com_offset_rate * CONTROL_PERIOD
         self._goal: Point = (0.0, 0.0)
         self._sum = [0.0, 0.0]
         self._ticks = 0

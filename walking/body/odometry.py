@@ -90,9 +90,9 @@ class LegOdometry:
         self.growth = np.array(
             [
                 parameters.forward_noise**2 * CONTROL_PERIOD,
-                parameters.left_noise**2 * CONTROL_PERIOD,
+                parameters.lateral_noise**2 * CONTROL_PERIOD,
                 parameters.yaw_drift**2 * CONTROL_PERIOD,
-                parameters.slip_share,
+                parameters.slip_ratio,
             ]
         )
 

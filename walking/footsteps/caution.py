@@ -13,10 +13,10 @@ class Caution:
     """
 
     def __init__(self, parameters: StabilizerParameters) -> None:
-        self._calm = parameters.calm_error
-        self._range = parameters.shaken_error - parameters.calm_error
-        self._least = parameters.caution_share
-        self._decay = exp(-CONTROL_PERIOD / parameters.caution_time)
+        self._calm = parameters.slowdown_start_error
+        self._range = parameters.slowdown_full_error - parameters.slowdown_start_error
+        self._least = parameters.min_speed_ratio
+        self._decay = exp(-CONTROL_PERIOD / parameters.slowdown_time)
         self._error = 0.0
 
     def update(self, error: float) -> float:

@@ -16,7 +16,7 @@ class HeadingHold:
 
     def __init__(self, parameters: StabilizerParameters) -> None:
         self._gain = parameters.heading_gain
-        self._limit = parameters.heading_rate
+        self._limit = parameters.max_heading_rate
         self._held = 0.0
         self._rate = 0.0
 

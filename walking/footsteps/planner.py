@@ -51,8 +51,8 @@ class FootstepPlanner:
 
     def opening_left(self, velocity: Velocity) -> bool | None:
         """Whether the left foot opens the stance for `velocity`; None when neither does."""
-        _, left, turn = velocity
-        tendency = left / self._limits.lateral + turn / self._limits.turn
+        _, vy, wz = velocity
+        tendency = vy / self._limits.vy + wz / self._limits.wz
         return None if tendency == 0.0 else tendency > 0.0
 
     def landing(self, support: Foothold, wish: Strides) -> Foothold:
@@ -60,25 +60,25 @@ class FootstepPlanner:
         return self._at(support, *(wish.right if support.left else wish.left))
 
     def cadence(self, velocity: Velocity) -> Timing:
-        """Clock and lift for a velocity (forward, left, turn) [m/s, m/s, rad/s].
+        """Timing and swing height for a velocity (vx, vy, wz) [m/s, m/s, rad/s].
 
         A walk is quickened rather than its footsteps stretched beyond their limits, all
         components together.
         """
         if velocity != self._cadence[0]:
             gait, limits = self._gait, self._limits
-            forward, left, turn = velocity
+            vx, vy, wz = velocity
             rate = sqrt(
-                (forward / limits.step_forward) ** 2
-                + (2.0 * left / limits.step_side) ** 2
-                + (2.0 * turn / limits.step_turn) ** 2
+                (vx / limits.step_forward) ** 2
+                + (2.0 * vy / limits.step_side) ** 2
+                + (2.0 * wz / limits.step_turn) ** 2
             )
             time = 1.0 / max(rate, 1.0 / gait.footstep_time)
-            self._cadence = (velocity, self._timing(max(gait.shortest_time, time)))
+            self._cadence = (velocity, self._timing(max(gait.min_footstep_time, time)))
         return self._cadence[1]
 
     def strides(self, velocity: Velocity, time: float) -> Strides:
-        """Strides of a velocity (forward, left, turn) [m/s, m/s, rad/s].
+        """Strides of a velocity (vx, vy, wz) [m/s, m/s, rad/s].
 
         Args:
             velocity: of the stance's middle.
@@ -121,17 +121,17 @@ class FootstepPlanner:
         return Strides(right=placements[0], left=placements[1]), bound
 
     def timing(self, command: CommandState) -> tuple[Timing, list[Limit]]:
-        """Clock and lift of a command state in whole ticks, and the limits that altered it."""
+        """Timing of a command state in whole ticks, and the limits that altered it."""
         limits, bound = self._limits, []
-        double = min(limits.longest_double, max(CONTROL_PERIOD, command.double_support))
-        single = min(limits.longest_single, max(limits.shortest_single, command.single_support))
-        lift = min(limits.swing_height, max(0.0, command.swing_height))
+        double = min(limits.max_double, max(CONTROL_PERIOD, command.double_support))
+        single = min(limits.max_single, max(limits.min_single, command.single_support))
+        height = min(limits.max_swing_height, max(0.0, command.swing_height))
         if double != command.double_support or single != command.single_support:
             bound.append(Limit.TIMING)
-        if lift != command.swing_height:
+        if height != command.swing_height:
             bound.append(Limit.SWING_HEIGHT)
         ticks = round(double / CONTROL_PERIOD), round(single / CONTROL_PERIOD)
-        return Timing(*ticks, lift), bound
+        return Timing(*ticks, height), bound
 
     @staticmethod
     def command_state(strides: Strides, timing: Timing) -> CommandState:
@@ -144,19 +144,19 @@ class FootstepPlanner:
             forward=x * ch + y * sh,
             side=(y * ch - x * sh) / ch,
             direction=turned,
-            swing_height=timing.lift,
+            swing_height=timing.swing_height,
         )
 
     def stride_limits(self, velocity: Velocity, time: float) -> list[Limit]:
         """Limits that bind on the footsteps of a velocity, each lasting `time` [s]."""
-        forward, left, turn = velocity
+        vx, vy, wz = velocity
         limits = self._limits
         bound = []
-        if abs(forward) * time > limits.step_forward:
+        if abs(vx) * time > limits.step_forward:
             bound.append(Limit.STEP_LENGTH)
-        if 2.0 * abs(left) * time > limits.step_side:
+        if 2.0 * abs(vy) * time > limits.step_side:
             bound.append(Limit.STEP_SIDE)
-        if 2.0 * abs(turn) * time > limits.step_turn:
+        if 2.0 * abs(wz) * time > limits.step_turn:
             bound.append(Limit.STEP_TURN)
         if stride_kernel.strides(velocity, time, self._longest, self._build)[2]:
             bound.append(Limit.CLEARANCE)
@@ -167,22 +167,22 @@ class FootstepPlanner:
 
         The middle moves along the chords of its arcs, see `strides`.
         """
-        forward = left = turn = 0.0
+        vx = vy = wz = 0.0
         half = self._gait.half_stance
         for (x, y, turned), stance in ((strides.right, -half), (strides.left, half)):
             ch, sh = cos(0.5 * turned), sin(0.5 * turned)
             dx = x + stance * sin(turned)
             dy = y - stance - stance * cos(turned)
-            forward += ch * dx + sh * dy
-            left += ch * dy - sh * dx
-            turn += turned
-        return forward / (2.0 * time), left / (2.0 * time), turn / (2.0 * time)
+            vx += ch * dx + sh * dy
+            vy += ch * dy - sh * dx
+            wz += turned
+        return vx / (2.0 * time), vy / (2.0 * time), wz / (2.0 * time)
 
     def _timing(self, time: float) -> Timing:
         """A footstep of a duration [s], in whole ticks: one of either support at least."""
         ticks = max(2, round(time / CONTROL_PERIOD))
         double = min(ticks - 1, max(1, round(self._gait.double_support * ticks)))
-        return Timing(double, ticks - double, self._gait.lift)
+        return Timing(double, ticks - double, self._gait.swing_height)
 
     def _make(self, velocity: Velocity, time: float) -> Strides:
         right, left, _ = stride_kernel.strides(velocity, time, self._longest, self._build)
@@ -195,7 +195,7 @@ class FootstepPlanner:
         wx, wy = landing.x + dx - support.x, landing.y + dy - support.y
         x, y = self._within_reach(c * wx + s * wy, c * wy - s * wx, side)
         turned = landing.yaw - support.yaw
-        clear = stride_kernel.clear(y, turned, side, self._gait.catch_clearance, self._sole)
+        clear = stride_kernel.clear(y, turned, side, self._gait.capture_clearance, self._sole)
         return self._at(support, x, clear, turned)
 
     def _within_reach(self, x: float, y: float, side: float) -> tuple[float, float]:

@@ -23,7 +23,7 @@ class SpeedHold:
 
     def __init__(self, parameters: StabilizerParameters) -> None:
         self._gain = parameters.speed_gain
-        self._limit = parameters.speed_correction
+        self._limit = parameters.max_speed_correction
         self._velocity: Velocity | None = None
         self._correction: Correction = (0.0, 0.0)
         self._pose: Pose | None = None
@@ -44,7 +44,7 @@ class SpeedHold:
 
         Args:
             pose: of the robot by odometry, its heading unwrapped [m, m, rad].
-            velocity: wanted (forward, left, turn) [m/s, m/s, rad/s].
+            velocity: wanted (vx, vy, wz) [m/s, m/s, rad/s].
             begins: whether a cycle of two footsteps does.
             disturbed: whether balance has a say in the footsteps.
         """

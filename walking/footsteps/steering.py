@@ -120,8 +120,8 @@ class Steering:
         """
         time = self.timing.duration
         if self._state is None:
-            (forward, left, turn), velocity = correction, self._slew.velocity
-            wanted = (velocity[0] + forward, velocity[1] + left, velocity[2] + turn)
+            (vx, vy, wz), velocity = correction, self._slew.velocity
+            wanted = (velocity[0] + vx, velocity[1] + vy, velocity[2] + wz)
             return self._planner.strides(wanted, time)
         return self._planner.explicit(self._state, correction[2] * time)[0]
 
@@ -167,11 +167,11 @@ class Steering:
         """Whether the robot is not meant to have a velocity; from standing any is another."""
         if wanted == STILL:
             return self._slew.moving
-        forward, left, turn = self.velocity
+        vx, vy, wz = self.velocity
         return (
-            abs(forward - wanted[0]) > SAME_SPEED
-            or abs(left - wanted[1]) > SAME_SPEED
-            or abs(turn - wanted[2]) > SAME_SPEED
+            abs(vx - wanted[0]) > SAME_SPEED
+            or abs(vy - wanted[1]) > SAME_SPEED
+            or abs(wz - wanted[2]) > SAME_SPEED
         )
 
     def _speed_limits(self, command: VelocityCommand) -> list[Limit]:
@@ -185,8 +185,8 @@ class Steering:
         was = self.velocity
         bound, dared = self._bound, command
         if share < 1.0 and command.velocity != STILL:
-            forward, left, turn = limited(command, self._limits)
-            dared = VelocityCommand(share * forward, share * left, share * turn)
+            vx, vy, wz = limited(command, self._limits)
+            dared = VelocityCommand(share * vx, share * vy, share * wz)
             bound.append(Limit.BALANCE)
         if self._selective and command.velocity == STILL:
             self._slew.start(STILL)

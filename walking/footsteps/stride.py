@@ -4,7 +4,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.value import comparable_value
 
 Velocity = tuple[float, float, float]
-"""Forward [m/s], left [m/s], turn [rad/s]."""
+"""(vx, vy, wz) [m/s, m/s, rad/s]."""
 
 STILL: Velocity = (0.0, 0.0, 0.0)
 
@@ -33,16 +33,16 @@ class Strides:
 
 @comparable_value
 class Timing:
-    """Clock and lift of a footstep.
+    """Timing and swing height of a footstep.
 
     Attributes:
         double, single: control ticks in double and single support [1].
-        lift: height of the swing foot at mid-swing [m].
+        swing_height: height of the swing foot at mid-swing [m].
     """
 
     double: int
     single: int
-    lift: float
+    swing_height: float
 
     @property
     def duration(self) -> float:
@@ -54,7 +54,7 @@ class Timing:
         return Timing(
             double=self.double + round(share * (other.double - self.double)),
             single=self.single + round(share * (other.single - self.single)),
-            lift=self.lift + share * (other.lift - self.lift),
+            swing_height=self.swing_height + share * (other.swing_height - self.swing_height),
         )
 
 

@@ -22,7 +22,7 @@ def strides(
     """Landings of a velocity.
 
     Args:
-        velocity: of the stance's middle (forward, left, turn) [m/s, m/s, rad/s].
+        velocity: of the stance's middle (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
         limits: longest footstep forward and to the side [m], and turn [rad].
         build: of the feet.
@@ -30,11 +30,11 @@ def strides(
     Returns:
         landing of the right and of the left foot, and whether one is moved to clear the other foot.
     """
-    forward, left, turn = velocity
+    vx, vy, wz = velocity
     half, gap, heel, toe, width = build
-    dx = min(limits[0], max(-limits[0], forward * time))
-    right_x, right_y, right_turn = _opened(dx, left, turn, time, -1.0, limits, half)
-    left_x, left_y, left_turn = _opened(dx, left, turn, time, 1.0, limits, half)
+    dx = min(limits[0], max(-limits[0], vx * time))
+    right_x, right_y, right_turn = _opened(dx, vy, wz, time, -1.0, limits, half)
+    left_x, left_y, left_turn = _opened(dx, vy, wz, time, 1.0, limits, half)
     right = clear(right_y, right_turn, -1.0, gap, (heel, toe, width))
     left = clear(left_y, left_turn, 1.0, gap, (heel, toe, width))
     return (
@@ -84,12 +84,12 @@ def clear(y: float, turned: float, side: float, gap: float, sole: Vector) -> flo
 
 @njit(cache=True)
 def _opened(
-    dx: float, left: float, turn: float, time: float, side: float, limits: Vector, half: float
+    dx: float, vy: float, wz: float, time: float, side: float, limits: Vector, half: float
 ) -> Placement:
     """Landing of the foot on a side, which opens the stance if the motion is to that side."""
-    dy = 2.0 * left * time if left * side > 0.0 else 0.0
+    dy = 2.0 * vy * time if vy * side > 0.0 else 0.0
     dy = min(limits[1], max(-limits[1], dy))
-    turned = 2.0 * turn * time if turn * side > 0.0 else 0.0
+    turned = 2.0 * wz * time if wz * side > 0.0 else 0.0
     turned = min(limits[2], max(-limits[2], turned))
     x, y = stance_after(dx, dy, turned, side * half)
     return x, y, turned

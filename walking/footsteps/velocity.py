@@ -13,22 +13,22 @@ def limited(command: VelocityCommand, limits: LimitParameters) -> Velocity:
     """The command with every component within its limit and all together in an ellipsoid.
 
     Returns:
-        forward [m/s], left [m/s], turn [rad/s]; the direction of the command is kept when
-        the ellipsoid binds.
+        (vx, vy, wz) [m/s, m/s, rad/s]; the direction of the command is kept when the ellipsoid
+        binds.
     """
-    forward, left, turn = _within(command, limits)
-    longest = limits.forward if forward >= 0.0 else limits.backward
-    norm = sqrt((forward / longest) ** 2 + (left / limits.lateral) ** 2 + (turn / limits.turn) ** 2)
+    vx, vy, wz = _within(command, limits)
+    max_vx = limits.vx if vx >= 0.0 else limits.vx_backward
+    norm = sqrt((vx / max_vx) ** 2 + (vy / limits.vy) ** 2 + (wz / limits.wz) ** 2)
     if norm > limits.combined:
         scale = limits.combined / norm
-        return forward * scale, left * scale, turn * scale
-    return forward, left, turn
+        return vx * scale, vy * scale, wz * scale
+    return vx, vy, wz
 
 
 def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limit]:
     """Which of the limits alter a command."""
     within, bound = _within(command, limits), []
-    if within != (command.forward, command.left, command.turn):
+    if within != command.velocity:
         bound.append(Limit.SPEED)
     if limited(command, limits) != within:
         bound.append(Limit.COMBINED_SPEED)
@@ -38,9 +38,9 @@ def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limi
 def _within(command: VelocityCommand, limits: LimitParameters) -> Velocity:
     """The command with every component within its limit."""
     return (
-        min(limits.forward, max(-limits.backward, command.forward)),
-        clamp(command.left, limits.lateral),
-        clamp(command.turn, limits.turn),
+        min(limits.vx, max(-limits.vx_backward, command.vx)),
+        clamp(command.vy, limits.vy),
+        clamp(command.wz, limits.wz),
     )
 
 
@@ -78,22 +78,22 @@ class VelocitySlew:
         limits: speed and acceleration limits.
 
     Attributes:
-        velocity: given to the footsteps (forward, left, turn) [m/s, m/s, rad/s].
+        velocity: given to the footsteps (vx, vy, wz) [m/s, m/s, rad/s].
         moving: whether any component differs from zero.
     """
 
     def __init__(self, limits: LimitParameters) -> None:
         self._limits = limits
         tick, braking = CONTROL_PERIOD, CONTROL_PERIOD / limits.braking_time
-        self._forward = _Axis(limits.forward_acceleration * tick, braking)
-        self._left = _Axis(limits.lateral_acceleration * tick, braking)
-        self._turn = _Axis(limits.turn_acceleration * tick, braking)
+        self._vx = _Axis(limits.forward_acceleration * tick, braking)
+        self._vy = _Axis(limits.lateral_acceleration * tick, braking)
+        self._wz = _Axis(limits.turn_acceleration * tick, braking)
         self._command: VelocityCommand | None = None
         self._wanted: Velocity = STILL
         self.start(STILL)
 
     def start(self, velocity: Velocity) -> None:
-        """Have a velocity at once (forward, left, turn) [m/s, m/s, rad/s]."""
+        """Have a velocity at once (vx, vy, wz) [m/s, m/s, rad/s]."""
         self.velocity, self.moving = velocity, velocity != STILL
 
     def follow(self, command: VelocityCommand) -> Velocity:
@@ -104,12 +104,12 @@ class VelocitySlew:
         """
         if command is not self._command:
             self._command, self._wanted = command, limited(command, self._limits)
-        (forward, left, turn), wanted = self.velocity, self._wanted
+        (vx, vy, wz), wanted = self.velocity, self._wanted
         self.start(
             (
-                self._forward.towards(forward, wanted[0]),
-                self._left.towards(left, wanted[1]),
-                self._turn.towards(turn, wanted[2]),
+                self._vx.towards(vx, wanted[0]),
+                self._vy.towards(vy, wanted[1]),
+                self._wz.towards(wz, wanted[2]),
             )
         )
         return wanted

@@ -48,7 +48,7 @@ class Gait:
         hurried: whether this footstep is shorter than its timing to catch a fall.
         clock: all times; see `set_clock`.
         timing: of the footsteps to come.
-        lift: height at mid-swing of the swing under way [m]; it follows `timing` in the air.
+        swing_height: of the present swing at mid-swing [m]; it follows `timing` in the air.
         double: whether both feet are meant to carry.
         right_weight: scheduled share of the weight on the right foot [1].
         swing_phase: progress of the swing, 0 before and 1 after it [1].
@@ -68,14 +68,14 @@ class Gait:
         self._contact_decay = parameters.stabilizer.contact_decay
         self._start = max(1, round(gait.start_time / CONTROL_PERIOD))
         self._freeze = gait.landing_freeze
-        self._shortest_single = round(gait.catch_single / CONTROL_PERIOD)
-        self._shortest_double = round(gait.catch_double / CONTROL_PERIOD)
-        shortest_swing = round(gait.shortest_swing / CONTROL_PERIOD)
-        self._window = SwingWindow(gait.swing_start, gait.swing_end, shortest_swing)
+        self._shortest_single = round(gait.capture_single / CONTROL_PERIOD)
+        self._shortest_double = round(gait.capture_double / CONTROL_PERIOD)
+        min_swing_time = round(gait.min_swing_time / CONTROL_PERIOD)
+        self._window = SwingWindow(gait.swing_start, gait.swing_end, min_swing_time)
         self._speed = gait.swing_speed
         self._move = gait.landing_speed * CONTROL_PERIOD
         self._turn = gait.landing_turn * CONTROL_PERIOD
-        self._lift_change = gait.lift_speed * CONTROL_PERIOD
+        self._max_height_change = gait.swing_height_rate * CONTROL_PERIOD
         self.stepping = False
         self.support, self.swing = 0, 1
         self.footholds = list(stance)
@@ -91,7 +91,7 @@ class Gait:
         shift = WeightShift(0, self._tick, self._reference.between(*stance), 0.5)
         self.set_clock(Clock(timing, shift, self._usual))
         self._shift_fixed = True
-        self.lift = timing.lift
+        self.swing_height = timing.swing_height
         self._future = NO_STEPS
         self._walk: tuple[object, ...] | None = None  # what the footholds and ramps are made of
         self._ramps = Ramps(np.empty((0, RAMP)))
@@ -150,7 +150,7 @@ class Gait:
         """Take over a timing as far as it may still change.
 
         A double support under way ends no earlier than in the next tick, a foot in the air
-        has the parameters' `shortest_swing` to come down, and once the landing is frozen the
+        has the parameters' `min_swing_time` to come down, and once the landing is frozen the
         times are.
 
         Returns:
@@ -292,11 +292,11 @@ class Gait:
                 self.landing.row,
             ),
             self._future,
-            (begin, self.lift, not self.held),
+            (begin, self.swing_height, not self.held),
             (
                 self.ticks_left + timing.double + usual.first,
                 timing.double + timing.single,
-                timing.lift,
+                timing.swing_height,
             ),
             self._reference.spot,
             (each if self.held else ticks, each),
@@ -329,14 +329,16 @@ class Gait:
         swing, single, landing = -1, self._single, self.landing
         if self.stepping and not self.held and single.first < self._elapsed <= single.last:
             swing = self.swing
-            self.lift += clamp(self.timing.lift - self.lift, self._lift_change)
+            self.swing_height += clamp(
+                self.timing.swing_height - self.swing_height, self._max_height_change
+            )
         swing_foot_kernel.advance(
             self.feet,
             self._contact_decay,
             swing,
             (landing.x, landing.y, landing.yaw),
             single.last - self._elapsed + 1,
-            (self.lift, self.swing_phase),
+            (self.swing_height, self.swing_phase),
             CONTROL_PERIOD,
         )
 
@@ -367,5 +369,5 @@ class Gait:
         self._shift_fixed = False
         shift = WeightShift(0, double, zmp, right_weight)
         self.set_clock(Clock(self.timing, shift, self._usual))
-        self.lift = self.timing.lift
+        self.swing_height = self.timing.swing_height
         self.landing = self.nominal(self._planner.still)

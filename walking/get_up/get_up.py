@@ -55,7 +55,7 @@ class GetUp:
         self._parameters = parameters
         self._motions = motions
         self._ready: Array = robot.ready
-        self._track = PostureTrack(robot, parameters.joint_speed, angles)
+        self._track = PostureTrack(robot, parameters.max_joint_speed, angles)
         self._postures: list[KeyPosture] = []
         self._rising = False
         self._rest = Rest(parameters)
@@ -92,7 +92,7 @@ class GetUp:
         elif self._track.done and (still or self._waited * CONTROL_PERIOD > LONGEST_REST):
             if self._rising and up[2] > UPRIGHT:
                 self.outcome = Outcome.UP
-            elif self.attempts == self._parameters.attempts:
+            elif self.attempts == self._parameters.max_attempts:
                 self.outcome = Outcome.GAVE_UP
             else:
                 self._set_out(up)
@@ -111,7 +111,7 @@ class GetUp:
         if self._postures:
             self._begin()
         elif self._rising:
-            self._track.aim(self._ready, STAND_TIME * self._parameters.pace)
+            self._track.aim(self._ready, STAND_TIME * self._parameters.time_scale)
             self._waited = 0
         else:
             self._lie_down()
@@ -131,9 +131,9 @@ class GetUp:
         self._begin()
 
     def _begin(self) -> None:
-        posture, pace = self._postures[0], self._parameters.pace
-        self._track.aim(np.array(posture.angles()), posture.time * pace, posture.hold * pace)
+        posture, scale = self._postures[0], self._parameters.time_scale
+        self._track.aim(np.array(posture.angles()), posture.time * scale, posture.hold * scale)
 
     def _lie_down(self) -> None:
         self._postures, self._rising, self._waited = [], False, 0
-        self._track.aim(np.array(STRAIGHT.angles()), STRAIGHT.time * self._parameters.pace)
+        self._track.aim(np.array(STRAIGHT.angles()), STRAIGHT.time * self._parameters.time_scale)

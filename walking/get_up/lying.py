@@ -45,8 +45,8 @@ class Rest:
     """
 
     def __init__(self, parameters: GetUpParameters) -> None:
-        self._rate = parameters.still_rate
-        self._ticks = round(parameters.still_time / CONTROL_PERIOD)
+        self._rate = parameters.rest_rate
+        self._ticks = round(parameters.rest_time / CONTROL_PERIOD)
         self._count = 0
 
     def update(self, gyro: Vector) -> bool:

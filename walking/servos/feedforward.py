@@ -31,7 +31,7 @@ class FeedForward:
         )
         pitch, roll = robot.stiffness[4:6].tolist()
         self._ankles = np.array([robot.mass * GRAVITY, pitch, roll, parameters.gyro_gain])
-        law = parameters.inertia_gain, parameters.inertia_limit, CONTROL_PERIOD
+        law = parameters.inertia_gain, parameters.max_inertia_acceleration, CONTROL_PERIOD
         self._law = np.array(law)
         self._started = False
         self._position = np.zeros(robot.damping.size)

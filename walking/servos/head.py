@@ -25,7 +25,7 @@ class Head:
     ) -> None:
         self._position, self._velocity = np.array([pan, tilt]), np.zeros(2)
         self._limits = np.array(limits)
-        self._law = np.array([parameters.rate, parameters.acceleration, CONTROL_PERIOD])
+        self._law = np.array([parameters.max_rate, parameters.max_acceleration, CONTROL_PERIOD])
 
     def advance(self, target: HeadTarget) -> tuple[float, float]:
         """Set-points of pan and tilt of this tick [rad]."""

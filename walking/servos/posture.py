@@ -28,7 +28,7 @@ class Posture:
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
         arms, ahead = parameters.arms, float(robot.com(robot.ready)[0])
-        self._build = np.array([ahead, arms.swing, arms.limit])
+        self._build = np.array([ahead, arms.swing_gain, arms.max_swing])
         self._ahead = ahead
         self._ready = robot.ready
         self._legs = robot.leg_rows

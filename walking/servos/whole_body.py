@@ -52,7 +52,9 @@ class WholeBody:
         self._posture = Posture(robot, parameters)
         base = self._posture.height
         self._feedforward = FeedForward(robot, parameters.stabilizer, base)
-        self.compensation = SwingCompensation(lipm, leg_reaction(robot, base, parameters.gait.lift))
+        self.compensation = SwingCompensation(
+            lipm, leg_reaction(robot, base, parameters.gait.swing_height)
+        )
         self.pelvis = self._posture.pelvis(gait, (pendulum.x, pendulum.y))
         self.turn_rate = 0.0
         x, y, _ = robot.com(robot.ready).tolist()

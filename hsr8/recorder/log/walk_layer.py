@@ -68,7 +68,7 @@ class WalkLayer:
         self._zmp = tuple(
             Curves(stream, f"/plots/zmp_{axis}", curves) for axis in ("forward", "left")
         )
-        speeds = ("forward [m/s]", "left [m/s]", "turn [rad/s]")
+        speeds = ("vx [m/s]", "vy [m/s]", "wz [rad/s]")
         self._commanded = tuple(
             Curves(
                 stream,
@@ -235,5 +235,5 @@ class _Speedometer:
 
 
 def _words(velocity: tuple[float, ...] | list[float]) -> str:
-    forward, left, turn = velocity
-    return f"{forward:.2f} {left:.2f} m/s {turn:.2f} rad/s"
+    vx, vy, wz = velocity
+    return f"{vx:.2f} {vy:.2f} m/s {wz:.2f} rad/s"

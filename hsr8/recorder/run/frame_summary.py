@@ -91,7 +91,7 @@ class FrameSummary:
         fov: horizontal field of view [rad].
         target: destination in W [m].
         passed: via points passed.
-        velocity: forward, left, turn decided [m/s, m/s, rad/s].
+        velocity: decided (vx, vy, wz) [m/s, m/s, rad/s].
         situation: what velocity modification found.
         psi: partial evaluations lm, sf, ob, way.
         lost: localization has noticed that it is lost.

@@ -95,7 +95,7 @@ def test_a_dry_run_finds_the_same_mistakes(tmp_path, capsys):
         (["--view", "native"], "there is no display"),
         (["--set", "plugin.planner=nope.py:A"], "cannot read nope.py"),
         (["--out", "/dev/null"], "cannot write the run folder /dev/null/quick: Not a directory"),
-        (["--set", "walking.gait.swing_height=0.2"], "walking"),
+        (["--set", "walking.gait.lift=0.2"], "walking"),
     ],
 )
 def test_a_dry_run_refuses_what_the_run_would(tmp_path, monkeypatch, capsys, more, text):

@@ -9,7 +9,7 @@ COURSE = 'mission = {kind = "course"}\n'
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
-        (COURSE + "[robot.speed]\nforward = 0.9", "walking.limits.forward"),
+        (COURSE + "[robot.speed]\nforward = 0.9", "walking.limits.vx"),
         (COURSE + "[vision]\nmin_radius = 0.2", "must be below max_radius = 0.12"),
         (COURSE + "[belief.local_map]\ncell = 1e-9", "more than 1000 cells"),
         (
@@ -29,8 +29,8 @@ COURSE = 'mission = {kind = "course"}\n'
             "walking.gait.swing_start: 0.97 must be below swing_end = 0.97",
         ),
         (
-            COURSE + "[walking.stabilizer]\nshaken_error = 0.015",
-            "walking.stabilizer.calm_error: 0.015 must be below shaken_error = 0.015",
+            COURSE + "[walking.stabilizer]\nslowdown_full_error = 0.015",
+            "walking.stabilizer.slowdown_start_error: 0.015 must be below slowdown_full_error =",
         ),
         (COURSE + '[camera]\nlens = "wide"\nvertical_fov_deg = 60', "lens = 'custom'"),
         (COURSE + "[camera]\nshutter_ms = 80", "is longer than period_ms = 60"),

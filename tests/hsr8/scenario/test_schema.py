@@ -112,4 +112,4 @@ def test_a_scenario_does_not_change():
     with pytest.raises(ValidationError):
         scenario.duration = 1.0
     with pytest.raises(FrozenInstanceError):
-        scenario.walking.gait.lift = 1.0
+        scenario.walking.gait.swing_height = 1.0

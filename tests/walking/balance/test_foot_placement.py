@@ -120,10 +120,10 @@ def test_what_the_ankles_hold_moves_no_landing(robot, generator):
     ],
 )
 def test_mirrored_errors_move_mirrored_landings(robot, generator, velocity, error):
-    forward, left, turn = velocity
+    vx, vy, wz = velocity
     sides = []
     for side, first in ((1.0, 0), (-1.0, 1)):
-        command = VelocityCommand(forward + 0.05, side * left, side * turn)
+        command = VelocityCommand(vx + 0.05, side * vy, side * wz)
         walk = Pendulum(robot, generator, first=first).to_swing(command)
         walk.tick(command, (error[0], side * error[1]))
         landing, placement = walk.gait.landing, walk.placement

@@ -37,9 +37,9 @@ def test_a_sway_within_the_cycle_is_left_alone():
 
 def test_it_moves_slowly_and_not_too_far():
     found = walk((-0.1, 0.1))
-    assert found[-1] == pytest.approx((PARAMETERS.pressure_offset, -PARAMETERS.pressure_offset))
+    assert found[-1] == pytest.approx((PARAMETERS.max_com_offset, -PARAMETERS.max_com_offset))
     fastest = max(abs(b[0] - a[0]) for a, b in pairwise(found))
-    assert fastest <= PARAMETERS.pressure_speed * CONTROL_PERIOD + 1e-12
+    assert fastest <= PARAMETERS.max_com_offset_rate * CONTROL_PERIOD + 1e-12
 
 
 def test_footsteps_that_balance_are_not_learned_from():

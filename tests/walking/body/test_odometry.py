@@ -114,7 +114,7 @@ def test_increments_do_not_depend_on_where_the_odometry_frame_lies():
 
 def test_covariance_is_that_of_a_walk_with_unseen_motions():
     """Monte Carlo of the model itself: unseen motions in every tick, replayed exactly."""
-    parameters = OdometryParameters(forward_noise=0.004, left_noise=0.002, yaw_drift=0.01)
+    parameters = OdometryParameters(forward_noise=0.004, lateral_noise=0.002, yaw_drift=0.01)
     path = winding(200)
     readings = driven(path, parameters)
     rng = np.random.default_rng(5)
@@ -184,7 +184,7 @@ def stepped(slip, parameters):
 
 
 def test_feet_that_slide_against_each_other_are_held_against_the_odometry():
-    parameters = OdometryParameters(slip_share=0.5)
+    parameters = OdometryParameters(slip_ratio=0.5)
     grown = stepped(0.004, parameters) - stepped(0.0, parameters)
     assert grown[:2, :2] == pytest.approx(0.002**2 * np.eye(2), rel=1e-4, abs=1e-9)
     assert grown[2] == pytest.approx(np.zeros(3), abs=1e-9)

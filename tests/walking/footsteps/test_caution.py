@@ -17,13 +17,13 @@ PARAMETERS = StabilizerParameters()
 
 def test_errors_of_an_even_floor_slow_nothing():
     caution = Caution(PARAMETERS)
-    assert {caution.update(PARAMETERS.calm_error * k / 10) for k in range(11)} == {1.0}
+    assert {caution.update(PARAMETERS.slowdown_start_error * k / 10) for k in range(11)} == {1.0}
 
 
 def test_the_share_falls_with_the_error_down_to_the_least():
     shares = [Caution(PARAMETERS).update(0.001 * k) for k in range(100)]
     assert shares == sorted(shares, reverse=True)
-    assert shares[-1] == pytest.approx(PARAMETERS.caution_share)
+    assert shares[-1] == pytest.approx(PARAMETERS.min_speed_ratio)
 
 
 def test_an_error_is_forgotten_with_its_time_constant():
@@ -31,7 +31,7 @@ def test_an_error_is_forgotten_with_its_time_constant():
     caution.update(error)
     for _ in range(round(0.5 / CONTROL_PERIOD)):
         share = caution.update(0.0)
-    left = error * exp(-0.5 / PARAMETERS.caution_time)
+    left = error * exp(-0.5 / PARAMETERS.slowdown_time)
     assert share == pytest.approx(Caution(PARAMETERS).update(left))
     for _ in range(round(5.0 / CONTROL_PERIOD)):
         share = caution.update(0.0)

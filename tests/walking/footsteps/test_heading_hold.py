@@ -53,5 +53,5 @@ def test_one_rate_serves_a_cycle():
 
 def test_its_rate_is_limited_and_mirrored():
     one, other = HeadingHold(PARAMETERS), HeadingHold(PARAMETERS)
-    assert one.rate(2.0, renew=True) == PARAMETERS.heading_rate
-    assert other.rate(-2.0, renew=True) == -PARAMETERS.heading_rate
+    assert one.rate(2.0, renew=True) == PARAMETERS.max_heading_rate
+    assert other.rate(-2.0, renew=True) == -PARAMETERS.max_heading_rate

@@ -20,9 +20,9 @@ PLANNER = FootstepPlanner(GAIT, LIMITS, SOLE)
 LEFT = Foothold(True, 0.0, GAIT.half_stance, 0.0)
 RIGHT = Foothold(False, 0.0, -GAIT.half_stance, 0.0)
 velocities = st.tuples(
-    st.floats(-LIMITS.backward, LIMITS.forward),
-    st.floats(-LIMITS.lateral, LIMITS.lateral),
-    st.floats(-LIMITS.turn, LIMITS.turn),
+    st.floats(-LIMITS.vx_backward, LIMITS.vx),
+    st.floats(-LIMITS.vy, LIMITS.vy),
+    st.floats(-LIMITS.wz, LIMITS.wz),
 )
 yaws = st.floats(-pi, pi)
 
@@ -58,9 +58,9 @@ def middle(feet):
 
 @given(velocities)
 def test_mirrored_velocity_gives_mirrored_footholds(velocity):
-    forward, left, turn = velocity
+    vx, vy, wz = velocity
     here = landed(LEFT, velocity)
-    there = landed(RIGHT, (forward, -left, -turn))
+    there = landed(RIGHT, (vx, -vy, -wz))
     assert fields(mirror(here)) == (there.left, (there.x, there.y, there.yaw))
 
 
@@ -128,8 +128,8 @@ def test_the_foot_on_the_side_of_the_motion_opens():
 @given(velocities)
 def test_a_walk_is_quickened_before_its_footsteps_are_cut(velocity):
     timing = PLANNER.cadence(velocity)
-    assert GAIT.shortest_time - 0.005 < timing.duration <= GAIT.footstep_time
-    quickest = timing.duration == pytest.approx(GAIT.shortest_time)
+    assert GAIT.min_footstep_time - 0.005 < timing.duration <= GAIT.footstep_time
+    quickest = timing.duration == pytest.approx(GAIT.min_footstep_time)
     cut = set(PLANNER.stride_limits(velocity, timing.duration - 0.0025)) - {Limit.CLEARANCE}
     assert quickest or not cut
 
@@ -157,7 +157,7 @@ def test_a_slow_walk_keeps_the_usual_time():
 @pytest.mark.parametrize("time", [1e-9, 0.008, 0.34])
 @pytest.mark.parametrize("share", [1e-9, 0.5, 1.0 - 1e-9])
 def test_the_shortest_footstep_has_a_tick_of_either_support(time, share):
-    gait = GaitParameters(footstep_time=time, shortest_time=time, double_support=share)
+    gait = GaitParameters(footstep_time=time, min_footstep_time=time, double_support=share)
     timing = FootstepPlanner(gait, LIMITS, SOLE).cadence((0.1, 0.0, 0.0))
     assert timing.double >= 1
     assert timing.single >= 1

@@ -39,8 +39,8 @@ def walk(velocity, slip, *, cycles=25, disturbed=lambda tick: False, hold=None, 
 
 
 @given(st.floats(-0.4, 0.4), st.floats(-0.15, 0.15), st.floats(-1.5, 1.5), slips, slips)
-def test_a_steady_walk_on_any_arc_gets_its_velocity(forward, left, turn, ahead, aside):
-    found = walk((forward, left, turn), (ahead, aside))
+def test_a_steady_walk_on_any_arc_gets_its_velocity(vx, vy, wz, ahead, aside):
+    found = walk((vx, vy, wz), (ahead, aside))
     assert found[-1] == pytest.approx((-ahead, -aside), abs=1e-4)
 
 
@@ -69,6 +69,6 @@ def test_footsteps_that_balance_are_not_learned_from():
 def test_it_is_limited_and_mirrored():
     one = walk((0.2, 0.05, 0.4), (-0.1, 0.1))
     other = walk((0.2, -0.05, -0.4), (-0.1, -0.1))
-    limit = PARAMETERS.speed_correction
+    limit = PARAMETERS.max_speed_correction
     assert one[-1] == pytest.approx((limit, -limit))
     assert other == [(x, pytest.approx(-y, abs=1e-12)) for x, y in one]

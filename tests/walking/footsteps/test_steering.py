@@ -39,15 +39,15 @@ def mirrored(placement):
 
 
 @given(st.floats(-0.2, 0.2), st.floats(-0.05, 0.05), st.floats(-0.3, 0.3), either)
-def test_a_wish_within_the_limits_comes_through_unaltered(forward, left, turn, selective):
+def test_a_wish_within_the_limits_comes_through_unaltered(vx, vy, wz, selective):
     steering = steer(selective=selective)
-    follow(steering, VelocityCommand(forward, left, turn), ticks=LONG)
-    assert steering.velocity == (forward, left, turn)
+    follow(steering, VelocityCommand(vx, vy, wz), ticks=LONG)
+    assert steering.velocity == (vx, vy, wz)
     assert set(steering.bound) <= STRIDE_LIMITS
     wish, time = steering.wish(STILL), steering.timing.duration
-    assert wish == PLANNER.strides((forward, left, turn), time)
+    assert wish == PLANNER.strides((vx, vy, wz), time)
     if not steering.bound:
-        assert PLANNER.velocity(wish, time) == pytest.approx((forward, left, turn), abs=1e-9)
+        assert PLANNER.velocity(wish, time) == pytest.approx((vx, vy, wz), abs=1e-9)
 
 
 @given(walks, either)
@@ -91,7 +91,7 @@ def test_mirrored_commands_give_the_mirrored_wish(walk, selective):
     one, other = steer(selective=selective), steer(selective=selective)
     for command, ticks in walk:
         follow(one, command, ticks=ticks)
-        follow(other, VelocityCommand(command.forward, -command.left, -command.turn), ticks=ticks)
+        follow(other, VelocityCommand(command.vx, -command.vy, -command.wz), ticks=ticks)
         right, left = one.wish(STILL), other.wish(STILL)
         assert right.right == pytest.approx(mirrored(left.left), abs=1e-12)
         assert right.left == pytest.approx(mirrored(left.right), abs=1e-12)
@@ -118,7 +118,7 @@ def test_to_stand_is_obeyed_at_once_where_the_pattern_selects_and_in_the_braking
 
 def test_footsteps_that_close_the_stance_keep_the_time_of_the_walk():
     steering = steer(selective=True)
-    follow(steering, VelocityCommand(LIMITS.forward), ticks=LONG)
+    follow(steering, VelocityCommand(LIMITS.vx), ticks=LONG)
     quick = steering.timing
     assert steering.pace(PLANNER.cadence(STILL), stepping=True) == quick
     follow(steering, VelocityCommand())

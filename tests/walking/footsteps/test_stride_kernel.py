@@ -23,17 +23,17 @@ def test_compiled_it_is_what_it_says(plainly, velocity):
 
 @given(velocities)
 def test_the_other_way_round_the_feet_change_places(velocity):
-    forward, left, turn = velocity
+    vx, vy, wz = velocity
     here, there, moved = stride_kernel.strides(velocity, TIME, LIMITS, BUILD)
-    mirrored = stride_kernel.strides((forward, -left, -turn), TIME, LIMITS, BUILD)
+    mirrored = stride_kernel.strides((vx, -vy, -wz), TIME, LIMITS, BUILD)
     assert mirrored == ((there[0], -there[1], -there[2]), (here[0], -here[1], -here[2]), moved)
 
 
 @given(velocities)
 def test_two_footsteps_move_the_stance_by_the_velocity_where_no_limit_binds(velocity):
     right, left, moved = stride_kernel.strides(velocity, TIME, LIMITS, BUILD)
-    forward, sideways, turn = velocity
-    longest = (abs(forward) * TIME, 2.0 * abs(sideways) * TIME, 2.0 * abs(turn) * TIME)
+    vx, vy, wz = velocity
+    longest = (abs(vx) * TIME, 2.0 * abs(vy) * TIME, 2.0 * abs(wz) * TIME)
     if moved or any(np.array(longest) > LIMITS):
         return
     middle, heading = 0.0, 0.0
@@ -42,8 +42,8 @@ def test_two_footsteps_move_the_stance_by_the_velocity_where_no_limit_binds(velo
         way = x + 1j * y - 1j * stance - 1j * stance * np.exp(1j * turned)
         middle += np.exp(-0.5j * turned) * way
         heading += turned
-    assert middle == pytest.approx(2.0 * TIME * (forward + 1j * sideways), abs=1e-12)
-    assert heading == pytest.approx(2.0 * TIME * turn, abs=1e-12)
+    assert middle == pytest.approx(2.0 * TIME * (vx + 1j * vy), abs=1e-12)
+    assert heading == pytest.approx(2.0 * TIME * wz, abs=1e-12)
 
 
 @given(st.floats(-0.2, 0.2), st.floats(-0.5, 0.5), st.sampled_from((-1.0, 1.0)))

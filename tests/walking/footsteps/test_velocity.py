@@ -15,21 +15,21 @@ speeds = st.floats(-2.0, 2.0)
 
 
 @given(speeds, speeds, speeds)
-def test_limited_velocity_is_within_every_limit(forward, left, turn):
-    f, s, t = limited(VelocityCommand(forward, left, turn), LIMITS)
-    assert -LIMITS.backward <= f <= LIMITS.forward
-    assert abs(s) <= LIMITS.lateral
-    assert abs(t) <= LIMITS.turn
-    ahead = LIMITS.forward if f >= 0.0 else LIMITS.backward
-    norm = (f / ahead) ** 2 + (s / LIMITS.lateral) ** 2 + (t / LIMITS.turn) ** 2
+def test_limited_velocity_is_within_every_limit(vx, vy, wz):
+    f, s, t = limited(VelocityCommand(vx, vy, wz), LIMITS)
+    assert -LIMITS.vx_backward <= f <= LIMITS.vx
+    assert abs(s) <= LIMITS.vy
+    assert abs(t) <= LIMITS.wz
+    ahead = LIMITS.vx if f >= 0.0 else LIMITS.vx_backward
+    norm = (f / ahead) ** 2 + (s / LIMITS.vy) ** 2 + (t / LIMITS.wz) ** 2
     assert norm <= LIMITS.combined**2 + 1e-9
 
 
 @given(speeds, speeds, speeds)
-def test_limits_are_idempotent_and_mirror(forward, left, turn):
-    once = limited(VelocityCommand(forward, left, turn), LIMITS)
+def test_limits_are_idempotent_and_mirror(vx, vy, wz):
+    once = limited(VelocityCommand(vx, vy, wz), LIMITS)
     assert limited(VelocityCommand(*once), LIMITS) == pytest.approx(once)
-    mirrored = limited(VelocityCommand(forward, -left, -turn), LIMITS)
+    mirrored = limited(VelocityCommand(vx, -vy, -wz), LIMITS)
     assert mirrored == pytest.approx((once[0], -once[1], -once[2]))
 
 
@@ -56,7 +56,7 @@ def test_slew_comes_to_an_exact_stop():
 @pytest.mark.parametrize("wanted", [0.0, 0.1, -0.3])
 def test_a_walk_is_braked_in_the_braking_time_and_reverses_through_rest(wanted):
     slew = VelocitySlew(LIMITS)
-    slew.start((LIMITS.forward, 0.0, 0.0))
+    slew.start((LIMITS.vx, 0.0, 0.0))
     speeds = [slew.velocity[0]]
     while slew.velocity[0] > max(wanted, 0.0):
         slew.follow(VelocityCommand(wanted))

@@ -86,7 +86,7 @@ def test_feet_move_without_jumps_and_only_in_the_air(gait):
     path = np.array(rows)
     assert np.abs(np.diff(path[:, [0, 2]], axis=0)).max() < 0.02
     for x, height in ((0, 1), (2, 3)):
-        assert path[:, height].max() == pytest.approx(GAIT.lift, rel=0.01)
+        assert path[:, height].max() == pytest.approx(GAIT.swing_height, rel=0.01)
         moved = np.abs(np.diff(path[:, x])) > 1e-3
         assert (path[1:, height][moved] > 0.0).all()
 

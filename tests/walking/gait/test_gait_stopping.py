@@ -17,10 +17,10 @@ PLANNER = FootstepPlanner(
     PARAMETERS.gait, LIMITS, Sole(centre=0.01, half_length=0.0525, half_width=0.03)
 )
 FASTEST = [
-    (LIMITS.forward, 0.0, 0.0),
-    (-LIMITS.backward, 0.0, 0.0),
-    (0.0, LIMITS.lateral, 0.0),
-    (0.0, 0.0, -LIMITS.turn),
+    (LIMITS.vx, 0.0, 0.0),
+    (-LIMITS.vx_backward, 0.0, 0.0),
+    (0.0, LIMITS.vy, 0.0),
+    (0.0, 0.0, -LIMITS.wz),
     (0.4, -0.1, 0.8),
 ]
 

@@ -134,7 +134,7 @@ def test_standing_the_pelvis_comes_back():
 
 def test_the_reaction_is_read_off_the_model(robot):
     parameters = WalkingParameters()
-    height, lift = parameters.pattern.pelvis_height, parameters.gait.lift
+    height, lift = parameters.pattern.pelvis_height, parameters.gait.swing_height
     reaction = leg_reaction(robot, height, lift)
     # A leg is a quarter of the robot; about half of it goes with the foot.
     assert 0.08 < reaction.weight * 9.81 < 0.2
@@ -146,7 +146,7 @@ def zmp_errors(robot, body, reaction):
     """Multibody ZMP of the planned motion less the planned one, forward at 0.2 m/s [m]."""
     usual = WalkingParameters()
     # The pads of a body without dynamics know nothing of its centre of pressure.
-    parameters = replace(usual, stabilizer=replace(usual.stabilizer, pressure_gain=0.0))
+    parameters = replace(usual, stabilizer=replace(usual.stabilizer, com_offset_gain=0.0))
     engine = WalkingEngine(robot, parameters)
     engine._whole_body.compensation = SwingCompensation(engine._lipm, reaction)
     rows = []
@@ -172,7 +172,7 @@ def zmp_errors(robot, body, reaction):
 
 def test_the_multibody_zmp_comes_near_the_planned_one(robot, ideal_body):
     parameters = WalkingParameters()
-    reaction = leg_reaction(robot, parameters.pattern.pelvis_height, parameters.gait.lift)
+    reaction = leg_reaction(robot, parameters.pattern.pelvis_height, parameters.gait.swing_height)
     errors = zmp_errors(robot, ideal_body, reaction)
     # Without the compensation 10 mm and 6 mm.
     assert np.sqrt((errors**2).mean(axis=0)) == pytest.approx([0.0, 0.0], abs=0.005)

@@ -83,7 +83,7 @@ def test_it_waits_until_it_lies_still(get_up):
 def test_what_does_not_raise_the_trunk_is_tried_again_and_then_given_up(get_up):
     follow(get_up, FRONT)
     assert get_up.outcome is Outcome.GAVE_UP
-    assert get_up.attempts == PARAMETERS.attempts
+    assert get_up.attempts == PARAMETERS.max_attempts
 
 
 def test_it_stands_in_the_ready_posture_once_all_has_gone_well(robot, get_up):
@@ -103,4 +103,4 @@ def test_set_points_keep_the_limits_of_angle_and_speed(robot):
         assert (rows > robot.lower - 1e-12).all()
         assert (rows < robot.upper + 1e-12).all()
         speed = np.abs(np.diff(rows, axis=0)).max() / CONTROL_PERIOD
-        assert speed <= PARAMETERS.joint_speed * (1.0 + 1e-9)
+        assert speed <= PARAMETERS.max_joint_speed * (1.0 + 1e-9)

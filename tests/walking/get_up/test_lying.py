@@ -46,7 +46,7 @@ def test_the_mirror_swaps_left_and_right_alone(angle):
 
 
 def test_rest_takes_its_time_and_starts_anew_after_a_jolt():
-    parameters = GetUpParameters(still_rate=0.3, still_time=0.05)
+    parameters = GetUpParameters(rest_rate=0.3, rest_time=0.05)
     rest = Rest(parameters)
     slow, fast = (0.2, -0.2, 0.1), (0.0, 0.0, -0.4)
     assert [rest.update(slow) for _ in range(11)] == [False] * 9 + [True] * 2

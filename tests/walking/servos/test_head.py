@@ -30,8 +30,8 @@ def test_limits_hold_for_any_targets(moves):
     path = follow([HeadTarget(pan, tilt) for pan, tilt, n in moves for _ in range(n)])
     rates = np.diff(path, axis=0) / CONTROL_PERIOD
     changes = np.diff(np.vstack([np.zeros(2), rates]), axis=0) / CONTROL_PERIOD
-    assert np.abs(rates).max() <= PARAMETERS.rate + 1e-9
-    assert np.abs(changes).max() <= PARAMETERS.acceleration + 1e-6
+    assert np.abs(rates).max() <= PARAMETERS.max_rate + 1e-9
+    assert np.abs(changes).max() <= PARAMETERS.max_acceleration + 1e-6
     assert np.abs(path[:, 0]).max() <= 1.58
     assert path[:, 1].max() <= 0.36
 
