@@ -53,7 +53,9 @@ class PluginPlanner:
             velocity=_velocity(motion.velocity, who),
             direction=_number(motion.direction, "direction", who),
             speed=_number(motion.speed, "speed", who),
-            glance=None if motion.glance is None else _number(motion.glance, "glance", who),
+            look_request=None
+            if motion.look_request is None
+            else _number(motion.look_request, "look_request", who),
         )
 
 

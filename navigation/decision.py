@@ -116,7 +116,7 @@ class MotionDecision:
             own.
         virtual_obstacles: in force.
         extended_radii: (track id, S_oe) of the obstacles the field uses.
-        glance: direction in W of ground that the body turned aside for; None for none [rad].
+        look_request: direction in W of ground that the body turned aside for; None for none [rad].
         field: what the direction was taken from, for those who watch; None for a planner that
             has no field.
     """
@@ -127,5 +127,5 @@ class MotionDecision:
     situation: str = "free"
     virtual_obstacles: tuple[VirtualObstacle, ...] = ()
     extended_radii: tuple[tuple[int, float], ...] = ()
-    glance: float | None = None
+    look_request: float | None = None
     field: DirectionField | None = dataclasses.field(default=None, repr=False, compare=False)

@@ -85,7 +85,7 @@ class ObstacleSet:
         )
 
 
-def largest_deviation(covariance: Array) -> float:
+def max_deviation(covariance: Array) -> float:
     """sqrt(lambda_max) of a symmetric matrix (2, 2)."""
     (xx, xy), (_, yy) = covariance.tolist()
     return deviation(xx, xy, yy)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
-from navigation.obstacle_set import ObstacleSet, largest_deviation
+from navigation.obstacle_set import ObstacleSet, max_deviation
 from navigation.parameters.gaze import EvaluationParameters
 from navigation.value import value
 
@@ -30,11 +30,11 @@ class SamplePoints:
     points: Array
 
     @classmethod
-    def polar(cls, parameters: EvaluationParameters, pan_limit: float) -> "SamplePoints":
-        """Rings from `d_nm` to `d_fm`, rays to `pan_limit` [rad] on both sides of ahead."""
+    def polar(cls, parameters: EvaluationParameters, max_pan: float) -> "SamplePoints":
+        """Rings from `d_nm` to `d_fm`, rays to `max_pan` [rad] on both sides of ahead."""
         p = parameters
         rings = np.arange(p.d_nm, p.d_fm + 1e-9, p.ring_step)
-        count = int(pan_limit / p.ray_step + 1e-9)
+        count = int(max_pan / p.ray_step + 1e-9)
         return cls.of(rings, p.ray_step * np.arange(-count, count + 1, dtype=np.float64))
 
     @classmethod
@@ -85,7 +85,7 @@ def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:
         pose_covariance: of x, y, heading (3, 3).
         parameters: thresholds; `t_heading` = 0 ignores the heading.
     """
-    psi = largest_deviation(pose_covariance[:2, :2]) / parameters.t_sf
+    psi = max_deviation(pose_covariance[:2, :2]) / parameters.t_sf
     if parameters.t_heading > 0.0:
         psi = max(psi, float(np.sqrt(max(pose_covariance[2, 2], 0.0))) / parameters.t_heading)
     return min(1.0, psi)
@@ -100,14 +100,14 @@ def psi_obstacle(
         obstacles: n obstacles in W.
         position: of the robot in W (2,) [m].
         velocity: of the robot in W (2,) [m/s].
-        parameters: `omega_o`, `gamma_o` and `least_distance`.
+        parameters: `omega_o`, `gamma_o` and `min_distance`.
 
     Returns:
         (n,), each in [0, 1].
     """
     relative = obstacles.velocity - velocity
     offset = obstacles.position - position
-    distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), parameters.least_distance)
+    distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), parameters.min_distance)
     speed = np.hypot(relative[:, 0], relative[:, 1])
     alpha = parameters.omega_o * obstacles.sigma * speed / distance
     return np.minimum(1.0, alpha / parameters.gamma_o)

@@ -258,7 +258,7 @@ def main(
         sensing: what the robot knows.
         first: first seed; 0-99 are for tuning, 1000 and above for reports.
         runs: number of seeds.
-        settings: changed settings, like navigation.filter.margin=0.04.
+        settings: changed settings, like navigation.safety_filter.margin=0.04.
         out: file for one JSON line per run.
         quiet: do not print failures as they come.
     """

@@ -32,7 +32,10 @@ from study_page import STAND_INS
 Array = NDArray[np.float64]
 
 PAPER = "navigation.profile=paper"
-WITHOUT = ("navigation.mover.virtual_obstacle=off", "navigation.mover.velocity_modification=off")
+WITHOUT = (
+    "navigation.moving_obstacles.virtual_obstacle=off",
+    "navigation.moving_obstacles.velocity_modification=off",
+)
 CASES = {
     "a": ("fig4a", "(a) outside the band: another speed", {"brake", "accelerate"}, 27.0),
     "b": ("fig4b", "(b) inside the band: escape", {"escape"}, 24.0),

@@ -81,7 +81,7 @@ def panels() -> list[FieldPanel]:
         u, obstacles = p.univector, obstacle()
         s_oe = extended_radius(obstacles, 0.0, np.zeros(1), u)
         scene = FieldScene(obstacles, s_oe, np.zeros(1), TARGET, GOAL_HEADING)
-        field = MotionField(u, p.mover)
+        field = MotionField(u, p.moving_obstacles)
         if p is paper:
             made.append(
                 _panel(

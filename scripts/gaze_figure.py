@@ -96,7 +96,7 @@ def draw(out: Path) -> None:
     belief, task = moment(), Task(np.array([2.0, 0.0]), 0.0, False, 0, False, False)
     gaze = GazePlanner(parameters, LIMITS, BEACONS, HFOV, VFOV)
     decision = gaze.choose(belief, task, None)
-    samples = SamplePoints.polar(parameters.evaluation, parameters.gaze.pan_limit)
+    samples = SamplePoints.polar(parameters.evaluation, parameters.gaze.max_pan)
     beacons = np.array([BEACONS[name] for name in sorted(BEACONS)])
     scene = gaze_scene(belief, None, samples, beacons, parameters)
     votes = deadline_votes(scene, belief, 0.0, LIMITS.forward, parameters)

@@ -64,7 +64,7 @@ def recorded() -> RecordedRun:
 def looks(ran: RecordedRun) -> list[Look]:
     """Every decision that moved the gaze far, best first: many obstacles, high evaluations."""
     p = ran.scenario.navigation
-    samples = SamplePoints.polar(p.evaluation, p.gaze.pan_limit)
+    samples = SamplePoints.polar(p.evaluation, p.gaze.max_pan)
     found = []
     for k in range(1, len(ran.frames) - 6):
         before, frame = ran.frames[k - 1], ran.frames[k]
@@ -250,8 +250,8 @@ def _draw_scene(axes: Axes, look: Look) -> None:
 def _draw_gaze_map(made: Figure, axes: Axes, look: Look) -> None:
     p, gm = look.parameters.gaze, look.frame.gaze.gaze_map
     step = degrees(p.step)
-    pan = degrees(p.pan_limit) + 0.5 * step
-    low, high = degrees(p.tilt_min) - 0.5 * step, degrees(p.tilt_max) + 0.5 * step
+    pan = degrees(p.max_pan) + 0.5 * step
+    low, high = degrees(p.min_tilt) - 0.5 * step, degrees(p.max_tilt) + 0.5 * step
     # Pan grows to the left, as in the image.
     shown = axes.imshow(
         gm[:, ::-1],

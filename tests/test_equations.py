@@ -60,6 +60,8 @@ def test_docstrings_bear_the_number_of_their_equation(number):
 
 def test_keys_in_the_tables_are_keys_of_a_scenario():
     reference = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
-    for section, key in set(re.findall(r"\(`(evaluation|univector|gaze|mover)\.(\w+)`", TEXT)):
+    for section, key in set(
+        re.findall(r"\(`(evaluation|univector|gaze|moving_obstacles)\.(\w+)`", TEXT)
+    ):
         assert f"## `[navigation.{section}]`" in reference
         assert f"| `{key}` |" in reference, key

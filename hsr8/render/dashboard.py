@@ -84,7 +84,7 @@ class Dashboard:
         self._timeline = timeline
         gaze = scenario.navigation.gaze
         panel = round(PANEL * unit)
-        self._panel = GazePanel(max(panel, 64), gaze.pan_limit, (gaze.tilt_min, gaze.tilt_max))
+        self._panel = GazePanel(max(panel, 64), gaze.max_pan, (gaze.min_tilt, gaze.max_tilt))
         self._with_panel = panel >= LEAST_PANEL and panel < self.scene_size[0]
         self._picture: Image = np.full((height, width, 3), FRAME, np.uint8)
 

@@ -22,17 +22,17 @@ class GazePanel:
 
     Args:
         width: of the panel [pixel].
-        pan_limit: largest pan of the map to either side [rad].
+        max_pan: largest pan of the map to either side [rad].
         tilts: lowest and highest tilt of the map [rad].
     """
 
-    def __init__(self, width: int, pan_limit: float, tilts: tuple[float, float]) -> None:
-        self._pan_limit, self._tilts = pan_limit, tilts
+    def __init__(self, width: int, max_pan: float, tilts: tuple[float, float]) -> None:
+        self._max_pan, self._tilts = max_pan, tilts
         self._pad = pad = max(4, width // 28)
         self._letters = font_size(width / 21)
         self._map = (
             width - 2 * pad,
-            max(8, round((width - 2 * pad) * (tilts[1] - tilts[0]) / (2.0 * pan_limit))),
+            max(8, round((width - 2 * pad) * (tilts[1] - tilts[0]) / (2.0 * max_pan))),
         )
         self._top = self._letters + 2 * pad
         self.size = (width, self._top + self._map[1] + 3 * pad + self._letters)
@@ -81,7 +81,7 @@ class GazePanel:
     def _pixel(self, gaze: tuple[float, float]) -> tuple[int, int]:
         """Column and row of a gaze in the panel."""
         low, high = self._tilts
-        u = (self._pan_limit - gaze[0]) / (2.0 * self._pan_limit)
+        u = (self._max_pan - gaze[0]) / (2.0 * self._max_pan)
         v = (high - gaze[1]) / (high - low)
         u, v = min(1.0, max(0.0, u)), min(1.0, max(0.0, v))
         column = self._pad + round(u * (self._map[0] - 1))

@@ -9,6 +9,16 @@ from hsr8.scenario.toml_lines import Path
 # Old key -> new key, both with dots, without indices of lists; a section covers the keys below it.
 # Sorted, one entry per line.
 RENAMED: dict[str, str] = {
+    "navigation.body": "navigation.velocity_mapping",
+    "navigation.filter": "navigation.safety_filter",
+    "navigation.gate": "navigation.unseen_ground",
+    "navigation.gaze.box_share": "navigation.gaze.box_fraction",
+    "navigation.gaze.pan_limit": "navigation.gaze.max_pan",
+    "navigation.gaze.tilt_max": "navigation.gaze.max_tilt",
+    "navigation.gaze.tilt_min": "navigation.gaze.min_tilt",
+    "navigation.mover": "navigation.moving_obstacles",
+    "navigation.shoulder": "navigation.rear_check",
+    "navigation.way_search": "navigation.waypoint_search",
     "own": "plugin",
     "vision.colour_table": "vision.color_table",
     "walking.arms.limit": "walking.arms.max_swing",
@@ -60,6 +70,8 @@ RENAMED: dict[str, str] = {
 # Key -> old value -> new value.
 RENAMED_VALUES: dict[str, dict[str, str]] = {
     "camera.source": {"all-round": "omnidirectional", "egl": "rendered"},
+    "navigation.evaluation.map_ratio": {"share": "fraction"},
+    "navigation.moving_obstacles.virtual_obstacle": {"own": "uncapped"},
 }
 
 CONSTANTS = "constants"  # the table of constants has the same keys

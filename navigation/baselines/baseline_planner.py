@@ -10,9 +10,9 @@ from navigation.angles import wrap
 from navigation.baselines.planning_scene import BodyEnvelope, PlanningScene
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task
-from navigation.motion.body_command import idle_velocity
 from navigation.motion.facing import arriving
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
+from navigation.motion.velocity_mapping import idle_velocity
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 
@@ -49,7 +49,7 @@ class BaselinePlanner:
         self._limits = limits
         self._avoidance = avoidance
         self._envelope = BodyEnvelope(
-            limits, parameters.body.turn_gain, parameters.filter.turn_change
+            limits, parameters.velocity_mapping.turn_gain, parameters.safety_filter.turn_change
         )
         self._arrival = ArrivalSide(parameters.univector)
         self._body = np.zeros(3)
@@ -63,7 +63,7 @@ class BaselinePlanner:
         """
         heading = float(belief.pose[2])
         if task.done or belief.lost:
-            turn = self._parameters.body.lost_turn
+            turn = self._parameters.velocity_mapping.lost_turn_rate
             self._body = idle_velocity(not task.done, turn, self._limits)
             return MotionDecision(self._body, heading)
         scene = self._scene(belief, task)
@@ -87,7 +87,7 @@ class BaselinePlanner:
             body=self._body,
             obstacles=obstacles,
             swelling=np.where(
-                obstacles.static, 0.0, np.minimum(p.planner.sigma_limit, obstacles.sigma)
+                obstacles.static, 0.0, np.minimum(p.planner.max_sigma, obstacles.sigma)
             ),
             task=task,
             course=course,

@@ -26,7 +26,7 @@ class PlainUnivector:
         self._eta_vo = p.eta_vo
         self._s_robot = parameters.univector.s_robot
         shape = replace(parameters.univector, d_e=p.d_e, d_b=p.d_b, k_r=p.k_r)
-        self._field = MotionField(shape, parameters.mover)
+        self._field = MotionField(shape, parameters.moving_obstacles)
 
     def decide(self, scene: PlanningScene) -> Array:
         """Body velocity along the field (3,) [m/s, m/s, rad/s]."""

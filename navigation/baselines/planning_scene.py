@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.decision import SpeedLimits, Task
-from navigation.motion.body_command import body_velocity
+from navigation.motion.velocity_mapping import body_velocity
 from navigation.obstacle_set import ObstacleSet
 from navigation.transform import velocity_in_world
 

@@ -44,7 +44,7 @@ class PotentialField:
         approach = np.maximum(0.0, np.sum(relative * out, axis=1))
         braking = p.reaction * approach + approach**2 / (2.0 * s.envelope.limits.acceleration)
         braking = np.where(s.obstacles.speed > 0.0, braking, 0.0)
-        effective = np.maximum(p.least_gap, gap - braking)
+        effective = np.maximum(p.min_gap, gap - braking)
         strength = p.gain * np.maximum(0.0, 1.0 / effective - 1.0 / p.influence)
         strength = strength * s.yielding(effective)
         # The side: that of the wanted way; for a mover, away from where it goes.

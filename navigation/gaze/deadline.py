@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap, wrap_array
 from navigation.belief.belief import Belief, Motion, Track
-from navigation.gaze.gate_vote import gate_vote
 from navigation.gaze.gaze_map import Votes
 from navigation.gaze.integrated import beacon_votes
 from navigation.gaze.scene import GazeScene, relative
+from navigation.gaze.unseen_ground_vote import unseen_ground_vote
 from navigation.parameters.gaze import GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints, psi_self
@@ -33,13 +33,13 @@ def deadline_votes(
     speed: float,
     parameters: NavigationParameters,
     *,
-    glance: float | None = None,
+    look_request: float | None = None,
     turn: float = 0.0,
 ) -> Votes:
     """All deadline votes of this moment.
 
-    Tracks, ground and glance count where they are once the head has turned there, beacons where
-    they are now, also beyond the pan stop.
+    Tracks, ground and look request vote where they will be after the saccade, beacons where they
+    are now, also beyond the pan stop.
 
     Args:
         scene: partial evaluations.
@@ -47,7 +47,7 @@ def deadline_votes(
         way: bearing of the planned velocity in R [rad].
         speed: the robot's largest speed [m/s].
         parameters: of the decisions.
-        glance: direction in W of ground that the body turned aside for; None for none [rad].
+        look_request: direction in W of ground that the body turned aside for; None for none [rad].
         turn: rate of the body [rad/s].
     """
     p = parameters.gaze
@@ -58,26 +58,28 @@ def deadline_votes(
         obstacle_deadlines(scene, belief, way, speed, parameters),
         map_deadlines(scene, belief, way, speed, parameters),
         Votes.one(
-            min(max(way, -p.pan_limit), p.pan_limit),
-            float(-np.arctan2(height, p.deadline.way_distance)),
-            p.deadline.way_weight,
+            min(max(way, -p.max_pan), p.max_pan),
+            float(-np.arctan2(height, p.deadline.path_distance)),
+            p.deadline.path_weight,
         ),
         beacon_votes(scene, p.deadline.beacon_weight * self_urgency(belief, parameters)),
     ]
-    if glance is not None:
-        votes += glance_vote(belief, glance, p)
-    votes += gate_vote(belief, way, height, p.deadline.gate_weight, parameters)
+    if look_request is not None:
+        votes += look_request_vote(belief, look_request, p)
+    votes += unseen_ground_vote(belief, way, height, p.deadline.unseen_ground_weight, parameters)
     return Votes.join(votes)
 
 
-def glance_vote(belief: Belief, glance: float, parameters: GazeParameters) -> list[Votes]:
-    """The ground at `glance` in W [rad], once the gaze reaches it."""
+def look_request_vote(
+    belief: Belief, look_request: float, parameters: GazeParameters
+) -> list[Votes]:
+    """The ground at `look_request` in W [rad], once the gaze reaches it."""
     p = parameters
-    bearing = wrap(glance - float(belief.pose[2]))
-    if abs(bearing) > p.pan_limit + p.box_share * belief.view.horizontal_fov:
+    bearing = wrap(look_request - float(belief.pose[2]))
+    if abs(bearing) > p.max_pan + p.box_fraction * belief.view.horizontal_fov:
         return []
-    pan = min(max(bearing, -p.pan_limit), p.pan_limit)
-    return [Votes.one(pan, p.deadline.glance_tilt, p.deadline.glance_weight)]
+    pan = min(max(bearing, -p.max_pan), p.max_pan)
+    return [Votes.one(pan, p.deadline.look_request_tilt, p.deadline.look_request_weight)]
 
 
 def self_urgency(belief: Belief, parameters: NavigationParameters) -> float:
@@ -108,7 +110,7 @@ def obstacle_deadlines(
     index_ = np.concatenate(owner).astype(np.int64)
     bearing, distance = relative(np.concatenate(place), belief.pose)
     weight = np.concatenate(share)
-    reach = p.pan_limit + p.box_share * belief.view.horizontal_fov - 0.05
+    reach = p.max_pan + p.box_fraction * belief.view.horizontal_fov - 0.05
     fresh = _fresh(belief.tracks, d.fresh_hits)[index_]
     near = fresh | (distance <= parameters.evaluation.attention_range)
     in_reach = near & (np.abs(bearing) <= reach)
@@ -127,9 +129,9 @@ def obstacle_deadlines(
     )
     approach = feared + speed * np.maximum(0.25, 0.5 + 0.5 * np.cos(bearing - way))
     gap = distance - o.radius[index_] - parameters.univector.s_robot - d.clearance
-    contact = np.maximum(d.least_time, gap / approach)
-    age = o.age[index_] + d.least_age + d.unknown_bonus * unknown + d.fresh_bonus * fresh
-    urgency = np.minimum(d.urgency_limit, age / (d.look_share * contact)) ** d.exponent
+    contact = np.maximum(d.min_time, gap / approach)
+    age = o.age[index_] + d.min_age + d.unknown_bonus * unknown + d.fresh_bonus * fresh
+    urgency = np.minimum(d.max_urgency, age / (d.look_ratio * contact)) ** d.exponent
     value = weight * urgency * np.where(static, d.static_weight, 1.0)
     tilt = np.arctan2(
         parameters.evaluation.aim_height - scene.camera_height, np.maximum(distance, 0.05)
@@ -138,7 +140,7 @@ def obstacle_deadlines(
 
 
 def _fresh(tracks: Sequence[Track], hits: int) -> NDArray[np.bool_]:
-    """Undecided tracks of fewer detections than `hits` (n,): one glance more may decide them."""
+    """Undecided tracks of fewer detections than `hits` (n,): one more look may decide them."""
     return np.array([t.motion is Motion.UNKNOWN and t.hits < hits for t in tracks], dtype=np.bool_)
 
 
@@ -151,16 +153,16 @@ def map_deadlines(
 ) -> Votes:
     """Votes of ground not seen for long; arguments as `deadline_votes`."""
     p, d = parameters.gaze, parameters.gaze.deadline
-    reach = p.pan_limit + p.box_share * belief.view.horizontal_fov
+    reach = p.max_pan + p.box_fraction * belief.view.horizontal_fov
     ground = _ground(reach, d.map_rings, d.map_rays)
     distance, bearing = ground.distance, ground.bearing
     age = np.minimum(
-        d.age_limit, belief.local_map.age_at(points_to_world(belief.pose, ground.points))
+        d.max_age, belief.local_map.age_at(points_to_world(belief.pose, ground.points))
     )
     approach = speed * (d.map_speed + np.maximum(0.1, np.cos(bearing - way)))
     room = distance - 2.0 * parameters.univector.s_robot
-    contact = np.maximum(d.least_time, room / approach)
-    value = d.map_weight * np.minimum(d.urgency_limit, age / contact) ** d.exponent
+    contact = np.maximum(d.min_time, room / approach)
+    value = d.map_weight * np.minimum(d.max_urgency, age / contact) ** d.exponent
     tilt = -np.arctan2(scene.camera_height, distance)
     return Votes(wrap_array(bearing), tilt, value)
 

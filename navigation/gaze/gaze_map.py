@@ -52,9 +52,9 @@ class GazeGrid:
     def __init__(
         self,
         *,
-        pan_limit: float,
-        tilt_min: float,
-        tilt_max: float,
+        max_pan: float,
+        min_tilt: float,
+        max_tilt: float,
         step: float,
         half_pan: float,
         half_tilt: float,
@@ -62,18 +62,18 @@ class GazeGrid:
         """Build the grid.
 
         Args:
-            pan_limit: largest pan to either side [rad].
-            tilt_min: lowest tilt [rad].
-            tilt_max: highest tilt [rad].
+            max_pan: largest pan to either side [rad].
+            min_tilt: lowest tilt [rad].
+            max_tilt: highest tilt [rad].
             step: distance of cells [rad].
             half_pan: half width of a box [rad].
             half_tilt: half height of a box [rad].
         """
         self._step = step
-        columns = int(pan_limit / step + _FLAT)
+        columns = int(max_pan / step + _FLAT)
         self.pan: Array = step * np.arange(-columns, columns + 1, dtype=np.float64)
-        rows = int((tilt_max - tilt_min) / step + _FLAT) + 1
-        self.tilt: Array = tilt_min + step * np.arange(rows, dtype=np.float64)
+        rows = int((max_tilt - min_tilt) / step + _FLAT) + 1
+        self.tilt: Array = min_tilt + step * np.arange(rows, dtype=np.float64)
         self.half_pan = half_pan
         self.half_tilt = half_tilt
 

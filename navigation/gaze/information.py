@@ -51,7 +51,7 @@ def track_information(scene: GazeScene, belief: Belief, parameters: NavigationPa
     ratio = np.concatenate(variance) / noise[:, None]
     gain = np.concatenate(share) * 0.5 * np.log1p(ratio).sum(axis=1)
     height = parameters.evaluation.aim_height - scene.camera_height
-    tilt = np.arctan2(height, np.maximum(distance, parameters.evaluation.least_distance))
+    tilt = np.arctan2(height, np.maximum(distance, parameters.evaluation.min_distance))
     return Votes(bearing[near], tilt[near], gain[near])
 
 

@@ -29,7 +29,7 @@ def integrated_votes(
     """
     p = parameters.gaze
     votes = map_votes(scene, p.w_lm, p.map_votes)
-    votes.append(way_vote(scene, belief, task, p.w_way, parameters))
+    votes.append(waypoint_vote(scene, belief, task, p.w_way, parameters))
     seen, pan, tilt = scene.aims(parameters)
     share = 1.0 / max(1, len(pan)) if p.obstacle_votes == "mean" else 1.0
     votes.append(Votes(pan, tilt, share * p.w_ob * scene.psi_ob[seen]))
@@ -50,7 +50,7 @@ def self_votes(scene: GazeScene, pan: Array, tilt: Array, p: GazeParameters) -> 
         each = value / max(1, len(pan) + posts)
         together = posts * each
     beacons = beacon_votes(scene, together)
-    within = np.clip(beacons.pan, -p.pan_limit, p.pan_limit)
+    within = np.clip(beacons.pan, -p.max_pan, p.max_pan)
     return [Votes(pan, tilt, np.full(len(pan), each)), Votes(within, beacons.tilt, beacons.value)]
 
 
@@ -73,11 +73,11 @@ def map_votes(scene: GazeScene, weight: float, form: str) -> list[Votes]:
     return [Votes(pan, tilt, np.full(count, weight * scene.map.psi / count))]
 
 
-def way_vote(
+def waypoint_vote(
     scene: GazeScene, belief: Belief, task: Task, weight: float, parameters: NavigationParameters
 ) -> Votes:
     """Vote of psi_way towards the way point, on the floor; arguments as `integrated_votes`."""
-    e, limit = parameters.evaluation, parameters.gaze.pan_limit
+    e, limit = parameters.evaluation, parameters.gaze.max_pan
     dx, dy = (task.target - belief.pose[:2]).tolist()
     bearing = wrap(atan2(dy, dx) - float(belief.pose[2]))
     distance = min(max(hypot(dx, dy), e.d_nm), e.d_fm)

@@ -40,19 +40,19 @@ class GazePlanner:
         p = parameters.gaze
         self._parameters = parameters
         self._beacons = np.array([beacons[name] for name in sorted(beacons)]).reshape(-1, 2)
-        self._samples = SamplePoints.polar(parameters.evaluation, p.pan_limit)
+        self._samples = SamplePoints.polar(parameters.evaluation, p.max_pan)
         self._grid = GazeGrid(
-            pan_limit=p.pan_limit,
-            tilt_min=p.tilt_min,
-            tilt_max=p.tilt_max,
+            max_pan=p.max_pan,
+            min_tilt=p.min_tilt,
+            max_tilt=p.max_tilt,
             step=p.step,
-            half_pan=p.box_share * horizontal_fov,
-            half_tilt=p.box_share * vertical_fov,
+            half_pan=p.box_fraction * horizontal_fov,
+            half_tilt=p.box_fraction * vertical_fov,
         )
         self._policy = gaze_policy(parameters, limits, self._grid)
         # A lost robot does not know where its beacons are.
         self._search = self._policy if p.mode == "fixed" else SweepGaze(parameters)
-        self._timing = GazeTiming(p.dwell, p.arrival_tolerance, p.saccade_limit)
+        self._timing = GazeTiming(p.dwell, p.arrival_tolerance, p.max_saccade_time)
         self._pan, self._tilt = 0.0, p.fixed_tilt
         self._last: GazeDecision | None = None
 

@@ -148,15 +148,17 @@ def gaze_policy(
 
 # Functions with names, so that a gaze can be saved in the middle of a run.
 def _deadline(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
-    way = way_bearing(m)
+    way = path_bearing(m)
     if m.motion is None:
         return deadline_votes(m.scene, m.belief, way, speed, parameters)
-    turn, glance = float(m.motion.velocity[2]), m.motion.glance
-    return deadline_votes(m.scene, m.belief, way, speed, parameters, glance=glance, turn=turn)
+    turn, look_request = float(m.motion.velocity[2]), m.motion.look_request
+    return deadline_votes(
+        m.scene, m.belief, way, speed, parameters, look_request=look_request, turn=turn
+    )
 
 
 def _urgency(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
-    way = way_bearing(m)
+    way = path_bearing(m)
     return urgency_votes(m.scene, m.belief, m.task, way=way, speed=speed, parameters=parameters)
 
 
@@ -181,7 +183,7 @@ def single_weight(p: GazeParameters) -> GazeParameters:
     )
 
 
-def way_bearing(moment: Moment) -> float:
+def path_bearing(moment: Moment) -> float:
     """Bearing of the planned velocity in R, of the destination while standing [rad]."""
     if moment.motion is not None:
         forward, left, _ = moment.motion.velocity.tolist()

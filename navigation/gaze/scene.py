@@ -67,7 +67,7 @@ class GazeScene:
 
     def aims(self, parameters: NavigationParameters) -> tuple[Mask, Array, Array]:
         """Which obstacles of O are within reach (n,), and pan and tilt to each (k,), (k,) [rad]."""
-        limit, height = parameters.gaze.pan_limit, parameters.evaluation.aim_height
+        limit, height = parameters.gaze.max_pan, parameters.evaluation.aim_height
         seen = self.attended & self.reachable
         pan = np.clip(self.bearing[seen], -limit, limit)
         return seen, pan, np.arctan2(height - self.camera_height, self.distance[seen])
@@ -98,7 +98,7 @@ def gaze_scene(
     """
     e, g = parameters.evaluation, parameters.gaze
     view, pose = belief.view, belief.pose
-    reach = g.pan_limit + 0.5 * view.horizontal_fov
+    reach = g.max_pan + 0.5 * view.horizontal_fov
     obstacles = ObstacleSet.from_tracks(belief.tracks)
     bearing, distance = relative(obstacles.position, pose)
     body = np.zeros(2) if motion is None else motion.velocity[:2]

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
 from navigation.decision import Task
-from navigation.gaze.gate_vote import gate_vote
 from navigation.gaze.gaze_map import Votes
-from navigation.gaze.integrated import map_votes, self_votes, way_vote
+from navigation.gaze.integrated import map_votes, self_votes, waypoint_vote
 from navigation.gaze.scene import GazeScene
+from navigation.gaze.unseen_ground_vote import unseen_ground_vote
 from navigation.parameters.navigation import NavigationParameters
 
 Array = NDArray[np.float64]
@@ -40,10 +40,12 @@ def urgency_votes(
     p = parameters.gaze
     seen, pan, tilt = scene.aims(parameters)
     votes = map_votes(scene, p.w_lm, p.map_votes)
-    votes.append(way_vote(scene, belief, task, p.w_way, parameters))
+    votes.append(waypoint_vote(scene, belief, task, p.w_way, parameters))
     votes.append(Votes(pan, tilt, p.w_ob * obstacle_urgency(scene, way, speed, parameters)[seen]))
     votes += self_votes(scene, pan, tilt, p)
-    votes += gate_vote(belief, way, scene.camera_height, p.urgency.gate_weight, parameters)
+    votes += unseen_ground_vote(
+        belief, way, scene.camera_height, p.urgency.unseen_ground_weight, parameters
+    )
     return Votes.join(votes)
 
 
@@ -54,9 +56,9 @@ def obstacle_urgency(
     u, o = parameters.gaze.urgency, scene.obstacles
     unknown = ~o.static & ~o.moving
     gap = scene.distance - o.radius - parameters.univector.s_robot
-    contact = np.maximum(u.least_time, gap / (speed + o.speed))
+    contact = np.maximum(u.min_time, gap / (speed + o.speed))
     age = o.age + np.where(unknown, u.unknown_bonus, u.bonus)
-    ahead = u.aside + (1.0 - u.aside) * np.maximum(0.0, np.cos(scene.bearing - way))
+    ahead = u.side_weight + (1.0 - u.side_weight) * np.maximum(0.0, np.cos(scene.bearing - way))
     weight = np.where(o.static, u.static_weight, 1.0)
-    value: Array = np.minimum(u.limit, age / contact) * ahead * weight
+    value: Array = np.minimum(u.max_urgency, age / contact) * ahead * weight
     return value

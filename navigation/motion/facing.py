@@ -18,12 +18,12 @@ class Facing:
     Attributes:
         heading: to turn to; None for the direction of motion [rad].
         aside: angle of the body to the direction of motion, if it turns to that [rad].
-        glance: direction in W of the ground it turns aside for; None for none [rad].
+        look_request: direction in W of the ground it turns aside for; None for none [rad].
     """
 
     heading: float | None = None
     aside: float = 0.0
-    glance: float | None = None
+    look_request: float | None = None
 
     def on(self, course: float) -> float:
         """Heading to turn to while walking along `course` [rad]."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from navigation.belief.belief import Track
 from navigation.motion.bend_kernel import mean_velocity
 from navigation.obstacle_set import ObstacleSet
-from navigation.parameters.motion import FilterParameters
+from navigation.parameters.motion import SafetyFilterParameters
 from navigation.value import value
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def collision_hypotheses(
     tracks: Sequence[Track],
     obstacles: ObstacleSet,
     s_robot: float,
-    parameters: FilterParameters,
+    parameters: SafetyFilterParameters,
     local_map: "LocalMap",
 ) -> Hypotheses:
     """Build the hypotheses of all tracks.
@@ -75,7 +75,7 @@ def collision_hypotheses(
     """
     unsure = np.array([t.radius_sigma for t in tracks], dtype=np.float64)
     base = s_robot + obstacles.radius + unsure + parameters.margin
-    swollen = base + np.minimum(parameters.sigma_limit, obstacles.sigma)
+    swollen = base + np.minimum(parameters.max_sigma, obstacles.sigma)
     lost = np.array([t.particles is not None for t in tracks], dtype=np.bool_)
     seen = ~lost
     still = obstacles.static[seen]
@@ -131,7 +131,7 @@ def reachable_discs(
     tracks: Sequence[Track],
     obstacles: ObstacleSet,
     base: Array,
-    parameters: FilterParameters,
+    parameters: SafetyFilterParameters,
     local_map: "LocalMap",
 ) -> Hypotheses:
     """All that unseen movers can have reached, as still discs about where they were seen last.

@@ -19,7 +19,7 @@ from navigation.motion.virtual_obstacle import (
     printed_radius,
 )
 from navigation.obstacle_set import ObstacleSet
-from navigation.parameters.motion import MoverParameters, UnivectorParameters
+from navigation.parameters.motion import MovingObstacleParameters, UnivectorParameters
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -71,7 +71,7 @@ ActiveVirtualObstacles = tuple[ActiveVirtualObstacle, ...]
 class MotionField:
     """u_T of eq. (10) with the obstacles of eq. (9) and the virtual ones of eq. (11)."""
 
-    def __init__(self, univector: UnivectorParameters, mover: MoverParameters) -> None:
+    def __init__(self, univector: UnivectorParameters, mover: MovingObstacleParameters) -> None:
         """Keep the parameters of the field and of moving obstacles."""
         self._univector = univector
         self._mover = mover
@@ -165,7 +165,7 @@ class MotionField:
         weight = np.array([f.weight for f in virtual])
         return blended_sum(u_muf, u_auf, ramp, g, weight, virtual_weight=p.virtual_weight)
 
-    def own_obstacles(
+    def uncapped_obstacles(
         self, pose: Array, velocity: Array, scene: FieldScene
     ) -> ActiveVirtualObstacles:
         """Virtual obstacles of the own form: uncapped, in the whole band, with a side kept.
@@ -177,7 +177,7 @@ class MotionField:
         """
         virtual = []
         banded = set()
-        for index in np.nonzero(scene.obstacles.speed >= self._mover.least_speed)[0].tolist():
+        for index in np.nonzero(scene.obstacles.speed >= self._mover.min_speed)[0].tolist():
             foot = self._foot(pose, scene, index)
             s_oe = float(scene.s_oe[index])
             if foot is None or abs(foot.lateral) >= s_oe:
@@ -279,7 +279,7 @@ class PlannedField:
     """
 
     univector: UnivectorParameters
-    mover: MoverParameters
+    mover: MovingObstacleParameters
     heading: float
     scene: FieldScene
     virtual: ActiveVirtualObstacles

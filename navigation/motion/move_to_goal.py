@@ -121,5 +121,5 @@ def arrival_gain(distance: float, is_goal: bool, parameters: UnivectorParameters
     """k_rho of eq. (8): one at via points, falling towards the goal; scales the speed only."""
     if not is_goal:
         return 1.0
-    slow = parameters.slow_share
+    slow = parameters.slow_fraction
     return min(1.0, slow + (1.0 - slow) * distance / parameters.slow_distance)

@@ -15,19 +15,19 @@ from navigation.decision import (
     Task,
     VirtualObstacle,
 )
-from navigation.motion.body_command import body_velocity, idle_velocity
 from navigation.motion.collision_band import CollisionCase, Encounter
-from navigation.motion.collision_filter import CollisionFilter, direction_and_speed
-from navigation.motion.confidence_gate import ground_seen
 from navigation.motion.extended_radius import extended_radius, physical_radius
 from navigation.motion.facing import Facing, arriving
 from navigation.motion.hypotheses import collision_hypotheses
 from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, MotionField
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
 from navigation.motion.passing_side import PassingSides
-from navigation.motion.shoulder_check import ShoulderCheck
+from navigation.motion.rear_check import RearCheck
+from navigation.motion.safety_filter import SafetyFilter, direction_and_speed
+from navigation.motion.unseen_ground import ground_seen
+from navigation.motion.velocity_mapping import body_velocity, idle_velocity
 from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
-from navigation.motion.way_search import way_point
+from navigation.motion.waypoint_search import search_waypoint
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
@@ -73,11 +73,13 @@ class Planner:
         """
         self._parameters = parameters
         self._limits = limits
-        self._field = MotionField(parameters.univector, parameters.mover)
-        self._filter = CollisionFilter(parameters.filter, parameters.body, limits)
+        self._field = MotionField(parameters.univector, parameters.moving_obstacles)
+        self._safety_filter = SafetyFilter(
+            parameters.safety_filter, parameters.velocity_mapping, limits
+        )
         self._sides = PassingSides(parameters.univector)
         self._arrival = ArrivalSide(parameters.univector)
-        self._shoulder: ShoulderCheck | None = None
+        self._rear_check: RearCheck | None = None
         self._way: tuple[float, float] | None = None
         self._body = np.zeros(3)
         self._direction: float | None = None
@@ -93,7 +95,7 @@ class Planner:
         if self._direction is None:
             self._direction = heading
         if task.done or belief.lost:
-            turn = self._parameters.body.lost_turn
+            turn = self._parameters.velocity_mapping.lost_turn_rate
             self._body = idle_velocity(not task.done, turn, self._limits)
             return MotionDecision(self._body, self._direction)
         obstacles = ObstacleSet.from_tracks(belief.tracks)
@@ -109,7 +111,7 @@ class Planner:
             heading,
             facing.on(course),
             limits=self._limits,
-            turn_gain=self._parameters.body.turn_gain,
+            turn_gain=self._parameters.velocity_mapping.turn_gain,
         )
         return MotionDecision(
             self._body,
@@ -118,19 +120,19 @@ class Planner:
             wanted.situation,
             wanted.virtual,
             extended_radii=radii,
-            glance=facing.glance,
+            look_request=facing.look_request,
             field=wanted.field,
         )
 
     def _round_obstacles(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
         """The task, or one on the way round still obstacles that block the straight way."""
         p = self._parameters
-        if not p.way_search.enabled or task.aligning:
+        if not p.waypoint_search.enabled or task.aligning:
             return task
         still = obstacles.where(obstacles.static)
         radii = physical_radius(still, p.univector) + p.univector.margin
         here = belief.pose[:2]
-        point = way_point(here, task.target, still.position, radii, p.way_search)
+        point = search_waypoint(here, task.target, still.position, radii, p.waypoint_search)
         if point is task.target:
             return task
         dx, dy = (task.target - point).tolist()
@@ -145,16 +147,16 @@ class Planner:
     ) -> tuple[float, float]:
         """Direction [rad] and speed [m/s] that touch nothing soon."""
         p = self._parameters
-        if not p.filter.enabled:
+        if not p.safety_filter.enabled:
             return wanted.direction, wanted.speed
         discs = collision_hypotheses(
             belief.tracks,
             obstacles,
             p.univector.s_robot,
-            p.filter,
+            p.safety_filter,
             belief.local_map,
         )
-        velocity = self._filter.choose(
+        velocity = self._safety_filter.choose(
             belief.pose,
             wanted.speed * np.array([cos(wanted.direction), sin(wanted.direction)]),
             wanted.direction,
@@ -194,20 +196,20 @@ class Planner:
             return _Wanted(float(pose[2]))
         velocity = velocity_in_world(pose, self._body)
         virtual: ActiveVirtualObstacles = ()
-        if p.mover.virtual_obstacle == "own":
-            virtual = self._field.own_obstacles(pose, velocity, scene)
+        if p.moving_obstacles.virtual_obstacle == "uncapped":
+            virtual = self._field.uncapped_obstacles(pose, velocity, scene)
         direction = self._steer(pose, scene, virtual)
         distance = hypot(*(task.target - pose[:2]).tolist())
         desired = self._limits.forward * arrival_gain(distance, task.is_goal, p.univector)
         encounters = self._encounters(pose, direction, scene)
         speed = self._modified(encounters, direction, velocity, desired)
-        if p.mover.virtual_obstacle == "printed":
+        if p.moving_obstacles.virtual_obstacle == "printed":
             blocked = self._blocking(encounters, speed)
             virtual = self._field.printed_obstacles(pose, velocity, scene, blocked)
             if virtual:
                 direction = self._steer(pose, scene, virtual)
         self._direction = direction
-        allowed = min(speed.speed, self._gate(belief, direction))
+        allowed = min(speed.speed, self._unseen_ground_speed(belief, direction))
         return _Wanted(
             direction,
             allowed,
@@ -222,15 +224,15 @@ class Planner:
         if arriving(belief.pose[:2], task, p.univector.holonomic_distance):
             return Facing(task.heading)
         # Only the deadline gaze hears what the body turned aside for.
-        if not p.shoulder.enabled or p.gaze.mode != "deadline":
+        if not p.rear_check.enabled or p.gaze.mode != "deadline":
             return Facing()
-        if self._shoulder is None:
-            reach = p.gaze.pan_limit + p.gaze.box_share * belief.view.horizontal_fov
+        if self._rear_check is None:
+            reach = p.gaze.max_pan + p.gaze.box_fraction * belief.view.horizontal_fov
             forward = self._limits.forward
-            self._shoulder = ShoulderCheck(p.shoulder, reach, p.univector.s_robot, forward)
+            self._rear_check = RearCheck(p.rear_check, reach, p.univector.s_robot, forward)
         course, speed = self._way or (wanted.direction, wanted.speed)
-        aside = self._shoulder.aside(belief, course, speed)
-        return Facing(aside=aside, glance=self._shoulder.glance())
+        aside = self._rear_check.aside(belief, course, speed)
+        return Facing(aside=aside, look_request=self._rear_check.look_request())
 
     def _steer(self, pose: Array, scene: FieldScene, virtual: ActiveVirtualObstacles) -> float:
         u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, virtual).tolist()
@@ -242,11 +244,11 @@ class Planner:
         """The movers in axes of the line of motion, by their index in the scene."""
         p = self._parameters
         radii = scene.s_oe
-        if p.mover.radius == "physical":
-            radii = physical_radius(scene.obstacles, p.univector) + p.mover.margin
+        if p.moving_obstacles.radius == "physical":
+            radii = physical_radius(scene.obstacles, p.univector) + p.moving_obstacles.margin
         c, s = cos(direction), sin(direction)
         encounters = {}
-        for index in np.nonzero(scene.obstacles.speed >= p.mover.least_speed)[0].tolist():
+        for index in np.nonzero(scene.obstacles.speed >= p.moving_obstacles.min_speed)[0].tolist():
             x, y = (scene.obstacles.position[index] - pose[:2]).tolist()
             u, w = scene.obstacles.velocity[index].tolist()
             encounters[index] = Encounter(
@@ -257,7 +259,7 @@ class Planner:
     def _modified(
         self, encounters: dict[int, Encounter], direction: float, velocity: Array, desired: float
     ) -> ModifiedSpeed:
-        p, limits = self._parameters.mover, self._limits
+        p, limits = self._parameters.moving_obstacles, self._limits
         now = max(0.0, float(velocity[0]) * cos(direction) + float(velocity[1]) * sin(direction))
         movers = tuple(encounters.values())
         if p.velocity_modification == "off" or not movers:
@@ -296,9 +298,9 @@ class Planner:
             definite |= {i for i, e in encounters.items() if e.in_band()}
         return tuple(sorted(definite))
 
-    def _gate(self, belief: Belief, direction: float) -> float:
+    def _unseen_ground_speed(self, belief: Belief, direction: float) -> float:
         """Largest speed towards ground the robot may never have seen [m/s]."""
-        p = self._parameters.gate
+        p = self._parameters.unseen_ground
         if not p.enabled:
             return self._limits.forward
         return self._limits.forward if ground_seen(belief, direction, p) else p.speed

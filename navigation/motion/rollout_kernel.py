@@ -85,7 +85,7 @@ def roll_out(
         Velocities (steps + 2, n, 2) [m/s] and durations (steps + 2, n) [s] of the pieces: the
         footsteps, the turn, and the straight path for ever.
     """
-    footstep, change, turn_change, turn_wait, side_step = gait
+    footstep, change, turn_change, turn_first_angle, sidestep_ratio = gait
     velocity = np.zeros((steps + 2, len(candidates), 2))
     duration = np.empty((steps + 2, len(candidates)))
     for i in range(len(candidates)):
@@ -106,8 +106,8 @@ def roll_out(
             velocity[step, i, 1] = s * forward + c * left
             duration[step, i] = footstep
             now += turn * footstep
-        wait = max(0.0, abs(wrapped(direction - now)) - turn_wait) / envelope[3]
-        duration[steps, i] = wait if speed > side_step else 0.0
+        wait = max(0.0, abs(wrapped(direction - now)) - turn_first_angle) / envelope[3]
+        duration[steps, i] = wait if speed > sidestep_ratio else 0.0
         velocity[steps + 1, i, 0], velocity[steps + 1, i, 1] = candidates[i, 0], candidates[i, 1]
         duration[steps + 1, i] = inf
     return velocity, duration

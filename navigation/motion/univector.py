@@ -91,8 +91,10 @@ def shrunk_for_goal(
         Radii and offsets (n,), (n,) [m].
     """
     p, d_e = parameters, parameters.d_e
-    room = p.goal_share * np.maximum(p.goal_gap, goal_distance - s_physical)
+    room = p.goal_fraction * np.maximum(p.min_goal_gap, goal_distance - s_physical)
     near = goal_distance < s_oe + d_e
     radius = np.where(near, np.minimum(s_oe, s_physical + room), s_oe)
-    offset = np.where(near, np.minimum(d_e, np.maximum(p.goal_offset, goal_distance - radius)), d_e)
+    offset = np.where(
+        near, np.minimum(d_e, np.maximum(p.min_goal_offset, goal_distance - radius)), d_e
+    )
     return radius, offset

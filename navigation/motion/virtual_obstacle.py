@@ -5,7 +5,7 @@ from math import expm1, hypot, log
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.parameters.motion import MoverParameters
+from navigation.parameters.motion import MovingObstacleParameters
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -102,7 +102,7 @@ def printed_radius(foot: PathPoint, s_oe: float, length: float, xi: float) -> fl
 class VirtualSides:
     """Side on which the robot leaves the path of each mover, kept until it is settled."""
 
-    def __init__(self, parameters: MoverParameters) -> None:
+    def __init__(self, parameters: MovingObstacleParameters) -> None:
         self._parameters = parameters
         self._sides: dict[int, int] = {}
 

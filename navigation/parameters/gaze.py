@@ -36,7 +36,7 @@ class EvaluationParameters:
     """Angle between the rays of sample points [rad]."""
     lambda_cf: Share = 0.85
     """Confidence below which a sample point is under-confident [1]."""
-    map_ratio: Literal["printed", "share"] = "share"
+    map_ratio: Literal["printed", "fraction"] = "fraction"
     """psi_lm: N_lp/N_cp as printed, or the share N_lp/(N_lp + N_cp)."""
     t_sf: Positive = 0.05
     """Position uncertainty at which psi_sf is one [m]."""
@@ -46,7 +46,7 @@ class EvaluationParameters:
     """Normalisation of the obstacle evaluation [1/m]."""
     gamma_o: Positive = 0.25
     """Obstacle evaluation at which psi_ob is one [1/s]."""
-    least_distance: Positive = 0.05
+    min_distance: Positive = 0.05
     """Distance below which an obstacle's evaluation grows no more [m]."""
     aim_height: NonNegative = 0.05
     """Height at which an obstacle is looked at: its foot gives the range [m]."""
@@ -70,7 +70,7 @@ class DeadlineParameters:
     """Largest speed a mover is feared to have, share of the robot's [1]."""
     exponent: Positive = 1.5
     """Growth of a vote with its urgency [1]."""
-    urgency_limit: Positive = 4.0
+    max_urgency: Positive = 4.0
     """Largest urgency of a vote [1]."""
     unknown_bonus: NonNegative = 1.0
     """Age added to undecided obstacles [s]."""
@@ -86,11 +86,11 @@ class DeadlineParameters:
     """Distances of the ground that votes [m]."""
     map_rays: Annotated[int, Ge(2)] = 17
     """Directions of it, from one end of the gaze's reach to the other [1]."""
-    way_weight: NonNegative = 0.2
+    path_weight: NonNegative = 0.2
     """Weight of the vote of the way [1]."""
-    gate_weight: NonNegative = 0.8
+    unseen_ground_weight: NonNegative = 0.8
     """Vote for ground the confidence gate waits for [1]."""
-    glance_weight: NonNegative = 3.0
+    look_request_weight: NonNegative = 3.0
     """Vote for ground the body turned aside for [1]."""
     beacon_weight: NonNegative = 1.6
     """Weight of the votes of the beacons together [1]."""
@@ -100,21 +100,21 @@ class DeadlineParameters:
     """Gain in the gaze map that moves the gaze [1]."""
     saccade_time: NonNegative = 0.25
     """Time ahead for which votes are cast: the head turns, and the body with it [s]."""
-    look_share: Positive = 0.5
+    look_ratio: Positive = 0.5
     """Share of the time to contact within which to look again [1]."""
-    least_time: Positive = 0.4
+    min_time: Positive = 0.4
     """Shortest time to contact counted [s]."""
-    least_age: NonNegative = 0.1
+    min_age: NonNegative = 0.1
     """Age of what was seen in the latest frame [s]."""
-    age_limit: Positive = 8.0
+    max_age: Positive = 8.0
     """Age of ground from which its votes grow no more [s]."""
     clearance: NonNegative = 0.05
     """Distance from contact at which a look comes too late [m]."""
     map_speed: NonNegative = 0.70
     """Feared speed of what comes from ground not seen, share of the robot's [1]."""
-    way_distance: Positive = 0.8
+    path_distance: Positive = 0.8
     """Distance of the floor looked at along the way [m]."""
-    glance_tilt: float = -0.6
+    look_request_tilt: float = -0.6
     """Tilt of a look at what the body turned aside for; shows the floor from 0.3 m on [rad]."""
 
 
@@ -134,19 +134,19 @@ class InformationParameters:
 class UrgencyParameters:
     """Votes of obstacles by age over time to contact; the other evaluations as in (6)."""
 
-    limit: Positive = 10.0
+    max_urgency: Positive = 10.0
     """Largest urgency [1]."""
     bonus: NonNegative = 0.3
     """Age added to obstacles [s]."""
     unknown_bonus: NonNegative = 1.0
     """Age added to undecided obstacles instead [s]."""
-    least_time: Positive = 0.4
+    min_time: Positive = 0.4
     """Shortest time to contact counted [s]."""
-    aside: Share = 0.6
+    side_weight: Share = 0.6
     """Weight of what is not ahead [1]."""
     static_weight: NonNegative = 0.15
     """Weight of static obstacles [1]."""
-    gate_weight: NonNegative = 0.8
+    unseen_ground_weight: NonNegative = 0.8
     """Vote for ground the confidence gate waits for [1]."""
 
 
@@ -168,7 +168,7 @@ class GazeParameters:
     """Weight of obstacles in (6) [1]."""
     step: Positive = pi / 36.0
     """Step of the gaze map [rad]."""
-    box_share: Annotated[float, Gt(0.0), Le(0.5)] = 0.45
+    box_fraction: Annotated[float, Gt(0.0), Le(0.5)] = 0.45
     """Half width of the box of a vote, share of the field of view [1]."""
     obstacle_votes: Literal["mean", "sum"] = "sum"
     """Votes of the obstacles in (6): divided by their number as printed, or summed."""
@@ -178,17 +178,17 @@ class GazeParameters:
     """Who votes for self-localization: obstacles and beacons, or beacons alone."""
     switch_ratio: Annotated[float, Ge(1.0)] = 1.1
     """Gain in the gaze map that moves the gaze; mode deadline has its own [1]."""
-    pan_limit: Positive = pi / 2.0
+    max_pan: Positive = pi / 2.0
     """Largest pan to either side [rad]."""
-    tilt_min: Annotated[float, Lt(0.0)] = -pi / 3.0
+    min_tilt: Annotated[float, Lt(0.0)] = -pi / 3.0
     """Lowest tilt [rad]."""
-    tilt_max: NonNegative = pi / 9.0
+    max_tilt: NonNegative = pi / 9.0
     """Highest tilt [rad]."""
     dwell: NonNegative = 0.1
     """Time the gaze rests after arrival before it is decided again [s]."""
     arrival_tolerance: Positive = 0.06
     """Distance from the target at which the head has arrived [rad]."""
-    saccade_limit: Positive = 0.6
+    max_saccade_time: Positive = 0.6
     """Time after which the gaze is decided again even without arrival [s]."""
     fixed_tilt: float = -0.45
     """Tilt of the fixed gaze and of the sweep [rad]."""

@@ -46,7 +46,7 @@ class UnivectorParameters:
     """Distance from the goal within which the body turns to the goal's heading [m]."""
     slow_distance: Positive = 0.30
     """Distance from the goal within which k_rho falls [m]."""
-    slow_share: Share = 0.2
+    slow_fraction: Share = 0.2
     """k_rho at the goal [1]."""
     d_e: Positive = 0.20
     """Radius offset of the spiral (9) [m]."""
@@ -66,11 +66,11 @@ class UnivectorParameters:
     """Whether obstacles with gaps too narrow for the robot are passed on one side."""
     side_memory: bool = False
     """Whether the side on which an obstacle is passed is kept while it is near."""
-    goal_share: Share = 0.6
+    goal_fraction: Share = 0.6
     """Share of the room between a destination and an obstacle left to its radius [1]."""
-    goal_gap: Positive = 0.02
+    min_goal_gap: Positive = 0.02
     """Least such room [m]."""
-    goal_offset: Positive = 0.03
+    min_goal_offset: Positive = 0.03
     """Least radius offset beside a destination [m]."""
     virtual_weight: NonNegative = 1.5
     """Weight of dynamic virtual obstacles in the blend by distance [1]."""
@@ -79,10 +79,10 @@ class UnivectorParameters:
 
 
 @dataclass(frozen=True)
-class MoverParameters:
+class MovingObstacleParameters:
     """Dynamic virtual obstacle (11) and velocity modification."""
 
-    virtual_obstacle: Literal["off", "printed", "own"] = "own"
+    virtual_obstacle: Literal["off", "printed", "uncapped"] = "uncapped"
     """(11) as printed, uncapped with a remembered side, or not at all."""
     xi: Annotated[float, Gt(0.0), Lt(1.0)] = 0.6
     """Convexity of the dynamic virtual obstacle [1]."""
@@ -96,7 +96,7 @@ class MoverParameters:
     """Distance beyond a mover's path at which the own form changes its side [m]."""
     side_aligned: Share = 0.2
     """Sine of the angle between path and destination up to which that decides nothing [1]."""
-    least_speed: Positive = 0.015
+    min_speed: Positive = 0.015
     """Speed below which an obstacle has no path [m/s]."""
     velocity_modification: Literal["off", "closed", "sampled"] = "sampled"
     """Free speeds from the quadratic, from samples, or not at all."""
@@ -115,7 +115,7 @@ class MoverParameters:
 
 
 @dataclass(frozen=True)
-class GateParameters:
+class UnseenGroundParameters:
     """Slow down before ground that was never seen."""
 
     enabled: bool = True
@@ -135,7 +135,7 @@ class GateParameters:
 
 
 @dataclass(frozen=True)
-class FilterParameters:
+class SafetyFilterParameters:
     """Time-to-contact filter over rolled-out footsteps."""
 
     enabled: bool = True
@@ -179,7 +179,7 @@ class FilterParameters:
     margin: NonNegative = 0.045
     """Distance kept from the bodies of obstacles: a stepping foot reaches out so far beyond
     `univector.s_robot` [m]."""
-    sigma_limit: NonNegative = 0.06
+    max_sigma: NonNegative = 0.06
     """Largest part of a mover's position uncertainty added to that [m]."""
     inside_weight: NonNegative = 10.0
     """Extra penalty of a contact with a disc the robot is already in [1]."""
@@ -200,7 +200,7 @@ class LandmarkParameters:
 
 
 @dataclass(frozen=True)
-class WaySearchParameters:
+class WaypointSearchParameters:
     """Way points round still obstacles that block the straight way."""
 
     enabled: bool = False
@@ -214,7 +214,7 @@ class WaySearchParameters:
 
 
 @dataclass(frozen=True)
-class ShoulderParameters:
+class RearCheckParameters:
     """Looks over the shoulder: the body turns aside so that the gaze reaches what is behind."""
 
     enabled: bool = True
@@ -231,35 +231,35 @@ class ShoulderParameters:
     """Directions of it on either side, as many beside as right behind [1]."""
     mover_speed: NonNegative = 1.1
     """Feared speed of what was not seen, share of the robot's [1]."""
-    due: Positive = 0.7
+    start_urgency: Positive = 0.7
     """Age of ground over the time to contact from which the body turns aside [1]."""
-    seen: NonNegative = 0.3
+    stop_urgency: NonNegative = 0.3
     """The same below which it turns back [1]."""
-    hold: Positive = 2.5
+    max_turn_time: Positive = 2.5
     """Longest time turned aside [s]."""
-    rest: NonNegative = 2.0
+    retry_delay: NonNegative = 2.0
     """Time until the next try, if nothing was seen by then [s]."""
     clearance: NonNegative = 0.25
     """Gap to what may move within which the robot leaves first and looks round later [m]."""
-    least_approach: Positive = 0.02
+    min_approach: Positive = 0.02
     """Least speed at which something unseen is taken to come nearer [m/s]."""
-    least_time: Positive = 0.4
+    min_time: Positive = 0.4
     """Shortest time to contact counted [s]."""
-    age_limit: Positive = 8.0
+    max_age: Positive = 8.0
     """Age of ground from which nothing grows worse [s]."""
-    urgency_limit: Positive = 2.0
+    max_urgency: Positive = 2.0
     """Largest urgency of a point on the ground [1]."""
 
 
 @dataclass(frozen=True)
-class BodyParameters:
+class VelocityMappingParameters:
     """From a direction and a speed to a body velocity."""
 
     turn_gain: Positive = 1.5
     """Turn rate per heading error [1/s]."""
-    turn_wait: NonNegative = 0.5
+    turn_first_angle: NonNegative = 0.5
     """Heading error below which a fast path is walked without turning first [rad]."""
-    side_step: NonNegative = 1.2
+    sidestep_ratio: NonNegative = 1.2
     """Speed up to which no path needs a turn first, share of the largest sideways [1]."""
-    lost_turn: NonNegative = 0.5
+    lost_turn_rate: NonNegative = 0.5
     """Turn rate of a lost robot, whose head alone does not reach all around [rad/s]."""

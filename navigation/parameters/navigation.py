@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 from navigation.parameters.bounds import Positive
 from navigation.parameters.gaze import EvaluationParameters, GazeParameters
 from navigation.parameters.motion import (
-    BodyParameters,
-    FilterParameters,
-    GateParameters,
     LandmarkParameters,
-    MoverParameters,
-    ShoulderParameters,
+    MovingObstacleParameters,
+    RearCheckParameters,
+    SafetyFilterParameters,
     UnivectorParameters,
-    WaySearchParameters,
+    UnseenGroundParameters,
+    VelocityMappingParameters,
+    WaypointSearchParameters,
 )
 from navigation.parameters.planner import PlannerParameters
 
@@ -49,19 +49,19 @@ class NavigationParameters:
     """Choice of the planner, and the baselines."""
     univector: UnivectorParameters = field(default_factory=UnivectorParameters)
     """Univector field."""
-    mover: MoverParameters = field(default_factory=MoverParameters)
+    moving_obstacles: MovingObstacleParameters = field(default_factory=MovingObstacleParameters)
     """Moving obstacles."""
-    gate: GateParameters = field(default_factory=GateParameters)
+    unseen_ground: UnseenGroundParameters = field(default_factory=UnseenGroundParameters)
     """Confidence gate."""
-    filter: FilterParameters = field(default_factory=FilterParameters)
+    safety_filter: SafetyFilterParameters = field(default_factory=SafetyFilterParameters)
     """Time-to-contact filter."""
     landmarks: LandmarkParameters = field(default_factory=LandmarkParameters)
     """Landmarks as obstacles."""
-    shoulder: ShoulderParameters = field(default_factory=ShoulderParameters)
+    rear_check: RearCheckParameters = field(default_factory=RearCheckParameters)
     """Looks over the shoulder."""
-    way_search: WaySearchParameters = field(default_factory=WaySearchParameters)
+    waypoint_search: WaypointSearchParameters = field(default_factory=WaypointSearchParameters)
     """Way-point search."""
-    body: BodyParameters = field(default_factory=BodyParameters)
+    velocity_mapping: VelocityMappingParameters = field(default_factory=VelocityMappingParameters)
     """Body command."""
 
     @classmethod
@@ -80,7 +80,7 @@ class NavigationParameters:
                 w_way=0.17,
                 w_sf=0.29,
                 w_ob=0.33,
-                box_share=0.5,
+                box_fraction=0.5,
                 obstacle_votes="mean",
                 map_votes="mean",
                 candidates="obstacles",
@@ -96,13 +96,13 @@ class NavigationParameters:
                 blend="weights",
                 memory=25.0,
             ),
-            mover=MoverParameters(
+            moving_obstacles=MovingObstacleParameters(
                 virtual_obstacle="printed",
                 velocity_modification="closed",
                 radius="extended",
                 wait_in_band=False,
             ),
-            gate=GateParameters(enabled=False),
-            filter=FilterParameters(enabled=False),
-            shoulder=ShoulderParameters(enabled=False),
+            unseen_ground=UnseenGroundParameters(enabled=False),
+            safety_filter=SafetyFilterParameters(enabled=False),
+            rear_check=RearCheckParameters(enabled=False),
         )

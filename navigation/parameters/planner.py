@@ -56,7 +56,7 @@ class ApfParameters:
     """Distance kept from the bodies of obstacles [m]."""
     influence: Positive = 0.784
     """Gap within which an obstacle repels [m]."""
-    least_gap: Positive = 0.02
+    min_gap: Positive = 0.02
     """Gap below which the repulsion does not grow any more [m]."""
     gain: Positive = 0.153
     """Repulsion, as a share of the largest speed [m]."""
@@ -134,7 +134,7 @@ class PlannerParameters:
     """Planner: the modified univector field of the profile, or a baseline."""
     memory: Positive = 4.0
     """Time unseen after which a baseline forgets what may move [s]."""
-    sigma_limit: NonNegative = 0.06
+    max_sigma: NonNegative = 0.06
     """Largest part of an obstacle's position uncertainty a baseline adds to its radius [m]."""
     univector_plain: PlainUnivectorParameters = field(default_factory=PlainUnivectorParameters)
     """Univector field alone."""

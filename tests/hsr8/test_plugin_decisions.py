@@ -104,7 +104,7 @@ def test_what_is_no_velocity_is_refused_with_what_it_should_be(velocity):
         (MotionDecision(np.zeros(3), direction=None), "direction"),
         (MotionDecision(np.zeros(3), speed=np.nan), "speed"),
         (MotionDecision(np.zeros(3), situation=None), "situation"),
-        (MotionDecision(np.zeros(3), glance=np.inf), "glance"),
+        (MotionDecision(np.zeros(3), look_request=np.inf), "look_request"),
         (MotionDecision(np.zeros(3), field=object()), "field"),
     ],
 )

@@ -2,18 +2,18 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion
-from navigation.obstacle_set import ObstacleSet, largest_deviation
+from navigation.obstacle_set import ObstacleSet, max_deviation
 
 
-def test_largest_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
+def test_max_deviation_is_that_of_the_eigenvalues_and_ignores_rotation():
     rng = np.random.default_rng(0)
     a = rng.normal(size=(50, 2, 2))
     p = a @ a.transpose(0, 2, 1)
     expected = np.sqrt(np.linalg.eigvalsh(p)[:, -1])
-    assert [largest_deviation(q) for q in p] == pytest.approx(expected)
+    assert [max_deviation(q) for q in p] == pytest.approx(expected)
     c, s = np.cos(0.7), np.sin(0.7)
     turn = np.array([[c, -s], [s, c]])
-    assert [largest_deviation(q) for q in turn @ p @ turn.T] == pytest.approx(expected)
+    assert [max_deviation(q) for q in turn @ p @ turn.T] == pytest.approx(expected)
 
 
 def test_static_tracks_have_no_speed(track):

@@ -24,17 +24,17 @@ def test_weights_of_the_gaze_map_sum_to_one(p):
 
 
 def test_the_paper_has_none_of_our_additions():
-    assert not PAPER.filter.enabled
-    assert not PAPER.gate.enabled
+    assert not PAPER.safety_filter.enabled
+    assert not PAPER.unseen_ground.enabled
     assert PAPER.gaze.mode == "integrated"
-    assert PAPER.mover.virtual_obstacle == "printed"
+    assert PAPER.moving_obstacles.virtual_obstacle == "printed"
     assert PAPER.univector.blend == "weights"
 
 
 def test_profiles_share_what_no_switch_names():
     assert PAPER.mission == EXTENDED.mission
-    assert PAPER.body == EXTENDED.body
-    assert PAPER.mover.xi == EXTENDED.mover.xi
+    assert PAPER.velocity_mapping == EXTENDED.velocity_mapping
+    assert PAPER.moving_obstacles.xi == EXTENDED.moving_obstacles.xi
 
 
 @pytest.mark.parametrize("module", [belief, gaze, motion, navigation, planner])

@@ -160,7 +160,7 @@ class CameraLayer:
         """Outline of the gaze window that was chosen: pan and tilt (n, 2) [rad]."""
         view, gaze = frame.belief.view, frame.gaze
         fov = np.minimum([view.horizontal_fov, view.vertical_fov], pi)
-        found: Array = OUTLINE * (self._parameters.box_share * fov) + (gaze.pan, gaze.tilt)
+        found: Array = OUTLINE * (self._parameters.box_fraction * fov) + (gaze.pan, gaze.tilt)
         return found
 
 
@@ -177,7 +177,7 @@ def map_points(angles: Array, shape: tuple[int, ...], gaze: GazeParameters) -> A
     """
     rows, columns = shape
     u = 0.5 * columns - angles[:, 0] / gaze.step
-    v = rows - 0.5 - (angles[:, 1] - gaze.tilt_min) / gaze.step
+    v = rows - 0.5 - (angles[:, 1] - gaze.min_tilt) / gaze.step
     return np.column_stack([np.clip(u, 0.0, columns), np.clip(v, 0.0, rows)])
 
 

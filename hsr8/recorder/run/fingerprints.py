@@ -47,8 +47,8 @@ def decision_fingerprints(
     place = f"{task.is_goal} {task.index} {task.aligning} {task.done}".encode()
     place += task.target.tobytes() + struct.pack("<d", task.heading)
     move = motion.situation.encode() + motion.velocity.tobytes()
-    glance = nan if motion.glance is None else motion.glance
-    move += struct.pack("<3d", motion.direction, motion.speed, glance)
+    look_request = nan if motion.look_request is None else motion.look_request
+    move += struct.pack("<3d", motion.direction, motion.speed, look_request)
     for v in motion.virtual_obstacles:
         move += v.position.tobytes() + struct.pack("<dq", v.radius, v.track_id)
     for track, radius in motion.extended_radii:

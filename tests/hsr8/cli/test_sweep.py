@@ -194,7 +194,7 @@ def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_
 @pytest.mark.parametrize(
     "varied",
     [
-        [f"navigation.gaze.deadline.{k}=0.25,0.5" for k in ("map_weight", "gate_weight")]
+        [f"navigation.gaze.deadline.{k}=0.25,0.5" for k in ("map_weight", "unseen_ground_weight")]
         + [f"belief.tracking.{k}=1.25,1.5" for k in ("process_noise", "forget_after_time")],
         ["plugin.planner=a/p.py:P,a_p.py:P"],
     ],

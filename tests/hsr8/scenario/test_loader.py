@@ -261,7 +261,7 @@ def test_profile_and_lens_give_defaults_that_single_keys_change():
     )
     assert scenario.navigation.gaze.mode == "integrated"
     assert scenario.navigation.gaze.w_lm == 0.5
-    assert not scenario.navigation.filter.enabled
+    assert not scenario.navigation.safety_filter.enabled
     assert scenario.camera.vertical_fov_deg == 45.0
     assert scenario.camera.horizontal_fov_deg == pytest.approx(57.8, abs=0.1)
     assert loads(dump(scenario)) == scenario

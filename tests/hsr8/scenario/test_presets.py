@@ -13,11 +13,11 @@ def test_a_profile_stands_for_all_its_values(profile):
 
 
 def test_what_is_given_stays_however_deep():
-    given = {"profile": "paper", "gaze": {"pan_limit": 0.5}}
+    given = {"profile": "paper", "gaze": {"max_pan": 0.5}}
     navigation = expand_presets({"navigation": given})["navigation"]
     default = asdict(PROFILES["paper"]())
-    assert navigation["gaze"] == default["gaze"] | {"pan_limit": 0.5}
-    assert navigation["filter"] == default["filter"]
+    assert navigation["gaze"] == default["gaze"] | {"max_pan": 0.5}
+    assert navigation["safety_filter"] == default["safety_filter"]
 
 
 @pytest.mark.parametrize("lens", LENSES)

@@ -80,7 +80,16 @@ def test_a_scenario_holds_the_libraries_own_parameters():
 def test_the_profile_paper_is_the_librarys():
     given = load_scenario("course", ["navigation.profile=paper"]).navigation
     paper = NavigationParameters.paper()
-    for name in ("mission", "evaluation", "gaze", "univector", "mover", "gate", "filter", "body"):
+    for name in (
+        "mission",
+        "evaluation",
+        "gaze",
+        "univector",
+        "moving_obstacles",
+        "unseen_ground",
+        "safety_filter",
+        "velocity_mapping",
+    ):
         assert getattr(given, name) == getattr(paper, name)
 
 

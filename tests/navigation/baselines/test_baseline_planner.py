@@ -208,7 +208,7 @@ def test_radii_shown_contain_robot_obstacle_margin_and_uncertainty(
     tracks = [track((0.9, 0.9), id=1), track((0.9, -0.9), (0.05, 0.0), id=2, sigma=0.5)]
     radii = dict(planner(method, limits).plan(belief(tracks), task()).extended_radii)
     assert radii[1] == pytest.approx(0.12 + 0.08 + margin)
-    assert radii[2] == pytest.approx(0.12 + 0.08 + margin + parameters.sigma_limit)
+    assert radii[2] == pytest.approx(0.12 + 0.08 + margin + parameters.max_sigma)
 
 
 @EACH

@@ -6,7 +6,7 @@ import pytest
 from navigation.belief.belief import Motion
 from navigation.gaze.deadline import (
     deadline_votes,
-    glance_vote,
+    look_request_vote,
     map_deadlines,
     obstacle_deadlines,
     self_urgency,
@@ -34,7 +34,7 @@ def test_a_vote_grows_with_age_up_to_its_limit(belief, track):
     values = [value(belief([track((1, 0), (-0.05, 0), age=a)])) for a in (0, 0.5, 1, 2, 9)]
     assert np.all(np.diff(values) >= 0)
     assert values[0] < 0.1
-    assert values[-1] == pytest.approx(P.gaze.deadline.urgency_limit**1.5)
+    assert values[-1] == pytest.approx(P.gaze.deadline.max_urgency**1.5)
 
 
 def test_it_is_1_at_half_the_worst_case_time_to_contact(belief, track):
@@ -109,7 +109,7 @@ def test_ground_votes_on_its_rings_as_far_round_as_the_gaze_sees(belief):
     b = belief()
     scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), p)
     v = map_deadlines(scene, b, 0.0, 0.2, p)
-    reach = P.gaze.pan_limit + P.gaze.box_share * b.view.horizontal_fov
+    reach = P.gaze.max_pan + P.gaze.box_fraction * b.view.horizontal_fov
     assert v.pan == pytest.approx(np.tile(np.linspace(-reach, reach, 5), 2))
     assert scene.camera_height / np.tan(-v.tilt) == pytest.approx(np.repeat([2.0, 0.4], 5))
 
@@ -127,16 +127,18 @@ def test_self_urgency_hears_position_and_heading(belief):
     assert self_urgency(belief(sigma=1.0), P) == 1.0
 
 
-def test_a_glance_is_voted_for_once_the_gaze_reaches_it(belief):
-    reach = P.gaze.pan_limit + P.gaze.box_share * belief().view.horizontal_fov
+def test_a_look_request_is_voted_for_once_the_gaze_reaches_it(belief):
+    reach = P.gaze.max_pan + P.gaze.box_fraction * belief().view.horizontal_fov
     for heading in (0.0, 2.0, -3.0):
         b = belief(pose=(1.0, 0.0, heading))
         for bearing in np.linspace(-3.1, 3.1, 41):
-            votes = glance_vote(b, heading + bearing, P.gaze)
+            votes = look_request_vote(b, heading + bearing, P.gaze)
             assert len(votes) == (abs(bearing) <= reach)
             for vote in votes:
-                assert vote.value.tolist() == [P.gaze.deadline.glance_weight]
-                assert abs(vote.pan[0] - bearing) <= P.gaze.box_share * b.view.horizontal_fov + 1e-9
+                assert vote.value.tolist() == [P.gaze.deadline.look_request_weight]
+                assert (
+                    abs(vote.pan[0] - bearing) <= P.gaze.box_fraction * b.view.horizontal_fov + 1e-9
+                )
 
 
 @pytest.mark.parametrize("turn", [0.8, -0.8])
@@ -146,9 +148,9 @@ def test_a_body_that_turns_votes_for_what_comes_into_reach(belief, track, turn):
         b = belief([track(place, (0.05, 0.0), age=3.0)], age=lambda x, y: 0.0)
         scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
         v = deadline_votes(scene, b, 0.0, 0.2, P, turn=rate)
-        return v.pan[v.value > P.gaze.deadline.way_weight]
+        return v.pan[v.value > P.gaze.deadline.path_weight]
 
-    reach = P.gaze.pan_limit + P.gaze.box_share * belief().view.horizontal_fov
+    reach = P.gaze.max_pan + P.gaze.box_fraction * belief().view.horizontal_fov
     behind = np.copysign(reach + 0.1, turn)
     assert len(pans(behind, 0.0)) == 0
     assert len(pans(-behind, turn)) == 0
@@ -156,9 +158,9 @@ def test_a_body_that_turns_votes_for_what_comes_into_reach(belief, track, turn):
     assert abs(pan) < abs(behind)
 
 
-def test_without_a_glance_nobody_votes_for_one(belief):
+def test_without_a_look_request_nobody_votes_for_one(belief):
     scene = gaze_scene(belief(), None, SAMPLES, np.zeros((0, 2)), P)
     without, with_one = (
-        deadline_votes(scene, belief(), 0.0, 0.2, P, glance=g) for g in (None, 2.0)
+        deadline_votes(scene, belief(), 0.0, 0.2, P, look_request=g) for g in (None, 2.0)
     )
     assert len(with_one.value) == len(without.value) + 1

@@ -10,9 +10,9 @@ STEP = pi / 36
 
 def grid(half_pan=0.75, half_tilt=0.6, *, step=STEP):
     return GazeGrid(
-        pan_limit=pi / 2,
-        tilt_min=-pi / 3,
-        tilt_max=pi / 9,
+        max_pan=pi / 2,
+        min_tilt=-pi / 3,
+        max_tilt=pi / 9,
         step=step,
         half_pan=half_pan,
         half_tilt=half_tilt,

@@ -12,7 +12,7 @@ from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import SamplePoints
 
 P = NavigationParameters.extended()
-SAMPLES = SamplePoints.polar(P.evaluation, P.gaze.pan_limit)
+SAMPLES = SamplePoints.polar(P.evaluation, P.gaze.max_pan)
 
 
 def scene(b, beacons=((2.0, 0.0),)):

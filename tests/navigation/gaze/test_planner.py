@@ -38,8 +38,8 @@ def test_the_gaze_stays_within_the_limits_of_the_head(belief, task, track, limit
     for k in range(30):
         tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (6, 2))]
         decision = planner(limits).choose(belief(tracks, time=float(k)), task(), None)
-        assert abs(decision.pan) <= g.pan_limit + 1e-9
-        assert g.tilt_min - 1e-9 <= decision.tilt <= g.tilt_max + 1e-9
+        assert abs(decision.pan) <= g.max_pan + 1e-9
+        assert g.min_tilt - 1e-9 <= decision.tilt <= g.max_tilt + 1e-9
 
 
 def test_it_is_not_decided_again_before_arrival(belief, task, track, limits, view):

@@ -35,29 +35,27 @@ def test_every_gaze_stays_within_the_head_s_limits(mode, choose, belief, track):
     for k in range(12):
         tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (5, 2))]
         gaze = choose(mode, belief(tracks, time=0.37 * k, confidence=lambda x, y: 0.5))
-        assert abs(gaze.pan) <= P.gaze.pan_limit + 1e-9
-        assert P.gaze.tilt_min - 1e-9 <= gaze.tilt <= P.gaze.tilt_max + 1e-9
+        assert abs(gaze.pan) <= P.gaze.max_pan + 1e-9
+        assert P.gaze.min_tilt - 1e-9 <= gaze.tilt <= P.gaze.max_tilt + 1e-9
         assert np.isfinite(gaze.gaze_map).all()
         assert gaze.gaze_map.min() >= 0.0
 
 
 @pytest.mark.parametrize("mode", MODES)
 def test_limits_that_are_no_multiple_of_the_step_are_kept_too(mode, limits, task, belief, track):
-    p = replace(P.gaze, mode=mode, step=0.13, pan_limit=1.5, tilt_min=-1.0, tilt_max=0.27)
+    p = replace(P.gaze, mode=mode, step=0.13, max_pan=1.5, min_tilt=-1.0, max_tilt=0.27)
     rng = np.random.default_rng(1)
     for k in range(12):
         tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (5, 2))]
         b = belief(tracks, time=0.37 * k, confidence=lambda x, y: 0.5)
         gaze = GazePlanner(replace(P, gaze=p), limits, BEACONS, 1.5, 1.22).choose(b, task(), None)
-        assert abs(gaze.pan) <= p.pan_limit + 1e-9
-        assert p.tilt_min - 1e-9 <= gaze.tilt <= p.tilt_max + 1e-9
+        assert abs(gaze.pan) <= p.max_pan + 1e-9
+        assert p.min_tilt - 1e-9 <= gaze.tilt <= p.max_tilt + 1e-9
 
 
 @pytest.mark.parametrize("ratio", [1.0, 1.1])
 def test_at_a_ratio_of_one_the_gaze_is_the_centre_of_the_plateau_and_stays(ratio):
-    grid = GazeGrid(
-        pan_limit=1.0, tilt_min=-1.0, tilt_max=0.0, step=0.1, half_pan=0.4, half_tilt=0.3
-    )
+    grid = GazeGrid(max_pan=1.0, min_tilt=-1.0, max_tilt=0.0, step=0.1, half_pan=0.4, half_tilt=0.3)
     gaze = VotingGaze(lambda moment: Votes.join([]), grid, ratio)
     top = grid.gaze_map(Votes.one(0.2, -0.5, 1.0))
     now = (0.5, -0.4)

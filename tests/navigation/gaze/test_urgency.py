@@ -25,7 +25,7 @@ def test_urgency_grows_with_age_and_nearness_up_to_its_limit(belief, track):
     assert ages[1] == pytest.approx(1.3 * 0.3 / gap)
     near = [urgency(belief([track((d, 0), (0.1, 0), age=1.0)]))[0] for d in (1.5, 0.8, 0.3)]
     assert np.all(np.diff(near) > 0.0)
-    assert urgency(belief([track((0.3, 0), (0.1, 0), age=99.0)]))[0] == P.gaze.urgency.limit
+    assert urgency(belief([track((0.3, 0), (0.1, 0), age=99.0)]))[0] == P.gaze.urgency.max_urgency
 
 
 def test_the_still_count_little_and_the_undecided_more(belief, track):
@@ -38,7 +38,7 @@ def test_the_still_count_little_and_the_undecided_more(belief, track):
 
 def test_what_lies_ahead_counts_more(belief, track):
     ahead, aside = urgency(belief([track((1, 0), (0.1, 0)), track((0, 1), (0.1, 0))]))
-    assert aside == pytest.approx(P.gaze.urgency.aside * ahead)
+    assert aside == pytest.approx(P.gaze.urgency.side_weight * ahead)
 
 
 def test_ground_that_holds_the_robot_up_votes(belief, task):
@@ -46,13 +46,13 @@ def test_ground_that_holds_the_robot_up_votes(belief, task):
         belief(confidence=lambda x, y, c=c: c, sigma=0.0, turn_sigma=0.0) for c in (1.0, 0.0)
     )
     calm = replace(P, gaze=replace(P.gaze, w_lm=0.0, w_way=0.0, w_sf=0.0))
-    for b, values in ((seen, []), (unseen, [P.gaze.urgency.gate_weight])):
+    for b, values in ((seen, []), (unseen, [P.gaze.urgency.unseen_ground_weight])):
         scene = gaze_scene(b, None, SAMPLES, NO_BEACONS, calm)
         v = urgency_votes(scene, b, task(), way=0.3, speed=0.2, parameters=calm)
         strong = v.value > 0.0
         assert v.value[strong].tolist() == values
         assert v.pan[strong] == pytest.approx([0.3] * len(values))
-    off = replace(calm, gate=replace(calm.gate, enabled=False))
+    off = replace(calm, unseen_ground=replace(calm.unseen_ground, enabled=False))
     scene = gaze_scene(unseen, None, SAMPLES, NO_BEACONS, off)
     v = urgency_votes(scene, unseen, task(), way=0.3, speed=0.2, parameters=off)
     assert not np.any(v.value > 0.0)

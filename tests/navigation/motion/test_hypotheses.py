@@ -6,9 +6,9 @@ import pytest
 from navigation.belief.belief import Motion
 from navigation.motion.hypotheses import collision_hypotheses
 from navigation.obstacle_set import ObstacleSet
-from navigation.parameters.motion import FilterParameters
+from navigation.parameters.motion import SafetyFilterParameters
 
-P = FilterParameters()
+P = SafetyFilterParameters()
 SURE = 0.12 + 0.08 + 0.005 + P.margin
 """Distance from the axis of a track of 0.08 m, give or take 0.005 m, at which it is touched [m]."""
 
@@ -53,7 +53,7 @@ def test_the_undecided_keep_their_velocity_and_do_not_reverse(track):
     h = build(track((1, 0), (0.1, 0.0), Motion.UNKNOWN, sigma=1.0))
     assert len(h) == 1
     assert h.horizon.tolist() == [P.moving_horizon]
-    assert h.radius == pytest.approx([SURE + P.sigma_limit])
+    assert h.radius == pytest.approx([SURE + P.max_sigma])
 
 
 def test_a_lost_mover_is_its_particles(track):

@@ -10,7 +10,7 @@ from navigation.motion.move_to_goal import muf
 from navigation.motion.univector import normalized, weighted_sum
 from navigation.motion.virtual_obstacle import oval
 from navigation.obstacle_set import ObstacleSet
-from navigation.parameters.motion import MoverParameters, UnivectorParameters
+from navigation.parameters.motion import MovingObstacleParameters, UnivectorParameters
 from navigation.parameters.navigation import NavigationParameters
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
@@ -39,7 +39,7 @@ def walk(field, s, starts, reach, length=6.0, step=0.01):
 
 @pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
 def test_fifteen_starts_pass_one_disc_on_their_line(p, track):
-    field = MotionField(p.univector, p.mover)
+    field = MotionField(p.univector, p.moving_obstacles)
     s = scene([track((0, 0), radius=0.15)], p)
     assert s.s_oe[0] == pytest.approx(0.30)
     starts = [(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)]
@@ -49,7 +49,7 @@ def test_fifteen_starts_pass_one_disc_on_their_line(p, track):
 
 
 def test_goals_beside_an_obstacle_are_reached(track):
-    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s_phys = EXTENDED.univector.s_robot + 0.1
     angle = np.arange(24) * np.pi / 12
     starts = 1.5 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -61,7 +61,7 @@ def test_goals_beside_an_obstacle_are_reached(track):
 
 
 def test_close_to_one_obstacle_the_field_leads_away(track):
-    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s = scene([track((0, 0))])
     rng = np.random.default_rng(0)
     rho = rng.uniform(0.05, float(s.s_oe[0]) + 0.1, 500)
@@ -76,7 +76,7 @@ def test_close_to_one_obstacle_the_field_leads_away(track):
 
 
 def test_the_blend_is_continuous_where_it_begins(track):
-    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s = scene([track((0, 0))])
     edge = float(s.s_oe[0]) + EXTENDED.univector.d_e + EXTENDED.univector.d_b
     for angle in np.linspace(2.2, 4.0, 20):
@@ -86,9 +86,9 @@ def test_the_blend_is_continuous_where_it_begins(track):
 
 
 def test_a_mover_in_whose_band_the_robot_stands_pushes_it_sideways(track):
-    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s = scene([track((1.0, 0.02), (-0.1, 0.0))])
-    (active,) = field.own_obstacles(np.zeros(3), np.array([0.15, 0.0]), s)
+    (active,) = field.uncapped_obstacles(np.zeros(3), np.array([0.15, 0.0]), s)
     assert active.obstacle.track_id == 1
     assert active.obstacle.position == pytest.approx([0.0, 0.02])
     assert 0.0 < active.weight < 1.0
@@ -97,13 +97,13 @@ def test_a_mover_in_whose_band_the_robot_stands_pushes_it_sideways(track):
 
 
 def test_leaving_or_standing_obstacles_have_no_virtual_one(track):
-    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     for t in (track((1, 0), (0.1, 0)), track((1, 0)), track((1, 1), (-0.1, 0))):
-        assert field.own_obstacles(np.zeros(3), np.zeros(2), scene([t])) == ()
+        assert field.uncapped_obstacles(np.zeros(3), np.zeros(2), scene([t])) == ()
 
 
 def test_the_printed_form_enters_the_sum_as_an_obstacle(track):
-    field = MotionField(PAPER.univector, PAPER.mover)
+    field = MotionField(PAPER.univector, PAPER.moving_obstacles)
     s = scene([track((0.8, -0.2), (-0.1, 0.06))], PAPER)
     (active,) = field.printed_obstacles(np.zeros(3), np.array([0.15, 0.0]), s, (0,))
     assert active.obstacle.radius <= np.hypot(*active.obstacle.position) + 1e-12
@@ -113,7 +113,7 @@ def test_the_printed_form_enters_the_sum_as_an_obstacle(track):
 
 
 def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(track):
-    field = MotionField(EXTENDED.univector, EXTENDED.mover)
+    field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s = scene([track((0.5, 0.0), (-0.1, 0.0))], target=(0.3, 0.0), heading=np.pi)
     for side in (1, -1):
         held = replace(s, side=side)
@@ -126,7 +126,7 @@ def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(t
 def test_many_points_give_what_single_points_give(track):
     rng = np.random.default_rng(1)
     for p in (EXTENDED, PAPER):
-        field = MotionField(p.univector, p.mover)
+        field = MotionField(p.univector, p.moving_obstacles)
         s = scene([track(c, id=i) for i, c in enumerate(rng.uniform(-1, 1, (6, 2)))], p)
         points = rng.uniform(-2, 2, (30, 2))
         all_ = field.at(points, 0.2, s, ())
@@ -138,7 +138,7 @@ def test_mirror_symmetry(track):
     rng = np.random.default_rng(2)
     centres, points = rng.uniform(-1, 1, (6, 2)), rng.uniform(-2, 2, (100, 2))
     for p in (EXTENDED, PAPER):
-        field = MotionField(p.univector, p.mover)
+        field = MotionField(p.univector, p.moving_obstacles)
         s = scene([track(c) for c in centres], p, (2.0, 0.3), 0.4)
         m = scene([track(c * [1, -1]) for c in centres], p, (2.0, -0.3), -0.4)
         mirrored = field.at(points * [1, -1], 0.0, m, ())
@@ -146,7 +146,7 @@ def test_mirror_symmetry(track):
 
 
 def test_no_obstacles_leave_the_way_to_the_goal():
-    field = MotionField(UnivectorParameters(), MoverParameters())
+    field = MotionField(UnivectorParameters(), MovingObstacleParameters())
     s = scene([])
     assert field.at(np.zeros(2), 0.0, replace(s, target=np.array([0.0, 3.0])), ()) == pytest.approx(
         [0.0, 1.0]
@@ -174,7 +174,7 @@ def test_against_the_printed_sign_every_start_enters_the_disc(track):
 @pytest.mark.parametrize("lateral", [0.0, 0.004, 0.02, -0.02, 0.1, -0.1])
 def test_the_printed_virtual_obstacle_acts_before_a_mover_head_on(lateral, track):
     """Fig. 4 (c): its centre lies abeam, where the third condition of (9) would drop it."""
-    field = MotionField(PAPER.univector, PAPER.mover)
+    field = MotionField(PAPER.univector, PAPER.moving_obstacles)
     s = scene([track((1.6, lateral), (-0.1, 0.0))], PAPER)
     virtual = field.printed_obstacles(np.zeros(3), np.array([0.2, 0.0]), s, (0,))
     without, with_it = (field.at(np.zeros(2), 0.0, s, f) for f in ((), virtual))
@@ -200,11 +200,11 @@ def test_rigid_motion_moves_field_and_forces_along(p, track):
         )  # fmt: skip
         virtual = []
         for s, at, v in ((here, pose, walking), (there, turned, r @ walking)):
-            field = MotionField(p.univector, p.mover)
+            field = MotionField(p.univector, p.moving_obstacles)
             if p is PAPER:
                 found = field.printed_obstacles(at, v, s, (0,))
             else:
-                found = field.own_obstacles(at, v, s)
+                found = field.uncapped_obstacles(at, v, s)
             # The printed circle goes through the robot: rounding decides whether it is inside.
             u = field.at(at[:2], at[2], s, () if p is PAPER else found)
             virtual.append((found, u))
@@ -222,14 +222,16 @@ def test_rigid_motion_moves_field_and_forces_along(p, track):
 def test_the_own_force_has_the_oval_of_its_relative_speed(track):
     p = EXTENDED
     s = scene([track((1.0, 0.1), (-0.1, 0.0))])
-    (active,) = MotionField(p.univector, p.mover).own_obstacles(
+    (active,) = MotionField(p.univector, p.moving_obstacles).uncapped_obstacles(
         np.zeros(3), np.array([0.15, 0.0]), s
     )
-    length = p.mover.path_time * 0.25
-    assert active.weight == pytest.approx(oval(1.0 / length, p.mover.xi))
+    length = p.moving_obstacles.path_time * 0.25
+    assert active.weight == pytest.approx(oval(1.0 / length, p.moving_obstacles.xi))
     assert active.obstacle.radius == pytest.approx(active.weight * s.s_oe[0])
     unsure = replace(s, psi=np.ones(1))
-    (active,) = MotionField(p.univector, p.mover).own_obstacles(
+    (active,) = MotionField(p.univector, p.moving_obstacles).uncapped_obstacles(
         np.zeros(3), np.array([0.15, 0.0]), unsure
     )
-    assert active.weight == pytest.approx(oval(1.0 / (length + p.univector.eta_imp), p.mover.xi))
+    assert active.weight == pytest.approx(
+        oval(1.0 / (length + p.univector.eta_imp), p.moving_obstacles.xi)
+    )

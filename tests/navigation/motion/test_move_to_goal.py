@@ -6,8 +6,8 @@ import pytest
 
 from navigation.angles import wrap_array
 from navigation.decision import Task
-from navigation.motion.body_command import body_velocity
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal, muf
+from navigation.motion.velocity_mapping import body_velocity
 from navigation.parameters.motion import UnivectorParameters
 from navigation.parameters.navigation import NavigationParameters
 
@@ -196,6 +196,6 @@ def test_a_remembered_side_turns_a_whole_turn_the_other_way():
 
 
 def test_k_rho_is_linear_up_to_its_distance():
-    p = replace(EXTENDED, slow_share=0.2, slow_distance=0.4)
+    p = replace(EXTENDED, slow_fraction=0.2, slow_distance=0.4)
     assert arrival_gain(0.1, True, p) == pytest.approx(0.4)
     assert arrival_gain(0.1, False, p) == arrival_gain(2.0, True, p) == 1.0

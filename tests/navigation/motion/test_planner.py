@@ -25,7 +25,7 @@ def test_done_stands_and_lost_turns_on_the_spot(p, belief, task, limits):
     for b in (belief(), belief(lost=True)):
         assert Planner(p, limits).plan(b, task(done=True)).velocity == pytest.approx(0.0)
     lost = Planner(p, limits).plan(belief(lost=True), task()).velocity
-    assert lost == pytest.approx([0.0, 0.0, p.body.lost_turn])
+    assert lost == pytest.approx([0.0, 0.0, p.velocity_mapping.lost_turn_rate])
     assert lost[2] > 0.0
 
 
@@ -63,7 +63,7 @@ def test_near_the_goal_the_body_faces_the_goals_heading(belief, task, limits):
 
 def test_unseen_ground_ahead_is_walked_slowly(belief, task, limits):
     blind = belief(confidence=lambda x, y: 0.0 if x > 0.4 else 1.0)
-    assert Planner(EXTENDED, limits).plan(blind, task()).speed == EXTENDED.gate.speed
+    assert Planner(EXTENDED, limits).plan(blind, task()).speed == EXTENDED.unseen_ground.speed
     assert Planner(EXTENDED, limits).plan(belief(), task()).speed == limits.forward
     behind = belief(confidence=lambda x, y: 0.0 if x < 0.2 else 1.0)
     assert Planner(EXTENDED, limits).plan(behind, task()).speed == limits.forward
@@ -144,7 +144,9 @@ def test_it_walks_around_what_stands_in_the_way(motion, belief, task, track, lim
 def test_switches_of_the_movers_can_be_turned_off(belief, task, track, limits):
     off = replace(
         PAPER,
-        mover=replace(PAPER.mover, virtual_obstacle="off", velocity_modification="off"),
+        moving_obstacles=replace(
+            PAPER.moving_obstacles, virtual_obstacle="off", velocity_modification="off"
+        ),
     )
     decision = Planner(off, limits).plan(belief([track((0.9, 0.1), (-0.12, 0.0))]), task())
     assert decision.speed == limits.forward
@@ -153,7 +155,7 @@ def test_switches_of_the_movers_can_be_turned_off(belief, task, track, limits):
 
 def test_a_wall_is_walked_round_with_the_search_and_not_without(belief, task, track, limits):
     wall = [track((1.0, y), id=k) for k, y in enumerate(np.arange(-0.6, 1.01, 0.2))]
-    search = replace(EXTENDED, way_search=replace(EXTENDED.way_search, enabled=True))
+    search = replace(EXTENDED, waypoint_search=replace(EXTENDED.waypoint_search, enabled=True))
     plain, round_it = (Planner(p, limits).plan(belief(wall), task()) for p in (EXTENDED, search))
     assert round_it.direction < -0.3
     assert abs(plain.direction) < abs(round_it.direction)
@@ -174,7 +176,10 @@ def test_a_mover_head_on_is_passed_with_the_printed_scheme_and_not_without(
 ):
     """Fig. 4 (c) in closed loop: lateral room grows at full speed until the bodies clear."""
     off = replace(
-        PAPER, mover=replace(PAPER.mover, virtual_obstacle="off", velocity_modification="off")
+        PAPER,
+        moving_obstacles=replace(
+            PAPER.moving_obstacles, virtual_obstacle="off", velocity_modification="off"
+        ),
     )
     least = {}
     for p in (PAPER, off):
@@ -229,10 +234,10 @@ def test_a_body_that_walks_turns_aside_for_what_it_cannot_see_and_tells_the_gaze
 ):
     decision = Planner(EXTENDED, limits).plan(belief(age=_stale_behind), task())
     assert decision.velocity[2] != 0.0
-    assert decision.glance is not None
-    assert abs(decision.glance) > 2.0
+    assert decision.look_request is not None
+    assert abs(decision.look_request) > 2.0
     seen = Planner(EXTENDED, limits).plan(belief(), task())
-    assert seen.glance is None
+    assert seen.look_request is None
     assert seen.velocity[2] == 0.0
 
 
@@ -240,7 +245,7 @@ def test_a_body_that_walks_turns_aside_for_what_it_cannot_see_and_tells_the_gaze
 def test_a_body_does_not_turn_aside_for_a_gaze_that_does_not_hear_of_it(mode, belief, task, limits):
     p = replace(EXTENDED, gaze=replace(EXTENDED.gaze, mode=mode))
     decision = Planner(p, limits).plan(belief(age=_stale_behind), task())
-    assert decision.glance is None
+    assert decision.look_request is None
     assert decision.velocity[2] == 0.0
 
 
@@ -248,5 +253,5 @@ def test_at_the_goal_and_in_the_paper_nothing_is_turned_aside_for(belief, task, 
     near = task((0.2, 0.0), is_goal=True)
     for p, t in ((EXTENDED, near), (PAPER, task())):
         decision = Planner(p, limits).plan(belief(age=_stale_behind), t)
-        assert decision.glance is None
+        assert decision.look_request is None
         assert decision.velocity[2] == pytest.approx(0.0)

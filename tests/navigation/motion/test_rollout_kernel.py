@@ -58,7 +58,7 @@ def test_bodies_obey_the_formula_over_arrays():
 @pytest.mark.parametrize(("facing", "aside"), [(nan, 0.0), (nan, 0.4), (2.0, 0.4)])
 def test_footsteps_follow_one_another(scene, facing, aside):
     candidates, now, *_ = scene
-    footstep, change, turn_change, turn_wait, side_step = GAIT
+    footstep, change, turn_change, turn_first_angle, sidestep_ratio = GAIT
     speed = np.hypot(*candidates.T)
     direction = np.where(speed < 1e-9, 0.3, np.arctan2(candidates[:, 1], candidates[:, 0]))
     to = direction + aside if np.isnan(facing) else np.full(len(candidates), facing)
@@ -77,8 +77,8 @@ def test_footsteps_follow_one_another(scene, facing, aside):
         moved = [c * body[:, 0] - s * body[:, 1], s * body[:, 0] + c * body[:, 1]]
         assert velocity[step] == pytest.approx(np.stack(moved, axis=1))
         heading = heading + body[:, 2] * footstep
-    wait = np.maximum(0.0, np.abs(wrap_array(direction - heading)) - turn_wait) / 0.8
-    assert duration[4] == pytest.approx(np.where(speed > side_step, wait, 0.0))
+    wait = np.maximum(0.0, np.abs(wrap_array(direction - heading)) - turn_first_angle) / 0.8
+    assert duration[4] == pytest.approx(np.where(speed > sidestep_ratio, wait, 0.0))
     assert velocity[5] == pytest.approx(candidates)
     assert (duration[:4] == footstep).all()
     assert (duration[5] == inf).all()

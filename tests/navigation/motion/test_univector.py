@@ -108,7 +108,7 @@ def test_virtual_obstacles_join_in_with_their_weight():
 
 
 def test_near_the_goal_the_radius_leaves_its_share_of_the_room():
-    p = UnivectorParameters(goal_share=0.5, goal_gap=0.02, goal_offset=0.03, d_e=0.2)
+    p = UnivectorParameters(goal_fraction=0.5, min_goal_gap=0.02, min_goal_offset=0.03, d_e=0.2)
     s_oe, s_phys = np.full(3, 0.3), np.full(3, 0.2)
     s, d_e = shrunk_for_goal(s_oe, s_phys, np.array([0.21, 0.3, 0.45]), p)
     assert s == pytest.approx([0.21, 0.25, 0.3])

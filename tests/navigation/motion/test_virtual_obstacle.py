@@ -8,7 +8,7 @@ from navigation.motion.virtual_obstacle import (
     printed_path_length,
     printed_radius,
 )
-from navigation.parameters.motion import MoverParameters
+from navigation.parameters.motion import MovingObstacleParameters
 
 OBSTACLE, VELOCITY = np.zeros(2), np.array([0.1, 0.0])
 
@@ -67,7 +67,7 @@ def test_beyond_its_length_the_path_is_free():
 
 
 def test_the_side_is_kept_until_the_robot_is_well_over():
-    sides = VirtualSides(MoverParameters())
+    sides = VirtualSides(MovingObstacleParameters())
     ahead = (1.0, 0.0)
     assert sides.update(1, foot(1.0, 0.2), ahead) == 1
     assert sides.update(1, foot(1.0, -0.07), ahead) == 1
@@ -77,9 +77,9 @@ def test_the_side_is_kept_until_the_robot_is_well_over():
 
 def test_near_the_path_the_goal_decides_the_side():
     across = (0.0, 1.0)
-    assert VirtualSides(MoverParameters()).update(1, foot(1.0, -0.02), across) == 1
-    assert VirtualSides(MoverParameters()).update(1, foot(1.0, -0.02), (1.0, 0.0)) == -1
-    sides = VirtualSides(MoverParameters())
+    assert VirtualSides(MovingObstacleParameters()).update(1, foot(1.0, -0.02), across) == 1
+    assert VirtualSides(MovingObstacleParameters()).update(1, foot(1.0, -0.02), (1.0, 0.0)) == -1
+    sides = VirtualSides(MovingObstacleParameters())
     sides.update(1, foot(1.0, -0.02), across)
     sides.keep(set())
     assert sides.update(1, foot(1.0, -0.02), (0.0, -1.0)) == -1
@@ -97,7 +97,7 @@ def test_the_foot_does_not_depend_on_the_frame():
         for side in (1, -1):
             assert there.normal(side) == pytest.approx(r @ here.normal(side))
         sides = [
-            VirtualSides(MoverParameters()).update(1, f, tuple(u))
+            VirtualSides(MovingObstacleParameters()).update(1, f, tuple(u))
             for f, u in ((here, [0.6, 0.8]), (there, r @ [0.6, 0.8]))
         ]
         assert sides[0] == sides[1]
@@ -110,7 +110,7 @@ def test_the_printed_radius_is_the_oval_of_the_obstacle():
 
 
 def test_on_its_own_side_of_the_path_the_robot_stays_whatever_the_goal():
-    p = MoverParameters()
+    p = MovingObstacleParameters()
     far = p.side_switch + 0.01
     assert VirtualSides(p).update(1, foot(1.0, far), (0.0, -1.0)) == 1
     assert VirtualSides(p).update(1, foot(1.0, -far), (0.0, 1.0)) == -1

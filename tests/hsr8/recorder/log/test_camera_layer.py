@@ -34,13 +34,13 @@ def test_nothing_is_drawn_of_what_is_behind():
 
 @pytest.mark.parametrize(
     "gaze",
-    [GazeParameters(), GazeParameters(pan_limit=1.0, tilt_min=-0.8, tilt_max=0.11, step=0.13)],
+    [GazeParameters(), GazeParameters(max_pan=1.0, min_tilt=-0.8, max_tilt=0.11, step=0.13)],
 )
 def test_cells_of_the_gaze_map_are_where_its_picture_has_them(gaze):
     grid = GazeGrid(
-        pan_limit=gaze.pan_limit,
-        tilt_min=gaze.tilt_min,
-        tilt_max=gaze.tilt_max,
+        max_pan=gaze.max_pan,
+        min_tilt=gaze.min_tilt,
+        max_tilt=gaze.max_tilt,
         step=gaze.step,
         half_pan=0.5,
         half_tilt=0.4,
@@ -56,5 +56,5 @@ def test_cells_of_the_gaze_map_are_where_its_picture_has_them(gaze):
 
 def test_directions_beyond_the_gaze_map_are_on_its_border():
     gaze = GazeParameters()
-    beyond = np.array([[gaze.pan_limit + 1.0, gaze.tilt_max + 1.0], [-3.0, -3.0]])
+    beyond = np.array([[gaze.max_pan + 1.0, gaze.max_tilt + 1.0], [-3.0, -3.0]])
     assert map_points(beyond, (17, 37), gaze).tolist() == [[0.0, 0.0], [37.0, 17.0]]

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief.belief import Belief, Motion, Track
-from navigation.motion import shoulder_kernel
-from navigation.parameters.motion import ShoulderParameters
+from navigation.motion import rear_check_kernel
+from navigation.parameters.motion import RearCheckParameters
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -44,11 +44,11 @@ class Sector:
         return 0.5 * abs(float(self.bearing[-1] - self.bearing[0]))
 
 
-class ShoulderCheck:
+class RearCheck:
     """Chooses what to turn aside for, keeps to it until that was seen, and turns back."""
 
     def __init__(
-        self, parameters: ShoulderParameters, reach: float, s_robot: float, speed: float
+        self, parameters: RearCheckParameters, reach: float, s_robot: float, speed: float
     ) -> None:
         """Start with nothing to look at.
 
@@ -64,10 +64,10 @@ class ShoulderCheck:
         self._fear = (
             p.mover_speed * speed,
             s_robot,
-            p.least_approach,
-            p.least_time,
-            p.age_limit,
-            p.urgency_limit,
+            p.min_approach,
+            p.min_time,
+            p.max_age,
+            p.max_urgency,
         )
         self._rings = np.array(p.rings)
         self._sectors = sectors(p, reach)
@@ -94,14 +94,14 @@ class ShoulderCheck:
             self._chosen = None
             return 0.0
         if self._chosen is not None:
-            late = now - self._since > p.hold
-            if late or self.urgency(belief, self._course, speed)[self._chosen] < p.seen:
+            late = now - self._since > p.max_turn_time
+            if late or self.urgency(belief, self._course, speed)[self._chosen] < p.stop_urgency:
                 self._chosen = None
-                self._rest_until = now + p.rest if late else now
+                self._rest_until = now + p.retry_delay if late else now
         if self._chosen is None and now >= self._rest_until:
             weighted = self._weight * self.urgency(belief, course, speed)
             worst = int(np.argmax(weighted))
-            if weighted[worst] > p.due:
+            if weighted[worst] > p.start_urgency:
                 self._chosen, self._since, self._course = worst, now, course
         if self._chosen is None:
             return 0.0
@@ -109,7 +109,7 @@ class ShoulderCheck:
         side = copysign(1.0, aside)
         return side * min(max(side * wrap(self._course + aside - course), 0.0), p.far_angle)
 
-    def glance(self) -> float | None:
+    def look_request(self) -> float | None:
         """Direction in W of what the body turns aside for, None for nothing [rad]."""
         return None if self._chosen is None else self._course + self._sectors[self._chosen].middle
 
@@ -121,9 +121,11 @@ class ShoulderCheck:
             course: direction of the way in W [rad].
             speed: along it [m/s].
         """
-        points = shoulder_kernel.places(belief.pose, course, self._rings, self._bearing)
+        points = rear_check_kernel.places(belief.pose, course, self._rings, self._bearing)
         age, count = belief.local_map.age_at(points), len(self._sectors)
-        most = shoulder_kernel.of_ground(age, self._rings, self._bearing, speed, self._fear, count)
+        most = rear_check_kernel.of_ground(
+            age, self._rings, self._bearing, speed, self._fear, count
+        )
         for track in belief.tracks:
             if track.particles is not None:
                 most = np.maximum(most, self._of_lost(track, belief.pose, course, speed))
@@ -144,7 +146,7 @@ class ShoulderCheck:
         """Urgency of a look at each sector for a lost track (4,)."""
         cloud = track.particles
         assert cloud is not None
-        return shoulder_kernel.of_cloud(
+        return rear_check_kernel.of_cloud(
             cloud.positions,
             cloud.weights,
             (track.age, track.radius, max(self._parameters.rings)),
@@ -156,7 +158,7 @@ class ShoulderCheck:
         )
 
 
-def sectors(parameters: ShoulderParameters, reach: float) -> tuple[Sector, ...]:
+def sectors(parameters: RearCheckParameters, reach: float) -> tuple[Sector, ...]:
     """What is just out of the gaze's `reach` [rad] and what is right behind, on both sides."""
     p = parameters
     return tuple(

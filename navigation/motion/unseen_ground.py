@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
-from navigation.parameters.motion import GateParameters
+from navigation.parameters.motion import UnseenGroundParameters
 
 Array = NDArray[np.float64]
 
 
-def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Array:
+def ground_points(pose: Array, direction: float, parameters: UnseenGroundParameters) -> Array:
     """Points asked for, three columns before a robot that moves in `direction` (3 rows, 2) [m].
 
     Args:
@@ -27,7 +27,7 @@ def gate_points(pose: Array, direction: float, parameters: GateParameters) -> Ar
     return points
 
 
-def ground_seen(belief: Belief, direction: float, parameters: GateParameters) -> bool:
+def ground_seen(belief: Belief, direction: float, parameters: UnseenGroundParameters) -> bool:
     """Whether the ground before a robot that moves in `direction` in W [rad] was seen of late.
 
     Args:
@@ -35,7 +35,7 @@ def ground_seen(belief: Belief, direction: float, parameters: GateParameters) ->
         direction: of its motion in W [rad].
         parameters: extent of the ground and the confidence asked for.
     """
-    points = gate_points(belief.pose, direction, parameters)
+    points = ground_points(belief.pose, direction, parameters)
     return float(np.min(belief.local_map.confidence_at(points))) >= parameters.confidence
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from navigation.angles import wrap_array
-from navigation.motion import shoulder_kernel as kernel
+from navigation.motion import rear_check_kernel as kernel
 
 POSE = np.array([0.4, -1.2, 2.9])
 COURSE, SPEED = 2.6, 0.15
@@ -28,10 +28,10 @@ def age():
 
 
 def urgency(age, gap, bearing):
-    feared, _, least_approach, least_time, age_limit, urgency_limit = FEAR
-    approach = np.maximum(least_approach, feared + SPEED * np.cos(bearing))
-    contact = np.maximum(least_time, gap / approach)
-    return np.minimum(urgency_limit, np.minimum(age_limit, age) / contact)
+    feared, _, min_approach, min_time, max_age, max_urgency = FEAR
+    approach = np.maximum(min_approach, feared + SPEED * np.cos(bearing))
+    contact = np.maximum(min_time, gap / approach)
+    return np.minimum(max_urgency, np.minimum(max_age, age) / contact)
 
 
 def test_compiled_and_plain_agree(age, cloud):

@@ -4,23 +4,23 @@ import numpy as np
 import pytest
 
 from navigation.belief.visibility import Viewpoint
-from navigation.gaze.gate_vote import gate_vote
-from navigation.motion.confidence_gate import gate_points, ground_seen
-from navigation.parameters.motion import GateParameters
+from navigation.gaze.unseen_ground_vote import unseen_ground_vote
+from navigation.motion.unseen_ground import ground_points, ground_seen
+from navigation.parameters.motion import UnseenGroundParameters
 from navigation.parameters.navigation import NavigationParameters
 
-P = GateParameters()
+P = UnseenGroundParameters()
 
 
 def test_the_points_lie_ahead_of_the_motion_in_any_frame():
-    here = gate_points(np.zeros(3), 0.0, P)
+    here = ground_points(np.zeros(3), 0.0, P)
     assert len(here) == 12
     assert here[:, 0].min() == pytest.approx(P.near)
     assert here[:, 0].max() == pytest.approx(P.far)
     assert np.abs(here[:, 1]).max() == pytest.approx(P.half_width)
     a, shift = 0.7, np.array([1.0, -2.0])
     r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
-    there = gate_points(np.array([*shift, 3.0]), a, P)
+    there = ground_points(np.array([*shift, 3.0]), a, P)
     assert there == pytest.approx(here @ r.T + shift)
 
 
@@ -28,7 +28,7 @@ def test_a_look_20_deg_down_shows_all_the_ground_asked_for(view):
     pose = np.array([1.0, -0.5, 0.7])
     eye = Viewpoint.of(view(tilt=-np.radians(20.0)), pose, 3.0)
     for near, shown in ((P.near, True), (0.25, False)):
-        points = gate_points(pose, pose[2], replace(P, near=near))
+        points = ground_points(pose, pose[2], replace(P, near=near))
         seen = eye.expects(points, np.zeros((0, 2)), np.zeros(0), margin=0.0, slack=0.0)
         assert seen.all() == shown
 
@@ -37,11 +37,11 @@ def test_a_look_20_deg_down_shows_all_the_ground_asked_for(view):
 def test_ground_that_holds_the_robot_up_asks_for_a_look_within_the_pan_stop(way, belief):
     p = NavigationParameters.extended()
     unseen, seen = (belief(pose=(1.0, 0.5, 0.3), confidence=lambda x, y, c=c: c) for c in (0, 1))
-    (vote,) = gate_vote(unseen, way, 0.47, 0.8, p)
+    (vote,) = unseen_ground_vote(unseen, way, 0.47, 0.8, p)
     assert vote.value.tolist() == [0.8]
-    assert vote.pan == pytest.approx(np.clip(way, -p.gaze.pan_limit, p.gaze.pan_limit))
+    assert vote.pan == pytest.approx(np.clip(way, -p.gaze.max_pan, p.gaze.max_pan))
     assert 0.47 / -np.tan(vote.tilt) == pytest.approx(0.5 * (P.near + P.far))
-    assert gate_vote(seen, way, 0.47, 0.8, p) == []
+    assert unseen_ground_vote(seen, way, 0.47, 0.8, p) == []
 
 
 def test_ground_is_seen_where_every_point_of_it_was(belief):

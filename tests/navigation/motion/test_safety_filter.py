@@ -3,15 +3,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation.motion.collision_filter import (
-    CollisionFilter,
+from navigation.motion.facing import Facing
+from navigation.motion.hypotheses import Hypotheses
+from navigation.motion.safety_filter import (
     Paths,
+    SafetyFilter,
     contact_times,
     direction_and_speed,
 )
-from navigation.motion.facing import Facing
-from navigation.motion.hypotheses import Hypotheses
-from navigation.parameters.motion import BodyParameters, FilterParameters
+from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 
 HERE = np.zeros(3)
 STANDING = np.zeros(3)
@@ -33,8 +33,8 @@ def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
 
 
 def choose(limits, wanted, hypotheses, pose=HERE, facing=ON_THE_WAY, body=STANDING, **changes):
-    p = replace(FilterParameters(), **changes)
-    return CollisionFilter(p, BodyParameters(), limits).choose(
+    p = replace(SafetyFilterParameters(), **changes)
+    return SafetyFilter(p, VelocityMappingParameters(), limits).choose(
         pose, np.asarray(wanted, float), float(np.arctan2(wanted[1], wanted[0])),
         facing=facing, body_now=body, discs=hypotheses,
     )  # fmt: skip
@@ -104,7 +104,7 @@ def test_the_choice_turns_with_the_scene(limits):
         heading, a = float(rng.uniform(-3, 3)), float(rng.uniform(-3, 3))
         r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
         wish, body = rng.normal(0, 0.1, 2), np.array([0.1, 0.0, 0.2])
-        filter_ = CollisionFilter(FilterParameters(), BodyParameters(), limits)
+        filter_ = SafetyFilter(SafetyFilterParameters(), VelocityMappingParameters(), limits)
         course = float(np.arctan2(wish[1], wish[0]))
         one, other = (
             filter_.penalty(
@@ -124,7 +124,9 @@ def test_the_choice_turns_with_the_scene(limits):
 
 
 def test_without_rollout_the_path_is_turn_then_straight(limits):
-    filter_ = CollisionFilter(replace(FilterParameters(), steps=0), BodyParameters(), limits)
+    filter_ = SafetyFilter(
+        replace(SafetyFilterParameters(), steps=0), VelocityMappingParameters(), limits
+    )
     paths = filter_.paths(
         HERE, np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]]), 0.0, ON_THE_WAY, STANDING
     )
@@ -134,8 +136,8 @@ def test_without_rollout_the_path_is_turn_then_straight(limits):
 
 
 def test_the_rollout_obeys_the_envelope(limits):
-    p = FilterParameters()
-    filter_ = CollisionFilter(p, BodyParameters(), limits)
+    p = SafetyFilterParameters()
+    filter_ = SafetyFilter(p, VelocityMappingParameters(), limits)
     paths = filter_.paths(HERE, filter_.candidates(AHEAD, 0.0), 0.0, ON_THE_WAY, STANDING)
     speed = np.hypot(paths.velocity[..., 0], paths.velocity[..., 1])[: p.steps]
     assert speed.max() <= limits.forward + 1e-9
@@ -145,7 +147,7 @@ def test_the_rollout_obeys_the_envelope(limits):
 
 def test_a_body_turned_aside_is_rolled_out_as_it_walks(limits):
     """The way stays the way; what the turned body must walk sideways slows it down."""
-    filter_ = CollisionFilter(FilterParameters(), BodyParameters(), limits)
+    filter_ = SafetyFilter(SafetyFilterParameters(), VelocityMappingParameters(), limits)
     turned, straight = (
         filter_.paths(np.array([0.0, 0.0, a]), AHEAD[None], 0.0, Facing(aside=a), body)
         for a, body in ((1.0, np.array([0.05, -0.08, 0.0])), (0.0, np.array([0.2, 0.0, 0.0])))

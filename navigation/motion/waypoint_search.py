@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from navigation.parameters.motion import WaySearchParameters
+from navigation.parameters.motion import WaypointSearchParameters
 
 Array = NDArray[np.float64]
 Cells = NDArray[np.int64]
@@ -19,8 +19,12 @@ Cells = NDArray[np.int64]
 _STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
 
 
-def way_point(
-    position: Array, target: Array, centres: Array, radii: Array, parameters: WaySearchParameters
+def search_waypoint(
+    position: Array,
+    target: Array,
+    centres: Array,
+    radii: Array,
+    parameters: WaypointSearchParameters,
 ) -> Array:
     """The farthest point of the shortest way that can be walked to straight (2,) [m].
 
@@ -36,7 +40,7 @@ def way_point(
     """
     if _free(position, target, centres, radii):
         return target
-    way = shortest_way(position, target, centres, radii, parameters)
+    way = shortest_path(position, target, centres, radii, parameters)
     chosen = target
     for point in way:
         away = hypot(*(point - position).tolist())
@@ -46,8 +50,12 @@ def way_point(
     return chosen
 
 
-def shortest_way(
-    position: Array, target: Array, centres: Array, radii: Array, parameters: WaySearchParameters
+def shortest_path(
+    position: Array,
+    target: Array,
+    centres: Array,
+    radii: Array,
+    parameters: WaypointSearchParameters,
 ) -> Array:
     """Cell centres from the robot to the destination (m, 2) [m].
 

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from navigation.decision import SpeedLimits
 from navigation.motion import rollout_kernel
-from navigation.motion.body_command import envelope
 from navigation.motion.facing import Facing
 from navigation.motion.hypotheses import Hypotheses
-from navigation.parameters.motion import BodyParameters, FilterParameters
+from navigation.motion.velocity_mapping import envelope
+from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 from navigation.transform import velocity_in_world
 from navigation.value import value
 
@@ -54,11 +54,14 @@ def contact_times(paths: Paths, position: Array, discs: Hypotheses) -> tuple[Arr
     )
 
 
-class CollisionFilter:
+class SafetyFilter:
     """Chooses among many velocities the one that costs least and touches nothing soon."""
 
     def __init__(
-        self, parameters: FilterParameters, body: BodyParameters, limits: SpeedLimits
+        self,
+        parameters: SafetyFilterParameters,
+        body: VelocityMappingParameters,
+        limits: SpeedLimits,
     ) -> None:
         """Prepare the candidates.
 
@@ -159,8 +162,8 @@ class CollisionFilter:
                 limits.footstep,
                 limits.acceleration * limits.footstep,
                 p.turn_change,
-                self._body.turn_wait,
-                self._body.side_step * limits.lateral,
+                self._body.turn_first_angle,
+                self._body.sidestep_ratio * limits.lateral,
             ),
             p.steps,
         )

@@ -5,10 +5,10 @@ import pytest
 
 from navigation.angles import wrap
 from navigation.belief.belief import Motion
-from navigation.motion.shoulder_check import ShoulderCheck, sectors
-from navigation.parameters.motion import ShoulderParameters
+from navigation.motion.rear_check import RearCheck, sectors
+from navigation.parameters.motion import RearCheckParameters
 
-P = ShoulderParameters()
+P = RearCheckParameters()
 REACH = 2.2  # [rad]
 SPEED = 0.2  # [m/s]
 EDGE = 0.01  # [rad]
@@ -16,7 +16,7 @@ EDGE = 0.01  # [rad]
 
 @pytest.fixture
 def check():
-    return ShoulderCheck(P, REACH, 0.12, SPEED)
+    return RearCheck(P, REACH, 0.12, SPEED)
 
 
 def stale(inside, pose=(0.0, 0.0, 0.0), age=9.0):
@@ -55,29 +55,29 @@ def test_a_body_turned_aside_has_the_whole_sector_in_reach():
 
 def test_what_was_just_seen_is_not_turned_for(check, belief):
     assert check.aside(belief(), 0.0, SPEED) == 0.0
-    assert check.glance() is None
+    assert check.look_request() is None
 
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_old_ground_is_turned_for_from_its_side_as_far_as_it_takes(side, belief):
     for inside, angle in ((beside, P.near_angle), (right_behind, P.far_angle)):
-        check = ShoulderCheck(P, REACH, 0.12, SPEED)
+        check = RearCheck(P, REACH, 0.12, SPEED)
         b = belief(age=stale(lambda bearing, i=inside: bearing * side > 0 and i(side * bearing)))
         assert check.aside(b, 0.0, 0.03) == side * angle
-        glance = check.glance()
-        assert np.sign(glance) == side
-        assert abs(wrap(glance - side * angle)) < REACH
+        look_request = check.look_request()
+        assert np.sign(look_request) == side
+        assert abs(wrap(look_request - side * angle)) < REACH
 
 
 def test_the_answer_turns_and_moves_with_the_scene(belief):
     pose, course = (2.0, -1.0, 0.4), 1.1
     way = (*pose[:2], course)
-    here = ShoulderCheck(P, REACH, 0.12, SPEED)
-    there = ShoulderCheck(P, REACH, 0.12, SPEED)
+    here = RearCheck(P, REACH, 0.12, SPEED)
+    there = RearCheck(P, REACH, 0.12, SPEED)
     one = here.aside(belief(age=stale(beside)), 0.0, SPEED)
     other = there.aside(belief(pose=pose, age=stale(beside, way)), course, SPEED)
     assert one == pytest.approx(other) == P.near_angle
-    assert there.glance() == pytest.approx(here.glance() + course)
+    assert there.look_request() == pytest.approx(here.look_request() + course)
 
 
 def test_it_keeps_to_what_it_turned_for_until_that_was_seen(check, belief):
@@ -93,10 +93,10 @@ def test_it_keeps_to_what_it_turned_for_until_that_was_seen(check, belief):
 def test_what_is_looked_at_stays_where_it_is_though_the_way_turns(check, belief, side):
     stale_side = stale(lambda bearing: beside(side * bearing))
     assert check.aside(belief(age=stale_side), 0.0, SPEED) == side * P.near_angle
-    glance = check.glance()
+    look_request = check.look_request()
     for course in (0.1, -0.1, 0.3, 0.0):
         aside = check.aside(belief(age=stale_side, time=0.4), course, SPEED)
-        assert check.glance() == glance
+        assert check.look_request() == look_request
         assert course + aside == pytest.approx(side * P.near_angle)
     # A way that turns to where it is in reach anyway needs no more, one that turns away no end.
     assert check.aside(belief(age=stale_side, time=0.4), side * 1.0, SPEED) == 0.0
@@ -108,12 +108,12 @@ def test_what_cannot_be_seen_is_given_up_for_a_while(check, belief):
     def at(time):
         return check.aside(belief(age=stale(beside), time=time), 0.0, SPEED)
 
-    late = P.hold + 0.1
+    late = P.max_turn_time + 0.1
     assert at(0.0) == P.near_angle
-    assert at(P.hold) == P.near_angle
+    assert at(P.max_turn_time) == P.near_angle
     assert at(late) == 0.0
-    assert at(late + 0.9 * P.rest) == 0.0
-    assert at(late + 1.1 * P.rest) == P.near_angle
+    assert at(late + 0.9 * P.retry_delay) == 0.0
+    assert at(late + 1.1 * P.retry_delay) == P.near_angle
 
 
 def test_the_slower_the_robot_the_sooner_what_is_right_behind_is_due(check, belief):
@@ -138,7 +138,7 @@ def test_nothing_counts_beyond_the_farthest_ring(belief, track):
     lost = belief([track(place, (0.1, 0.0), age=3.0, particles=cloud(place))])
     ground = belief(age=lambda x, y: 9.0 if np.hypot(x, y) > 0.55 else 0.0)
     for rings, counts in (((0.4, 0.5), False), ((0.7, 0.4), True)):
-        check = ShoulderCheck(ShoulderParameters(rings=rings), REACH, 0.12, SPEED)
+        check = RearCheck(RearCheckParameters(rings=rings), REACH, 0.12, SPEED)
         for b in (lost, ground):
             assert check.urgency(b, 0.0, SPEED).any() == counts
 
@@ -153,7 +153,7 @@ def test_what_is_near_and_may_move_is_left_before_anything_is_looked_at(check, b
     for motion in (Motion.MOVING, Motion.UNKNOWN):
         assert aside(far, motion) == P.near_angle
         assert aside(near, motion) == 0.0
-        assert check.glance() is None
+        assert check.look_request() is None
     assert aside(near, Motion.STATIC) == P.near_angle
 
 

@@ -4,11 +4,11 @@ import numpy as np
 
 from navigation.belief.belief import Belief
 from navigation.gaze.gaze_map import Votes
-from navigation.motion.confidence_gate import ground_seen
+from navigation.motion.unseen_ground import ground_seen
 from navigation.parameters.navigation import NavigationParameters
 
 
-def gate_vote(
+def unseen_ground_vote(
     belief: Belief, way: float, height: float, weight: float, parameters: NavigationParameters
 ) -> list[Votes]:
     """A vote for the ground that holds the robot up; none where the gate is off or lets it pass.
@@ -20,9 +20,9 @@ def gate_vote(
         weight: of the vote.
         parameters: of the decisions.
     """
-    g, p = parameters.gate, parameters.gaze
+    g, p = parameters.unseen_ground, parameters.gaze
     if not g.enabled or ground_seen(belief, float(belief.pose[2]) + way, g):
         return []
-    pan = min(max(way, -p.pan_limit), p.pan_limit)
+    pan = min(max(way, -p.max_pan), p.max_pan)
     tilt = -float(np.arctan2(height, 0.5 * (g.near + g.far)))
     return [Votes.one(pan, tilt, weight)]

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from navigation.motion.body_command import body_velocity, idle_velocity
+from navigation.motion.velocity_mapping import body_velocity, idle_velocity
 
 COURSES = np.linspace(-np.pi, np.pi, 181)
 

@@ -3,23 +3,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation.motion.way_search import shortest_way, way_point
-from navigation.parameters.motion import WaySearchParameters
+from navigation.motion.waypoint_search import search_waypoint, shortest_path
+from navigation.parameters.motion import WaypointSearchParameters
 
-P = WaySearchParameters()
+P = WaypointSearchParameters()
 START, GOAL = np.zeros(2), np.array([2.0, 0.0])
 WALL = np.array([[1.0, y] for y in np.arange(-0.6, 1.01, 0.2)])
 RADII = np.full(len(WALL), 0.25)
 
 
 def test_a_free_way_is_left_alone():
-    assert way_point(START, GOAL, np.zeros((0, 2)), np.zeros(0), P) is GOAL
+    assert search_waypoint(START, GOAL, np.zeros((0, 2)), np.zeros(0), P) is GOAL
     aside = np.array([[1.0, 0.5]])
-    assert way_point(START, GOAL, aside, np.array([0.3]), P) is GOAL
+    assert search_waypoint(START, GOAL, aside, np.array([0.3]), P) is GOAL
 
 
 def test_round_a_wall_the_shorter_way_is_taken_and_every_step_of_it_is_free():
-    way = shortest_way(START, GOAL, WALL, RADII, P)
+    way = shortest_path(START, GOAL, WALL, RADII, P)
     gaps = np.hypot(*(way[:-1, None] - WALL).transpose(2, 0, 1))
     assert np.all(gaps >= 0.25)
     assert way[-1] == pytest.approx(GOAL)
@@ -28,12 +28,12 @@ def test_round_a_wall_the_shorter_way_is_taken_and_every_step_of_it_is_free():
 
 
 def test_the_way_point_is_visible_in_reach_and_leads_round():
-    point = way_point(START, GOAL, WALL, RADII, P)
+    point = search_waypoint(START, GOAL, WALL, RADII, P)
     assert np.hypot(*point) <= P.reach
     assert point[1] < -0.3
     place = START
     for _ in range(60):
-        point = way_point(place, GOAL, WALL, RADII, P)
+        point = search_waypoint(place, GOAL, WALL, RADII, P)
         step = point - place
         place = place + 0.1 * step / max(0.1, np.hypot(*step))
         assert np.hypot(*(place - WALL).T).min() > 0.25 - 1e-9
@@ -43,13 +43,13 @@ def test_the_way_point_is_visible_in_reach_and_leads_round():
 def test_a_blocked_destination_in_the_robot_s_cell_leaves_the_task():
     p, target = replace(P, around=0.95), np.array([0.01, 0.0])
     blocking, radius = np.array([[0.06, 0.0]]), np.array([0.055])
-    assert shortest_way(START, target, blocking, radius, p).shape == (0, 2)
-    assert way_point(START, target, blocking, radius, p) is target
+    assert shortest_path(START, target, blocking, radius, p).shape == (0, 2)
+    assert search_waypoint(START, target, blocking, radius, p) is target
 
 
 def test_a_mirrored_wall_mirrors_the_length_of_the_way():
-    one = shortest_way(START, GOAL, WALL, RADII, P)
-    other = shortest_way(START, GOAL, WALL * [1, -1], RADII, P)
+    one = shortest_path(START, GOAL, WALL, RADII, P)
+    other = shortest_path(START, GOAL, WALL * [1, -1], RADII, P)
     lengths = [np.hypot(*np.diff(w, axis=0).T).sum() for w in (one, other)]
     assert lengths[0] == pytest.approx(lengths[1], abs=2 * P.cell)
 
@@ -57,4 +57,4 @@ def test_a_mirrored_wall_mirrors_the_length_of_the_way():
 def test_without_any_way_the_task_stays():
     ring = np.arange(24) * np.pi / 12
     around = GOAL + 0.6 * np.stack([np.cos(ring), np.sin(ring)], axis=1)
-    assert way_point(START, GOAL, around, np.full(24, 0.2), P) is GOAL
+    assert search_waypoint(START, GOAL, around, np.full(24, 0.2), P) is GOAL
