@@ -22,23 +22,23 @@ class SpeedLimits:
     """Speed envelope of the walking layer, in R.
 
     Attributes:
-        forward, backward, lateral: largest speeds, all positive [m/s].
-        turn: largest turn rate [rad/s].
-        acceleration: largest change of speed [m/s²].
-        footstep: time a command is latched for, one footstep [s].
+        vx, vx_backward, vy: maximum speeds forward, backward and sideways, all positive [m/s].
+        wz: maximum turn rate [rad/s].
+        acceleration: maximum acceleration [m/s²].
+        footstep: duration of a footstep, for which a command is latched [s].
     """
 
-    forward: float
-    backward: float
-    lateral: float
-    turn: float
+    vx: float
+    vx_backward: float
+    vy: float
+    wz: float
     acceleration: float
     footstep: float
 
     @property
-    def fastest(self) -> float:
-        """Largest speed in any direction [m/s]."""
-        return hypot(max(self.forward, self.backward), self.lateral)
+    def max_speed(self) -> float:
+        """Maximum speed in any direction [m/s]."""
+        return hypot(max(self.vx, self.vx_backward), self.vy)
 
 
 @value

@@ -75,7 +75,7 @@ class Watch(Listener):
         layout = simulation.layout
         self.radii = np.array([o.radius for o in (*layout.obstacles, *layout.beacons)])
         self.beacons = np.array([b.position for b in layout.beacons]).reshape(-1, 2)
-        self.forward = simulation.scenario.speed_limits().forward
+        self.forward = simulation.scenario.speed_limits().vx
         self.recent: deque[Truth] = deque()
         self.trail: list[list[float]] = []
         self.frame: FrameRecord | None = None

@@ -120,10 +120,10 @@ class Scenario(Section):
         """Speed envelope navigation plans with; a command lasts for one footstep."""
         speed = self.robot.speed
         return SpeedLimits(
-            forward=speed.forward,
-            backward=speed.backward,
-            lateral=speed.lateral,
-            turn=speed.turn,
+            vx=speed.forward,
+            vx_backward=speed.backward,
+            vy=speed.lateral,
+            wz=speed.turn,
             acceleration=speed.acceleration,
             footstep=self.walking.gait.footstep_time,
         )

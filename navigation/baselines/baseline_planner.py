@@ -105,5 +105,5 @@ class BaselinePlanner:
         side = self._arrival.update(pose[:2], task)
         dx, dy = (task.target - pose[:2]).tolist()
         course = float(move_to_goal(pose[:2], pose[2], task.target, task.heading, p, side=side))
-        speed = self._limits.forward * arrival_gain(hypot(dx, dy), task.is_goal, p)
+        speed = self._limits.vx * arrival_gain(hypot(dx, dy), task.is_goal, p)
         return course, speed, side

@@ -43,7 +43,7 @@ class DynamicWindow:
         stopping = 0.5 * turn * np.abs(turn) / s.envelope.turn_change * limits.footstep
         left = np.abs(wrap_array(facing - heading[:, 0] - stopping))
         cost = (
-            np.hypot(off[:, 0], off[:, 1]) / (horizon * limits.forward)
+            np.hypot(off[:, 0], off[:, 1]) / (horizon * limits.vx)
             + p.heading_weight * left / np.pi
             + p.clearance_weight * np.maximum(0.0, 1.0 - gap.min(axis=1) / p.clearance)
             + p.contact_weight * contact_cost(gap)

@@ -32,7 +32,7 @@ class Orca:
         box = self._box(s)
         wanted, own = s.wanted().tolist(), s.velocity().tolist()
         planes = [*box, *self._planes(s, (own[0], own[1]))]
-        v_max = s.envelope.limits.fastest
+        v_max = s.envelope.limits.max_speed
         return s.walk(np.array(solve(planes, len(box), (wanted[0], wanted[1]), v_max)))
 
     def _planes(self, s: PlanningScene, own: tuple[float, float]) -> list[HalfPlane]:
@@ -50,7 +50,7 @@ class Orca:
         ):
             horizon = p.static_horizon if static else p.horizon
             gap = hypot(ox - x, oy - y) - radius
-            if gap > horizon * (hypot(u, w) + s.envelope.limits.fastest):
+            if gap > horizon * (hypot(u, w) + s.envelope.limits.max_speed):
                 continue
             plane = orca_plane(
                 (ox - x, oy - y),
@@ -69,8 +69,8 @@ class Orca:
         limits = s.envelope.limits
         c, n = cos(float(s.pose[2])), sin(float(s.pose[2]))
         return [
-            HalfPlane(c * limits.forward, n * limits.forward, -n, c),
-            HalfPlane(-c * limits.backward, -n * limits.backward, n, -c),
-            HalfPlane(-n * limits.lateral, c * limits.lateral, -c, -n),
-            HalfPlane(n * limits.lateral, -c * limits.lateral, c, n),
+            HalfPlane(c * limits.vx, n * limits.vx, -n, c),
+            HalfPlane(-c * limits.vx_backward, -n * limits.vx_backward, n, -c),
+            HalfPlane(-n * limits.vy, c * limits.vy, -c, -n),
+            HalfPlane(n * limits.vy, -c * limits.vy, c, n),
         ]

@@ -76,7 +76,7 @@ class PathIntegral:
         to_go = s.task.target - position
         distance = np.hypot(to_go[..., 0], to_go[..., 1])
         # Walking the whole time and standing differ by one.
-        walked = 0.5 * p.steps * limits.footstep * limits.forward
+        walked = 0.5 * p.steps * limits.footstep * limits.vx
         facing = np.arctan2(to_go[..., 1], to_go[..., 0]) if s.facing is None else s.facing
         left = np.abs(wrap_array(facing - heading))
         if s.facing is None:

@@ -30,11 +30,11 @@ class BodyEnvelope:
 
     def low(self) -> Array:
         """Least forward, left and turn (3,) [m/s, m/s, rad/s]."""
-        return np.array([-self.limits.backward, -self.limits.lateral, -self.limits.turn])
+        return np.array([-self.limits.vx_backward, -self.limits.vy, -self.limits.wz])
 
     def high(self) -> Array:
         """Largest forward, left and turn (3,) [m/s, m/s, rad/s]."""
-        return np.array([self.limits.forward, self.limits.lateral, self.limits.turn])
+        return np.array([self.limits.vx, self.limits.vy, self.limits.wz])
 
     def change(self) -> Array:
         """Largest change of them from footstep to footstep (3,) [m/s, m/s, rad/s]."""

@@ -29,9 +29,9 @@ class PotentialField:
         """Body velocity down the potential (3,) [m/s, m/s, rad/s]."""
         s = scene.in_effect()
         limits = s.envelope.limits
-        total = s.wanted() + limits.forward * self._repulsion(s)
+        total = s.wanted() + limits.vx * self._repulsion(s)
         speed = float(np.hypot(*total))
-        return s.walk(total * min(1.0, limits.forward / max(speed, 1e-9)))
+        return s.walk(total * min(1.0, limits.vx / max(speed, 1e-9)))
 
     def _repulsion(self, s: PlanningScene) -> Array:
         """Sum over the obstacles (2,), as a share of the largest speed."""

@@ -41,7 +41,7 @@ def gaps(position: Array, scene: PlanningScene, radii: Array, most: float) -> Ar
     limits, obstacles = scene.envelope.limits, scene.obstacles
     dt = limits.footstep
     offset = obstacles.position - scene.pose[:2]
-    reach = t * dt * (obstacles.speed + limits.fastest) + radii + most
+    reach = t * dt * (obstacles.speed + limits.max_speed) + radii + most
     near = np.nonzero(np.hypot(offset[:, 0], offset[:, 1]) < reach)[0].tolist()
     least = np.full((k, t), most)
     when = dt * np.arange(1, t + 1)

@@ -135,10 +135,10 @@ def gaze_policy(
     if p.mode == "sweep":
         return SweepGaze(parameters)
     if p.mode == "deadline":
-        votes = partial(_deadline, parameters, limits.forward)
+        votes = partial(_deadline, parameters, limits.vx)
         return VotingGaze(votes, grid, p.deadline.switch_ratio)
     if p.mode == "urgency":
-        votes = partial(_urgency, parameters, limits.forward)
+        votes = partial(_urgency, parameters, limits.vx)
     elif p.mode == "info":
         votes = partial(_information, parameters)
     else:

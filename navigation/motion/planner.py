@@ -200,7 +200,7 @@ class Planner:
             virtual = self._field.uncapped_obstacles(pose, velocity, scene)
         direction = self._steer(pose, scene, virtual)
         distance = hypot(*(task.target - pose[:2]).tolist())
-        desired = self._limits.forward * arrival_gain(distance, task.is_goal, p.univector)
+        desired = self._limits.vx * arrival_gain(distance, task.is_goal, p.univector)
         encounters = self._encounters(pose, direction, scene)
         speed = self._modified(encounters, direction, velocity, desired)
         if p.moving_obstacles.virtual_obstacle == "printed":
@@ -228,7 +228,7 @@ class Planner:
             return Facing()
         if self._rear_check is None:
             reach = p.gaze.max_pan + p.gaze.box_fraction * belief.view.horizontal_fov
-            forward = self._limits.forward
+            forward = self._limits.vx
             self._rear_check = RearCheck(p.rear_check, reach, p.univector.s_robot, forward)
         course, speed = self._way or (wanted.direction, wanted.speed)
         aside = self._rear_check.aside(belief, course, speed)
@@ -269,7 +269,7 @@ class Planner:
                 movers,
                 desired,
                 now,
-                v_max=limits.forward,
+                v_max=limits.vx,
                 acceleration=limits.acceleration,
                 footstep=limits.footstep,
                 horizon=p.horizon,
@@ -279,7 +279,7 @@ class Planner:
             movers,
             desired,
             now,
-            v_max=limits.forward,
+            v_max=limits.vx,
             acceleration=limits.acceleration,
             samples=p.samples,
             horizon=p.horizon,
@@ -292,7 +292,7 @@ class Planner:
         definite = {
             index
             for index, e in encounters.items()
-            if e.case(self._limits.forward) is CollisionCase.DEFINITE
+            if e.case(self._limits.vx) is CollisionCase.DEFINITE
         }
         if speed.situation == "path_change":
             definite |= {i for i, e in encounters.items() if e.in_band()}
@@ -302,5 +302,5 @@ class Planner:
         """Largest speed towards ground the robot may never have seen [m/s]."""
         p = self._parameters.unseen_ground
         if not p.enabled:
-            return self._limits.forward
-        return self._limits.forward if ground_seen(belief, direction, p) else p.speed
+            return self._limits.vx
+        return self._limits.vx if ground_seen(belief, direction, p) else p.speed

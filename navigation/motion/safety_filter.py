@@ -74,7 +74,7 @@ class SafetyFilter:
         self._body = body
         self._limits = limits
         turns = 2.0 * pi * np.arange(parameters.headings) / parameters.headings
-        speeds = limits.forward * np.arange(1, parameters.speeds + 1) / parameters.speeds
+        speeds = limits.vx * np.arange(1, parameters.speeds + 1) / parameters.speeds
         self._turns = np.repeat(turns, parameters.speeds)
         self._speeds = np.tile(speeds, parameters.headings)
 
@@ -98,7 +98,7 @@ class SafetyFilter:
             body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
             discs: what not to touch.
         """
-        near = discs.within_reach(pose[:2], self._limits.forward)
+        near = discs.within_reach(pose[:2], self._limits.vx)
         if len(near) == 0:
             return wanted
         candidates = self.candidates(wanted, course)
@@ -109,7 +109,7 @@ class SafetyFilter:
         cost = (
             np.hypot(off[:, 0], off[:, 1])
             + self._parameters.change_weight * np.hypot(change[:, 0], change[:, 1])
-        ) / self._limits.forward + penalty
+        ) / self._limits.vx + penalty
         best: Array = candidates[int(np.argmin(cost))]
         return best
 
@@ -163,7 +163,7 @@ class SafetyFilter:
                 limits.acceleration * limits.footstep,
                 p.turn_change,
                 self._body.turn_first_angle,
-                self._body.sidestep_ratio * limits.lateral,
+                self._body.sidestep_ratio * limits.vy,
             ),
             p.steps,
         )

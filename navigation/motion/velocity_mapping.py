@@ -43,7 +43,7 @@ def body_velocity(
 
 def envelope(limits: SpeedLimits, turn_gain: float) -> rollout_kernel.Envelope:
     """Envelope as the roll-outs want it; `turn_gain` is the turn rate per heading error [1/s]."""
-    return limits.forward, limits.backward, limits.lateral, limits.turn, turn_gain
+    return limits.vx, limits.vx_backward, limits.vy, limits.wz, turn_gain
 
 
 def idle_velocity(searching: bool, turn: float, limits: SpeedLimits) -> Array:
@@ -55,4 +55,4 @@ def idle_velocity(searching: bool, turn: float, limits: SpeedLimits) -> Array:
         turn: that turn rate [rad/s].
         limits: envelope.
     """
-    return np.array([0.0, 0.0, min(turn, limits.turn) if searching else 0.0])
+    return np.array([0.0, 0.0, min(turn, limits.wz) if searching else 0.0])

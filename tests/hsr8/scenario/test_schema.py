@@ -99,7 +99,7 @@ def test_a_command_lasts_for_one_footstep():
     )
     limits = scenario.speed_limits()
     assert limits.footstep == 0.4
-    assert limits.forward == 0.15
+    assert limits.vx == 0.15
 
 
 @given(seed=st.integers(0, LARGEST_SEED))

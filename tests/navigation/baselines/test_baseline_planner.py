@@ -82,8 +82,8 @@ def test_an_empty_world_is_crossed_and_the_goal_arrived_at(method, belief, limit
 @EACH
 def test_commands_keep_to_the_envelope(method, belief, task, track, limits):
     rng = np.random.default_rng(2)
-    low = np.array([-limits.backward, -limits.lateral, -limits.turn])
-    high = np.array([limits.forward, limits.lateral, limits.turn])
+    low = np.array([-limits.vx_backward, -limits.vy, -limits.wz])
+    high = np.array([limits.vx, limits.vy, limits.wz])
     for _ in range(15):
         places, speeds = scene(rng)
         tracks = [track(x, v, id=i) for i, (x, v) in enumerate(zip(places, speeds, strict=True))]
@@ -272,7 +272,7 @@ def test_near_the_goal_the_body_turns_to_the_goals_heading(method, belief, task,
 
 def test_orca_looks_farther_ahead_for_movers_than_for_what_stands(belief, task, track, limits):
     p = PlannerParameters(method="orca").orca
-    gap = 0.5 * (p.static_horizon + p.horizon) * limits.forward
+    gap = 0.5 * (p.static_horizon + p.horizon) * limits.vx
     place = (gap + 0.2 + p.margin, 0.0)
     free, standing, coming = (
         planner("orca", limits).plan(belief(tracks), task((4.0, 0.0))).velocity
@@ -291,5 +291,5 @@ def test_the_plain_field_gives_a_fast_mover_more_room(belief, task, track, limit
         .velocity
         for v in (0.0, 0.2)
     )
-    assert slow == pytest.approx([limits.forward, 0.0, 0.0])
+    assert slow == pytest.approx([limits.vx, 0.0, 0.0])
     assert abs(fast[2]) > 1e-3

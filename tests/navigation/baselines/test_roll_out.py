@@ -92,5 +92,5 @@ def test_the_scene_in_effect_is_a_footstep_later(track, limits):
 def test_walking_faces_the_motion_or_what_it_is_told(limits):
     s = scene([], limits)
     aside = np.array([0.0, 0.1])
-    assert s.walk(aside) == pytest.approx([0.0, limits.lateral, limits.turn])
+    assert s.walk(aside) == pytest.approx([0.0, limits.vy, limits.wz])
     assert s.walk(np.zeros(2)) == pytest.approx(0.0)

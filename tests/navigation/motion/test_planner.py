@@ -15,7 +15,7 @@ BOTH = pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"]
 @BOTH
 def test_a_free_way_is_walked_at_full_speed(p, belief, task, limits):
     decision = Planner(p, limits).plan(belief(), task())
-    assert decision.velocity == pytest.approx([limits.forward, 0.0, 0.0])
+    assert decision.velocity == pytest.approx([limits.vx, 0.0, 0.0])
     assert decision.direction == pytest.approx(0.0)
     assert decision.situation == "free"
 
@@ -34,7 +34,7 @@ def test_at_the_goal_it_turns_in_place(p, belief, task, limits):
     t = task((0.0, 0.0), 1.0, is_goal=True, aligning=True)
     decision = Planner(p, limits).plan(belief(), t)
     assert decision.velocity[:2] == pytest.approx(0.0)
-    assert decision.velocity[2] == pytest.approx(limits.turn)
+    assert decision.velocity[2] == pytest.approx(limits.wz)
     near = task((0.0, 0.0), 0.1, is_goal=True, aligning=True)
     assert Planner(p, limits).plan(belief(), near).velocity[2] == pytest.approx(0.15)
 
@@ -52,8 +52,8 @@ def test_it_slows_down_at_the_goal_but_not_at_a_via_point(p, belief, task, limit
         Planner(p, limits).plan(belief(), task((0.1, 0.0), is_goal=g)).velocity[0]
         for g in (True, False)
     ]
-    assert speeds[0] < 0.5 * limits.forward
-    assert speeds[1] == pytest.approx(limits.forward)
+    assert speeds[0] < 0.5 * limits.vx
+    assert speeds[1] == pytest.approx(limits.vx)
 
 
 def test_near_the_goal_the_body_faces_the_goals_heading(belief, task, limits):
@@ -64,9 +64,9 @@ def test_near_the_goal_the_body_faces_the_goals_heading(belief, task, limits):
 def test_unseen_ground_ahead_is_walked_slowly(belief, task, limits):
     blind = belief(confidence=lambda x, y: 0.0 if x > 0.4 else 1.0)
     assert Planner(EXTENDED, limits).plan(blind, task()).speed == EXTENDED.unseen_ground.speed
-    assert Planner(EXTENDED, limits).plan(belief(), task()).speed == limits.forward
+    assert Planner(EXTENDED, limits).plan(belief(), task()).speed == limits.vx
     behind = belief(confidence=lambda x, y: 0.0 if x < 0.2 else 1.0)
-    assert Planner(EXTENDED, limits).plan(behind, task()).speed == limits.forward
+    assert Planner(EXTENDED, limits).plan(behind, task()).speed == limits.vx
 
 
 def test_decisions_do_not_depend_on_the_frame(belief, task, track, limits):
@@ -111,7 +111,7 @@ def test_a_mover_crossing_the_way_is_answered_by_speed_in_the_paper(belief, task
     mover = track((0.9, -0.8), (0.0, 0.12))
     decision = Planner(PAPER, limits).plan(belief([mover]), task())
     assert decision.situation in {"accelerate", "brake"}
-    assert decision.speed < limits.forward
+    assert decision.speed < limits.vx
 
 
 def test_a_definite_collision_makes_a_virtual_obstacle_in_the_paper(belief, task, track, limits):
@@ -149,7 +149,7 @@ def test_switches_of_the_movers_can_be_turned_off(belief, task, track, limits):
         ),
     )
     decision = Planner(off, limits).plan(belief([track((0.9, 0.1), (-0.12, 0.0))]), task())
-    assert decision.speed == limits.forward
+    assert decision.speed == limits.vx
     assert decision.virtual_obstacles == ()
 
 

@@ -130,7 +130,7 @@ def test_without_rollout_the_path_is_turn_then_straight(limits):
     paths = filter_.paths(
         HERE, np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]]), 0.0, ON_THE_WAY, STANDING
     )
-    assert paths.duration[0] == pytest.approx([(np.pi - 0.5) / limits.turn, 0.0, 0.0])
+    assert paths.duration[0] == pytest.approx([(np.pi - 0.5) / limits.wz, 0.0, 0.0])
     assert paths.velocity[0] == pytest.approx(np.zeros((3, 2)))
     assert paths.velocity[1, 0] == pytest.approx([-0.2, 0.0])
 
@@ -140,7 +140,7 @@ def test_the_rollout_obeys_the_envelope(limits):
     filter_ = SafetyFilter(p, VelocityMappingParameters(), limits)
     paths = filter_.paths(HERE, filter_.candidates(AHEAD, 0.0), 0.0, ON_THE_WAY, STANDING)
     speed = np.hypot(paths.velocity[..., 0], paths.velocity[..., 1])[: p.steps]
-    assert speed.max() <= limits.forward + 1e-9
+    assert speed.max() <= limits.vx + 1e-9
     change = limits.acceleration * limits.footstep
     assert speed[0].max() <= change + 1e-9
 
@@ -154,7 +154,7 @@ def test_a_body_turned_aside_is_rolled_out_as_it_walks(limits):
     )
     lateral = turned.velocity[-2 - 1, 0]
     assert np.arctan2(lateral[1], lateral[0]) == pytest.approx(0.0, abs=1e-9)
-    assert lateral[0] == pytest.approx(limits.lateral / np.sin(1.0))
+    assert lateral[0] == pytest.approx(limits.vy / np.sin(1.0))
     assert straight.velocity[-2 - 1, 0] == pytest.approx(AHEAD)
 
 

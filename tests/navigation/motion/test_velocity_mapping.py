@@ -12,10 +12,10 @@ def test_the_direction_is_kept_and_the_envelope_respected(limits):
     along = v[:, 0] * np.cos(COURSES - 0.3) + v[:, 1] * np.sin(COURSES - 0.3)
     assert along == pytest.approx(speed)
     assert np.all(speed > 0.05)
-    assert v[:, 0].max() <= limits.forward + 1e-12
-    assert v[:, 0].min() >= -limits.backward - 1e-12
-    assert np.abs(v[:, 1]).max() <= limits.lateral + 1e-12
-    assert np.abs(v[:, 2]).max() <= limits.turn
+    assert v[:, 0].max() <= limits.vx + 1e-12
+    assert v[:, 0].min() >= -limits.vx_backward - 1e-12
+    assert np.abs(v[:, 1]).max() <= limits.vy + 1e-12
+    assert np.abs(v[:, 2]).max() <= limits.wz
 
 
 def test_inside_the_envelope_nothing_is_lost(limits):
@@ -36,4 +36,4 @@ def test_standing_stands(limits):
 def test_who_has_nowhere_to_go_stands_and_who_is_lost_turns_within_the_envelope(limits):
     assert idle_velocity(False, 0.5, limits).tolist() == [0.0, 0.0, 0.0]
     assert idle_velocity(True, 0.5, limits).tolist() == [0.0, 0.0, 0.5]
-    assert idle_velocity(True, 9.0, limits).tolist() == [0.0, 0.0, limits.turn]
+    assert idle_velocity(True, 9.0, limits).tolist() == [0.0, 0.0, limits.wz]
