@@ -22,7 +22,7 @@ from navigation.mission import Mission
 from navigation.motion.landmark_obstacles import LandmarkObstacles
 from vision.camera import PinholeCamera
 from vision.detector import Detector
-from vision.own_body import BodyPart
+from vision.self_mask import BodyPart
 from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
 from walking.similarity import parameters_for
@@ -173,7 +173,7 @@ def build_decisions(
 
 def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, float]]:
     """Where the robot takes the beacons to be, by name [m]; empty if it has no map of them."""
-    if scenario.belief.localization.map == "none":
+    if scenario.belief.localization.landmarks == "mapped":
         return {}
     return {b.name: b.believed for b in layout.beacons}
 

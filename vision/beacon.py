@@ -47,9 +47,12 @@ def find_posts(
             if i == j or not _rests_on(blobs[i], blobs[j]):
                 continue
             seam = bottom.against(blobs[j].label)
-            if not seam.slope.size or seam.slope.size < parameters.beacon_seam * bottom.slope.size:
+            if (
+                not seam.slope.size
+                or seam.slope.size < parameters.min_beacon_seam_fraction * bottom.slope.size
+            ):
                 continue
-            sides = _common_sides(outlines[i], outlines[j], parameters.beacon_sides)
+            sides = _common_sides(outlines[i], outlines[j], parameters.beacon_side_tolerance)
             if sides is None:
                 continue
             rims = _rims(seam, outlines[i].top, outlines[j].bottom, camera_height, parameters)

@@ -25,8 +25,8 @@ from vision.cylinder import (
 from vision.detection import Detection
 from vision.errors import VisionError
 from vision.outline import Outline, trace
-from vision.own_body import BodyPart, hide
 from vision.parameters import VisionParameters
+from vision.self_mask import BodyPart, hide
 from vision.split import split
 from vision.value import value
 from vision.view import View
@@ -57,7 +57,7 @@ class Detector:
     Args:
         camera: intrinsics.
         parameters: sizes of things and thresholds.
-        own_body: parts of the robot that the camera may see.
+        self_mask: parts of the robot that the camera may see.
 
     Raises:
         VisionError: the smallest radius is not below the largest, or the file of the
@@ -68,7 +68,7 @@ class Detector:
         self,
         camera: PinholeCamera,
         parameters: VisionParameters,
-        own_body: Sequence[BodyPart] = (),
+        self_mask: Sequence[BodyPart] = (),
     ) -> None:
         if parameters.min_radius >= parameters.max_radius:
             raise VisionError(
@@ -77,7 +77,7 @@ class Detector:
             )
         self._camera = camera
         self._parameters = parameters
-        self._own_body = tuple(own_body)
+        self._self_mask = tuple(self_mask)
         path = parameters.color_table
         self._table = load_table(Path(path)) if path else ColorTable()
         self._min_area = tuple(
@@ -111,7 +111,7 @@ class Detector:
             return ()
         inner = self._padded[1:-1, 1:-1]
         inner[:] = labels
-        if hide(self._own_body, inner, camera=self._camera, pose=pose, label=OUTSIDE):
+        if hide(self._self_mask, inner, camera=self._camera, pose=pose, label=OUTSIDE):
             blobs = [_cut_by_body(blob, inner) for blob in blobs]
         view = View(self._camera, pose)
         outlines = trace(blobs, self._padded, view, self._parameters.edge_sigma)
@@ -127,7 +127,10 @@ class Detector:
                 parts += pieces
                 if not pieces:
                     found.append(
-                        self._detection(*_doubted(sighting, cylinder, self._parameters.doubt), view)
+                        self._detection(
+                            *_doubted(sighting, cylinder, self._parameters.covariance_inflation),
+                            view,
+                        )
                     )
         for sighting, cylinder in self._real(parts, self._locate(parts, view)):
             found.append(self._detection(sighting, cylinder, view))
@@ -162,7 +165,7 @@ class Detector:
                     (blob,),
                     outline,
                     Candidate(left, right, tuple(rims), head, *self._radius),
-                    outline.bottom.covered > self._parameters.covered
+                    outline.bottom.covered > self._parameters.max_occlusion_fraction
                     or left.hidden
                     or right.hidden,
                 )
@@ -180,7 +183,7 @@ class Detector:
                 (blobs[post.upper], blobs[post.lower]),
                 outlines[post.lower],
                 post.candidate,
-                outlines[post.lower].bottom.covered > self._parameters.covered
+                outlines[post.lower].bottom.covered > self._parameters.max_occlusion_fraction
                 or post.candidate.left.hidden
                 or post.candidate.right.hidden,
             )
@@ -206,8 +209,8 @@ class Detector:
         """Whether one cylinder explains what was seen."""
         p = self._parameters
         if sighting.kind == "beacon":
-            return cylinder.misfit < p.beacon_misfit * p.max_misfit
-        return cylinder.astray <= p.astray and cylinder.misfit <= p.max_misfit
+            return cylinder.misfit < p.beacon_misfit_factor * p.max_misfit
+        return cylinder.astray <= p.max_outlier_fraction and cylinder.misfit <= p.max_misfit
 
     def _real(
         self, parts: Sequence[_Sighting], cylinders: Sequence[Cylinder]
@@ -217,7 +220,7 @@ class Detector:
             (pair for pair in zip(parts, cylinders, strict=True) if self._plausible(pair[1])),
             key=lambda pair: (-_edges_seen(pair[0].candidate), pair[1].misfit),
         )
-        shared = self._parameters.split.shared
+        shared = self._parameters.split.min_separation
         real: list[tuple[_Sighting, Cylinder]] = []
         for sighting, cylinder in ranked:
             if not any(interpenetrate(cylinder, other, shared) for _, other in real):
@@ -227,9 +230,9 @@ class Detector:
     def _plausible(self, cylinder: Cylinder) -> bool:
         """Whether a part of a blob is like one obstacle."""
         p = self._parameters
-        slack = p.split.slack * (p.max_radius - p.min_radius)
+        slack = p.split.radius_margin * (p.max_radius - p.min_radius)
         return (
-            cylinder.misfit < p.split.extra_misfit * p.max_misfit
+            cylinder.misfit < p.split.misfit_factor * p.max_misfit
             and p.min_radius - slack < cylinder.radius < p.max_radius + slack
         )
 
@@ -240,14 +243,14 @@ class Detector:
             view,
             parameters.roundness_sigma,
             parameters.edge_correlation,
-            0.5 * parameters.step / parameters.edge_sigma,
+            0.5 * parameters.outline_step / parameters.edge_sigma,
         )
 
     def _detection(self, sighting: _Sighting, cylinder: Cylinder, view: View) -> Detection | None:
         """Detection of a located cylinder; None if it is too far or too uncertain."""
         parameters = self._parameters
         beacon = sighting.kind == "beacon"
-        limit = parameters.beacon_range if beacon else parameters.obstacle_range
+        limit = parameters.max_beacon_range if beacon else parameters.max_obstacle_range
         if not beacon:
             cylinder = _somewhere_within(cylinder, parameters.max_radius, self._radius[0])
         distance, bearing, covariance, by_radius = polar_in_robot(cylinder, view)

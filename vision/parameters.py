@@ -1,95 +1,75 @@
-"""Settings of the detector."""
+"""Parameters of the detector."""
 
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from annotated_types import Ge, Gt, Interval
+from annotated_types import Gt, Interval
+
+Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 
 
 @dataclass(frozen=True)
 class PoseParameters:
-    """How well the body knows where its camera is: measured while walking, noise and all."""
+    """Uncertainty of the camera pose from the robot's kinematics and IMU while walking."""
 
-    tilt_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0009
+    tilt_sigma: Sigma = 0.0009
     """Standard deviation of the camera's pitch [rad]."""
-    roll_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0008
+    roll_sigma: Sigma = 0.0008
     """Standard deviation of its roll [rad]."""
-    yaw_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0005
-    """Standard deviation of its direction from the robot's heading [rad]."""
-    height_sigma: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.0003
+    yaw_sigma: Sigma = 0.0005
+    """Standard deviation of its yaw relative to the robot's heading [rad]."""
+    height_sigma: Sigma = 0.0003
     """Standard deviation of its height [m]."""
 
 
 @dataclass(frozen=True)
 class SplitParameters:
-    """Blobs that one obstacle does not explain, told apart into several."""
+    """Segmentation of merged blobs."""
 
-    extra_radius: Annotated[float, Ge(0.0)] = 0.04
-    """A foot and a head match if the cylinder between is thicker or thinner by so much [m]."""
-    side_match: Annotated[float, Gt(0.0)] = 2.5
-    """The same if their sides differ by so much [column]."""
-    side_sigma: Annotated[float, Gt(0.0)] = 1.0
-    """Standard deviation of an end of a piece of the outline [column]."""
-    extra_misfit: Annotated[float, Ge(1.0)] = 2.0
-    """A part may misfit so many times more than a whole blob [1]."""
-    slack: Annotated[float, Ge(0.0)] = 0.3
-    """Its radius may lie beyond those of obstacles by such a share of their range [1]."""
-    shared: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.85
-    """Parts whose axes are nearer than this share of the sum of their radii are one [1]."""
+    radius_tolerance: float = 0.04  # difference of the radii of a foot and a head that match [m]
+    side_tolerance: float = 2.5  # difference of the sides of a foot and a head that match [column]
+    side_sigma: float = 1.0  # standard deviation of an end of a piece of the outline [column]
+    misfit_factor: float = 2.0  # max_misfit of a part relative to that of a whole blob [1]
+    radius_margin: float = 0.3  # excess of a part's radius, relative to the range of radii [1]
+    # Distance of two axes, relative to the sum of the radii, below which two parts are one [1].
+    min_separation: float = 0.85
 
 
 @dataclass(frozen=True)
 class VisionParameters:
-    """What the robot knows of the things it looks for, and how much it trusts pixels."""
+    """Sizes of obstacles and beacons, error models and thresholds."""
 
     color_table: str = ""
-    """File of a colour table, from `hsr8 colours`; the declared colours if empty."""
+    """File of a colour table made by `hsr8 color-table`; empty: the built-in colour classes."""
     obstacle_height: Annotated[float, Gt(0.0)] = 0.30
     """Height of every obstacle [m]."""
     min_radius: Annotated[float, Gt(0.0)] = 0.05
-    """Smallest radius of an obstacle [m]."""
+    """Minimum radius of an obstacle [m]."""
     max_radius: Annotated[float, Gt(0.0)] = 0.12
-    """Largest radius of an obstacle [m]."""
-    beacon_height: Annotated[float, Gt(0.0)] = 0.60
-    """Height of a beacon; its two colours meet in the middle [m]."""
-    beacon_radius: Annotated[float, Gt(0.0)] = 0.05
-    """Radius of a beacon [m]."""
-    obstacle_range: Annotated[float, Gt(0.0)] = 4.5
-    """Obstacles farther than this are not reported [m]."""
-    beacon_range: Annotated[float, Gt(0.0)] = 5.5
-    """Beacons farther than this are not reported [m]."""
-    min_area: Annotated[int, Ge(1)] = 20
-    """Smallest blob taken for an obstacle [pixel]."""
-    min_beacon_area: Annotated[int, Ge(1)] = 5
-    """Smallest blob taken for one colour of a beacon [pixel]."""
-    edge_sigma: Annotated[float, Gt(0.0)] = 0.30
-    """Standard deviation of one point of an edge of a blob [pixel]."""
-    edge_correlation: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.02
-    """Correlation of the errors of two points of one edge [1]."""
-    roundness_sigma: Annotated[float, Ge(0.0)] = 0.008
-    """Standard deviation of a cylinder's outline, relative to its radius [1]."""
-    step: Annotated[float, Gt(0.0)] = 2.5
-    """Jump of an outline that separates two cylinders; half of it makes a rim point stray
-    [pixel]."""
-    max_misfit: Annotated[float, Gt(0.0)] = 16.0
-    """Sum of squared normalised residuals above which a blob is not one cylinder [1]."""
-    astray: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.2
-    """Share of the points of a rim off that of one cylinder above which it is not one [1]."""
-    doubt: Annotated[float, Ge(1.0)] = 4.0
-    """The covariance of what is not explained grows at least so many times [1]."""
-    covered: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.1
-    """Share of a rim next to another colour above which a thing counts as occluded [1]."""
-    max_relative_sigma: Annotated[float, Gt(0.0)] = 0.35
-    """Detections whose distance is less certain, relative to itself, are dropped [1]."""
-    beacon_radius_sigma: Annotated[float, Gt(0.0)] = 0.0005
-    """Standard deviation of a beacon's radius [m]."""
-    beacon_seam: Annotated[float, Interval(ge=0.0, le=1.0)] = 0.6
-    """Least share of the upper colour's width that rests on the lower one [1]."""
-    beacon_sides: Annotated[float, Gt(0.0)] = 4.0
-    """Largest difference of the sides of the two colours, in standard deviations [1]."""
-    beacon_misfit: Annotated[float, Ge(1.0)] = 5.0
-    """A beacon may misfit so many times more than an obstacle [1]."""
+    """Maximum radius of an obstacle [m]."""
+    beacon_height: float = 0.60  # its two colours meet in the middle [m]
+    beacon_radius: float = 0.05  # [m]
+    max_obstacle_range: Annotated[float, Gt(0.0)] = 4.5
+    """Maximum distance of a reported obstacle [m]."""
+    max_beacon_range: Annotated[float, Gt(0.0)] = 5.5
+    """Maximum distance of a reported beacon [m]."""
+    min_area: int = 20  # minimum area of an obstacle's blob [pixel]
+    min_beacon_area: int = 5  # minimum area of the blob of one colour of a beacon [pixel]
+    edge_sigma: float = 0.30  # standard deviation of an edge point [pixel]
+    edge_correlation: float = 0.02  # correlation of the errors of two points of one edge [1]
+    roundness_sigma: float = 0.008  # standard deviation of a cylinder's outline / radius [1]
+    # Step of an outline that separates two cylinders; half of it makes a rim point an outlier.
+    outline_step: float = 2.5  # [pixel]
+    max_misfit: float = 16.0  # maximum sum of squared normalized residuals of one cylinder [1]
+    max_outlier_fraction: float = 0.2  # maximum fraction of outliers among a rim's points [1]
+    covariance_inflation: float = 4.0  # minimum inflation for a blob that no cylinder explains [1]
+    max_occlusion_fraction: float = 0.1  # of a rim next to another colour: more is occluded [1]
+    max_relative_sigma: float = 0.35  # maximum standard deviation of a distance / distance [1]
+    beacon_radius_sigma: float = 0.0005  # standard deviation of a beacon's radius [m]
+    min_beacon_seam_fraction: float = 0.6  # minimum width of the seam / width of the upper colour
+    beacon_side_tolerance: float = 4.0  # difference of the two colours' sides [sigma]
+    beacon_misfit_factor: float = 5.0  # max_misfit of a beacon relative to that of an obstacle [1]
     split: SplitParameters = field(default_factory=SplitParameters)
-    """Blobs that are several obstacles."""
+    """Segmentation of merged blobs."""
     pose: PoseParameters = field(default_factory=PoseParameters)
-    """Uncertainty of the camera's pose."""
+    """Uncertainty of the camera pose."""

@@ -79,7 +79,7 @@ def split(
         radius: typical radius and its standard deviation [m].
     """
     grid = _Grid(blob, outline, padded, view)
-    step = parameters.step
+    step = parameters.outline_step
     head = parameters.obstacle_height - view.height
     lower = grid.pieces(-view.height, step, nearest=True)
     upper = []
@@ -92,7 +92,7 @@ def split(
         upper,
         view=view,
         pixel=grid.pixel,
-        tolerance=parameters.split.side_match * grid.azimuth_step,
+        tolerance=parameters.split.side_tolerance * grid.azimuth_step,
         parameters=parameters,
     )
     feet = [low for low, high in groups if low is not None and high is None]
@@ -162,7 +162,7 @@ def _match(
             shorter = min(low.left - low.right, high.left - high.right)
             if common < 0.5 * shorter:
                 continue
-            slack = parameters.split.extra_radius + pixel * (
+            slack = parameters.split.radius_tolerance + pixel * (
                 low.run**2 / view.height + high.run**2 / fall
             )
             radius = 0.5 * (high.run - low.run)

@@ -20,8 +20,6 @@ BOUNDS: dict[Path, tuple[float, float]] = {
     ("walking", "pattern", "preview_time"): (0.05, 10.0),
     ("walking", "pattern", "lipm_height"): (0.02, 5.0),
     ("walking", "pattern", "pelvis_height"): (0.02, 5.0),
-    ("belief", "tracking", "particles"): (2, 1000),
-    ("belief", "tracking", "scatter"): (1, 100),
     ("navigation", "evaluation", "d_fm"): (0.01, 50.0),
     ("navigation", "evaluation", "ring_step"): (0.01, 50.0),
     ("navigation", "evaluation", "ray_step"): (0.01, 7.0),

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
+from navigation.belief.ekf_slam import EkfSlam
 from navigation.belief.local_map import LocalMap
 from navigation.belief.localization import Localizer
-from navigation.belief.self_mapping import SelfMapping
 from navigation.belief.sightings import in_world
 from navigation.belief.tracker import Tracker
 from navigation.belief.visibility import Viewpoint
@@ -40,13 +40,13 @@ class Estimator:
         rng: np.random.Generator,
     ) -> None:
         self._parameters = parameters
-        self._localizer: Localizer | SelfMapping
+        self._localizer: Localizer | EkfSlam
         if beacons:
             self._localizer = Localizer(
                 parameters.localization, beacons, start_pose, start_covariance
             )
         else:
-            self._localizer = SelfMapping(parameters, start_pose)
+            self._localizer = EkfSlam(parameters, start_pose)
         self._tracker = Tracker(parameters.tracking, rng)
         self._map: LocalMap | None = None
         self._recoveries = 0
@@ -71,11 +71,11 @@ class Estimator:
             frame.observations,
             pose,
             covariance,
-            pose_sigma_limit=p.tracking.pose_sigma_limit,
+            max_pose_sigma=p.tracking.max_pose_sigma,
         )
-        sure = Viewpoint.of(frame.view, pose, p.tracking.sure_range)
+        sure = Viewpoint.of(frame.view, pose, p.tracking.detection_range)
         tracks = self._tracker.update(frame.time, seen, sure, self._map.free_at(seen.positions))
-        if isinstance(localizer, SelfMapping):
+        if isinstance(localizer, EkfSlam):
             localizer.learn(frame, tracks)
         searched = replace(sure, range=p.local_map.range)
         self._map.update(frame.time, searched, centre, seen.positions, seen.radii)

@@ -100,11 +100,11 @@ class LocalMap:
             radii: their radii (n,) [m].
         """
         p = self._parameters
-        dt = min(time - self._time, p.look)
+        dt = min(time - self._time, p.max_look_time)
         self._time = time
         self._roll(centre)
         marks = viewpoint.searched(self._corner, p.cell, self._count, obstacles, radii)
-        evidence = (dt * p.free_rate, dt * p.occupied_rate, p.evidence_limit)
+        evidence = (dt * p.free_rate, dt * p.occupied_rate, p.max_log_odds)
         take_in(marks, self._seen_at, self._log_odds, time, evidence)
 
     def contents(self) -> tuple[Array, Array, Array]:

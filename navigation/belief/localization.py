@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief import pose_kernel
+from navigation.belief.beacon_relocalization import BeaconRelocalization
 from navigation.belief.pose_filter import PoseFilter
-from navigation.belief.relocalization import Relocalization
 from navigation.observation import Frame, Observation
 from navigation.parameters.belief import LocalizationParameters
 
@@ -42,7 +42,7 @@ class Localizer:
     ) -> None:
         self._parameters = parameters
         self._beacons = {name: (float(x), float(y)) for name, (x, y) in beacons.items()}
-        self._relocalization = Relocalization(parameters, self._beacons)
+        self._relocalization = BeaconRelocalization(parameters, self._beacons)
         self._filter = PoseFilter()
         self._set(np.asarray(pose, float), np.asarray(covariance, float))
         self._previous: tuple[float, list[float]] | None = None

@@ -51,7 +51,7 @@ def in_world(
     pose: Array,
     pose_covariance: Array,
     *,
-    pose_sigma_limit: float,
+    max_pose_sigma: float,
 ) -> Sightings:
     """Convert the obstacles among `observations` to W.
 
@@ -60,13 +60,13 @@ def in_world(
     Args:
         observations: of one frame.
         pose: x, y, heading of R in W (3,) [m, m, rad].
-        pose_covariance: (3, 3); scaled down as a whole to `pose_sigma_limit`.
-        pose_sigma_limit: [m].
+        pose_covariance: (3, 3); scaled down as a whole to `max_pose_sigma`.
+        max_pose_sigma: [m].
     """
     seen = tuple(o for o in observations if o.kind == "obstacle")
     x, y, heading = pose.tolist()
     largest = max(float(pose_covariance[0, 0]), float(pose_covariance[1, 1]), 1e-12)
-    P = (pose_covariance * min(1.0, pose_sigma_limit**2 / largest)).tolist()
+    P = (pose_covariance * min(1.0, max_pose_sigma**2 / largest)).tolist()
     positions, covariances, by_radius = [], [], []
     for o in seen:
         direction = heading + o.bearing

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from navigation.belief import particle_kernel
 from navigation.belief.belief import Particles
-from navigation.belief.mode_kernel import SIZE
-from navigation.belief.motion_modes import Modes
+from navigation.belief.imm import Modes
+from navigation.belief.imm_kernel import SIZE
 from navigation.belief.visibility import Mask
 from navigation.parameters.belief import TrackingParameters
 
@@ -41,14 +41,14 @@ def advance(
     cloud: Particles, dt: float, p: TrackingParameters, rng: np.random.Generator
 ) -> Particles:
     """Move on for `dt` [s], bending and turning back as movers do."""
-    count, keep = len(cloud.weights), exp(-dt / p.turn_time)
+    count, keep = len(cloud.weights), exp(-dt / p.turn_rate_time)
     parts = particle_kernel.advance(
         cloud.positions,
         cloud.velocities,
         cloud.turn_rates,
         rng.standard_normal(count),
         rng.random(count),
-        (keep, (1.0 - keep * keep) ** 0.5 * p.turn_sigma),
+        (keep, (1.0 - keep * keep) ** 0.5 * p.turn_rate_sigma),
         1.0 - exp(-p.reversal_rate * dt),
         dt,
     )
@@ -77,7 +77,7 @@ def refute(cloud: Particles, expected: Mask, survival: float) -> tuple[Particles
 def resample(cloud: Particles, p: TrackingParameters, rng: np.random.Generator) -> Particles:
     """Systematic resampling with jitter once too few particles carry the weight."""
     count = len(cloud.weights)
-    if float(cloud.weights @ cloud.weights) * p.resample_share * count < 1.0:
+    if float(cloud.weights @ cloud.weights) * p.min_effective_fraction * count < 1.0:
         return cloud
     chosen = _systematic(cloud.weights, count, rng)
     return Particles(
@@ -100,7 +100,7 @@ def scatter(
         p: how many places are tried for how many particles, and the width of the line.
         rng: source of all draws.
     """
-    count = p.scatter * p.particles
+    count = p.candidates_per_particle * p.particles
     half = count // 2
     speed = float(np.hypot(velocity[0], velocity[1]))
     ahead = velocity / speed if speed > 0.0 else np.array([1.0, 0.0])
@@ -150,7 +150,7 @@ def costs(
         p: how probable it is that it is anywhere so far, not where the particles are.
     """
     return particle_kernel.costs(
-        cloud.positions, cloud.weights, z, variance, p.position_jitter, *lost, p.anywhere
+        cloud.positions, cloud.weights, z, variance, p.position_jitter, *lost, p.uniform_probability
     )
 
 

@@ -6,9 +6,9 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import motion_modes, track_particles
+from navigation.belief import imm, track_particles
 from navigation.belief.belief import Motion, Particles, Track
-from navigation.belief.motion_modes import Modes
+from navigation.belief.imm import Modes
 from navigation.parameters.belief import TrackingParameters
 
 Array = NDArray[np.float64]
@@ -53,32 +53,32 @@ class TrackedObject:
     def reach(self, time: float, p: TrackingParameters) -> float:
         """Radius of the disc about its last sighting that it cannot have left [m]."""
         moving = self.motion is not Motion.STATIC
-        return self.known_reach + moving * p.top_speed * (time - self.last_time)
+        return self.known_reach + moving * p.max_speed * (time - self.last_time)
 
     def lost_reach(self, time: float, modes: Modes, p: TrackingParameters) -> float:
         """How far from its last sighting it is looked for while lost, by its filters [m]."""
-        speed = motion_modes.speed(modes)
-        return p.line_width + p.reach_factor * speed * (time - self.last_time)
+        speed = imm.speed(modes)
+        return p.path_width + p.reach_factor * speed * (time - self.last_time)
 
     def classify(self, modes: Modes, p: TrackingParameters) -> None:
         """Revise the verdict after a detection, by its filters."""
         moving = float(modes.moving)
         if self.motion is Motion.STATIC:
-            if moving > p.doubted:
+            if moving > p.static_exit_probability:
                 self.motion = Motion.UNKNOWN
         elif self.motion is Motion.MOVING:
-            if moving < p.stopped:
+            if moving < p.moving_exit_probability:
                 self.motion = Motion.STATIC
         elif (
-            moving > p.recognised
-            and self.hits >= p.moving_hits
-            and motion_modes.speed(modes) > p.moving_speed
+            moving > p.moving_probability
+            and self.hits >= p.min_moving_hits
+            and imm.speed(modes) > p.min_moving_speed
         ):
             self.motion = Motion.MOVING
         elif (
-            moving < p.standing
-            and self.hits >= p.static_hits
-            and self.last_time - self.first_time > p.static_time
+            moving < p.static_probability
+            and self.hits >= p.min_static_hits
+            and self.last_time - self.first_time > p.min_static_time
         ):
             self.motion = Motion.STATIC
 

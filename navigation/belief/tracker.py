@@ -12,7 +12,7 @@ from math import hypot, inf, log, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import motion_modes, track_particles
+from navigation.belief import imm, track_particles
 from navigation.belief.association import Indices, assign
 from navigation.belief.association_kernel import overlapping
 from navigation.belief.belief import Motion, Track
@@ -43,7 +43,7 @@ class Tracker:
         self._objects: list[TrackedObject] = []
         # Of every object its row: its filters, the covariance of its most precise detection,
         # its verdict, and where it is.
-        self._modes = motion_modes.none()
+        self._modes = imm.none()
         self._best = np.zeros((0, 2, 2))
         self._standing: Mask = np.zeros(0, np.bool_)
         self._places = np.zeros((0, 2))
@@ -81,14 +81,14 @@ class Tracker:
     def clear(self) -> None:
         """Forget all tracks, for instance because the robot was carried away."""
         self._objects.clear()
-        self._modes = motion_modes.none()
+        self._modes = imm.none()
         self._best = np.zeros((0, 2, 2))
         self._locate()
 
     def _predict(self, dt: float) -> None:
         """Carry everything on by `dt` [s]."""
         p = self._parameters
-        self._modes = motion_modes.predict(self._modes, dt, p)
+        self._modes = imm.predict(self._modes, dt, p)
         for o in self._objects:
             if o.particles is not None:
                 o.particles = track_particles.advance(o.particles, dt, p, self._rng)
@@ -103,7 +103,7 @@ class Tracker:
         n, m = len(self._objects), len(seen.radii)
         if m == 0:
             return np.empty((n, 0))
-        costs = motion_modes.costs(self._modes, seen.positions, seen.covariances, p.gate)
+        costs = imm.costs(self._modes, seen.positions, seen.covariances, p.gate)
         width = 0.5 * (seen.covariances[:, 0, 0] + seen.covariances[:, 1, 1])
         for i, o in enumerate(self._objects):
             if o.particles is not None:
@@ -129,14 +129,14 @@ class Tracker:
                 z[i], raw[i] = seen.of_radius(column, o.radius, o.radius_sigma)
         inflation = [variance_inflation(time - o.last_time, p.correlation_time) for o in objects]
         R = raw * np.array(inflation)[:, None, None]
-        nis = motion_modes.nis(modes, rows, z, raw)
+        nis = imm.nis(modes, rows, z, raw)
         for i in np.flatnonzero(nis > p.gate).tolist():
             # Nothing explains where it is: what was known of its motion is void.
             known = modes.at(pairs[i][0])
-            begun = motion_modes.begun(z[i], raw[i], max(float(known.moving), 0.5), p)
+            begun = imm.begun(z[i], raw[i], max(float(known.moving), 0.5), p)
             for part, anew in zip(known, begun, strict=True):
                 part[:] = anew
-        motion_modes.update(modes, rows, z, R, p.evidence)
+        imm.update(modes, rows, z, R, p.max_log_ratio)
         for i, (o, (row, column)) in enumerate(zip(objects, pairs, strict=True)):
             self._fuse_radius(o, seen.observations[column], inflation[i])
             o.hits += 1
@@ -154,13 +154,13 @@ class Tracker:
         """Fuse the radius, unless the part that was seen tells next to nothing about it."""
         p = self._parameters
         part = observation.cut or observation.occluded
-        if part and observation.radius_sigma > p.vague_radius:
+        if part and observation.radius_sigma > p.max_radius_sigma:
             return
         measured = observation.radius_sigma**2 * inflation
         prior = o.radius_sigma**2
         gain = prior / (prior + measured)
         o.radius += gain * (observation.radius - o.radius)
-        o.radius_sigma = max(((1.0 - gain) * prior) ** 0.5, p.radius_limit)
+        o.radius_sigma = max(((1.0 - gain) * prior) ** 0.5, p.min_radius_sigma)
 
     def _begin(self, time: float, columns: list[int], seen: Sightings) -> None:
         """Start a tentative track at each sighting that no track explains."""
@@ -172,21 +172,21 @@ class Tracker:
             z, R, observation = seen.positions[j], seen.covariances[j], seen.observations[j]
             if observation.distance > p.birth_range:
                 continue
-            reach = p.overlap * observation.radius
+            reach = p.merge_fraction * observation.radius
             if any(
                 o.label == observation.label
                 and o.last_time == time
-                and hypot(*(place - z).tolist()) < reach + p.overlap * o.radius
+                and hypot(*(place - z).tolist()) < reach + p.merge_fraction * o.radius
                 for o, place in zip(self._objects, places, strict=True)
             ):
                 continue
-            moving = p.intruder_moving if self._freed[j] else p.birth_moving
+            moving = p.intruder_moving_probability if self._freed[j] else p.birth_moving_probability
             self._objects.append(
                 TrackedObject(
                     id=self._next_id,
                     label=observation.label,
                     radius=observation.radius,
-                    radius_sigma=max(observation.radius_sigma, p.radius_limit),
+                    radius_sigma=max(observation.radius_sigma, p.min_radius_sigma),
                     first_time=time,
                     last_time=time,
                     last_seen=z,
@@ -195,7 +195,7 @@ class Tracker:
             )
             self._next_id += 1
             places.append(z)
-            begun.append(motion_modes.begun(z, R, moving, p))
+            begun.append(imm.begun(z, R, moving, p))
             noise.append(R)
         if begun:
             self._modes = self._modes.followed_by(begun)
@@ -226,7 +226,9 @@ class Tracker:
         standing = [o.radius for o in compress(self._objects, self._standing)]
         centres = np.concatenate([seen.positions, self._places[self._standing]])
         radii = np.concatenate([seen.radii, standing])
-        return viewpoint.expects(points, centres, radii, margin=p.view_margin, slack=p.hiding_slack)
+        return viewpoint.expects(
+            points, centres, radii, margin=p.view_margin, slack=p.occlusion_margin
+        )
 
     def _survives(self, row: int, time: float, dt: float, expected: Mask) -> bool:
         """Count a frame without detection; return whether the track is kept."""
@@ -239,14 +241,14 @@ class Tracker:
             if o.expected_for >= p.miss_time:
                 o.expected_for = 0.0
                 o.misses += 1
-            return o.misses < p.misses
-        if age > (p.forget_time if o.hits >= p.moving_hits else p.tentative_time):
+            return o.misses < p.max_misses
+        if age > (p.forget_time if o.hits >= p.min_moving_hits else p.tentative_time):
             return False
         if o.particles is None:
             if age > p.lost_time:
                 o.particles = track_particles.spawn(self._modes.at(row), p.particles, self._rng)
             return True
-        survival = (1.0 - p.detection_probability) ** (dt / p.refutation_time)
+        survival = (1.0 - p.detection_probability) ** (dt / p.detection_time)
         cloud, left = track_particles.refute(o.particles, expected, survival)
         o.presence *= left
         o.particles = track_particles.resample(cloud, p, self._rng)
@@ -257,14 +259,14 @@ class Tracker:
         p = self._parameters
         ended = set()
         for row, o in enumerate(self._objects):
-            if o.particles is None or o.presence >= p.refuted:
+            if o.particles is None or o.presence >= p.min_existence:
                 continue
             if o.motion is Motion.UNKNOWN:
                 # What was not known to move and is not where it was has never been there.
                 ended.add(o.id)
                 continue
             modes = self._modes.at(row)
-            velocity, reach = motion_modes.moments(modes)[0][2:4], o.lost_reach(time, modes, p)
+            velocity, reach = imm.moments(modes)[0][2:4], o.lost_reach(time, modes, p)
             cloud = track_particles.scatter(o.last_seen, reach, velocity, p, self._rng)
             places = np.flatnonzero(~self._expected(cloud.positions, seen, viewpoint))
             o.presence = 1.0
@@ -277,7 +279,7 @@ class Tracker:
     def _merge(self, time: float) -> None:
         """End one of two tracks of a colour that stand where only one obstacle fits."""
         p = self._parameters
-        reach = p.overlap * np.array([o.radius for o in self._objects], float)
+        reach = p.merge_fraction * np.array([o.radius for o in self._objects], float)
         ended: set[int] = set()
         for i, j in overlapping(self._places, reach).tolist():
             a, b = self._objects[i], self._objects[j]
@@ -304,12 +306,12 @@ class Tracker:
         """Work out where the objects are, or would be were they not lost."""
         static = Motion.STATIC
         self._standing = np.array([o.motion is static for o in self._objects], np.bool_)
-        self._places = motion_modes.places(self._modes, self._standing)
+        self._places = imm.places(self._modes, self._standing)
 
     def _published(self, time: float) -> tuple[Track, ...]:
         """The tracks as of `time` [s], without what may be a false blob."""
         p = self._parameters
-        estimates = motion_modes.estimates(self._modes, self._standing, self._best, p)
+        estimates = imm.estimates(self._modes, self._standing, self._best, p)
         return tuple(
             o.track(time, p, estimate)
             for o, estimate in zip(self._objects, zip(*estimates, strict=True), strict=True)

@@ -1,203 +1,131 @@
-"""Parameters of the belief: localization, tracks and local map."""
+"""Parameters of the belief: localization, tracking and local map."""
 
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Interval
 
-from navigation.parameters.bounds import NonNegative, Positive, Share
+from navigation.parameters.bounds import NonNegative, Positive
 
 
 @dataclass(frozen=True)
 class LocalizationParameters:
-    """Filter of the robot's pose from odometry and beacons, or what it maps itself."""
+    """Kalman filter of the robot's pose."""
 
-    map: Literal["beacons", "none"] = "beacons"
-    """beacons: their known places; none: the static obstacles it meets, as if there were none."""
-    drift: NonNegative = 0.0001
-    """Random walk of position and heading that the odometry's covariance lacks
-    [m/s^0.5, rad/s^0.5]."""
-    gate: Positive = 13.8
-    """Normalised innovation squared above which a beacon sighting is rejected [1]."""
-    lost_run: Annotated[int, Ge(2)] = 8
-    """Rejected sightings in a row, of two or more beacons, that mean being lost [1]."""
-    lost_time: Positive = 2.0
-    """Duration of such a run that means being lost whatever the number of beacons [s]."""
-    displaced_hits: Annotated[int, Ge(2)] = 10
-    """Frames in a row that contradict one beacon and fit others: it was moved [1]."""
-    lost_sigma: Positive = 1.0
-    """Standard deviation of position and heading while lost [m, rad]."""
-    recovery_sigma: Positive = 0.15
-    """Standard deviation of position and heading after recovery from beacons [m, rad]."""
-    recovery_window: Positive = 6.0
-    """Age up to which sightings of beacons serve recovery [s]."""
+    landmarks: Literal["known", "mapped"] = "known"
+    """known: beacons at known positions; mapped: static obstacles, mapped while walking (SLAM)."""
+    drift: float = 0.0001  # process noise of the pose on top of the odometry's [m/√s, rad/√s]
+    gate: float = 13.8  # chi-square gate of a beacon detection: squared Mahalanobis distance [1]
+    lost_rejections: int = 8  # successive rejected detections, of two or more beacons: lost
+    lost_time: float = 2.0  # duration of such a run with one beacon only: lost [s]
+    displaced_rejections: int = 10  # successive frames that contradict one beacon only: displaced
+    lost_sigma: float = 1.0  # standard deviation of position and heading while lost [m, rad]
+    recovery_sigma: float = 0.15  # the same after recovery, and its maximum residual [m, rad]
+    recovery_window: float = 6.0  # maximum age of a detection used for recovery [s]
 
 
 @dataclass(frozen=True)
 class MappingParameters:
-    """Landmarks that the robot maps itself, where `localization.map` is none."""
+    """Data association of mapped landmarks (SLAM)."""
 
-    match_distance: Positive = 0.2
-    """Distance up to which a detection, a static track and a landmark are of one thing [m]."""
-    search_distance: Positive = 1.0
-    """Distance from a landmark within which its detection is looked for [m]."""
+    match_distance: float = 0.2  # between a detection, a static track and a landmark [m]
+    search_distance: float = 1.0  # radius around a landmark in which detections are gated [m]
 
 
 @dataclass(frozen=True)
-class RecognitionParameters:
-    """Finding back by the arrangement of the landmarks that the robot has mapped itself."""
+class RelocalizationParameters:
+    """Relocalization by the constellation of the mapped landmarks."""
 
-    sigma_limit: Positive = 0.02
-    """Standard deviation of a distance from which on a sighting is of no use [m]."""
-    same_thing: Positive = 0.15
-    """Distance up to which two sightings of one colour are of one thing [m]."""
-    least_sightings: Annotated[int, Ge(2)] = 3
-    """Sightings that must fall on landmarks [1]."""
-    least_share: Share = 0.5
-    """Share of the sightings, or of the landmarks if they are fewer, that must do so [1]."""
-    tolerance: Positive = 0.06
-    """Distance up to which a sighting falls on a landmark [m]."""
-    least_separation: Positive = 0.4
-    """Distance of two sightings without which they tell no heading [m]."""
-    same_pose: Positive = 0.3
-    """Difference up to which two poses are one [m, rad]."""
+    max_range_sigma: float = 0.02  # maximum standard deviation of a detection's distance [m]
+    merge_distance: float = 0.15  # between detections of one colour that are one obstacle [m]
+    min_matches: int = 3  # minimum number of inliers
+    min_match_fraction: float = 0.5  # inliers / min(detections, landmarks) [1]
+    match_distance: float = 0.06  # distance of an inlier from its landmark [m]
+    min_baseline: float = 0.4  # distance of the two detections that define a hypothesis [m]
+    pose_tolerance: float = 0.3  # difference below which two hypotheses are one [m, rad]
 
 
 @dataclass(frozen=True)
 class TrackingParameters:
-    """Obstacle tracks: filters, association, classification, birth and death."""
+    """Multi-object tracking: motion models, association, classification, birth and death."""
 
-    acceleration_noise: Positive = 0.003
-    """White acceleration of a mover [m/s^1.5]."""
-    turn_sigma: Positive = 0.15
-    """Standard deviation of the rate at which movers bend [rad/s]."""
-    turn_time: Positive = 100.0
-    """Time over which a mover changes that rate [s]."""
-    static_diffusion: Positive = 5e-7
-    """Random walk of what stands still [m²/s]."""
-    velocity_sigma: Positive = 0.07
-    """Standard deviation of each component of the velocity of what begins to move [m/s]."""
-    top_speed: Positive = 0.2
-    """Speed that no obstacle exceeds [m/s]."""
-    reach_sigmas: NonNegative = 3.0
-    """Size of the last sighting's ellipse in the reach, in standard deviations [1]."""
+    acceleration_noise: float = 0.003  # white acceleration of a mover [m/s^1.5]
+    turn_rate_sigma: float = 0.15  # standard deviation of a mover's turn rate [rad/s]
+    turn_rate_time: float = 100.0  # correlation time of the turn rate [s]
+    static_diffusion: float = 5e-7  # random walk of a static obstacle [m²/s]
+    velocity_sigma: float = 0.07  # of each component of a mover's initial velocity [m/s]
+    max_speed: Positive = 0.2
+    """Maximum speed of an obstacle [m/s]."""
+    reach_sigmas: float = 3.0  # radius of the reachable disc at the last detection [sigma]
     reversal_rate: NonNegative = 1.0 / 12.0
-    """Rate at which a mover turns back [1/s]."""
-    start_rate: Positive = 0.01
-    """Rate at which what stands still begins to move [1/s]."""
-    stop_rate: Positive = 0.01
-    """Rate at which a mover stops for good [1/s]."""
-    correlation_time: NonNegative = 0.03
-    """Correlation time of the error of successive detections of one obstacle [s]."""
-    lasting_error: NonNegative = 0.15
-    """Error common to all detections of a static obstacle, as a share of its best detection's
-    standard deviation; averaging does not reduce it [1]."""
-    static_velocity_sigma: Positive = 0.005
-    """Standard deviation of each component of the velocity of a static track [m/s]."""
-    gate: Positive = 13.8
-    """Squared Mahalanobis distance above which no mode explains a detection [1]."""
-    anywhere: Annotated[float, Gt(0.0), Lt(1.0)] = 0.2
-    """Probability that a lost track is anywhere in reach, not where its particles are [1]."""
-    birth_density: Positive = 0.1
-    """Density of new obstacles where the floor was not seen yet [1/m²]."""
-    intruder_density: Positive = 0.004
-    """Density of new obstacles where the floor was seen empty: movers not met before [1/m²]."""
-    birth_range: Positive = 3.5
-    """Distance beyond which no track begins: below the range of vision, near which only
-    sightings that err short are reported [m]."""
-    birth_hits: Annotated[int, Ge(2)] = 2
-    """Detections that make a track [1]."""
-    birth_time: Positive = 0.5
-    """Time within which they must come [s]."""
-    birth_moving: Annotated[float, Gt(0.0), Lt(1.0)] = 0.3
-    """Probability that a new track moves [1]."""
-    intruder_moving: Annotated[float, Gt(0.0), Lt(1.0)] = 0.8
-    """The same where the floor was seen empty before [1]."""
-    evidence: Positive = 6.0
-    """Largest logarithm of the ratio of the modes' likelihoods, per detection [1]."""
-    recognised: Annotated[float, Gt(0.5), Lt(1.0)] = 0.9
-    """Probability of moving above which an undecided track moves [1]."""
-    moving_speed: NonNegative = 0.02
-    """Speed above which a track may move [m/s]."""
-    moving_hits: Annotated[int, Ge(1)] = 4
-    """Detections without which no track moves [1]."""
-    standing: Annotated[float, Gt(0.0), Lt(0.5)] = 0.02
-    """Probability of moving below which an undecided track is static [1]."""
-    static_time: NonNegative = 2.0
-    """Time from first to last detection without which no track is static [s]."""
-    static_hits: Annotated[int, Ge(1)] = 6
-    """Detections without which no track is static [1]."""
-    doubted: Annotated[float, Gt(0.0), Lt(1.0)] = 0.5
-    """Probability of moving above which a static track is undecided again [1]."""
-    stopped: Annotated[float, Gt(0.0), Lt(0.5)] = 0.01
-    """Probability of moving below which a mover is static [1]."""
-    line_width: Positive = 0.15
-    """Distance from where it could be at which a mover may still be found [m]."""
-    reach_factor: Positive = 1.2
-    """How many times as far as its speed says a lost mover may have got [1]."""
-    lost_time: Positive = 0.35
-    """Time unseen after which a track that may move becomes particles [s]."""
-    particles: Annotated[int, Ge(2)] = 16
-    """Hypotheses per lost track [1]."""
-    detection_probability: Annotated[float, Gt(0.0), Lt(1.0)] = 0.8
-    """Probability of detecting what is clearly in view, over one `refutation_time` [1]."""
-    refutation_time: Positive = 0.1
-    """Time in view over which one failed detection counts against a hypothesis [s]."""
-    resample_share: Annotated[float, Gt(0.0), Le(1.0)] = 0.35
-    """Share of effective particles below which they are resampled [1]."""
-    position_jitter: Positive = 0.03
-    """Spread of the copies of one particle, and least width of each [m]."""
-    velocity_jitter: NonNegative = 0.01
-    """Spread of the velocities of these copies [m/s]."""
-    refuted: Annotated[float, Gt(0.0), Lt(1.0)] = 0.05
-    """Probability of having seen nothing, given the particles, below which they are refuted [1]."""
-    scatter: Annotated[int, Ge(1)] = 4
-    """Places tried then per particle; with fewer out of view than particles the track ends [1]."""
+    """Rate at which a mover reverses its direction [1/s]."""
+    start_rate: float = 0.01  # rate at which a static obstacle starts to move [1/s]
+    stop_rate: float = 0.01  # rate at which a mover stops [1/s]
+    correlation_time: float = 0.03  # of the errors of successive detections of one obstacle [s]
+    # Bias of all detections of a static obstacle / sigma of the most precise one [1].
+    bias_fraction: float = 0.15
+    static_velocity_sigma: float = 0.005  # of each component of a static track's velocity [m/s]
+    gate: float = 13.8  # association gate: squared Mahalanobis distance to the nearest mode [1]
+    uniform_probability: float = 0.2  # of a lost track: anywhere in reach, not at its particles
+    birth_density: float = 0.1  # of new obstacles on floor never seen before [1/m²]
+    intruder_density: float = 0.004  # of new obstacles on floor seen empty before [1/m²]
+    # Below the range of vision, close to which only errors towards the camera are reported.
+    birth_range: float = 3.5  # maximum distance of a track birth [m]
+    birth_hits: int = 2  # detections that confirm a track
+    birth_time: float = 0.5  # time within which they must follow each other [s]
+    birth_moving_probability: float = 0.3  # that a new track moves
+    intruder_moving_probability: float = 0.8  # the same on floor seen empty before
+    max_log_ratio: float = 6.0  # log likelihood ratio of two modes from one detection [1]
+    moving_probability: float = 0.9  # of moving, above which an undecided track is moving
+    min_moving_speed: float = 0.02  # of a moving track [m/s]
+    min_moving_hits: int = 4  # detections of a moving track
+    static_probability: float = 0.02  # of moving, below which an undecided track is static
+    min_static_time: float = 2.0  # from first to last detection of a static track [s]
+    min_static_hits: int = 6  # detections of a static track
+    static_exit_probability: float = 0.5  # of moving, above which a static track is undecided
+    moving_exit_probability: float = 0.01  # of moving, below which a moving track is static
+    path_width: float = 0.15  # half width of the corridor in which a lost mover is searched [m]
+    reach_factor: float = 1.2  # range of a lost mover / (speed x time)
+    lost_time: float = 0.35  # unseen time after which a track becomes particles [s]
+    particles: Annotated[int, Interval(ge=2, le=1000)] = 16
+    """Number of particles per lost track [1]."""
+    detection_probability: float = 0.8  # of an obstacle in clear view, per `detection_time`
+    detection_time: float = 0.1  # interval between independent missed detections [s]
+    min_effective_fraction: float = 0.35  # effective sample size / particles: below, resample
+    position_jitter: float = 0.03  # roughening of resampled positions, kernel width [m]
+    velocity_jitter: float = 0.01  # roughening of resampled velocities [m/s]
+    min_existence: float = 0.05  # probability of the missed detections: below, redistribute
+    candidates_per_particle: int = 4  # positions sampled per particle when redistributed
     forget_time: Positive = 25.0
-    """Time unseen after which a track that may move is dropped [s]."""
-    tentative_time: Positive = 12.0
-    """The same for a track with too few detections to move [s]."""
-    sure_range: Positive = 2.2
-    """Distance up to which an obstacle in clear view is sure to be detected [m]."""
-    view_margin: NonNegative = 0.07
-    """Distance from the border of the view inside which a detection is expected [rad]."""
-    hiding_slack: NonNegative = 0.08
-    """Widening of an obstacle within which it may hide what is behind it [m]."""
-    miss_time: Positive = 0.2
-    """Time in view without detection that counts as one miss [s]."""
-    misses: Annotated[int, Ge(1)] = 5
-    """Misses in a row that end a track that does not move [1]."""
-    overlap: Annotated[float, Gt(0.0), Le(1.0)] = 0.8
-    """Share of the sum of radii below which two tracks of a colour are one obstacle [1]."""
-    radius_limit: Positive = 0.005
-    """Least standard deviation of a track's radius [m]."""
-    # Beyond it is mostly what was taken for granted: fusing it often would make that certain.
-    vague_radius: Positive = 0.01
-    """Standard deviation above which the radius of what is seen in part is not fused [m]."""
-    pose_sigma_limit: Positive = 0.10
-    """Largest pose uncertainty carried into the tracks, for they matter relatively [m]."""
+    """Unseen time after which a track that may move is deleted [s]."""
+    tentative_time: float = 12.0  # the same for a track of fewer than `min_moving_hits` [s]
+    detection_range: float = 2.2  # distance within which a detection is certain in clear view [m]
+    view_margin: float = 0.07  # distance from the border of the view to expect a detection [rad]
+    occlusion_margin: float = 0.08  # enlargement of occluding obstacles [m]
+    miss_time: float = 0.2  # unseen time in clear view that counts as one miss [s]
+    max_misses: int = 5  # successive misses after which a static track is deleted
+    merge_fraction: float = 0.8  # distance / sum of radii below which two tracks are one [1]
+    min_radius_sigma: float = 0.005  # floor of the standard deviation of a track's radius [m]
+    # A less certain radius is mostly the prior: fusing it repeatedly would make the prior certain.
+    max_radius_sigma: float = 0.01  # of the radius of a partly visible obstacle to be fused [m]
+    max_pose_sigma: float = 0.10  # pose uncertainty propagated to the tracks [m]
 
 
 @dataclass(frozen=True)
 class LocalMapParameters:
-    """Confidence and occupancy around the robot."""
+    """Confidence and occupancy grid around the robot."""
 
     cell: Positive = 0.10
     """Side of a cell [m]."""
     size: Positive = 6.0
     """Side of the map [m]."""
-    attenuation: Annotated[float, Lt(0.0)] = -0.03
-    """Rate xi_lm at which confidence decays out of sight [1/s]."""
+    attenuation: float = -0.03  # rate xi_lm of the confidence of unseen cells [1/s]
     range: Positive = 2.5
-    """Distance up to which the floor is searched for obstacles [m]."""
-    free_rate: Annotated[float, Lt(0.0)] = -6.0
-    """Rate at which the log odds of occupancy of a cell change that is seen empty [1/s]."""
-    occupied_rate: Positive = 15.0
-    """Rate at which those of a cell under a detection change [1/s]."""
-    look: Positive = 0.2
-    """Time for which a single look counts at most, after a gap between frames [s]."""
-    evidence_limit: Positive = 4.0
-    """Largest absolute log odds [1]."""
+    """Distance within which the floor counts as seen [m]."""
+    free_rate: float = -6.0  # rate of the log odds of a cell seen empty [1/s]
+    occupied_rate: float = 15.0  # rate of the log odds of a cell below a detection [1/s]
+    max_look_time: float = 0.2  # maximum time credited to one frame [s]
+    max_log_odds: float = 4.0  # maximum absolute log odds [1]
 
 
 @dataclass(frozen=True)
@@ -207,10 +135,10 @@ class BeliefParameters:
     localization: LocalizationParameters = field(default_factory=LocalizationParameters)
     """Robot pose."""
     mapping: MappingParameters = field(default_factory=MappingParameters)
-    """Landmarks that the robot maps itself."""
-    recognition: RecognitionParameters = field(default_factory=RecognitionParameters)
-    """Finding back by their arrangement."""
+    """Data association of mapped landmarks (SLAM)."""
+    relocalization: RelocalizationParameters = field(default_factory=RelocalizationParameters)
+    """Relocalization by the mapped landmarks."""
     tracking: TrackingParameters = field(default_factory=TrackingParameters)
-    """Obstacles."""
+    """Obstacle tracks."""
     local_map: LocalMapParameters = field(default_factory=LocalMapParameters)
     """Map around the robot."""

@@ -182,9 +182,9 @@ def test_evidence_of_one_look_and_of_all_is_bounded(view):
     place = np.array([[1.0, 0.0]])
     grid = LocalMap(P, (0.0, 0.0), 0.0)
     grid.update(100.0, viewpoint, (0.0, 0.0), place, np.array([0.08]))
-    odds = min(P.look * P.occupied_rate, P.evidence_limit)
+    odds = min(P.max_look_time * P.occupied_rate, P.max_log_odds)
     assert occupancy_at(grid, place) == pytest.approx(1 / (1 + np.exp(-odds)))
     for k in range(200):
         grid.update(101.0 + k, viewpoint, (0.0, 0.0), place, np.array([0.08]))
-    assert occupancy_at(grid, place) == pytest.approx(1 / (1 + np.exp(-P.evidence_limit)))
-    assert occupancy_at(grid, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(P.evidence_limit)))
+    assert occupancy_at(grid, place) == pytest.approx(1 / (1 + np.exp(-P.max_log_odds)))
+    assert occupancy_at(grid, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(P.max_log_odds)))

@@ -9,7 +9,7 @@ from navigation.transform import to_world
 
 
 def convert(observations, pose, P, **changes):
-    options = {"pose_sigma_limit": 10.0} | changes
+    options = {"max_pose_sigma": 10.0} | changes
     return in_world(observations, np.array(pose), P, **options)
 
 
@@ -59,7 +59,7 @@ def test_a_radius_known_otherwise_is_conditioning_on_it(observe):
 def test_a_lost_pose_does_not_drown_the_tracks(observe):
     pose = (0.0, 0.0, 0.4)
     P = np.diag([1.0, 0.5, 1.0])
-    limited = convert([observe(pose, (1.0, 0.2))], pose, P, pose_sigma_limit=0.1)
+    limited = convert([observe(pose, (1.0, 0.2))], pose, P, max_pose_sigma=0.1)
     same = convert([observe(pose, (1.0, 0.2))], pose, 0.01 * P)
     assert np.allclose(limited.covariances, same.covariances)
 

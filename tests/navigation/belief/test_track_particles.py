@@ -5,13 +5,13 @@ import pytest
 
 from navigation.belief import particle_kernel, track_particles
 from navigation.belief.belief import Particles
-from navigation.belief.motion_modes import Modes
+from navigation.belief.imm import Modes
 from navigation.parameters.belief import TrackingParameters
 
 STATE = np.array([1.0, 2.0, 0.1, -0.05, 0.2])
 COVARIANCE = np.diag([1e-4, 4e-4, 1e-4, 1e-4, 1e-4])
 P = TrackingParameters()
-EACH = TrackingParameters(scatter=1)  # one place for each particle
+EACH = TrackingParameters(candidates_per_particle=1)  # one place for each particle
 
 
 def modes(still=0.0):
@@ -25,7 +25,7 @@ def modes(still=0.0):
 
 def straight(rate):
     """Movers that keep their line and turn back at a rate [1/s]."""
-    return TrackingParameters(turn_sigma=1e-9, reversal_rate=rate)
+    return TrackingParameters(turn_rate_sigma=1e-9, reversal_rate=rate)
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def test_without_reversals_particles_go_straight(rng):
 
 
 def test_turn_rates_drift_about_zero_with_the_spread_of_movers(rng):
-    p = TrackingParameters(turn_sigma=0.3, turn_time=1.0)
+    p = TrackingParameters(turn_rate_sigma=0.3, turn_rate_time=1.0)
     cloud = track_particles.spawn(modes(), 20000, rng)
     for _ in range(50):
         cloud = track_particles.advance(cloud, 0.1, p, rng)
@@ -115,7 +115,7 @@ def test_copies_of_one_particle_spread_by_the_jitter(rng):
 
 def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
     centre, velocity = np.array([1.0, -1.0]), np.array([0.0, 0.1])
-    p = TrackingParameters(particles=2000, scatter=4)
+    p = TrackingParameters(particles=2000, candidates_per_particle=4)
     cloud = track_particles.scatter(centre, 0.5, velocity, p, rng)
     offsets = cloud.positions - centre
     assert np.hypot(*offsets.T).max() < 0.5 + 5 * P.position_jitter

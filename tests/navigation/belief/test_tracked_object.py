@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion, Particles
-from navigation.belief.motion_modes import Modes, estimates
+from navigation.belief.imm import Modes, estimates
 from navigation.belief.tracked_object import TrackedObject, reach_of
 from navigation.parameters.belief import TrackingParameters
 
@@ -43,14 +43,14 @@ def published(o, time, modes=None, best=SHARP):
 @pytest.mark.parametrize(
     ("motion", "moving", "verdict"),
     [
-        (Motion.UNKNOWN, P.recognised + 0.001, Motion.MOVING),
-        (Motion.UNKNOWN, P.recognised - 0.001, Motion.UNKNOWN),
-        (Motion.UNKNOWN, P.standing - 0.001, Motion.STATIC),
-        (Motion.UNKNOWN, P.standing + 0.001, Motion.UNKNOWN),
-        (Motion.STATIC, P.doubted - 0.001, Motion.STATIC),
-        (Motion.STATIC, P.doubted + 0.001, Motion.UNKNOWN),
-        (Motion.MOVING, P.stopped + 0.001, Motion.MOVING),
-        (Motion.MOVING, P.stopped - 0.001, Motion.STATIC),
+        (Motion.UNKNOWN, P.moving_probability + 0.001, Motion.MOVING),
+        (Motion.UNKNOWN, P.moving_probability - 0.001, Motion.UNKNOWN),
+        (Motion.UNKNOWN, P.static_probability - 0.001, Motion.STATIC),
+        (Motion.UNKNOWN, P.static_probability + 0.001, Motion.UNKNOWN),
+        (Motion.STATIC, P.static_exit_probability - 0.001, Motion.STATIC),
+        (Motion.STATIC, P.static_exit_probability + 0.001, Motion.UNKNOWN),
+        (Motion.MOVING, P.moving_exit_probability + 0.001, Motion.MOVING),
+        (Motion.MOVING, P.moving_exit_probability - 0.001, Motion.STATIC),
     ],
 )
 def test_verdicts_have_hysteresis(motion, moving, verdict):
@@ -91,7 +91,7 @@ def test_each_verdict_publishes_its_own_filter():
 
 
 def test_the_worst_case_grows_with_age_unless_it_stands_still():
-    for motion, growth in ((Motion.STATIC, 0.0), (Motion.MOVING, P.top_speed)):
+    for motion, growth in ((Motion.STATIC, 0.0), (Motion.MOVING, P.max_speed)):
         o = make(motion=motion)
         known = P.reach_sigmas * 0.01
         assert published(o, 5.0).reach == pytest.approx(known)
@@ -110,8 +110,8 @@ def test_the_worst_case_does_not_depend_on_the_axes_of_the_world():
 def test_the_faster_it_was_the_farther_off_it_is_looked_for():
     for speed in (0.0, 0.03, 0.2):
         o, modes = make(), filters(1.0, (speed, 0.0))
-        assert o.lost_reach(5.0, modes, P) == P.line_width
-        farther = P.line_width + 4.0 * P.reach_factor * speed
+        assert o.lost_reach(5.0, modes, P) == P.path_width
+        farther = P.path_width + 4.0 * P.reach_factor * speed
         assert o.lost_reach(9.0, modes, P) == pytest.approx(farther)
 
 
@@ -120,7 +120,7 @@ def test_no_number_of_detections_brings_the_lasting_error_down():
     o = make(motion=Motion.STATIC)
     filtered = filters().covariances[0, :2, :2]
     told = published(o, 5.0, best=best).covariance[:2, :2]
-    assert np.allclose(told - filtered, P.lasting_error**2 * best)
+    assert np.allclose(told - filtered, P.bias_fraction**2 * best)
 
 
 def test_a_cloud_is_published_by_its_moments():

@@ -39,8 +39,8 @@ class Stage:
             seen.append(
                 self.observe(pose, place[:2], label=label, noise=error, sigma=sigma, **details)
             )
-        sightings = in_world(seen, pose, EXACT, pose_sigma_limit=0.1)
-        viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.sure_range)
+        sightings = in_world(seen, pose, EXACT, max_pose_sigma=0.1)
+        viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.detection_range)
         self.tracks = self.tracker.update(
             self.time, sightings, viewpoint, np.zeros(len(sightings.radii), bool)
         )
@@ -97,7 +97,7 @@ def test_what_stands_still_is_static_after_two_seconds_and_never_moving(view, ob
     stage.show((1.2, 0.2))
     verdicts = [stage.show((1.2, 0.2))[0].motion for _ in range(100)]
     assert Motion.MOVING not in verdicts
-    assert Motion.STATIC not in verdicts[: int(stage.parameters.static_time / DT)]
+    assert Motion.STATIC not in verdicts[: int(stage.parameters.min_static_time / DT)]
     assert verdicts[-1] is Motion.STATIC
     (track,) = stage.tracks
     assert track.velocity.tolist() == [0.0, 0.0]
@@ -243,10 +243,10 @@ def test_a_part_changes_the_radius_only_if_it_tells_something_about_it(stage, fl
     stage.watch(2.0, (1.0, 0.0, 0.0, 0.0))
     radius = stage.tracks[0].radius
     for _ in range(20):
-        stage.show((1.0, 0.0), radius=0.02, radius_sigma=1.1 * P.vague_radius, **{flag: True})
+        stage.show((1.0, 0.0), radius=0.02, radius_sigma=1.1 * P.max_radius_sigma, **{flag: True})
     assert stage.tracks[0].radius == radius
     for _ in range(20):
-        stage.show((1.0, 0.0), radius=0.07, radius_sigma=0.1 * P.vague_radius, **{flag: True})
+        stage.show((1.0, 0.0), radius=0.07, radius_sigma=0.1 * P.max_radius_sigma, **{flag: True})
     assert stage.tracks[0].radius == pytest.approx(0.07, abs=0.002)
 
 
@@ -343,7 +343,7 @@ def test_what_appears_where_the_floor_was_empty_is_taken_for_the_lost_mover(view
             [observe(np.zeros(3), (1.6, -0.8))],
             np.zeros(3),
             EXACT,
-            pose_sigma_limit=0.1,
+            max_pose_sigma=0.1,
         )
         viewpoint = Viewpoint.of(view(), np.zeros(3), 2.2)
         for k in range(1, 4):

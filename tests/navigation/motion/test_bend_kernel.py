@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from navigation.belief.mode_kernel import arc
+from navigation.belief.imm_kernel import arc
 from navigation.motion.bend_kernel import mean_velocity
 
 VELOCITY = np.array([[0.1, 0.0], [0.03, -0.04], [0.0, 0.0]])

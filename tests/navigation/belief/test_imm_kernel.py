@@ -5,7 +5,7 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.stats import multivariate_normal
 
-from navigation.belief import mode_kernel as kernel
+from navigation.belief import imm_kernel as kernel
 
 STOP, KEEP, TURN = [1.0, 1.0, 0.0, 0.0, 0.0], 5 * [1.0], [1.0, 1.0, -1.0, -1.0, -1.0]
 CHANGES = np.array([[STOP, STOP, STOP], [STOP, KEEP, TURN], [STOP, TURN, KEEP]])

@@ -27,7 +27,7 @@ class _Sighting:
     point: tuple[float, float]
 
 
-class Relocalization:
+class BeaconRelocalization:
     """Judges the pose by the beacons, and finds it again from them.
 
     Args:
@@ -70,14 +70,14 @@ class Relocalization:
             blamed = {name for _, name in self._run} | set(rejected)
             for name in blamed - set(accepted):
                 self._contradictions[name] = self._contradictions.get(name, 0) + 1
-                if self._contradictions[name] >= p.displaced_hits:
+                if self._contradictions[name] >= p.displaced_rejections:
                     self._displaced.add(name)
             for name in accepted:
                 self._contradictions.pop(name, None)
             self._run.clear()
             return False
         self._run += [(time, name) for name in rejected]
-        if len(self._run) < p.lost_run:
+        if len(self._run) < p.lost_rejections:
             return False
         several = len({name for _, name in self._run}) > 1
         return several or time - self._run[0][0] > p.lost_time

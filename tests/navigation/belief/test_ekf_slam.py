@@ -6,7 +6,7 @@ import pytest
 
 from navigation.angles import wrap
 from navigation.belief.belief import Motion
-from navigation.belief.self_mapping import SelfMapping
+from navigation.belief.ekf_slam import EkfSlam
 from navigation.parameters.belief import BeliefParameters
 from navigation.transform import sighting
 
@@ -31,7 +31,7 @@ def tracks(track, numbers, motion=Motion.STATIC, visible=True):
 def tour(observe, frame, track, rng, seconds, fov=1.5):
     """Walk in a circle among the posts; yield localizer and true pose."""
     pose = np.array([0.5, -0.4, 0.3])
-    slam = SelfMapping(BeliefParameters(), pose)
+    slam = EkfSlam(BeliefParameters(), pose)
     odometry = np.zeros(3)
     slam.update(frame(0.0, odometry, []))
     for k in range(1, round(seconds / DT)):
@@ -95,7 +95,7 @@ def test_covariance_of_all_stays_positive_definite(observe, frame, track):
 
 def test_a_landmark_shares_the_error_of_the_pose_that_mapped_it(observe, frame, track):
     """Seen from the pose at which it was mapped, it tells nothing new of that pose."""
-    slam = SelfMapping(BeliefParameters(), np.zeros(3))
+    slam = EkfSlam(BeliefParameters(), np.zeros(3))
     wander = replace(frame(0.1, (0, 0, 0), []), motion_covariance=np.diag([1e-2, 1e-2, 1e-3]))
     slam.update(frame(0.0, (0, 0, 0), []))
     slam.update(wander)
@@ -162,7 +162,7 @@ def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0
 @pytest.fixture
 def mapped(observe, frame, track):
     """A robot at the origin that has mapped all places, and what goes on with it."""
-    slam, rng = SelfMapping(BeliefParameters(), np.zeros(3)), np.random.default_rng(6)
+    slam, rng = EkfSlam(BeliefParameters(), np.zeros(3)), np.random.default_rng(6)
 
     def go_on(frames, **changes):
         start = go_on.next
@@ -218,7 +218,7 @@ def test_a_black_image_says_nothing(mapped):
 @pytest.mark.parametrize(("share", "landmarks"), [(0.9, 1), (1.1, 0)])
 def test_only_what_was_detected_near_its_track_is_mapped(observe, frame, track, share, landmarks):
     parameters = BeliefParameters()
-    slam = SelfMapping(parameters, np.zeros(3))
+    slam = EkfSlam(parameters, np.zeros(3))
     x, y, _ = POSTS[0]
     off = share * parameters.mapping.match_distance
     seen = frame(0.0, (0, 0, 0), [observe((0, 0, 0), (x + off, y))])
@@ -228,7 +228,7 @@ def test_only_what_was_detected_near_its_track_is_mapped(observe, frame, track, 
 
 
 def test_an_old_frame_is_refused(frame):
-    slam = SelfMapping(BeliefParameters(), np.zeros(3))
+    slam = EkfSlam(BeliefParameters(), np.zeros(3))
     slam.update(frame(1.0, (0, 0, 0), []))
     with pytest.raises(ValueError, match="order of their capture"):
         slam.update(frame(1.0, (0, 0, 0), []))

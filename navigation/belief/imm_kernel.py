@@ -1,6 +1,6 @@
 """Compiled part of the filters of obstacles: all obstacles and all modes in one pass.
 
-Modes are STILL, ON, BACK, see `motion_modes`; states are (x, y, vx, vy, turn rate).
+Modes are STILL, ON, BACK, see `imm`; states are (x, y, vx, vy, turn rate).
 """
 
 from math import cos, exp, inf, log, sin

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, pose, rays
-from vision.own_body_kernel import LEAST_DEPTH, outline
+from vision.self_mask_kernel import LEAST_DEPTH, outline
 
 CENTRES, RADII = np.array([[0.0, 0.09, 0.38], [0.01, 0.1, 0.25]]), np.array([0.03, 0.045])
 MIDDLE = np.array([0.5 * CAMERA.width, 0.5 * CAMERA.height, CAMERA.focal])

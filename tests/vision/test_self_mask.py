@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, at, paint, pose, true_polar
 from vision.detector import Detector
-from vision.own_body import BodyPart, hide
 from vision.parameters import VisionParameters
+from vision.self_mask import BodyPart, hide
 
 SHOULDER = BodyPart(np.array([[0.0, 0.09, 0.38]]), np.array([0.03]))
 

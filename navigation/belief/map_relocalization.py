@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.observation import Frame, Observation
-from navigation.parameters.belief import RecognitionParameters
+from navigation.parameters.belief import RelocalizationParameters
 from navigation.transform import points_from, points_to_world, pose_from_points, to_world
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ class _Sighting:
     point: tuple[float, float]
 
 
-class PlaceRecognition:
+class MapRelocalization:
     """Remembers what was seen of late and finds it among the landmarks.
 
     Args:
@@ -38,7 +38,7 @@ class PlaceRecognition:
         window: age up to which sightings serve [s].
     """
 
-    def __init__(self, parameters: RecognitionParameters, window: float) -> None:
+    def __init__(self, parameters: RelocalizationParameters, window: float) -> None:
         self._parameters = parameters
         self._window = window
         self._sightings: list[_Sighting] = []
@@ -52,10 +52,12 @@ class PlaceRecognition:
         p = self._parameters
         kept = [s for s in self._sightings if frame.time - s.time <= self._window]
         for o in observations:
-            if float(o.covariance[0, 0]) > p.sigma_limit * p.sigma_limit:
+            if float(o.covariance[0, 0]) > p.max_range_sigma * p.max_range_sigma:
                 continue
             point = to_world(frame.odometry.tolist(), o.distance, o.bearing)
-            kept = [s for s in kept if s.label != o.label or _apart(s.point, point) > p.same_thing]
+            kept = [
+                s for s in kept if s.label != o.label or _apart(s.point, point) > p.merge_distance
+            ]
             kept.append(_Sighting(frame.time, o.label, point))
         self._sightings = kept
 
@@ -71,21 +73,21 @@ class PlaceRecognition:
             x, y, heading of R in W (3,) [m, m, rad], or None.
         """
         p, seen = self._parameters, self._sightings
-        wanted = max(p.least_sightings, p.least_share * min(len(seen), len(labels)))
-        if len(labels) < p.least_sightings or len(seen) < p.least_sightings:
+        wanted = max(p.min_matches, p.min_match_fraction * min(len(seen), len(labels)))
+        if len(labels) < p.min_matches or len(seen) < p.min_matches:
             return None
         points = points_from(frame.odometry.tolist(), np.array([s.point for s in seen]))
         same = np.array([[a.label == b for b in labels] for a in seen])
         found: list[tuple[int, Array]] = []
         for (i, j), (k, m) in self._pairs(points, places, same):
             pose = pose_from_points(points[[i, j]], places[[k, m]])
-            rows, columns = _matched(points, places, same, pose, p.tolerance)
+            rows, columns = _matched(points, places, same, pose, p.match_distance)
             if len(rows) >= wanted:
                 found.append((len(rows), pose_from_points(points[rows], places[columns])))
         if not found:
             return None
         most, best = max(found, key=lambda f: f[0])
-        rivals = (q for n, q in found if n == most and not _alike(q, best, p.same_pose))
+        rivals = (q for n, q in found if n == most and not _alike(q, best, p.pose_tolerance))
         return best if next(rivals, None) is None else None
 
     def _pairs(
@@ -97,9 +99,9 @@ class PlaceRecognition:
         for i in range(len(points)):
             for j in range(i):
                 length = hypot(*(points[i] - points[j]).tolist())
-                if length < p.least_separation:
+                if length < p.min_baseline:
                     continue
-                fits = same[i][:, None] & same[j] & (np.abs(between - length) < p.tolerance)
+                fits = same[i][:, None] & same[j] & (np.abs(between - length) < p.match_distance)
                 for k, m in np.argwhere(fits).tolist():
                     yield (i, j), (k, m)
 

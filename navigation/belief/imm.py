@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import mode_kernel
-from navigation.belief.mode_kernel import BACK, ON, SIZE, STILL, Mask, Rows
+from navigation.belief import imm_kernel
+from navigation.belief.imm_kernel import BACK, ON, SIZE, STILL, Mask, Rows
 from navigation.parameters.belief import TrackingParameters
 
 Array = NDArray[np.float64]
@@ -74,7 +74,7 @@ def begun(z: Array, R: Array, moving: float, p: TrackingParameters) -> Modes:
     covariances = np.zeros((3, SIZE, SIZE))
     covariances[:, :2, :2] = R
     covariances[ON:, 2, 2] = covariances[ON:, 3, 3] = p.velocity_sigma**2
-    covariances[ON:, 4, 4] = p.turn_sigma**2
+    covariances[ON:, 4, 4] = p.turn_rate_sigma**2
     weights = np.array([1.0 - moving, moving - FLOOR, FLOOR])
     return Modes(weights, states, covariances)
 
@@ -93,15 +93,15 @@ def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
             [stops, turns, 1.0 - stops - turns],
         ]
     )
-    turning = p.turn_sigma**2
-    mixed = Modes(*mode_kernel.interact(*modes, change, dt, p.velocity_sigma**2, turning))
-    mode_kernel.move_on(
+    turning = p.turn_rate_sigma**2
+    mixed = Modes(*imm_kernel.interact(*modes, change, dt, p.velocity_sigma**2, turning))
+    imm_kernel.move_on(
         mixed.states,
         mixed.covariances,
         dt,
         p.acceleration_noise,
         p.static_diffusion,
-        exp(-dt / p.turn_time),
+        exp(-dt / p.turn_rate_time),
         turning,
     )
     return mixed
@@ -116,7 +116,7 @@ def nis(modes: Modes, rows: Rows, z: Array, R: Array) -> Array:
         z: position of each (m, 2) [m].
         R: its covariance (m, 2, 2) [m²].
     """
-    return mode_kernel.nis(modes.states, modes.covariances, rows, z, R)
+    return imm_kernel.nis(modes.states, modes.covariances, rows, z, R)
 
 
 def costs(modes: Modes, z: Array, R: Array, gate: float) -> Array:
@@ -128,7 +128,7 @@ def costs(modes: Modes, z: Array, R: Array, gate: float) -> Array:
         R: their covariances (m, 2, 2) [m²].
         gate: squared Mahalanobis distance above which no mode explains a position [1].
     """
-    return mode_kernel.costs(*modes, z, R, gate)
+    return imm_kernel.costs(*modes, z, R, gate)
 
 
 def update(modes: Modes, rows: Rows, z: Array, R: Array, limit: float) -> None:
@@ -141,12 +141,12 @@ def update(modes: Modes, rows: Rows, z: Array, R: Array, limit: float) -> None:
         R: its covariance (m, 2, 2) [m²].
         limit: largest ratio of the modes' likelihoods, logarithm [1].
     """
-    mode_kernel.update(*modes, rows, z, R, limit, FLOOR)
+    imm_kernel.update(*modes, rows, z, R, limit, FLOOR)
 
 
 def places(modes: Modes, standing: Mask) -> Array:
     """Where obstacles are (n, 2) [m]; `standing` says which of them stand still (n,)."""
-    return mode_kernel.places(modes.weights, modes.states, standing)
+    return imm_kernel.places(modes.weights, modes.states, standing)
 
 
 def estimates(
@@ -164,15 +164,15 @@ def estimates(
         Positions (n, 2) [m], velocities (n, 2) [m/s], covariances of both (n, 4, 4) and turn
         rates (n,) [rad/s].
     """
-    *moments, turn_rates = mode_kernel.estimates(
-        *modes, standing, best, p.lasting_error**2, p.static_velocity_sigma**2
+    *moments, turn_rates = imm_kernel.estimates(
+        *modes, standing, best, p.bias_fraction**2, p.static_velocity_sigma**2
     )
     return *moments, turn_rates.tolist()
 
 
 def mean(modes: Modes) -> Array:
     """Mean (5,) of one obstacle, given that it moves."""
-    return mode_kernel.mean(modes.weights, modes.states)
+    return imm_kernel.mean(modes.weights, modes.states)
 
 
 def speed(modes: Modes) -> float:
@@ -182,4 +182,4 @@ def speed(modes: Modes) -> float:
 
 def moments(modes: Modes) -> tuple[Array, Array]:
     """Mean (5,) and covariance (5, 5) of one obstacle, given that it moves."""
-    return mode_kernel.moments(*modes)
+    return imm_kernel.moments(*modes)

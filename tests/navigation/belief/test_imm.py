@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from navigation.belief import motion_modes
-from navigation.belief.motion_modes import BACK, ON, STILL, Modes
+from navigation.belief import imm
+from navigation.belief.imm import BACK, ON, STILL, Modes
 from navigation.parameters.belief import TrackingParameters
 
 P = TrackingParameters()
@@ -12,16 +12,16 @@ R = np.diag([1e-4, 2e-4])
 
 
 def one(moving=0.5, z=(1.0, 0.0), R=R):
-    modes = motion_modes.begun(np.array(z), R, moving, P)
+    modes = imm.begun(np.array(z), R, moving, P)
     return Modes(*(a[None] for a in modes))
 
 
 def watch(modes, places, R=R, rng=None):
     """Frames with a detection at each place."""
     for place in places:
-        modes = motion_modes.predict(modes, DT, P)
+        modes = imm.predict(modes, DT, P)
         z = np.array([place]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
-        motion_modes.update(modes, np.array([0]), z, R[None], P.evidence)
+        imm.update(modes, np.array([0]), z, R[None], P.max_log_ratio)
     return modes
 
 
@@ -33,7 +33,7 @@ def line(seconds, velocity, start=(1.0, 0.0)):
 def test_without_change_of_mode_it_is_a_plain_filter():
     p = TrackingParameters(reversal_rate=0.0, start_rate=1e-12, stop_rate=1e-12)
     modes = one()
-    predicted = motion_modes.predict(modes, 0.5, p)
+    predicted = imm.predict(modes, 0.5, p)
     F, q = np.eye(4) + 0.5 * np.eye(4, k=2), p.acceleration_noise
     block = np.array([[0.5**3 / 3, 0.5**2 / 2], [0.5**2 / 2, 0.5]]) * q * q
     covariance = F @ modes.covariances[0, ON, :4, :4] @ F.T + np.kron(block, np.eye(2))
@@ -53,22 +53,22 @@ def test_tells_what_stands_from_what_moves(seed):
 
 def test_a_reversal_shows_within_three_frames():
     before = watch(one(), line(2.0, (0.1, 0.0)))
-    mean, _ = motion_modes.moments(Modes(*(a[0] for a in before)))
+    mean, _ = imm.moments(Modes(*(a[0] for a in before)))
     assert mean[2] == pytest.approx(0.1, abs=0.01)
     after = watch(before, line(3 * DT, (-0.1, 0.0), mean[:2]))
-    mean, _ = motion_modes.moments(Modes(*(a[0] for a in after)))
+    mean, _ = imm.moments(Modes(*(a[0] for a in after)))
     assert mean[2] < 0.0
 
 
 def test_what_turned_between_two_frames_may_have_turned_at_any_time():
     """Turned at once it is as far behind as, turned just now, it is ahead."""
-    modes = motion_modes.begun(np.array([1.0, 0.0]), R, 0.9, P)
+    modes = imm.begun(np.array([1.0, 0.0]), R, 0.9, P)
     modes.states[ON, 2] = 0.1
     modes.weights[BACK] = 0.0
     modes.covariances[ON] = 1e-12 * np.eye(5)
     dt = 0.5
     p = TrackingParameters(reversal_rate=0.01, acceleration_noise=1e-9)
-    after = motion_modes.predict(Modes(*(a[None] for a in modes)), dt, p)
+    after = imm.predict(Modes(*(a[None] for a in modes)), dt, p)
     assert after.states[0, BACK] == pytest.approx([1.0, 0.0, -0.1, 0.0, 0.0], abs=1e-6)
     assert after.covariances[0, BACK, 0, 0] == pytest.approx((0.1 * dt) ** 2 / 3, rel=1e-3)
     assert after.covariances[0, BACK, 1, 1] < 1e-9
@@ -77,7 +77,7 @@ def test_what_turned_between_two_frames_may_have_turned_at_any_time():
 def test_a_reversal_out_of_sight_is_weighed_against_going_on():
     modes = watch(one(), line(2.0, (0.1, 0.0)))
     for _ in range(50):
-        modes = motion_modes.predict(modes, DT, P)
+        modes = imm.predict(modes, DT, P)
     on, back = (modes.states[0, m, 0] for m in (ON, BACK))
     assert back < 1.2 < on
     assert modes.weights[0, BACK] == pytest.approx(0.5 - 0.5 * np.exp(-2 * 3 / 12), abs=0.03)
@@ -103,17 +103,17 @@ def test_covariances_stay_positive_definite_over_100000_updates():
     rng = np.random.default_rng(4)
     n = 400
     z = rng.uniform(-2, 2, (n, 2))
-    start = [motion_modes.begun(p, R, 0.4, P) for p in z]
+    start = [imm.begun(p, R, 0.4, P) for p in z]
     modes = Modes(*(np.stack(parts) for parts in zip(*start, strict=True)))
     for _ in range(250):
-        modes = motion_modes.predict(modes, float(rng.choice([DT, DT, 0.5, 20.0])), P)
+        modes = imm.predict(modes, float(rng.choice([DT, DT, 0.5, 20.0])), P)
         sigma = 10.0 ** rng.uniform(-3.5, -0.5, (n, 2))
         turn = rng.uniform(-np.pi, np.pi, n)
         c, s = np.cos(turn), np.sin(turn)
         Q = np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
         noise = Q @ (sigma[:, :, None] ** 2 * np.eye(2)) @ np.swapaxes(Q, 1, 2)
         z = z + rng.normal(0, 0.03, (n, 2))
-        motion_modes.update(modes, np.arange(n), z, noise, P.evidence)
+        imm.update(modes, np.arange(n), z, noise, P.max_log_ratio)
         C = modes.covariances
         assert np.array_equal(C, np.swapaxes(C, 2, 3))
         assert np.linalg.eigvalsh(C[:, ON:]).min() > 0.0
@@ -143,18 +143,18 @@ def test_modes_change_at_their_rates():
         (ON, [stops, goes_on, turns]),
         (BACK, [stops, turns, goes_on]),
     ):
-        changed = motion_modes.predict(only(mode), dt, p).weights[0]
+        changed = imm.predict(only(mode), dt, p).weights[0]
         assert changed == pytest.approx(wanted, abs=1e-9)
-        assert motion_modes.predict(only(mode), dt, p).moving[0] == pytest.approx(1 - wanted[0])
+        assert imm.predict(only(mode), dt, p).moving[0] == pytest.approx(1 - wanted[0])
 
 
 def test_what_sets_out_may_go_anywhere_and_what_stops_stands_where_it_was():
     p = TrackingParameters(acceleration_noise=1e-9, reversal_rate=0.0, static_diffusion=1e-3)
-    out = motion_modes.predict(only(STILL), DT, p)
+    out = imm.predict(only(STILL), DT, p)
     assert out.states[0, ON] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
-    doubt = [*(2 * [p.velocity_sigma**2]), p.turn_sigma**2]
+    doubt = [*(2 * [p.velocity_sigma**2]), p.turn_rate_sigma**2]
     assert np.diag(out.covariances[0, ON])[2:] == pytest.approx(doubt)
-    still = motion_modes.predict(only(ON, (0.1, 0.0)), 0.5, p)
+    still = imm.predict(only(ON, (0.1, 0.0)), 0.5, p)
     assert still.states[0, STILL] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
     grown = np.diag(still.covariances[0, STILL])
     assert grown == pytest.approx([1e-4 + 0.5e-3, 2e-4 + 0.5e-3, 0.0, 0.0, 0.0], abs=1e-9)
@@ -168,15 +168,15 @@ def test_the_moments_are_those_of_the_mixture_of_both_ways():
     mean = share @ moving
     second = np.einsum("m,mij->ij", share, modes.covariances[ON:])
     second += np.einsum("m,mi,mj->ij", share, moving, moving)
-    found, covariance = motion_modes.moments(modes)
+    found, covariance = imm.moments(modes)
     assert found == pytest.approx(mean)
-    assert motion_modes.mean(modes) == pytest.approx(mean)
+    assert imm.mean(modes) == pytest.approx(mean)
     assert covariance == pytest.approx(second - np.outer(mean, mean))
 
 
 def test_a_new_obstacle_has_no_velocity_and_as_much_doubt_about_it_as_is_given():
-    p = TrackingParameters(velocity_sigma=0.15, turn_sigma=0.25)
-    modes = motion_modes.begun(np.array([1.0, 2.0]), R, 0.3, p)
+    p = TrackingParameters(velocity_sigma=0.15, turn_rate_sigma=0.25)
+    modes = imm.begun(np.array([1.0, 2.0]), R, 0.3, p)
     assert modes.weights == pytest.approx([0.7, 0.3, 0.0], abs=1e-5)
     assert modes.weights.sum() == pytest.approx(1.0)
     assert modes.weights.min() > 0.0
@@ -199,7 +199,7 @@ def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit
     assert 0.1 < ratio < 2.0
     for limit in (10.0, 0.5 * ratio):
         corrected = Modes(*(a.copy() for a in modes))
-        motion_modes.update(corrected, np.array([0]), z, R[None], limit)
+        imm.update(corrected, np.array([0]), z, R[None], limit)
         after = corrected.weights[0]
         assert np.log(after[STILL] / after[ON]) == pytest.approx(min(ratio, limit), abs=1e-4)
         assert after.sum() == pytest.approx(1.0)
@@ -215,7 +215,7 @@ def test_a_bend_is_found_and_followed(turn):
     assert modes.states[0, ON, 4] == pytest.approx(turn, abs=0.05)
     later = modes
     for _ in range(round(1.0 / DT)):
-        later = motion_modes.predict(later, DT, P)
+        later = imm.predict(later, DT, P)
     ahead = angle[-1] + turn * DT * np.arange(1, round(1.0 / DT) + 1)
     met = places[-1] + 0.1 * DT * np.array([np.cos(ahead).sum(), np.sin(ahead).sum()])
     assert later.states[0, ON, :2] == pytest.approx(met, abs=0.01)
@@ -224,16 +224,16 @@ def test_a_bend_is_found_and_followed(turn):
 def test_only_what_was_seen_is_corrected():
     both = Modes(*(np.repeat(a, 2, axis=0) for a in one()))
     z = np.array([[1.01, 0.0]])
-    motion_modes.update(both, np.array([1]), z, R[None], P.evidence)
+    imm.update(both, np.array([1]), z, R[None], P.max_log_ratio)
     seen = one()
-    motion_modes.update(seen, np.array([0]), z, R[None], P.evidence)
+    imm.update(seen, np.array([0]), z, R[None], P.max_log_ratio)
     for parts, before, after in zip(both, one(), seen, strict=True):
         assert np.array_equal(parts, np.concatenate([before, after]))
 
 
 def test_obstacles_join_the_rows_and_leave_them():
-    first, second = (motion_modes.begun(np.array([x, 0.0]), R, 0.4, P) for x in (1.0, 2.0))
-    both = motion_modes.none().followed_by([first]).followed_by([second])
+    first, second = (imm.begun(np.array([x, 0.0]), R, 0.4, P) for x in (1.0, 2.0))
+    both = imm.none().followed_by([first]).followed_by([second])
     for row, one_ in enumerate((first, second)):
         for found, wanted in zip(both.at(row), one_, strict=True):
             assert np.array_equal(found, wanted)

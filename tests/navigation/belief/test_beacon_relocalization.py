@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navigation.belief.relocalization import Relocalization
+from navigation.belief.beacon_relocalization import BeaconRelocalization
 from navigation.parameters.belief import LocalizationParameters
 
 P = LocalizationParameters()
@@ -14,7 +14,7 @@ poses = st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-3.0, 3.
 
 
 def made():
-    return Relocalization(P, BEACONS)
+    return BeaconRelocalization(P, BEACONS)
 
 
 def saw(relocalization, frame, observe, pose, odometry, names, time=0.0, moved=()):
@@ -69,8 +69,8 @@ def test_the_one_that_was_moved_is_left_out_if_the_rest_agree_with_the_belief(fr
 
 def test_a_run_of_rejections_of_several_beacons_means_lost():
     judged = made()
-    verdicts = [judged.judge(0.06 * k, [], ["ab"[k % 2]]) for k in range(P.lost_run)]
-    assert verdicts == [False] * (P.lost_run - 1) + [True]
+    verdicts = [judged.judge(0.06 * k, [], ["ab"[k % 2]]) for k in range(P.lost_rejections)]
+    assert verdicts == [False] * (P.lost_rejections - 1) + [True]
 
 
 def test_rejections_of_a_single_beacon_mean_lost_after_a_while_alone():
@@ -81,7 +81,7 @@ def test_rejections_of_a_single_beacon_mean_lost_after_a_while_alone():
 
 def test_one_sighting_that_fits_ends_the_run():
     judged = made()
-    for k in range(P.lost_run - 1):
+    for k in range(P.lost_rejections - 1):
         judged.judge(0.06 * k, [], ["a", "b"][k % 2 : k % 2 + 1])
     assert not judged.judge(1.0, ["c"], [])
     assert not judged.judge(1.1, [], ["a"])
@@ -89,7 +89,7 @@ def test_one_sighting_that_fits_ends_the_run():
 
 def test_a_beacon_contradicted_by_others_again_and_again_was_moved():
     judged = made()
-    for k in range(P.displaced_hits - 1):
+    for k in range(P.displaced_rejections - 1):
         judged.judge(0.06 * k, ["a"], ["b"])
     assert not judged.displaced
     judged.judge(1.0, ["a"], ["b"])
@@ -98,7 +98,7 @@ def test_a_beacon_contradicted_by_others_again_and_again_was_moved():
 
 def test_an_outlier_is_forgiven_by_the_next_sighting_that_fits():
     judged = made()
-    for k in range(3 * P.displaced_hits):
+    for k in range(3 * P.displaced_rejections):
         accepted, rejected = (["a", "b"], []) if k % 3 == 2 else (["a"], ["b"])
         judged.judge(0.06 * k, accepted, rejected)
     assert not judged.displaced

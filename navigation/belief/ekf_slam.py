@@ -19,7 +19,7 @@ from navigation.angles import wrap
 from navigation.belief.belief import Motion, Track
 from navigation.belief.correlated_noise import variance_inflation
 from navigation.belief.localization import SHARED_LIMIT
-from navigation.belief.place_recognition import PlaceRecognition
+from navigation.belief.map_relocalization import MapRelocalization
 from navigation.belief.sightings import in_world
 from navigation.belief.visibility import Viewpoint
 from navigation.observation import Frame, Observation
@@ -32,7 +32,7 @@ START_VARIANCE = 1e-10
 """Of the pose that defines the frame [m², rad²]."""
 
 
-class SelfMapping:
+class EkfSlam:
     """Pose of the robot from odometry and the static obstacles it has met.
 
     Args:
@@ -50,8 +50,8 @@ class SelfMapping:
         self._labels: list[str] = []
         self._seen_at: list[float] = []
         self._previous: tuple[float, Array] | None = None
-        self._recognition = PlaceRecognition(
-            parameters.recognition, self._localization.recovery_window
+        self._relocalization = MapRelocalization(
+            parameters.relocalization, self._localization.recovery_window
         )
         self._mapped_at: list[float] = []
         self._missing: dict[int, tuple[float, int]] = {}
@@ -193,32 +193,32 @@ class SelfMapping:
             return  # a camera that shows nothing at all says nothing
         p = self._tracking
         pose, covariance = self.pose, self.covariance
-        seen = in_world(frame.observations, pose, covariance, pose_sigma_limit=p.pose_sigma_limit)
-        expected = Viewpoint.of(frame.view, pose, p.sure_range).expects(
+        seen = in_world(frame.observations, pose, covariance, max_pose_sigma=p.max_pose_sigma)
+        expected = Viewpoint.of(frame.view, pose, p.detection_range).expects(
             self._x[3:].reshape(-1, 2),
             seen.positions,
             seen.radii,
             margin=p.view_margin,
-            slack=p.hiding_slack,
+            slack=p.occlusion_margin,
         )
         for i in np.flatnonzero(expected).tolist():
             if i not in found:
                 _, count = self._missing.get(self._ids[i], (0.0, 0))
                 self._missing[self._ids[i]] = self._seen_at[i], count + 1
         misses = sum(count for _, count in self._missing.values())
-        if len(self._missing) > 1 and misses >= self._localization.lost_run:
+        if len(self._missing) > 1 and misses >= self._localization.lost_rejections:
             sound_until = max(seen_at for seen_at, _ in self._missing.values())
             for i in reversed([i for i, t in enumerate(self._mapped_at) if t > sound_until]):
                 self._forget(i)
             self._missing.clear()
-            self._recognition.begin()
+            self._relocalization.begin()
             self._lost = True
             self._doubt_pose(self._localization.lost_sigma)
 
     def _recover(self, frame: Frame) -> None:
         """Recognise the arrangement of the landmarks in what was seen of late."""
-        self._recognition.remember([o for o in frame.observations if _clear(o)], frame)
-        pose = self._recognition.locate(frame, self._labels, self._x[3:].reshape(-1, 2))
+        self._relocalization.remember([o for o in frame.observations if _clear(o)], frame)
+        pose = self._relocalization.locate(frame, self._labels, self._x[3:].reshape(-1, 2))
         if pose is None:
             return
         self._lost = False

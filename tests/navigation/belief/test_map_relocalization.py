@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 
 from navigation.angles import wrap
-from navigation.belief.place_recognition import PlaceRecognition
-from navigation.parameters.belief import RecognitionParameters
+from navigation.belief.map_relocalization import MapRelocalization
+from navigation.parameters.belief import RelocalizationParameters
 
 LABELS = ["red", "green", "red", "blue", "green", "red"]
 PLACES = np.array([(1.5, 0.2), (0.9, 1.3), (-0.4, 1.6), (-1.4, 0.3), (-0.7, -1.2), (0.8, -1.0)])
 
 
 def recognise(observe, frame, pose, indices, *, labels=LABELS, places=PLACES, **parameters):
-    recognition = PlaceRecognition(RecognitionParameters(**parameters), 6.0)
+    relocalization = MapRelocalization(RelocalizationParameters(**parameters), 6.0)
     seen = frame(
         1.0, (4, 5, 6), [observe(pose, PLACES[i].tolist(), label=LABELS[i]) for i in indices]
     )
-    recognition.remember(seen.observations, seen)
-    return recognition.locate(seen, labels, places)
+    relocalization.remember(seen.observations, seen)
+    return relocalization.locate(seen, labels, places)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -67,8 +67,8 @@ def test_moved_world_moved_pose(observe, frame):
 
 
 def test_what_was_seen_long_ago_counts_no_more(observe, frame):
-    recognition = PlaceRecognition(RecognitionParameters(), 6.0)
+    relocalization = MapRelocalization(RelocalizationParameters(), 6.0)
     for k, i in enumerate((0, 1, 3)):
         seen = frame(5.0 * k, (0, 0, 0), [observe((0, 0, 0), PLACES[i].tolist(), label=LABELS[i])])
-        recognition.remember(seen.observations, seen)
-    assert recognition.locate(seen, LABELS, PLACES) is None
+        relocalization.remember(seen.observations, seen)
+    assert relocalization.locate(seen, LABELS, PLACES) is None

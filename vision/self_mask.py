@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vision.camera import CameraPose, PinholeCamera
-from vision.own_body_kernel import outline
+from vision.self_mask_kernel import outline
 
 Array = NDArray[np.float64]
 
