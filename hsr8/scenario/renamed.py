@@ -9,6 +9,9 @@ from hsr8.scenario.toml_lines import Path
 # Old key -> new key, both with dots, without indices of lists; a section covers the keys below it.
 # Sorted, one entry per line.
 RENAMED: dict[str, str] = {
+    "belief.localization.map": "belief.localization.landmarks",
+    "belief.recognition": "belief.relocalization",
+    "belief.tracking.top_speed": "belief.tracking.max_speed",
     "navigation.body": "navigation.velocity_mapping",
     "navigation.filter": "navigation.safety_filter",
     "navigation.gate": "navigation.unseen_ground",
@@ -20,7 +23,9 @@ RENAMED: dict[str, str] = {
     "navigation.shoulder": "navigation.rear_check",
     "navigation.way_search": "navigation.waypoint_search",
     "own": "plugin",
+    "vision.beacon_range": "vision.max_beacon_range",
     "vision.colour_table": "vision.color_table",
+    "vision.obstacle_range": "vision.max_obstacle_range",
     "walking.arms.limit": "walking.arms.max_swing",
     "walking.arms.swing": "walking.arms.swing_gain",
     "walking.gait.catch_clearance": "walking.gait.capture_clearance",
@@ -69,6 +74,7 @@ RENAMED: dict[str, str] = {
 
 # Key -> old value -> new value.
 RENAMED_VALUES: dict[str, dict[str, str]] = {
+    "belief.localization.landmarks": {"beacons": "known", "none": "mapped"},
     "camera.source": {"all-round": "omnidirectional", "egl": "rendered"},
     "navigation.evaluation.map_ratio": {"share": "fraction"},
     "navigation.moving_obstacles.virtual_obstacle": {"own": "uncapped"},

@@ -221,9 +221,9 @@ def test_a_refuted_mover_goes_on_where_enough_of_the_places_tried_are_out_of_vie
             stage.show()
         return stage.tracks
 
-    assert tracks(scatter=1) == ()
-    assert len(tracks(scatter=20)) == 1
-    assert len(tracks(scatter=1, refuted=1e-12)) == 1
+    assert tracks(candidates_per_particle=1) == ()
+    assert len(tracks(candidates_per_particle=20)) == 1
+    assert len(tracks(candidates_per_particle=1, min_existence=1e-12)) == 1
 
 
 def test_a_static_track_ends_when_its_place_is_seen_empty_but_not_when_hidden(stage):
