@@ -43,7 +43,9 @@ def test_what_was_never_mapped_is_not_recognised(observe, frame):
 def test_the_place_may_have_changed_by_as_much_as_is_tolerated(observe, frame):
     changed = PLACES + 0.04 * np.array([(1, 0), (-1, 0), (0, 1), (0, -1), (1, 0), (0, 1)])
     for tolerance, known in ((0.06, True), (0.02, False)):
-        found = recognise(observe, frame, (0, 0, 0), range(6), places=changed, match_distance=tolerance)
+        found = recognise(
+            observe, frame, (0, 0, 0), range(6), places=changed, match_distance=tolerance
+        )
         assert (found is not None) == known
 
 
