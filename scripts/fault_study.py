@@ -1,7 +1,7 @@
 """At which size each fault breaks the robot: a ladder of sizes for every kind.
 
     python scripts/fault_study.py --seeds 0-1 --rows docs/results/faults.jsonl
-    python scripts/fault_study.py --seeds 1000-1019 --only imu-tilt slippery
+    python scripts/fault_study.py --seeds 1000-1019 --only attitude-bias low-friction
     python scripts/fault_study.py --page docs/results/faults.md
 
 The scenario is `quick` without its via point, in full physics with the analytic camera (rendered
@@ -60,33 +60,40 @@ class Ladder:
     sizes: tuple[float, ...]
 
 
+CAMERA_KINDS = (
+    "camera-black",
+    "camera-drops",
+    "camera-latency",
+    "false-detections",
+    "missed-detections",
+)
 LADDERS = {
     "camera-black": Ladder("duration [s]", "duration={}", (3, 12, 30)),
-    "camera-light darker": Ladder("factor", "size={}", (0.6, 0.4, 0.25, 0.15, 0.1)),
-    "camera-light brighter": Ladder("factor", "size={}", (1.5, 2, 3, 4)),
-    "camera-drops": Ladder("share", "size={}", (0.5, 0.8, 0.9, 0.95)),
-    "camera-misses": Ladder("share", "size={}", (0.3, 0.6, 0.8, 0.95)),
-    "camera-ghosts": Ladder("mean number", "size={}", (0.5, 1, 3, 10)),
-    "camera-late": Ladder("s", "size={}", (0.06, 0.12, 0.24, 0.48)),
-    "imu-tilt pitch": Ladder("rad", 'axis="pitch",size={}', (0.02, 0.04, 0.08, 0.12)),
-    "imu-tilt roll": Ladder("rad", 'axis="roll",size={}', (0.02, 0.04, 0.08, 0.12)),
-    "imu-turn": Ladder("rad/s", "size={}", (0.002, 0.005, 0.01, 0.02, 0.05, 0.1)),
+    "lighting darker": Ladder("factor", "magnitude={}", (0.6, 0.4, 0.25, 0.15, 0.1)),
+    "lighting brighter": Ladder("factor", "magnitude={}", (1.5, 2, 3, 4)),
+    "camera-drops": Ladder("share", "magnitude={}", (0.5, 0.8, 0.9, 0.95)),
+    "missed-detections": Ladder("share", "magnitude={}", (0.3, 0.6, 0.8, 0.95)),
+    "false-detections": Ladder("mean number", "magnitude={}", (0.5, 1, 3, 10)),
+    "camera-latency": Ladder("s", "magnitude={}", (0.06, 0.12, 0.24, 0.48)),
+    "attitude-bias pitch": Ladder("rad", 'axis="pitch",magnitude={}', (0.02, 0.04, 0.08, 0.12)),
+    "attitude-bias roll": Ladder("rad", 'axis="roll",magnitude={}', (0.02, 0.04, 0.08, 0.12)),
+    "gyro-bias": Ladder("rad/s", "magnitude={}", (0.002, 0.005, 0.01, 0.02, 0.05, 0.1)),
     "imu-frozen": Ladder("duration [s]", "duration={}", (0.1, 0.3, 1, 3)),
     "encoder-offset ankle": Ladder(
-        "rad", 'joint="l_ankle_pitch",size={}', (0.02, 0.05, 0.1, 0.2, 0.4)
+        "rad", 'joint="l_ankle_pitch",magnitude={}', (0.02, 0.05, 0.1, 0.2, 0.4)
     ),
     "encoder-frozen": Ladder("duration [s]", "duration={}", (0.05, 0.1, 0.3, 1)),
-    "foot-dead": Ladder("duration [s]", 'foot="left",duration={}', (0.2, 0.5, 1, 3)),
-    "foot-gain weaker": Ladder("gain", 'foot="left",size={}', (0.7, 0.5, 0.3, 0.1)),
-    "foot-gain stronger": Ladder("gain", 'foot="left",size={}', (1.5, 2, 4, 8)),
-    "servo-weak": Ladder("share left", "size={}", (0.6, 0.5, 0.4, 0.3, 0.2)),
+    "foot-sensor-dropout": Ladder("duration [s]", 'foot="left",duration={}', (0.2, 0.5, 1, 3)),
+    "foot-gain weaker": Ladder("gain", 'foot="left",magnitude={}', (0.7, 0.5, 0.3, 0.1)),
+    "foot-gain stronger": Ladder("gain", 'foot="left",magnitude={}', (1.5, 2, 4, 8)),
+    "servo-weak": Ladder("share left", "magnitude={}", (0.6, 0.5, 0.4, 0.3, 0.2)),
     "servo-stuck knee": Ladder(
         "duration [s]", 'joint="l_knee",duration={}', (0.05, 0.1, 0.2, 0.5, 1, 2)
     ),
-    "servo-late": Ladder("s", "size={}", (0.005, 0.01, 0.015, 0.02, 0.03, 0.06, 0.1)),
-    "push": Ladder("N s", "direction_deg=90.0,size={}", (0.8, 1.6, 2.4, 3.2)),
-    "slippery": Ladder("friction", "size={}", (0.4, 0.2, 0.1, 0.05)),
-    "bump": Ladder("m", "size={}", (0.004, 0.008, 0.012, 0.02, 0.03, 0.05)),
+    "servo-delay": Ladder("s", "magnitude={}", (0.005, 0.01, 0.015, 0.02, 0.03, 0.06, 0.1)),
+    "push": Ladder("N s", "direction_deg=90.0,magnitude={}", (0.8, 1.6, 2.4, 3.2)),
+    "low-friction": Ladder("friction", "magnitude={}", (0.4, 0.2, 0.1, 0.05)),
+    "bump": Ladder("m", "magnitude={}", (0.004, 0.008, 0.012, 0.02, 0.03, 0.05)),
     "mover-appears": Ladder("gap [m]", "mover=0", (0.5, 0.3, 0.2, 0.1, 0.03)),
 }
 
@@ -132,10 +139,10 @@ def settings_of(name: str, size: float, seed: int) -> list[str]:
     start = START
     common = [
         f"duration={DURATION}",
-        f'camera.source="{"rendered" if kind == "camera-light" else "analytic"}"',
+        f'camera.source="{"rendered" if kind == "lighting" else "analytic"}"',
         "mission.via_points=0",
     ]
-    if kind.startswith("camera") and kind != "camera-light":
+    if kind in CAMERA_KINDS:
         common.append('robot.body="kinematic"')
     fault = ladder.fault.format(float(size))
     if kind == "mover-appears":
@@ -217,8 +224,8 @@ def page(known: list[dict], command: str) -> str:
         *command.splitlines(),
         "",
         "Scenario `quick` without its via point, full physics, analytic camera; rendered images",
-        "for camera-light and a kinematic body for the other faults of the camera. A fault begins",
-        "after 2 s, in the walk, and lasts to the end, unless its size is a duration. A bump lies",
+        "for lighting and a kinematic body for the other faults of the camera. A fault begins",
+        "after 2 s, in the walk, and lasts to the end, unless it is graded by duration. A bump lies",
         "on a straight way, and on such a one a mover appears: the gap is from",
         "body to mover when it appears. Unharmed: the goal is reached without a fall or a contact.",
         "The limit lies between the last size that every seed gets over and the first that one",

@@ -1,4 +1,4 @@
-"""What fails, when, for how long and how badly: one vocabulary for all parts of robot and world."""
+"""Faults of sensors, servos and the environment: kind, start, duration and magnitude."""
 
 from typing import Annotated, Literal
 
@@ -9,10 +9,11 @@ from hsr8.scenario.disturbance import Impulse, PushDuration, PushedBody
 from hsr8.scenario.section import CONTROL_PERIOD_MS, Degrees, Point, Section
 from walking.body.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 
-Instant = Annotated[float, Interval(ge=0.0, le=7200.0)]
-Lasting = Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=7200.0)]
+StartTime = Annotated[float, Interval(ge=0.0, le=7200.0)]
+FaultDuration = Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=7200.0)]
 Offset = Annotated[float, Interval(ge=-0.5, le=0.5)]
-Share = Annotated[float, Interval(ge=0.0, le=1.0)]
+Fraction = Annotated[float, Interval(ge=0.0, le=1.0)]
+Angle = Annotated[float, Interval(ge=-0.5, le=0.5)]
 Foot = Literal["left", "right", "both"]
 Joint = Literal[
     "all",
@@ -52,49 +53,49 @@ _GROUPS = {
     "left_leg": JOINT_NAMES[LEFT_LEG],
     "right_leg": JOINT_NAMES[RIGHT_LEG],
 }
-_SIDES = {"left": (0,), "right": (1,), "both": (0, 1)}
+_FEET = {"left": [0], "right": [1], "both": [0, 1]}
 
 
 def ticks(seconds: float) -> int:
-    """Whole control ticks in so many seconds, to the nearest."""
+    """Number of control ticks nearest to a time."""
     return round(1000.0 * seconds / CONTROL_PERIOD_MS)
 
 
 class _Fault(Section):
     kind: str
-    """What fails."""
-    start: Instant = 0.0
-    """When it begins, in whole control ticks of 5 ms [s]."""
-    duration: Lasting | None = None
-    """How long it lasts, in whole control ticks; to the end of the run if left out [s]."""
+    """Kind of fault."""
+    start: StartTime = 0.0
+    """Start, rounded to control ticks of 5 ms [s]."""
+    duration: FaultDuration | None = None
+    """Duration, rounded to control ticks of 5 ms; default: until the end of the run [s]."""
 
     def acts(self, tick: int) -> bool:
-        """Whether it acts in control tick `tick`."""
+        """Whether the fault is active in control tick `tick`."""
         first = ticks(self.start)
         return first <= tick and (self.duration is None or tick < first + ticks(self.duration))
 
     @property
     def begin(self) -> float:
-        """When its first tick is [s]."""
+        """Time of the first tick [s]."""
         return ticks(self.start) * CONTROL_PERIOD_MS / 1000.0
 
     @property
     def end(self) -> float | None:
-        """When it is over; None if it lasts to the end of the run [s]."""
+        """Time of the first tick after the fault; None if it lasts until the end of the run [s]."""
         if self.duration is None:
             return None
         return (ticks(self.start) + ticks(self.duration)) * CONTROL_PERIOD_MS / 1000.0
 
     def text(self) -> str:
-        """The fault in words: its kind and what is not left at its default."""
+        """Kind and parameters in one line."""
         given = self.model_dump(exclude={"kind", "start", "duration"}, exclude_none=True)
-        said = [f"{k} {f'{v:g}' if isinstance(v, float) else v}" for k, v in given.items()]
-        return ", ".join((self.kind, *said))
+        words = [f"{k} {f'{v:g}' if isinstance(v, float) else v}" for k, v in given.items()]
+        return ", ".join((self.kind, *words))
 
 
 class _JointFault(_Fault):
     joint: Joint = "legs"
-    """One joint, a leg, both legs, or all."""
+    """One joint, one leg, both legs or all joints."""
 
     @property
     def joints(self) -> list[int]:
@@ -104,187 +105,169 @@ class _JointFault(_Fault):
 
 class _FootFault(_Fault):
     foot: Foot = "both"
-    """Left, right, or both."""
+    """Foot with the fault."""
 
     @property
     def feet(self) -> list[int]:
         """0 for the left and 1 for the right foot."""
-        return list(_SIDES[self.foot])
+        return _FEET[self.foot]
 
 
 class CameraBlack(_Fault):
     """Images are black."""
 
     kind: Literal["camera-black"]
-    """Images are black."""
 
 
-class CameraLight(_Fault):
-    """All lights change; of rendered images."""
+class Lighting(_Fault):
+    """The light intensity changes; requires rendered images."""
 
-    kind: Literal["camera-light"]
-    """The lights are weaker or stronger."""
-    size: Annotated[float, Interval(ge=0.05, le=4.0)]
-    """Strength of all lights, relative to world.brightness [1]."""
+    kind: Literal["lighting"]
+    magnitude: Annotated[float, Interval(ge=0.05, le=4.0)]
+    """Light intensity relative to `world.brightness` [1]."""
 
 
 class CameraDrops(_Fault):
-    """Some images never arrive."""
+    """Images are lost at random."""
 
     kind: Literal["camera-drops"]
-    """Images are lost."""
-    size: Share
-    """Share of the images that never arrive [1]."""
+    magnitude: Fraction
+    """Fraction of lost images [1]."""
 
 
-class CameraMisses(_Fault):
-    """Some things that are there are not shown."""
+class MissedDetections(_Fault):
+    """Obstacles and beacons in view are not detected, at random."""
 
-    kind: Literal["camera-misses"]
-    """Things are not shown."""
-    size: Share
-    """Share of obstacles and beacons that an image does not show though they are there [1]."""
-
-
-class CameraGhosts(_Fault):
-    """Things are shown that are not there."""
-
-    kind: Literal["camera-ghosts"]
-    """Things are shown that are not there."""
-    size: Annotated[float, Interval(ge=0.0, le=20.0)]
-    """Mean number of them in an image [1]."""
+    kind: Literal["missed-detections"]
+    magnitude: Fraction
+    """Probability of a miss per object and image [1]."""
 
 
-class CameraLate(_Fault):
-    """Images arrive late; one that a newer one overtakes never arrives."""
+class FalseDetections(_Fault):
+    """Images show objects that do not exist."""
 
-    kind: Literal["camera-late"]
-    """Images arrive late."""
-    size: Annotated[float, Interval(ge=0.0, le=0.5)]
-    """Delay on top of camera.latency_ms, rounded up to whole camera periods [s]."""
+    kind: Literal["false-detections"]
+    magnitude: Annotated[float, Interval(ge=0.0, le=20.0)]
+    """Mean number of false objects per image [1]."""
 
 
-class ImuTilt(_Fault):
-    """The attitude that the IMU reports is tilted."""
+class CameraLatency(_Fault):
+    """Images arrive later; an image overtaken by a newer one is lost."""
 
-    kind: Literal["imu-tilt"]
-    """A wrong attitude."""
-    size: Annotated[float, Interval(ge=-0.5, le=0.5)]
-    """Error of the tilt [rad]."""
+    kind: Literal["camera-latency"]
+    magnitude: Annotated[float, Interval(ge=0.0, le=0.5)]
+    """Delay added to `camera.latency_ms`, rounded up to camera periods [s]."""
+
+
+class AttitudeBias(_Fault):
+    """The attitude estimate of the IMU has a constant error."""
+
+    kind: Literal["attitude-bias"]
+    magnitude: Angle
+    """Error of the angle [rad]."""
     axis: Literal["roll", "pitch"] = "pitch"
-    """About the robot's forward, or about its left."""
+    """Axis of the error."""
 
 
-class ImuTurn(_Fault):
-    """The gyroscope is biased; about the vertical, the IMU's yaw turns away with it."""
+class GyroBias(_Fault):
+    """The gyroscope has a constant error; a yaw error accumulates in the heading of the IMU."""
 
-    kind: Literal["imu-turn"]
-    """A biased gyroscope."""
-    size: Annotated[float, Interval(ge=-1.0, le=1.0)]
-    """Error of the turn rate; the yaw that it has turned meanwhile stays [rad/s]."""
+    kind: Literal["gyro-bias"]
+    magnitude: Annotated[float, Interval(ge=-1.0, le=1.0)]
+    """Error of the turn rate [rad/s]."""
     axis: Literal["roll", "pitch", "yaw"] = "yaw"
-    """Axis of the IMU."""
+    """Axis of the error."""
 
 
 class ImuFrozen(_Fault):
-    """The IMU goes on reporting its last reading."""
+    """The IMU repeats its last reading."""
 
     kind: Literal["imu-frozen"]
-    """A frozen IMU."""
 
 
 class EncoderOffset(_JointFault):
-    """Encoders are off by an angle."""
+    """Joint encoders have a constant error."""
 
     kind: Literal["encoder-offset"]
-    """A wrong angle."""
-    size: Annotated[float, Interval(ge=-0.5, le=0.5)]
-    """Error of the angle [rad]."""
+    magnitude: Angle
+    """Error of the joint angle [rad]."""
 
 
 class EncoderFrozen(_JointFault):
-    """Encoders go on reporting their last angle, and no motion."""
+    """Joint encoders repeat their last angle and report zero velocity."""
 
     kind: Literal["encoder-frozen"]
-    """Frozen encoders."""
 
 
-class FootDead(_FootFault):
-    """The pads of a foot report no force."""
+class FootSensorDropout(_FootFault):
+    """The force sensors of a foot read zero."""
 
-    kind: Literal["foot-dead"]
-    """Dead pads."""
+    kind: Literal["foot-sensor-dropout"]
 
 
 class FootGain(_FootFault):
-    """The pads of a foot report a multiple of the force."""
+    """The force sensors of a foot have a wrong gain."""
 
     kind: Literal["foot-gain"]
-    """A wrong gain."""
-    size: Annotated[float, Interval(ge=0.0, le=10.0)]
-    """Reported over true force [1]."""
+    magnitude: Annotated[float, Interval(ge=0.0, le=10.0)]
+    """Measured force divided by true force [1]."""
 
 
 class ServoWeak(_JointFault):
-    """Servos lose torque; needs the full body."""
+    """Servos lose torque; requires the full body."""
 
     kind: Literal["servo-weak"]
-    """Less torque."""
-    size: Share
-    """Share of the largest torque that is left [1]."""
+    magnitude: Fraction
+    """Remaining fraction of the maximum torque [1]."""
 
 
 class ServoStuck(_JointFault):
-    """Servos keep the last set-point."""
+    """Servos hold their last setpoint."""
 
     kind: Literal["servo-stuck"]
-    """Set-points no longer arrive."""
     joint: Joint
-    """One joint, a leg, both legs, or all."""
+    """One joint, one leg, both legs or all joints."""
 
 
-class ServoLate(_JointFault):
-    """Set-points arrive late."""
+class ServoDelay(_JointFault):
+    """Servos receive their setpoints late."""
 
-    kind: Literal["servo-late"]
-    """Set-points arrive late."""
-    size: Annotated[float, Interval(ge=0.0, le=0.1)]
-    """How late, in whole control ticks of 5 ms [s]."""
+    kind: Literal["servo-delay"]
+    magnitude: Annotated[float, Interval(ge=0.0, le=0.1)]
+    """Delay, rounded to control ticks of 5 ms [s]."""
 
 
 class Push(_Fault):
-    """A constant horizontal force on one body; needs the full body."""
+    """A constant horizontal force acts on one body; requires the full body."""
 
     kind: Literal["push"]
-    """A push."""
     duration: PushDuration = 0.05
-    """How long it lasts, in whole control ticks [s]."""
-    size: Impulse
-    """Impulse, force times duration [N s]."""
+    """Duration, rounded to control ticks of 5 ms [s]."""
+    magnitude: Impulse
+    """Impulse: force times duration [N s]."""
     direction_deg: Degrees = 90.0
-    """Where it pushes to: 0 is the robot's forward when it begins, 90 its left [deg]."""
+    """Direction of the force from the robot's heading at the start; 90 is to the left [deg]."""
     body: PushedBody = "torso_link"
-    """What is pushed."""
+    """Body that the force acts on."""
     point: tuple[Offset, Offset, Offset] = (0.0, 0.0, 0.0)
-    """Where, from the body's centre of mass, along the body's axes [m]."""
+    """Point of application relative to the body's centre of mass, in body axes [m]."""
 
 
-class Slippery(_Fault):
-    """The soles slip on the floor; needs the full body."""
+class LowFriction(_Fault):
+    """The friction of the soles is reduced; requires the full body."""
 
-    kind: Literal["slippery"]
-    """Less friction."""
-    size: Annotated[float, Interval(ge=0.01, le=2.0)]
-    """Friction coefficient of the soles on whatever they stand on; 0.8 is usual [1]."""
+    kind: Literal["low-friction"]
+    magnitude: Annotated[float, Interval(ge=0.01, le=2.0)]
+    """Friction coefficient of the soles; normally 0.8 [1]."""
     place: Point | None = None
-    """Middle of the slippery patch in W; everywhere if left out [m]."""
+    """Centre of the slippery patch in W; default: everywhere [m]."""
     radius: Annotated[float, Interval(gt=0.0, le=20.0)] | None = None
-    """Of the patch, within which the middle of a sole slips; 0.3 if left out [m]."""
+    """Radius of the patch; default: 0.3 [m]."""
 
     @model_validator(mode="after")
-    def _placed(self) -> "Slippery":
+    def _placed(self) -> "LowFriction":
         if self.place is None and self.radius is not None:
-            raise ValueError("a radius needs a place; without one it is slippery everywhere")
+            raise ValueError("a radius needs a place; without place the whole floor is slippery")
         return self
 
     @property
@@ -294,32 +277,40 @@ class Slippery(_Fault):
 
 
 class Bump(_Fault):
-    """A low disc on the floor that vision does not know; needs the full body."""
+    """A low disc lies on the floor, invisible to the camera; requires the full body."""
 
     kind: Literal["bump"]
-    """Something low on the floor."""
-    size: Annotated[float, Interval(ge=0.001, le=0.05)]
+    magnitude: Annotated[float, Interval(ge=0.001, le=0.05)]
     """Height [m]."""
     place: Point
-    """Middle in W [m]."""
+    """Centre in W [m]."""
     radius: Annotated[float, Interval(ge=0.01, le=0.5)] = 0.1
     """Radius [m]."""
 
 
 class MoverAppears(_Fault):
-    """A mover that is not there before and not afterwards; where it moves is its own law."""
+    """A moving obstacle exists only while the fault is active."""
 
     kind: Literal["mover-appears"]
-    """A mover that appears."""
     mover: Annotated[int, Interval(ge=0, le=255)] = 0
-    """Which of the movers, counted from 0; those placed by hand come first [1]."""
+    """Index of the moving obstacle, from 0; obstacles placed by hand come first [1]."""
 
 
-CameraFault = CameraBlack | CameraLight | CameraDrops | CameraMisses | CameraGhosts | CameraLate
-SensorFault = ImuTilt | ImuTurn | ImuFrozen | EncoderOffset | EncoderFrozen | FootDead | FootGain
-ServoFault = ServoStuck | ServoLate
-WorldFault = ServoWeak | Slippery | Bump | Push
-"""Faults that only a body with dynamics has."""
+CameraFault = (
+    CameraBlack | Lighting | CameraDrops | MissedDetections | FalseDetections | CameraLatency
+)
+SensorFault = (
+    AttitudeBias
+    | GyroBias
+    | ImuFrozen
+    | EncoderOffset
+    | EncoderFrozen
+    | FootSensorDropout
+    | FootGain
+)
+ServoFault = ServoStuck | ServoDelay
+WorldFault = ServoWeak | LowFriction | Bump | Push
+"""Faults that require a body with dynamics."""
 Fault = Annotated[
     CameraFault | SensorFault | ServoFault | WorldFault | MoverAppears,
     Field(discriminator="kind"),

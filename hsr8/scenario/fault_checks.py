@@ -5,10 +5,10 @@ from math import ceil
 
 from hsr8.scenario.fault import (
     Bump,
-    CameraLate,
-    CameraLight,
+    CameraLatency,
+    Lighting,
+    LowFriction,
     MoverAppears,
-    Slippery,
     WorldFault,
     ticks,
 )
@@ -38,19 +38,19 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
                 f'"{fault.kind}" needs dynamics, which a {body} body has not; '
                 'robot.body = "full" has',
             )
-        if isinstance(fault, CameraLight) and scenario.camera.source != "rendered":
+        if isinstance(fault, Lighting) and scenario.camera.source != "rendered":
             yield Problem(
                 ("fault", i, "kind"),
                 f'"{fault.kind}" needs rendered images, which camera.source = '
                 f'"{scenario.camera.source}" has not; camera.source = "rendered" has',
             )
-        if isinstance(fault, CameraLate):
-            late_ticks += ticks(fault.size)
+        if isinstance(fault, CameraLatency):
+            late_ticks += ticks(fault.magnitude)
             periods = ceil(late_ticks * CONTROL_PERIOD_MS / period_ms)
             late = scenario.camera.latency_ms + periods * period_ms
             if late > LATEST_MS:
                 yield Problem(
-                    ("fault", i, "size"),
+                    ("fault", i, "magnitude"),
                     f"with camera.latency_ms and all such faults together, in whole camera "
                     f"periods, images come {late} ms late; at most {LATEST_MS}",
                 )
@@ -61,7 +61,7 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
             if fault.mover in appear:
                 yield Problem(("fault", i, "mover"), f"mover {fault.mover} appears twice")
             appear.add(fault.mover)
-        if isinstance(fault, Bump | Slippery) and fault.place is not None:
+        if isinstance(fault, Bump | LowFriction) and fault.place is not None:
             x, y = (0.5 * side for side in world.size)
             if abs(fault.place[0]) > x or abs(fault.place[1]) > y:
                 yield Problem(

@@ -12,6 +12,7 @@ RENAMED: dict[str, str] = {
     "belief.localization.map": "belief.localization.landmarks",
     "belief.recognition": "belief.relocalization",
     "belief.tracking.top_speed": "belief.tracking.max_speed",
+    "fault.size": "fault.magnitude",
     "navigation.body": "navigation.velocity_mapping",
     "navigation.filter": "navigation.safety_filter",
     "navigation.gate": "navigation.unseen_ground",
@@ -78,6 +79,17 @@ RENAMED_VALUES: dict[str, dict[str, str]] = {
     "camera.source": {"all-round": "omnidirectional", "egl": "rendered"},
     "navigation.evaluation.map_ratio": {"share": "fraction"},
     "navigation.moving_obstacles.virtual_obstacle": {"own": "uncapped"},
+    "fault.kind": {
+        "camera-ghosts": "false-detections",
+        "camera-late": "camera-latency",
+        "camera-light": "lighting",
+        "camera-misses": "missed-detections",
+        "foot-dead": "foot-sensor-dropout",
+        "imu-tilt": "attitude-bias",
+        "imu-turn": "gyro-bias",
+        "servo-late": "servo-delay",
+        "slippery": "low-friction",
+    },
 }
 
 CONSTANTS = "constants"  # the table of constants has the same keys

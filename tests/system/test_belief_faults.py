@@ -49,8 +49,8 @@ def test_without_beacons_the_robot_knows_its_way_by_what_stands_still(simulate):
 
 def test_without_beacons_no_fault_of_the_camera_makes_it_believe_that_it_is_lost(simulate):
     faults = (
-        '{kind="camera-misses",size=0.2}',
-        '{kind="camera-ghosts",size=0.5}',
+        '{kind="missed-detections",magnitude=0.2}',
+        '{kind="false-detections",magnitude=0.5}',
         '{kind="camera-black",start=4.0,duration=1.0}',
     )
     _, recorded, _ = simulate(

@@ -41,10 +41,10 @@ EACH_FAULT = pytest.mark.parametrize(
     "setting",
     [
         'fault=[{kind="camera-black",start=2.0,duration=1.0}]',
-        'fault=[{kind="camera-misses",size=0.2}]',
-        'fault=[{kind="camera-ghosts",size=0.5}]',
-        'fault=[{kind="camera-drops",size=0.2}]',
-        'fault=[{kind="camera-late",start=1.0,duration=2.0,size=0.1}]',
+        'fault=[{kind="missed-detections",magnitude=0.2}]',
+        'fault=[{kind="false-detections",magnitude=0.5}]',
+        'fault=[{kind="camera-drops",magnitude=0.2}]',
+        'fault=[{kind="camera-latency",start=1.0,duration=2.0,magnitude=0.1}]',
         "camera.latency_ms=60",
     ],
     ids=[
@@ -93,12 +93,14 @@ def test_late_frames_are_believed_at_their_capture(simulate):
     "settings",
     [
         (
-            'fault=[{kind="camera-light",start=1.0,duration=1.0,size=0.4},'
-            '{kind="camera-light",start=2.0,size=1.6}]',
+            'fault=[{kind="lighting",start=1.0,duration=1.0,magnitude=0.4},'
+            '{kind="lighting",start=2.0,magnitude=1.6}]',
         ),
         ('fault=[{kind="camera-black",start=1.0,duration=1.0}]',),
-        ('fault=[{kind="camera-misses",size=0.2},{kind="camera-ghosts",size=1.0}]',),
-        ("camera.latency_ms=60", 'fault=[{kind="camera-drops",size=0.2}]'),
+        (
+            'fault=[{kind="missed-detections",magnitude=0.2},{kind="false-detections",magnitude=1.0}]',
+        ),
+        ("camera.latency_ms=60", 'fault=[{kind="camera-drops",magnitude=0.2}]'),
     ],
     ids=["darker, then brighter", "black for 1 s", "missed and false", "late and dropped"],
 )
@@ -109,7 +111,7 @@ def test_rendered_images_with_faults(simulate, settings):
 
 @pytest.mark.gl
 def test_a_brightness_step_changes_the_image_and_not_what_is_seen(simulate):
-    step = 'fault=[{kind="camera-light",start=0.5,size=0.4}]'
+    step = 'fault=[{kind="lighting",start=0.5,magnitude=0.4}]'
     _, steady, _ = simulate("quick", camera="rendered", duration=0.6)
     _, stepped, _ = simulate("quick", step, camera="rendered", duration=0.6)
     a, b = steady.frames[-1], stepped.frames[-1]

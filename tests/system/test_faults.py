@@ -13,36 +13,36 @@ from hsr8.snapshot import decode, encode
 
 START, LASTS = 0.7, 0.4  # of the faults that are got over [s]
 WELL = {  # what the robot gets over within a second, walking
-    "imu-tilt": "size=0.03",
-    "imu-turn": "size=0.05",
+    "attitude-bias": "magnitude=0.03",
+    "gyro-bias": "magnitude=0.05",
     "imu-frozen": "",
-    "encoder-offset": 'size=0.02,joint="l_ankle_pitch"',
+    "encoder-offset": 'magnitude=0.02,joint="l_ankle_pitch"',
     "encoder-frozen": 'joint="l_shoulder_pitch"',
-    "foot-dead": 'foot="left"',
-    "foot-gain": 'size=0.6,foot="right"',
-    "servo-weak": "size=0.7",
+    "foot-sensor-dropout": 'foot="left"',
+    "foot-gain": 'magnitude=0.6,foot="right"',
+    "servo-weak": "magnitude=0.7",
     "servo-stuck": 'joint="head_pan"',
-    "servo-late": "size=0.005",
-    "push": "size=0.5",
-    "slippery": "size=0.3",
-    "bump": "size=0.003,place=[0.1,0.0],radius=0.2",
+    "servo-delay": "magnitude=0.005",
+    "push": "magnitude=0.5",
+    "low-friction": "magnitude=0.3",
+    "bump": "magnitude=0.003,place=[0.1,0.0],radius=0.2",
 }
 TOLD = {  # the gyro turns away by 16 of its standard deviations a frame: the beacons set it right
-    "imu-turn": ["fault", "fault", "lost", "found"],
+    "gyro-bias": ["fault", "fault", "lost", "found"],
 }
 BADLY = {  # what makes it fall
-    "imu-tilt": "size=0.4",
-    "encoder-offset": "size=0.2",
-    "servo-weak": "size=0.05",
+    "attitude-bias": "magnitude=0.4",
+    "encoder-offset": "magnitude=0.2",
+    "servo-weak": "magnitude=0.05",
     "servo-stuck": 'joint="l_knee"',
-    "push": "size=5.0",
+    "push": "magnitude=5.0",
 }
 HARDLY = {  # what goes on to the end of a walk, which it slows down or turns, without a fall
     "imu-frozen": "",
     "encoder-frozen": "",
-    "foot-dead": "",
-    "servo-late": "size=0.03",
-    "slippery": "size=0.05",
+    "foot-sensor-dropout": "",
+    "servo-delay": "magnitude=0.03",
+    "low-friction": "magnitude=0.05",
 }
 BODY = [
     *("world.size=[4.0,4.0]", "world.n_static=0", "world.n_moving=0"),
@@ -108,37 +108,39 @@ def test_a_mover_that_appears_stops_the_robot_or_is_passed(simulate):
 
 
 def test_begin_and_end_of_a_fault_are_events_of_their_time(simulate):
-    both = ",".join([fault("imu-tilt", "size=0.02"), fault("camera-drops", "size=0.5", lasts=0)])
+    both = ",".join(
+        [fault("attitude-bias", "magnitude=0.02"), fault("camera-drops", "magnitude=0.5", lasts=0)]
+    )
     _, recorded, _ = simulate("quick", f"fault=[{both}]", duration=1.2)
     assert recorded.events == [
-        (0.7, "fault", "imu-tilt, size 0.02, axis pitch: begins"),
-        (0.7, "fault", "camera-drops, size 0.5: begins"),
-        (1.1, "fault", "imu-tilt, size 0.02, axis pitch: ends"),
+        (0.7, "fault", "attitude-bias, magnitude 0.02, axis pitch: begins"),
+        (0.7, "fault", "camera-drops, magnitude 0.5: begins"),
+        (1.1, "fault", "attitude-bias, magnitude 0.02, axis pitch: ends"),
     ]
 
 
 ALL = [
     fault("camera-black", start=0.2, lasts=0.2),
-    fault("camera-misses", "size=0.3", start=0.3, lasts=0.5),
-    fault("camera-ghosts", "size=0.5", start=0.3, lasts=0.5),
-    fault("camera-drops", "size=0.3", start=0.4, lasts=0.5),
-    fault("camera-late", "size=0.1", start=0.5, lasts=0.4),
-    fault("imu-tilt", "size=0.02", start=0.2),
-    fault("imu-turn", "size=0.05", start=0.2),
+    fault("missed-detections", "magnitude=0.3", start=0.3, lasts=0.5),
+    fault("false-detections", "magnitude=0.5", start=0.3, lasts=0.5),
+    fault("camera-drops", "magnitude=0.3", start=0.4, lasts=0.5),
+    fault("camera-latency", "magnitude=0.1", start=0.5, lasts=0.4),
+    fault("attitude-bias", "magnitude=0.02", start=0.2),
+    fault("gyro-bias", "magnitude=0.05", start=0.2),
     fault("imu-frozen", start=0.6, lasts=0.1),
-    fault("encoder-offset", "size=0.01", start=0.2),
+    fault("encoder-offset", "magnitude=0.01", start=0.2),
     fault("encoder-frozen", 'joint="head_pan"', start=0.3, lasts=0.4),
-    fault("foot-dead", 'foot="left"', start=0.3, lasts=0.4),
-    fault("foot-gain", "size=0.5", start=0.2),
+    fault("foot-sensor-dropout", 'foot="left"', start=0.3, lasts=0.4),
+    fault("foot-gain", "magnitude=0.5", start=0.2),
     fault("servo-stuck", 'joint="head_tilt"', start=0.3, lasts=0.4),
-    fault("servo-late", "size=0.005", start=0.2, lasts=0.8),
+    fault("servo-delay", "magnitude=0.005", start=0.2, lasts=0.8),
     fault("mover-appears", start=0.4, lasts=0.4),
 ]
 PHYSICAL = [
-    fault("servo-weak", "size=0.7", start=0.3),
-    fault("push", "size=0.3,point=[0.0,0.1,0.05]", start=0.5, lasts=0.1),
-    fault("slippery", "size=0.3,place=[0.0,0.0],radius=3.0", start=0.4),
-    fault("bump", "size=0.004,place=[0.0,0.0],radius=0.5", start=0.45),
+    fault("servo-weak", "magnitude=0.7", start=0.3),
+    fault("push", "magnitude=0.3,point=[0.0,0.1,0.05]", start=0.5, lasts=0.1),
+    fault("low-friction", "magnitude=0.3,place=[0.0,0.0],radius=3.0", start=0.4),
+    fault("bump", "magnitude=0.004,place=[0.0,0.0],radius=0.5", start=0.45),
 ]
 
 

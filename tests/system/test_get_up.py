@@ -16,7 +16,7 @@ from walking.parameters import CONTROL_PERIOD, GetUpParameters
 from walking.phase import Phase
 
 ROBOT = models_dir() / "hsr8" / "hsr8.xml"
-PUSH = 'fault=[{kind="push",start=0.8,size=4.0,direction_deg=0}]'
+PUSH = 'fault=[{kind="push",start=0.8,magnitude=4.0,direction_deg=0}]'
 DROP = 0.08  # height from which the robot is laid down [m]
 
 

@@ -47,7 +47,7 @@ def test_commands_change_in_the_tick_they_are_scripted_for(simulate):
 
 
 def test_a_push_moves_the_robot_is_told_and_leaves_the_rest_as_it_was(simulate):
-    push = 'fault=[{kind="push",start=1.0,duration=0.05,size=0.8,direction_deg=90}]'
+    push = 'fault=[{kind="push",start=1.0,duration=0.05,magnitude=0.8,direction_deg=90}]'
     settings = ("command.vx=0.0", "recorder.period_ms=20")
     _, still, _ = simulate("walk", *settings, body="full", duration=1.6)
     _, pushed, _ = simulate("walk", *settings, push, body="full", duration=1.6)

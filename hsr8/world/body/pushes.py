@@ -132,7 +132,7 @@ class Pusher:
 def _of_fault(fault: Push, period: float) -> ScheduledPush:
     ticks = _ticks(fault.duration, period)
     first, direction = round(fault.start / period), radians(fault.direction_deg)
-    force = fault.size / (ticks * period)
+    force = fault.magnitude / (ticks * period)
     return ScheduledPush(first, ticks, force, direction, fault.body, fault.point)
 
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hsr8.scenario.fault import (
+    AttitudeBias,
     EncoderFrozen,
     EncoderOffset,
     Fault,
     FootGain,
+    GyroBias,
     ImuFrozen,
-    ImuTilt,
-    ImuTurn,
     SensorFault,
 )
 from hsr8.world.rotation import quaternion_from_yaw, quaternion_product, small_rotation
@@ -45,22 +45,22 @@ class SensorFaults:
     def _spoiled(self, now: BodySensors, number: int, fault: SensorFault) -> BodySensors:
         if isinstance(fault, ImuFrozen | EncoderFrozen):
             return _frozen(now, self._held.setdefault(number, now), fault)
-        if isinstance(fault, ImuTurn):
+        if isinstance(fault, GyroBias):
             gyro = now.gyro.copy()
-            gyro[AXES[fault.axis]] += fault.size
+            gyro[AXES[fault.axis]] += fault.magnitude
             if fault.axis == "yaw":
-                self._turned += CONTROL_PERIOD * fault.size
+                self._turned += CONTROL_PERIOD * fault.magnitude
             return replace(now, gyro=gyro)
-        if isinstance(fault, ImuTilt):
-            roll, pitch = (fault.size, 0.0) if fault.axis == "roll" else (0.0, fault.size)
+        if isinstance(fault, AttitudeBias):
+            roll, pitch = (fault.magnitude, 0.0) if fault.axis == "roll" else (0.0, fault.magnitude)
             tilted = quaternion_product(now.orientation, small_rotation(roll, pitch))
             return replace(now, orientation=tilted)
         if isinstance(fault, EncoderOffset):
             position = now.joint_position.copy()
-            position[fault.joints] += fault.size
+            position[fault.joints] += fault.magnitude
             return replace(now, joint_position=position)
         force = now.foot_force.copy()
-        force[fault.feet] *= fault.size if isinstance(fault, FootGain) else 0.0
+        force[fault.feet] *= fault.magnitude if isinstance(fault, FootGain) else 0.0
         return replace(now, foot_force=force)
 
 

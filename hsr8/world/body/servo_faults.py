@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Sequence
 
-from hsr8.scenario.fault import Fault, ServoFault, ServoLate, ticks
+from hsr8.scenario.fault import Fault, ServoDelay, ServoFault, ticks
 from walking.targets import JointTargets
 
 
@@ -16,7 +16,9 @@ class ServoFaults:
 
     def __init__(self, faults: Sequence[Fault]) -> None:
         self._faults = [f for f in faults if isinstance(f, ServoFault)]
-        most = max((ticks(f.size) for f in self._faults if isinstance(f, ServoLate)), default=0)
+        most = max(
+            (ticks(f.magnitude) for f in self._faults if isinstance(f, ServoDelay)), default=0
+        )
         self._asked: deque[JointTargets] = deque(maxlen=most + 1)
         self._told: JointTargets | None = None
         self._held: dict[int, JointTargets] = {}
@@ -30,8 +32,8 @@ class ServoFaults:
         for number, fault in enumerate(self._faults):
             if not fault.acts(tick):
                 continue
-            if isinstance(fault, ServoLate):
-                then = self._asked[max(0, len(self._asked) - 1 - ticks(fault.size))]
+            if isinstance(fault, ServoDelay):
+                then = self._asked[max(0, len(self._asked) - 1 - ticks(fault.magnitude))]
             else:
                 then = self._held.setdefault(number, self._told or targets)
             position[fault.joints] = then.position[fault.joints]

@@ -5,7 +5,7 @@ from math import hypot
 
 import mujoco
 
-from hsr8.scenario.fault import Bump, Fault, ServoWeak, Slippery
+from hsr8.scenario.fault import Bump, Fault, LowFriction, ServoWeak
 from hsr8.world.model.index import ModelIndex
 
 TOUCHES = (3, 1)  # contype and conaffinity of what the robot touches
@@ -24,7 +24,7 @@ class WorldFaults:
     def __init__(self, model: mujoco.MjModel, index: ModelIndex, faults: Sequence[Fault]) -> None:
         self._index = index
         self._weak = [f for f in faults if isinstance(f, ServoWeak)]
-        self._slippery = [f for f in faults if isinstance(f, Slippery)]
+        self._slippery = [f for f in faults if isinstance(f, LowFriction)]
         bumps = [f for f in faults if isinstance(f, Bump)]
         self._bumps = list(zip(bumps, index.bumps, strict=True))
         self._any = bool(self._weak or self._slippery or self._bumps)
@@ -42,7 +42,7 @@ class WorldFaults:
             model.actuator_forcerange[:] = self._torque
             for weak in self._weak:
                 if weak.acts(tick):
-                    model.actuator_forcerange[self._index.actuators[weak.joints]] *= weak.size
+                    model.actuator_forcerange[self._index.actuators[weak.joints]] *= weak.magnitude
         for bump, geom in self._bumps:
             touches = TOUCHES if bump.acts(tick) else (0, 0)
             model.geom_contype[geom], model.geom_conaffinity[geom] = touches
@@ -54,12 +54,12 @@ class WorldFaults:
             x, y, _ = data.geom_xpos[geom].tolist()
             for slip in self._slippery:
                 if slip.acts(tick) and _within(slip, x, y):
-                    friction = slip.size
+                    friction = slip.magnitude
             if self._slippery:
                 model.geom_friction[geom, 0] = friction
 
 
-def _within(slip: Slippery, x: float, y: float) -> bool:
+def _within(slip: LowFriction, x: float, y: float) -> bool:
     if slip.place is None:
         return True
     return hypot(x - slip.place[0], y - slip.place[1]) <= slip.reach

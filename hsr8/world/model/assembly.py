@@ -236,7 +236,7 @@ def _add_bump(spec: mujoco.MjSpec, name: str, bump: Bump) -> None:
         name=name,
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
         pos=[*bump.place, 0.0],
-        size=[bump.radius, bump.size, 0.0],
+        size=[bump.radius, bump.magnitude, 0.0],
         material="line",
         condim=4,
         **_SOLID,

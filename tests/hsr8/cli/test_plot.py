@@ -11,7 +11,7 @@ from hsr8.cli.main import entry
 def run(tmp_path_factory):
     """A short walk, pushed once."""
     out = tmp_path_factory.mktemp("runs")
-    push = 'fault=[{kind="push",start=1.0,size=0.3}]'
+    push = 'fault=[{kind="push",start=1.0,magnitude=0.3}]'
     settings = ["--set", "command.vx=0.2", "--set", push, "--camera", "analytic"]
     code = entry(
         ["run", "walk", "--duration", "1.5", "--out", str(out), "--no-log", "--quiet", *settings]

@@ -114,9 +114,9 @@ def test_keys_that_contradict_each_other_are_told_with_their_line(text, wanted):
         ("walk", "command.random.vx=[0.3, 0.1]", "the smaller bound comes first"),
         ("walk", "command.stretch=[]", "nothing is asked"),
         ("course", "command.vx=0.1", 'mission.kind = "walk" obeys them'),
-        ("walk", 'fault=[{kind="push"}]', "fault[0].size: is missing"),
-        ("walk", 'fault=[{kind="push",start=99,size=1}]', "not before the end of the run"),
-        ("walk", 'fault=[{kind="push",size=1,body="torso"}]', "did you mean"),
+        ("walk", 'fault=[{kind="push"}]', "fault[0].magnitude: is missing"),
+        ("walk", 'fault=[{kind="push",start=99,magnitude=1}]', "not before the end of the run"),
+        ("walk", 'fault=[{kind="push",magnitude=1,body="torso"}]', "did you mean"),
         ("walk", "disturbance.push=[{time=1, impulse=1}]", "known here: random"),
     ],
 )

@@ -11,19 +11,19 @@ from walking.body.joints import JOINT_NAMES
 
 FULL = 'robot.body="full"'
 SIZES = {
-    "camera-light": 0.5,
+    "lighting": 0.5,
     "camera-drops": 0.2,
-    "camera-misses": 0.2,
-    "camera-ghosts": 0.5,
-    "camera-late": 0.1,
-    "imu-tilt": 0.02,
-    "imu-turn": 0.02,
+    "missed-detections": 0.2,
+    "false-detections": 0.5,
+    "camera-latency": 0.1,
+    "attitude-bias": 0.02,
+    "gyro-bias": 0.02,
     "encoder-offset": 0.02,
     "foot-gain": 0.5,
     "servo-weak": 0.5,
-    "servo-late": 0.01,
+    "servo-delay": 0.01,
     "push": 0.5,
-    "slippery": 0.2,
+    "low-friction": 0.2,
     "bump": 0.01,
 }
 MORE = {"servo-stuck": 'joint="l_knee"', "bump": "place=[0.5,0.0]"}
@@ -34,7 +34,7 @@ def fault_of(kind, **given):
     """TOML text of a fault of this kind, with all that it must have."""
     keys = {"kind": f'"{kind}"', "start": "1.0"}
     if kind in SIZES:
-        keys["size"] = str(SIZES[kind])
+        keys["magnitude"] = str(SIZES[kind])
     keys |= given
     more = [MORE[kind]] if kind in MORE else []
     return "{" + ",".join([*(f"{k}={v}" for k, v in keys.items()), *more]) + "}"
@@ -43,9 +43,9 @@ def fault_of(kind, **given):
 def test_the_joints_are_those_of_the_robot_and_its_groups():
     assert get_args(Joint) == ("all", "legs", "left_leg", "right_leg", *JOINT_NAMES)
     for joint in get_args(Joint):
-        fault = ServoWeak(kind="servo-weak", size=0.5, joint=joint)
+        fault = ServoWeak(kind="servo-weak", magnitude=0.5, joint=joint)
         assert joint not in JOINT_NAMES or [JOINT_NAMES[k] for k in fault.joints] == [joint]
-    assert ServoWeak(kind="servo-weak", size=0.5, joint="right_leg").joints == [*range(6, 12)]
+    assert ServoWeak(kind="servo-weak", magnitude=0.5, joint="right_leg").joints == [*range(6, 12)]
 
 
 def test_a_fault_acts_from_its_first_tick_to_its_last():
@@ -79,22 +79,22 @@ def test_all_kinds_are_one_vocabulary():
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        ([f"fault=[{fault_of('slipery')}]"], "did you mean 'slippery'"),
+        ([f"fault=[{fault_of('low-fricton')}]"], "did you mean 'low-friction'"),
         (["fault=[{start=1.0}]"], "fault[0].kind: is missing"),
-        ([f"fault=[{fault_of('imu-tilt', size='0.9')}]"], "fault[0].size"),
-        ([f"fault=[{fault_of('imu-tilt', axis='0')}]"], "pitch"),
-        (['fault=[{kind="servo-weak",size=0.5,joint="l_kne"}]'], "'l_knee'"),
-        ([f"fault=[{fault_of('camera-black', size='1.0')}]"], "unknown key"),
+        ([f"fault=[{fault_of('attitude-bias', magnitude='0.9')}]"], "fault[0].magnitude"),
+        ([f"fault=[{fault_of('attitude-bias', axis='0')}]"], "pitch"),
+        (['fault=[{kind="servo-weak",magnitude=0.5,joint="l_kne"}]'], "'l_knee'"),
+        ([f"fault=[{fault_of('camera-black', magnitude='1.0')}]"], "unknown key"),
         ([f"fault=[{fault_of('camera-black', start='99.0')}]"], "not before the end of the run"),
         ([f"fault=[{fault_of('slippery', radius='0.5')}]"], "a radius needs a place"),
         ([f"fault=[{fault_of('slippery', place='[9.0,0.0]')}]"], "outside the field"),
         ([f"fault=[{fault_of('mover-appears', mover='7')}]"], "there is no mover 7 (0 to 0)"),
         ([f"fault=[{','.join([fault_of('mover-appears')] * 2)}]"], "mover 0 appears twice"),
         (['robot.body="kinematic"', f"fault=[{fault_of('bump')}]"], "needs dynamics"),
-        (['camera.source="analytic"', f"fault=[{fault_of('camera-light')}]"], "rendered images"),
-        (["camera.latency_ms=450", f"fault=[{fault_of('camera-late')}]"], "at most 500"),
+        (['camera.source="analytic"', f"fault=[{fault_of('lighting')}]"], "rendered images"),
+        (["camera.latency_ms=450", f"fault=[{fault_of('camera-latency')}]"], "at most 500"),
         (
-            ["camera.period_ms=160", f"fault=[{fault_of('camera-late', size='0.49')}]"],
+            ["camera.period_ms=160", f"fault=[{fault_of('camera-latency', magnitude='0.49')}]"],
             "images come 640 ms late",
         ),
         (["fault=[" + ",".join([fault_of("imu-frozen")] * 65) + "]"], "64"),

@@ -28,7 +28,7 @@ def test_every_body_that_may_be_pushed_is_in_the_model(model):
 
 @pytest.mark.parametrize("duration", [0.005, 0.05, 0.123])
 def test_the_impulse_is_kept_whatever_the_ticks_make_of_the_duration(duration):
-    asked = [Push(kind="push", start=1.0, duration=duration, size=0.7)]
+    asked = [Push(kind="push", start=1.0, duration=duration, magnitude=0.7)]
     (push,) = schedule(Disturbance(), 10.0, TICK, rng(), asked)
     assert push.force * push.ticks * TICK == pytest.approx(0.7)
     assert push.first == 200
@@ -38,7 +38,7 @@ def test_drawn_pushes_are_as_asked_and_in_order():
     asked = Disturbance(
         random=RandomPushes(start=4.0, interval=(1.0, 2.0), impulse=(0.3, 0.4)),
     )
-    given = [Push(kind="push", start=start, size=5.0) for start in (20.0, 2.0)]
+    given = [Push(kind="push", start=start, magnitude=5.0) for start in (20.0, 2.0)]
     pushes = schedule(asked, 60.0, TICK, rng(), given)
     assert pushes == schedule(asked, 60.0, TICK, rng(), given)
     first = [push.first for push in pushes]

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from hsr8.scenario.fault import (
+    AttitudeBias,
     EncoderFrozen,
     EncoderOffset,
-    FootDead,
     FootGain,
+    FootSensorDropout,
+    GyroBias,
     ImuFrozen,
-    ImuTilt,
-    ImuTurn,
 )
 from hsr8.world.body.sensor_faults import SensorFaults
 from hsr8.world.rotation import heading, quaternion_from_yaw
@@ -45,14 +45,14 @@ def pitch(quaternion):
 @pytest.mark.parametrize(
     ("fault", "spoils"),
     [
-        (ImuTilt(kind="imu-tilt", size=0.1), {"orientation"}),
-        (ImuTurn(kind="imu-turn", size=0.1), {"gyro", "orientation"}),
-        (ImuTurn(kind="imu-turn", size=0.1, axis="roll"), {"gyro"}),
+        (AttitudeBias(kind="attitude-bias", magnitude=0.1), {"orientation"}),
+        (GyroBias(kind="gyro-bias", magnitude=0.1), {"gyro", "orientation"}),
+        (GyroBias(kind="gyro-bias", magnitude=0.1, axis="roll"), {"gyro"}),
         (ImuFrozen(kind="imu-frozen"), {"gyro", "accelerometer", "orientation"}),
-        (EncoderOffset(kind="encoder-offset", size=0.1), {"joint_position"}),
+        (EncoderOffset(kind="encoder-offset", magnitude=0.1), {"joint_position"}),
         (EncoderFrozen(kind="encoder-frozen"), {"joint_position", "joint_velocity"}),
-        (FootDead(kind="foot-dead"), {"foot_force"}),
-        (FootGain(kind="foot-gain", size=2.0), {"foot_force"}),
+        (FootSensorDropout(kind="foot-sensor-dropout"), {"foot_force"}),
+        (FootGain(kind="foot-gain", magnitude=2.0), {"foot_force"}),
     ],
     ids=lambda value: getattr(value, "kind", ""),
 )
@@ -66,21 +66,21 @@ def test_a_fault_spoils_its_own_sensor_while_it_acts_and_nothing_else(fault, spo
         assert changed(true, reading(tick, yaw=0.1 * tick)) == set()  # it was not written into
     assert seen[:2] == [set(), set()]
     assert set().union(*seen[2:5]) == spoils
-    left = {"orientation"} if "orientation" in spoils and fault.kind == "imu-turn" else set()
+    left = {"orientation"} if "orientation" in spoils and fault.kind == "gyro-bias" else set()
     assert seen[5:] == [left, left]  # what has been turned stays turned
 
 
 def test_sizes_are_what_they_say():
     true = reading()
-    told = SensorFaults([ImuTilt(kind="imu-tilt", size=0.1)]).spoil(true, 0)
+    told = SensorFaults([AttitudeBias(kind="attitude-bias", magnitude=0.1)]).spoil(true, 0)
     assert pitch(told.orientation) == pytest.approx(0.1, abs=1e-3)
-    told = SensorFaults([EncoderOffset(kind="encoder-offset", size=0.1, joint="l_knee")])
+    told = SensorFaults([EncoderOffset(kind="encoder-offset", magnitude=0.1, joint="l_knee")])
     difference = told.spoil(true, 0).joint_position - true.joint_position
     assert difference[KNEE] == pytest.approx(0.1)
     assert np.count_nonzero(difference) == 1
-    told = SensorFaults([FootGain(kind="foot-gain", size=2.0, foot="right")]).spoil(true, 0)
+    told = SensorFaults([FootGain(kind="foot-gain", magnitude=2.0, foot="right")]).spoil(true, 0)
     assert np.allclose(told.foot_force, true.foot_force * [[1.0], [2.0]])
-    turning = SensorFaults([ImuTurn(kind="imu-turn", size=0.2)])
+    turning = SensorFaults([GyroBias(kind="gyro-bias", magnitude=0.2)])
     for tick in range(100):
         told = turning.spoil(true, tick)
     assert heading(told.orientation) - heading(true.orientation) == pytest.approx(0.1)

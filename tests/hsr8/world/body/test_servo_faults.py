@@ -1,6 +1,6 @@
 import numpy as np
 
-from hsr8.scenario.fault import ServoLate, ServoStuck
+from hsr8.scenario.fault import ServoDelay, ServoStuck
 from hsr8.world.body.servo_faults import ServoFaults
 from walking.targets import JointTargets
 
@@ -32,12 +32,12 @@ def test_a_stuck_servo_keeps_what_it_was_told_last():
 
 
 def test_late_set_points_are_those_of_so_many_ticks_ago():
-    late = ServoLate(kind="servo-late", size=0.015, start=0.01, duration=0.03)
+    late = ServoDelay(kind="servo-delay", magnitude=0.015, start=0.01, duration=0.03)
     left, right = told([late])
     assert left == right == [0, 1, 0, 0, 1, 2, 3, 4, 8, 9, 10, 11]
 
 
 def test_a_servo_that_is_stuck_while_set_points_are_late_keeps_the_late_one():
-    late = ServoLate(kind="servo-late", size=0.01)
+    late = ServoDelay(kind="servo-delay", magnitude=0.01)
     stuck = ServoStuck(kind="servo-stuck", joint="l_knee", start=0.03)
     assert told([late, stuck])[0] == [0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3, 3]

@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.scenario.fault import Bump, MoverAppears, ServoWeak, Slippery
+from hsr8.scenario.fault import Bump, LowFriction, MoverAppears, ServoWeak
 from hsr8.world.body.physics import place_robot
 from hsr8.world.body.world_faults import WorldFaults
 from hsr8.world.field.layout import Layout, Obstacle, with_faults
@@ -28,7 +28,7 @@ def world(*faults):
 
 
 def test_weak_servos_have_a_share_of_their_torque_left_and_get_it_back():
-    weak = ServoWeak(kind="servo-weak", size=0.25, joint="left_leg", start=0.01, duration=0.01)
+    weak = ServoWeak(kind="servo-weak", magnitude=0.25, joint="left_leg", start=0.01, duration=0.01)
     model, data, index, faults = world(weak)
     usual = model.actuator_forcerange.copy()
     for tick in range(6):
@@ -43,7 +43,7 @@ def test_weak_servos_have_a_share_of_their_torque_left_and_get_it_back():
 def test_a_patch_is_slippery_for_the_sole_on_it():
     (_, y), radius = (0.0, 0.045), 0.03
     model, data, index, faults = world(
-        Slippery(kind="slippery", size=0.1, place=(0.01, y), radius=radius)
+        LowFriction(kind="low-friction", magnitude=0.1, place=(0.01, y), radius=radius)
     )
     faults.act(model, data, 0)
     assert model.geom_friction[list(index.foot_geoms), 0].tolist() == [0.1, 0.8]
@@ -53,7 +53,7 @@ def test_a_patch_is_slippery_for_the_sole_on_it():
 
 
 def test_the_friction_of_a_slippery_floor_is_that_of_its_contacts():
-    model, data, index, faults = world(Slippery(kind="slippery", size=0.1, start=0.05))
+    model, data, index, faults = world(LowFriction(kind="low-friction", magnitude=0.1, start=0.05))
     for tick, friction in ((0, 0.8), (10, 0.1)):
         faults.act(model, data, tick)
         mujoco.mj_step(model, data)
@@ -65,7 +65,9 @@ def test_the_friction_of_a_slippery_floor_is_that_of_its_contacts():
 
 
 def test_a_bump_is_touched_while_it_acts_only():
-    bump = Bump(kind="bump", size=0.01, place=(0.0, 0.045), radius=0.1, start=0.05, duration=0.05)
+    bump = Bump(
+        kind="bump", magnitude=0.01, place=(0.0, 0.045), radius=0.1, start=0.05, duration=0.05
+    )
     model, data, index, faults = world(bump)
     touched = []
     for tick in (0, 10, 20):

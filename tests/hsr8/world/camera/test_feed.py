@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hsr8.scenario.camera import Camera
-from hsr8.scenario.fault import CameraDrops, CameraLate
+from hsr8.scenario.fault import CameraDrops, CameraLatency
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.camera.feed import CameraFeed, Picture
 
@@ -40,10 +40,12 @@ def test_pictures_arrive_in_order_each_after_the_latency(latency, period):
 
 def test_dropped_pictures_never_arrive_and_the_others_are_not_moved():
     every = set(deliveries(4000, latency_ms=60))
-    some = set(deliveries(4000, latency_ms=60, faults=[CameraDrops(kind="camera-drops", size=0.3)]))
+    some = set(
+        deliveries(4000, latency_ms=60, faults=[CameraDrops(kind="camera-drops", magnitude=0.3)])
+    )
     assert some < every
     assert len(some) == pytest.approx(0.7 * len(every), rel=0.1)
-    assert deliveries(faults=[CameraDrops(kind="camera-drops", size=1.0)]) == []
+    assert deliveries(faults=[CameraDrops(kind="camera-drops", magnitude=1.0)]) == []
 
 
 @settings(max_examples=25)
@@ -58,7 +60,7 @@ def test_late_pictures_come_in_order_a_period_apart_and_none_but_late_ones_are_l
     late, usual, period, start, lasts
 ):
     times = {"start": 0.005 * start, "duration": 0.005 * lasts}
-    fault = CameraLate(kind="camera-late", size=0.005 * late, **times)
+    fault = CameraLatency(kind="camera-latency", magnitude=0.005 * late, **times)
     arrived = deliveries(ticks=400, faults=[fault], latency_ms=5 * usual, period_ms=5 * period)
     captured = [round(time / 0.005) for _, time in arrived]
     assert all(np.diff(captured) >= period)
