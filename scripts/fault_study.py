@@ -225,7 +225,7 @@ def page(known: list[dict], command: str) -> str:
         "",
         "Scenario `quick` without its via point, full physics, analytic camera; rendered images",
         "for lighting and a kinematic body for the other faults of the camera. A fault begins",
-        "after 2 s, in the walk, and lasts to the end, unless it is graded by duration. A bump lies",
+        "after 2 s, in the walk, and lasts to the end unless graded by duration. A bump lies",
         "on a straight way, and on such a one a mover appears: the gap is from",
         "body to mover when it appears. Unharmed: the goal is reached without a fall or a contact.",
         "The limit lies between the last size that every seed gets over and the first that one",

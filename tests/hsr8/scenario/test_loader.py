@@ -210,7 +210,7 @@ def test_another_kind_of_fault_or_mover_keeps_nothing_of_the_old_one(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(
         'extends = "course"\n'
-        '[[fault]]\nkind = "attitude-bias"\nsize = 0.1\nstart = 3.0\n'
+        '[[fault]]\nkind = "attitude-bias"\nmagnitude = 0.1\nstart = 3.0\n'
         '[[world.mover]]\nmotion = "circle"\ncentre = [1.0, 1.0]\npath_radius = 0.4\n'
     )
     changed = load_scenario(str(file), ["fault.0.kind=imu-frozen", "fault.0.start=4.0"])
