@@ -16,13 +16,13 @@ Array = NDArray[np.float64]
 
 
 @value
-class Now:
-    """The moment a decision is made for, as the body knows it.
+class DecisionContext:
+    """Robot state that a decision is made for.
 
     Attributes:
         time: simulated time [s].
         odometry: pose of R in the odometry frame (3,) [m, m, rad].
-        view: where the camera looks.
+        view: pose of the camera.
         step_count: footsteps made so far.
     """
 
@@ -33,15 +33,15 @@ class Now:
 
 
 @value
-class Decided:
-    """What was decided.
+class Decision:
+    """Task, motion and gaze decided at one frame.
 
     Attributes:
-        belief: what the robot believes now; the estimate, carried on to now.
-        task: where it is going.
-        motion: how it moves; the decision in force, new once per footstep.
-        gaze: where it looks.
-        fresh: nothing was in force before: the first frame, or the first after a fall.
+        belief: the estimate, predicted to the time of the decision.
+        task: current destination.
+        motion: motion decision in force, new once per footstep.
+        gaze: gaze decision.
+        fresh: first decision of the run, or first after a fall.
     """
 
     belief: Belief
@@ -51,43 +51,43 @@ class Decided:
     fresh: bool
 
 
-class Goes(Protocol):
-    """Knows where to go next."""
+class MissionPlanner(Protocol):
+    """Sequence of destinations."""
 
     def update(self, pose: Array) -> Task:
-        """Task at the believed pose (3,)."""
+        """Return the task at the believed pose (3,)."""
 
 
 class GazeController(Protocol):
-    """Chooses where to look."""
+    """Gaze planner."""
 
     def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
-        """Gaze for this frame."""
+        """Return the gaze for this frame."""
 
 
 class MotionPlanner(Protocol):
-    """Chooses how to move."""
+    """Motion planner."""
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
-        """Motion for the next footstep; landmarks near are among the tracks of `belief`."""
+        """Return the motion of the next footstep; `belief.tracks` include nearby landmarks."""
 
 
 class Decisions:
-    """Mission, motion and gaze, one after the other.
+    """Mission, motion planner and gaze planner, called in this order.
 
     Args:
         mission: sequence of destinations.
         planner: motion planner.
         gaze: gaze planner.
-        landmarks: what the planner must avoid beside the tracks; the gaze looks at them as
-            landmarks alone.
-        footstep: time between two motion decisions [s].
+        landmarks: landmarks that the motion planner avoids as obstacles; the gaze planner
+            sees them as landmarks only.
+        footstep: maximum time between two motion decisions [s].
     """
 
     def __init__(
         self,
         *,
-        mission: Goes,
+        mission: MissionPlanner,
         planner: MotionPlanner,
         gaze: GazeController,
         landmarks: LandmarkObstacles,
@@ -102,32 +102,34 @@ class Decisions:
         self._planned_at = -np.inf
         self._planned_step = -1
 
-    def make(self, estimate: Belief, measured: Frame, now: Now) -> Decided:
-        """Decide.
+    def make(self, estimate: Belief, measured: Frame, context: DecisionContext) -> Decision:
+        """Decide task, motion and gaze.
 
         Args:
-            estimate: what is believed of the time of the capture.
-            measured: the frame it comes from.
-            now: later than the capture by the camera's latency.
+            estimate: belief at the time of the capture.
+            measured: frame that `estimate` comes from.
+            context: state now, later than the capture by the latency of the camera.
         """
         belief = estimate
-        if now.time > measured.time:
-            belief = predict(estimate, measured.odometry, now.odometry, now.time, now.view)
+        if context.time > measured.time:
+            belief = predict(
+                estimate, measured.odometry, context.odometry, context.time, context.view
+            )
         task = self._mission.update(belief.pose)
         fresh = self._motion is None
-        motion = self._move(now, belief, task)
-        return Decided(belief, task, motion, self._gaze.choose(belief, task, motion), fresh)
+        motion = self._move(context, belief, task)
+        return Decision(belief, task, motion, self._gaze.choose(belief, task, motion), fresh)
 
     def forget(self) -> None:
-        """Drop the decision in force; the next frame plans anew."""
+        """Drop the motion decision in force."""
         self._motion = None
 
-    def _move(self, now: Now, belief: Belief, task: Task) -> MotionDecision:
-        """A new decision once per footstep, or after a footstep's time when standing."""
-        since = now.time - self._planned_at
-        due = now.step_count != self._planned_step or since >= self._footstep
+    def _move(self, context: DecisionContext, belief: Belief, task: Task) -> MotionDecision:
+        """Return a new motion decision once per footstep, or per footstep time when standing."""
+        elapsed = context.time - self._planned_at
+        due = context.step_count != self._planned_step or elapsed >= self._footstep
         if self._motion is None or due:
             self._motion = self._planner.plan(self._landmarks.added_to(belief), task)
-            self._planned_at = now.time
-            self._planned_step = now.step_count
+            self._planned_at = context.time
+            self._planned_step = context.step_count
         return self._motion

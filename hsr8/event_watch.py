@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.scenario.fault import Fault
-from hsr8.world.truth.episodes import Episodes
+from hsr8.world.truth.collision_counter import CollisionCounter
 from hsr8.world.truth.falls import Falls
 from hsr8.world.truth.truth import Truth
 
@@ -32,7 +32,7 @@ class EventWatch:
         told += [(f.end, f"{f.text()}: ends") for f in faults if f.end is not None]
         self._faults = sorted(told, key=lambda line: line[0])
         self._pushes = 0
-        self._episodes = Episodes()
+        self._collisions = CollisionCounter()
         self._falls = Falls()
         self._index = 0
         self._lost = False
@@ -50,7 +50,7 @@ class EventWatch:
                 yield Event(push.begin, "push", push.text())
         if self._falls.add(now, fallen=truth.fallen):
             yield Event(now, "fall", "the robot has fallen")
-        for collision in self._episodes.add(now, truth.contacts):
+        for collision in self._collisions.add(now, truth.contacts):
             text = f"{collision.robot_geom} touches {collision.name}"
             yield Event(now, "collision", text)
         if frame is None:

@@ -297,7 +297,7 @@ class Simulation:
             return self._finish("interrupted", record)
         if self._end is not None and tick >= self._end[0]:
             return self._finish(self._end[1], record)
-        targets = self._servo_faults.spoil(targets, tick)
+        targets = self._servo_faults.apply_fault(targets, tick)
         if self.tape is not None:
             self.tape.add(self._body.set_points(targets))
         self._body.apply(targets)
@@ -313,7 +313,7 @@ class Simulation:
         return record
 
     def _sense(self, tick: int) -> SensorFrame:
-        body, time = self._sensor_faults.spoil(self._body.sense(), tick), self._body.time
+        body, time = self._sensor_faults.apply_fault(self._body.sense(), tick), self._body.time
         shutter, picture = self._feed.shutter(tick), self._feed.arrived(tick, self._take)
         if picture is None:
             return SensorFrame(time, body, shutter)

@@ -1,4 +1,4 @@
-"""The robot side of the loop: sensors in, joint targets out. It never meets the truth."""
+"""Robot side of the loop: from sensors to joint targets, without ground truth."""
 
 from collections import deque
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from hsr8.decisions import Decisions, Now
+from hsr8.decisions import DecisionContext, Decisions
 from hsr8.recorder.frame_record import FrameRecord, Image
 from hsr8.recorder.walk_counters import WalkCounters
 from navigation.belief.belief import Belief
@@ -23,21 +23,21 @@ from walking.targets import JointTargets
 from walking.value import value
 from walking.walker import Walker
 
-UNDER_WAY = 128  # pictures that may be under way at a time
+MAX_PENDING = 128  # images captured but not yet delivered
 
 
 @value
 class SensorFrame:
-    """Everything the robot senses at the start of one control tick.
+    """Sensor readings at the start of one control tick.
 
     Attributes:
         time: simulated time [s].
         body: encoders, IMU, foot pads.
-        shutter: the camera takes a picture now, which may arrive later or never.
-        captured: when the picture that arrives now was taken [s].
-        image: reads the picture (height, width, 3) that arrives now, if any; it may still be
-            drawn, so read it late.
-        detections: what a camera without pixels reports instead.
+        shutter: the camera captures an image now; it arrives later or never.
+        captured: capture time of the image that arrives now [s].
+        image: reads the image (height, width, 3) that arrives now, if any. Rendering may still
+            be in progress: read it as late as possible.
+        detections: detections of a camera without pixels.
     """
 
     time: float
@@ -48,39 +48,39 @@ class SensorFrame:
     detections: tuple[Detection, ...] | None = None
 
 
-class Sees(Protocol):
-    """Finds things in an image."""
+class Detector(Protocol):
+    """Object detector."""
 
     def detect(self, image: Image, pose: CameraPose) -> tuple[Detection, ...]:
-        """Detections in `image` taken from `pose`."""
+        """Return the detections in `image`, captured from `pose`."""
 
 
-class Believes(Protocol):
-    """Turns camera frames into a belief."""
+class Estimator(Protocol):
+    """State estimator: belief from camera frames."""
 
     def update(self, frame: Frame) -> Belief:
-        """Belief after `frame`."""
+        """Return the belief after `frame`."""
 
 
-class Commands(Protocol):
-    """Asks for motion by the clock alone."""
+class CommandSource(Protocol):
+    """Source of commands by time."""
 
     def at(self, time: float) -> Command:
-        """Command in force at `time` [s]."""
+        """Return the command in force at `time` [s]."""
 
 
 class Robot:
-    """Perception, belief, gaze, planning and walking, one after the other.
+    """Perception, estimation, planning and walking of the robot.
 
     Args:
-        walking: walks, and gets up after a fall.
+        walking: walking engine.
         fov: horizontal and vertical field of view of the head camera [rad].
         vision: detector; unused when the frames carry detections.
-        pose: how well the body knows the pose of the camera.
-        shutter: time for which an image is exposed [s].
+        pose: uncertainty of the camera pose.
+        shutter: exposure time [s].
         belief: estimator.
-        decisions: where to go, how to move, where to look.
-        script: commands that walking obeys in place of the planner's, new in any tick.
+        decisions: mission, motion planner and gaze planner.
+        schedule: commands that replace those of the motion planner, read every tick.
     """
 
     def __init__(
@@ -88,12 +88,12 @@ class Robot:
         *,
         walking: Walker,
         fov: tuple[float, float],
-        vision: Sees,
+        vision: Detector,
         pose: PoseParameters,
         shutter: float,
-        belief: Believes,
+        belief: Estimator,
         decisions: Decisions,
-        script: Commands | None = None,
+        schedule: CommandSource | None = None,
     ) -> None:
         self._walking = walking
         self._fov = fov
@@ -102,10 +102,10 @@ class Robot:
         self._shutter = shutter
         self._belief = belief
         self._decisions = decisions
-        self._script = script
+        self._schedule = schedule
         self._frames = 0
-        self._taken: deque[tuple[float, WalkingState]] = deque(maxlen=UNDER_WAY)
-        self._state: WalkingState | None = None  # after this tick, once it was asked for
+        self._pending: deque[tuple[float, WalkingState]] = deque(maxlen=MAX_PENDING)
+        self._state: WalkingState | None = None  # after this tick, cached
         self._odometry: Odometry | None = None
         self.command: Command = VelocityCommand()
         self.counters = WalkCounters()
@@ -113,29 +113,29 @@ class Robot:
         self.frame: FrameRecord | None = None
 
     def step(self, sensed: SensorFrame) -> JointTargets:
-        """One control tick: walk on, and look and decide when a camera frame came."""
-        if self._script is not None:
-            self.command = self._script.at(sensed.time)
+        """Make one control tick; perceive and decide if a camera frame arrived."""
+        if self._schedule is not None:
+            self.command = self._schedule.at(sensed.time)
         started = perf_counter()
         targets = self._walking.step(sensed.body, self.command, self.head)
         self._state = None
         if not self._walking.down:
             self.counters.add(self._walking, perf_counter() - started)
         if sensed.shutter:
-            self._taken.append((sensed.time, self.walking_state()))
+            self._pending.append((sensed.time, self.walking_state()))
         if sensed.image is not None or sensed.detections is not None:
             self._perceive(sensed)
         return targets
 
     def walking_state(self) -> WalkingState:
-        """What the walking engine knows of itself."""
+        """Return the state of the walking engine."""
         if self._state is None:
             self._state = self._walking.state()
         return self._state
 
     def _perceive(self, sensed: SensorFrame) -> None:
-        then = self._state_at(sensed.captured)
-        if then.phase.down or self._walking.down:
+        captured_state = self._state_at(sensed.captured)
+        if captured_state.phase.down or self._walking.down:
             self._wait()
             return
         image = None if sensed.image is None else sensed.image()
@@ -143,17 +143,18 @@ class Robot:
             detections = sensed.detections
         else:
             assert image is not None
-            pose = camera_pose(then.camera, self._pose, self._shutter)
+            pose = camera_pose(captured_state.camera, self._pose, self._shutter)
             detections = self._vision.detect(image, pose)
-        measured = self._frame(sensed.captured, then, detections)
+        measured = self._frame(sensed.captured, captured_state, detections)
         estimate = self._belief.update(measured)
-        state = self.walking_state() if sensed.time > sensed.captured else then
-        now = Now(sensed.time, _odometry(state), self._view(state), state.step_count)
-        decided = self._decisions.make(estimate, measured, now)
-        if self._script is None:
-            vx, vy, wz = decided.motion.velocity.tolist()
-            self.command = VelocityCommand(vx, vy, wz)
-        self.head = HeadTarget(decided.gaze.pan, decided.gaze.tilt)
+        state = self.walking_state() if sensed.time > sensed.captured else captured_state
+        context = DecisionContext(
+            sensed.time, _odometry(state), self._view(state), state.step_count
+        )
+        decision = self._decisions.make(estimate, measured, context)
+        if self._schedule is None:
+            self.command = VelocityCommand(*decision.motion.velocity.tolist())
+        self.head = HeadTarget(decision.gaze.pan, decision.gaze.tilt)
         self.frame = FrameRecord(
             index=self._frames,
             time=sensed.time,
@@ -161,24 +162,24 @@ class Robot:
             detections=detections,
             measured=measured,
             estimate=estimate,
-            now=now,
-            decided=decided,
+            context=context,
+            decision=decision,
         )
         self._frames += 1
 
     def _wait(self) -> None:
-        """Off its feet the robot does not know where its camera is: neither see nor decide."""
+        """Pause perception and decisions: off its feet the robot does not know its camera pose."""
         self._decisions.forget()
         self.head = HeadTarget()
-        if self._script is None:
+        if self._schedule is None:
             self.command = VelocityCommand()
 
     def _state_at(self, captured: float) -> WalkingState:
-        """The body when a picture was taken; what was taken earlier never arrives."""
-        time, state = self._taken.popleft()
-        while time < captured:
-            time, state = self._taken.popleft()
-        return state
+        """Return the state at a capture, dropping those of older images, which never arrive."""
+        while True:
+            time, state = self._pending.popleft()
+            if time >= captured:
+                return state
 
     def _view(self, state: WalkingState) -> CameraView:
         head = state.camera
@@ -225,7 +226,7 @@ def _odometry(state: WalkingState) -> np.ndarray:
 
 
 def camera_pose(head: HeadCameraPose, sigma: PoseParameters, shutter: float) -> CameraPose:
-    """The head camera's pose with its uncertainty, as vision wants it; `shutter` in [s]."""
+    """Return the pose of the head camera with its uncertainty; `shutter` in [s]."""
     return CameraPose(
         rotation=head.rotation,
         position=head.position,

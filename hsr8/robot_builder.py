@@ -1,17 +1,22 @@
-"""Builds the robot side for a scenario: the only place where its parts meet."""
+"""Builder of the robot side of a scenario."""
 
 from math import pi
 
 import numpy as np
 
-from hsr8.decisions import Decisions, GazeController, Goes, MotionPlanner
+from hsr8.command_schedule import (
+    CommandSchedule,
+    ScheduledMission,
+    ScheduledPlanner,
+    command_schedule,
+)
+from hsr8.decisions import Decisions, GazeController, MissionPlanner, MotionPlanner
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.plugin_decisions import PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_plugin
 from hsr8.robot import Robot
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
-from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
 from hsr8.seeds import named_rng
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.models import models_dir, reading_models
@@ -28,19 +33,19 @@ from walking.parameters import WalkingParameters
 from walking.similarity import parameters_for
 from walking.walker import Walker
 
-# The arms as the head sees them, with room for their swing: shoulder, elbow, hand in R [m].
+# Arms in view of the head camera: shoulder, elbow, hand in R [m], with room for their swing.
 # Measured over 25 s of walking: shoulders move 2 mm, hands 2 cm.
 ARM_X = (0.0, -0.012, 0.018)
 ARM_Y = (0.087, 0.096, 0.106)
 ARM_Z = (0.378, 0.305, 0.225)
 ARM_RADII = (0.029, 0.032, 0.045)
-OMNIDIRECTIONAL = (2.0 * pi, pi)  # field of view of a camera that sees everything [rad]
+OMNIDIRECTIONAL = (2.0 * pi, pi)  # field of view of an omnidirectional camera [rad]
 MARGINS = (("pattern", "sole_margin"), ("pattern", "plan_margin"), ("stabilizer", "sole_margin"))
-START_SIGMA = (0.02, 0.02, 0.02)  # how well the robot knows where it starts [m, m, rad]
+START_SIGMA = (0.02, 0.02, 0.02)  # standard deviation of the known start pose [m, m, rad]
 
 
 def field_of_view(scenario: Scenario, camera: PinholeCamera) -> tuple[float, float]:
-    """Horizontal and vertical field of view of what the robot sees with [rad]."""
+    """Return the horizontal and vertical field of view of the robot's camera [rad]."""
     if scenario.camera.omnidirectional:
         return OMNIDIRECTIONAL
     return camera.horizontal_fov, camera.vertical_fov
@@ -54,13 +59,18 @@ def build_robot(
     planner: MotionPlanner | None = None,
     gaze: GazeController | None = None,
 ) -> Robot:
-    """The robot of `scenario`, placed by `layout`; `seed` draws its particles and commands.
+    """Return the robot of `scenario` in `layout`.
 
-    A `planner` or a `gaze` takes the place of the scenario's.
+    Args:
+        scenario: what to build.
+        layout: start pose, waypoints and beacons.
+        seed: draws particles, random commands and samples of the planner.
+        planner: replaces the motion planner of the scenario.
+        gaze: replaces the gaze planner of the scenario.
     """
     camera = head_camera(scenario)
     body = robot_model()
-    script = build_script(scenario, named_rng(seed, "command"))
+    schedule = build_schedule(scenario, named_rng(seed, "command"))
     return Robot(
         walking=Walker(body, walking_parameters(body, scenario)),
         fov=field_of_view(scenario, camera),
@@ -68,70 +78,75 @@ def build_robot(
         pose=scenario.vision.pose,
         shutter=1e-3 * scenario.camera.shutter_ms,
         belief=build_estimator(scenario, layout, named_rng(seed, "belief")),
-        decisions=build_decisions(scenario, layout, seed, script, planner=planner, gaze=gaze),
-        script=script,
+        decisions=build_decisions(scenario, layout, seed, schedule, planner=planner, gaze=gaze),
+        schedule=schedule,
     )
 
 
 def walking_parameters(body: RobotModel, scenario: Scenario) -> WalkingParameters:
-    """Parameters of walking for the robot `body`.
+    """Return the walking parameters of `scenario`, scaled to the robot `body`.
 
     Raises:
-        ScenarioError: a margin leaves nothing of its soles.
+        ScenarioError: a margin leaves no support area on the soles.
     """
     parameters = parameters_for(body, scenario.walking)
     half = body.sole.half_width
     for section, margin in MARGINS:
-        kept = getattr(getattr(parameters, section), margin)
-        if kept >= half:
+        value = getattr(getattr(parameters, section), margin)
+        if value >= half:
             raise ScenarioError(
-                f"walking.{section}.{margin}: {kept:g} must be below half the width of the "
-                f"robot's sole, {half:g}"
+                f"walking.{section}.{margin}: the sole has no support area left, got {value:g}; "
+                f"expected less than half the width of the sole, {half:g}"
             )
     return parameters
 
 
 @reading_models()
 def robot_model() -> RobotModel:
-    """Everything the walking engine must know of HSR-VIII.
+    """Return the dynamic model of HSR-VIII for the walking engine.
 
     Raises:
-        ModelError: its file will not do.
+        ModelError: the model file is invalid.
     """
     return RobotModel.from_mjcf(models_dir() / "hsr8" / "hsr8.xml")
 
 
 def head_camera(scenario: Scenario) -> PinholeCamera:
-    """Intrinsics of the head camera of `scenario`."""
+    """Return the intrinsics of the head camera of `scenario`."""
     camera = scenario.camera
     fov = camera.vertical_fov
     return PinholeCamera.from_vertical_fov(camera.width, camera.height, fov)
 
 
-def build_script(scenario: Scenario, rng: np.random.Generator) -> CommandScript | None:
-    """The commands of a walk; None where the robot decides by itself."""
+def build_schedule(scenario: Scenario, rng: np.random.Generator) -> CommandSchedule | None:
+    """Return the command schedule of a walk; None where the robot navigates."""
     if not isinstance(scenario.mission, Walk):
         return None
-    return command_script(scenario.command, scenario.duration, rng)
+    return command_schedule(scenario.command, scenario.duration, rng)
 
 
 def build_decisions(
     scenario: Scenario,
     layout: Layout,
     seed: int,
-    script: CommandScript | None,
+    schedule: CommandSchedule | None,
     *,
     planner: MotionPlanner | None = None,
     gaze: GazeController | None = None,
 ) -> Decisions:
-    """Mission, planner and gaze of the robot of `scenario`.
+    """Return mission, motion planner and gaze planner of `scenario`.
 
-    With a `script`, it is obeyed; `seed` is for a planner that draws samples. A `planner` or a
-    `gaze` takes the place of the scenario's.
+    Args:
+        scenario: what to build.
+        layout: waypoints and beacons.
+        seed: draws the samples of a sampling planner.
+        schedule: commands that replace mission and motion planner.
+        planner: replaces the motion planner of the scenario.
+        gaze: replaces the gaze planner of the scenario.
 
     Raises:
-        UsageError: a `planner` or a `gaze`, given or named by the scenario, is none, or there is
-            a planner beside a `script`.
+        UsageError: the planner or gaze, given or named by the scenario, is invalid, or both a
+            planner and a `schedule` are given.
     """
     plugin, navigation, limits = scenario.plugin, scenario.navigation, scenario.speed_limits()
     if planner is None and plugin.planner:
@@ -139,31 +154,31 @@ def build_decisions(
     if gaze is None and plugin.gaze:
         gaze = load_plugin(plugin.gaze)
     beacons = known_beacons(scenario, layout)
-    mission: Goes
-    moves: MotionPlanner
-    looks: GazeController
-    if script is not None:
+    mission: MissionPlanner
+    motion: MotionPlanner
+    gaze_planner: GazeController
+    if schedule is not None:
         if planner is not None:
             raise UsageError(
-                f"scenario {scenario.name!r}: a mission of kind 'walk' obeys the section command "
-                "and asks no planner; give one to a mission of another kind"
+                f"scenario {scenario.name!r}: mission.kind = 'walk' follows the section command "
+                f"without a planner, got planner {planner!r}; expected another kind of mission"
             )
-        mission, moves = ScriptedMission(), ScriptedPlanner(script)
+        mission, motion = ScheduledMission(), ScheduledPlanner(schedule)
     else:
         mission = Mission(layout.waypoints, layout.goal_heading, layout.endless, navigation.mission)
         if planner is None:
-            moves = build_planner(navigation, limits, named_rng(seed, "planner"))
+            motion = build_planner(navigation, limits, named_rng(seed, "planner"))
         else:
-            moves = PluginPlanner(planner)
+            motion = PluginPlanner(planner)
     if gaze is None:
         fov = field_of_view(scenario, head_camera(scenario))
-        looks = GazePlanner(navigation, limits, beacons, *fov)
+        gaze_planner = GazePlanner(navigation, limits, beacons, *fov)
     else:
-        looks = PluginGaze(gaze)
+        gaze_planner = PluginGaze(gaze)
     return Decisions(
         mission=mission,
-        planner=moves,
-        gaze=looks,
+        planner=motion,
+        gaze=gaze_planner,
         landmarks=LandmarkObstacles(
             beacons, scenario.vision.beacon_radius, scenario.navigation.landmarks
         ),
@@ -172,14 +187,14 @@ def build_decisions(
 
 
 def known_beacons(scenario: Scenario, layout: Layout) -> dict[str, tuple[float, float]]:
-    """Where the robot takes the beacons to be, by name [m]; empty if it has no map of them."""
+    """Return the beacon positions on the robot's map, by name [m]; empty without a map."""
     if scenario.belief.localization.landmarks == "mapped":
         return {}
     return {b.name: b.believed for b in layout.beacons}
 
 
 def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator) -> Estimator:
-    """The belief of the robot of `scenario`; `rng` draws its particles."""
+    """Return the estimator of `scenario`; `rng` draws its particles."""
     return Estimator(
         scenario.belief,
         known_beacons(scenario, layout),
@@ -190,7 +205,7 @@ def build_estimator(scenario: Scenario, layout: Layout, rng: np.random.Generator
 
 
 def arms() -> tuple[BodyPart, ...]:
-    """Both arms of the robot, hanging."""
+    """Return both arms of the robot, hanging."""
     radii = np.array(ARM_RADII)
     return tuple(
         BodyPart(np.column_stack([ARM_X, side * np.array(ARM_Y), ARM_Z]), radii)

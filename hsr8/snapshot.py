@@ -29,7 +29,7 @@ MODULES = (
     "hsr8.decisions",
     "hsr8.event_watch",
     "hsr8.robot",
-    "hsr8.script",
+    "hsr8.command_schedule",
     "hsr8.recorder.record_buffer",
     "hsr8.recorder.frame_record",
     "hsr8.recorder.record",

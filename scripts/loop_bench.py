@@ -163,7 +163,7 @@ class Bench:
             (type(simulation._body), "truth", "truth"),
             (RenderedCamera, "capture", "draw"),
             (Offscreen, "read", "read"),
-            (ImageNoise, "spoil", "image noise"),
+            (ImageNoise, "apply", "image noise"),
             (type(parts["_vision"]), "detect", "vision"),
             (type(parts["_belief"]), "update", "belief"),
             (type(parts["_mission"]), "update", "mission"),

@@ -14,7 +14,7 @@ from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.field.layout import Layout
-from hsr8.world.truth.episodes import Episodes
+from hsr8.world.truth.collision_counter import CollisionCounter
 from hsr8.world.truth.falls import Falls
 from hsr8.world.truth.truth import Truth
 from navigation.angles import wrap
@@ -48,7 +48,7 @@ class Metrics(Listener):
         self._started = clock.perf_counter()
         self._wall: float | None = None
         self._waiting = RecordBuffer()
-        self._episodes = Episodes()
+        self._collisions = CollisionCounter()
         self._via = 0
         self._via_missed = 0
         self._done_at: float | None = None
@@ -102,7 +102,7 @@ class Metrics(Listener):
         self._count_pending()
         time = self._last.time if self._last is not None else 0.0
         wall = self._wall if self._wall is not None else clock.perf_counter() - self._started
-        collisions = self._episodes.collisions
+        collisions = self._collisions.collisions
         moving = sum(c.moving for c in collisions)
         error = self._arrival_error()
         goal_reached = self._done_at is not None and self._goal_near and self._goal_turned
@@ -161,7 +161,7 @@ class Metrics(Listener):
         truth = record.truth
         self._move(truth)
         self._walk.add(record)
-        self._episodes.add(truth.time, truth.contacts)
+        self._collisions.add(truth.time, truth.contacts)
         self._clearance = min(self._clearance, truth.clearance)
         self._falls.add(truth.time, fallen=truth.fallen)
         if not self._falls.lasting(truth.time):
@@ -173,7 +173,7 @@ class Metrics(Listener):
         return len(self._points) - (1 if self._has_goal else 0)
 
     def _success(self, exit_reason: str, goal_reached: bool) -> bool:
-        if self._falls.count or self._episodes.collisions or self._via_missed:
+        if self._falls.count or self._collisions.collisions or self._via_missed:
             return False
         if self._has_goal:
             return goal_reached and exit_reason == "goal"

@@ -13,7 +13,7 @@ from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS, decision_fingerp
 from hsr8.recorder.run.measurements import Measured
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import HASH, Block
-from hsr8.robot_builder import build_decisions, build_estimator, build_script
+from hsr8.robot_builder import build_decisions, build_estimator, build_schedule
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
 from walking.body.joints import JOINT_NAMES
@@ -99,8 +99,8 @@ def _differences(run: Run, measured: list[Measured]) -> Iterator[tuple[str, int,
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
-    script = build_script(scenario, named_rng(run.seed, "command"))
-    decisions = build_decisions(scenario, layout, run.seed, script)
+    schedule = build_schedule(scenario, named_rng(run.seed, "command"))
+    decisions = build_decisions(scenario, layout, run.seed, schedule)
     for index, recorded in enumerate(measured):
         try:
             estimate = estimator.update(recorded.frame)
@@ -114,9 +114,9 @@ def _differences(run: Run, measured: list[Measured]) -> Iterator[tuple[str, int,
                 return
         if recorded.fresh:
             decisions.forget()
-        decided = decisions.make(estimate, recorded.frame, recorded.now)
+        decided = decisions.make(estimate, recorded.frame, recorded.context)
         found = decision_fingerprints(decided)
-        for channel, a, b in zip(DECISIONS, found, recorded.decided, strict=True):
+        for channel, a, b in zip(DECISIONS, found, recorded.decision, strict=True):
             if a != b:
                 yield "decisions", index, channel
                 break

@@ -206,7 +206,7 @@ def _values(measured: Measured) -> dict[str, Any]:
         values[f"{what}: covariance"] = seen.covariance.tolist()
     for kind, names, prints in (
         ("belief", CHANNELS, measured.fingerprints),
-        ("decision", DECISIONS, measured.decided),
+        ("decision", DECISIONS, measured.decision),
     ):
         values |= {f"{kind}: {n}": p.hex() for n, p in zip(names, prints, strict=True)}
     return values

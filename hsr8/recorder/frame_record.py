@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.decisions import Decided, Now
+from hsr8.decisions import Decision, DecisionContext
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, Task
 from navigation.observation import Frame
@@ -24,8 +24,8 @@ class FrameRecord:
         detections: what vision found in it.
         measured: all that reached the belief, at the capture; earlier by the latency.
         estimate: what is believed of that time.
-        now: the moment it was decided for.
-        decided: what the robot believes at `time`, and what it decided.
+        context: state that the decision was made for.
+        decision: belief at `time`, task, motion and gaze.
     """
 
     index: int
@@ -34,25 +34,25 @@ class FrameRecord:
     detections: tuple[Detection, ...]
     measured: Frame
     estimate: Belief
-    now: Now
-    decided: Decided
+    context: DecisionContext
+    decision: Decision
 
     @property
     def belief(self) -> Belief:
         """What the robot believes at `time`."""
-        return self.decided.belief
+        return self.decision.belief
 
     @property
     def gaze(self) -> GazeDecision:
         """Where it decided to look."""
-        return self.decided.gaze
+        return self.decision.gaze
 
     @property
     def motion(self) -> MotionDecision:
         """How it decided to move (the decision in force; new once per footstep)."""
-        return self.decided.motion
+        return self.decision.motion
 
     @property
     def task(self) -> Task:
         """Where it is going."""
-        return self.decided.task
+        return self.decision.task

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from navigation.belief.belief import Belief
 from navigation.decision import GazeDecision, MotionDecision, SpeedLimits, Task
 from navigation.gaze.gaze_map import GazeGrid
-from navigation.gaze.policy import Moment, SweepGaze, gaze_policy
+from navigation.gaze.policy import GazeContext, SweepGaze, gaze_policy
 from navigation.gaze.scene import gaze_scene
 from navigation.gaze.timing import GazeTiming
 from navigation.parameters.navigation import NavigationParameters
@@ -72,9 +72,9 @@ class GazePlanner:
         if self._last is not None and not due:
             return self._last
         scene = gaze_scene(belief, motion, self._samples, self._beacons, self._parameters)
-        moment = Moment(belief, task, motion, scene)
-        gaze_map = self._grid.gaze_map(policy.votes(moment))
-        self._pan, self._tilt = policy.aim(moment, gaze_map, (self._pan, self._tilt))
+        context = GazeContext(belief, task, motion, scene)
+        gaze_map = self._grid.gaze_map(policy.votes(context))
+        self._pan, self._tilt = policy.aim(context, gaze_map, (self._pan, self._tilt))
         self._timing.decided(belief.time, self._pan, self._tilt)
         self._last = GazeDecision(
             pan=self._pan,

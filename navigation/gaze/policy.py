@@ -28,7 +28,7 @@ Gaze = tuple[float, float]
 
 
 @value
-class Moment:
+class GazeContext:
     """Everything a gaze may depend on.
 
     Attributes:
@@ -53,10 +53,10 @@ class GazePolicy(Protocol):
 
     steady: bool
 
-    def votes(self, moment: Moment) -> Votes:
+    def votes(self, context: GazeContext) -> Votes:
         """What fills the gaze map."""
 
-    def aim(self, moment: Moment, gaze_map: Array, now: Gaze) -> Gaze:
+    def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
         """Where to look next, `now` being the gaze in force."""
 
 
@@ -66,12 +66,12 @@ class VotingGaze:
     steady = True
 
     def __init__(
-        self, votes: Callable[[Moment], Votes], grid: GazeGrid, switch_ratio: float
+        self, votes: Callable[[GazeContext], Votes], grid: GazeGrid, switch_ratio: float
     ) -> None:
         """Store how votes are cast.
 
         Args:
-            votes: cast in a moment.
+            votes: cast in a context.
             grid: cells of the gaze map.
             switch_ratio: gain in the gaze map that moves the gaze, at least 1.
         """
@@ -79,7 +79,7 @@ class VotingGaze:
         self._grid = grid
         self._ratio = switch_ratio
 
-    def aim(self, moment: Moment, gaze_map: Array, now: Gaze) -> Gaze:
+    def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
         """The highest centre, or `now` if that sees about as much.
 
         At a ratio of 1 it is always the highest centre, as printed.
@@ -98,11 +98,11 @@ class FixedGaze:
         """Store the tilt and what the map is made of."""
         self._parameters = parameters
 
-    def votes(self, moment: Moment) -> Votes:
+    def votes(self, context: GazeContext) -> Votes:
         """The paper's, to see what the gaze misses."""
-        return integrated_votes(moment.scene, moment.belief, moment.task, self._parameters)
+        return integrated_votes(context.scene, context.belief, context.task, self._parameters)
 
-    def aim(self, moment: Moment, gaze_map: Array, now: Gaze) -> Gaze:
+    def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
         """Straight ahead."""
         return 0.0, self._parameters.gaze.fixed_tilt
 
@@ -112,10 +112,10 @@ class SweepGaze(FixedGaze):
 
     steady = False
 
-    def aim(self, moment: Moment, gaze_map: Array, now: Gaze) -> Gaze:
+    def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
         """A sine of the time."""
         p = self._parameters.gaze
-        phase = 2.0 * pi * moment.belief.time / p.sweep_period
+        phase = 2.0 * pi * context.belief.time / p.sweep_period
         return p.sweep_amplitude * sin(phase), p.fixed_tilt
 
 
@@ -147,7 +147,7 @@ def gaze_policy(
 
 
 # Functions with names, so that a gaze can be saved in the middle of a run.
-def _deadline(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
+def _deadline(parameters: NavigationParameters, speed: float, m: GazeContext) -> Votes:
     way = path_bearing(m)
     if m.motion is None:
         return deadline_votes(m.scene, m.belief, way, speed, parameters)
@@ -157,16 +157,16 @@ def _deadline(parameters: NavigationParameters, speed: float, m: Moment) -> Vote
     )
 
 
-def _urgency(parameters: NavigationParameters, speed: float, m: Moment) -> Votes:
+def _urgency(parameters: NavigationParameters, speed: float, m: GazeContext) -> Votes:
     way = path_bearing(m)
     return urgency_votes(m.scene, m.belief, m.task, way=way, speed=speed, parameters=parameters)
 
 
-def _information(parameters: NavigationParameters, m: Moment) -> Votes:
+def _information(parameters: NavigationParameters, m: GazeContext) -> Votes:
     return information_votes(m.scene, m.belief, parameters)
 
 
-def _integrated(parameters: NavigationParameters, m: Moment) -> Votes:
+def _integrated(parameters: NavigationParameters, m: GazeContext) -> Votes:
     return integrated_votes(m.scene, m.belief, m.task, parameters)
 
 
@@ -183,12 +183,12 @@ def single_weight(p: GazeParameters) -> GazeParameters:
     )
 
 
-def path_bearing(moment: Moment) -> float:
+def path_bearing(context: GazeContext) -> float:
     """Bearing of the planned velocity in R, of the destination while standing [rad]."""
-    if moment.motion is not None:
-        forward, left, _ = moment.motion.velocity.tolist()
+    if context.motion is not None:
+        forward, left, _ = context.motion.velocity.tolist()
         if hypot(forward, left) > 1e-3:
             return atan2(left, forward)
-    pose = moment.belief.pose
-    dx, dy = (moment.task.target - pose[:2]).tolist()
+    pose = context.belief.pose
+    dx, dy = (context.task.target - pose[:2]).tolist()
     return wrap(atan2(dy, dx) - float(pose[2]))

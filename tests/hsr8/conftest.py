@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hsr8.decisions import Decided, Now
+from hsr8.decisions import Decision, DecisionContext
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.walk_counters import WalkCounters
@@ -126,8 +126,8 @@ def _frame(layout, time, pose, **change):
         ),
         measured=Frame(time, np.asarray(pose, float), np.zeros((3, 3)), belief["view"], ()),
         estimate=Belief(**belief),
-        now=Now(time, np.asarray(pose, float), belief["view"], 3),
-        decided=Decided(
+        context=DecisionContext(time, np.asarray(pose, float), belief["view"], 3),
+        decision=Decision(
             belief=Belief(**belief),
             gaze=GazeDecision(0.3, -0.3, 0.2, 0.4, 0.6, 0.1, gaze_map),
             motion=MotionDecision(

@@ -37,7 +37,7 @@ class Parts:
 @pytest.fixture
 def made(fake):
     """Decisions, their parts, and a decision at a time with so many steps made."""
-    parts = Parts(fake.frame(0.0).decided.task)
+    parts = Parts(fake.frame(0.0).decision.task)
     places = {"far": (1.5, 0.0), "near": (0.5, 0.0)}
     landmarks = LandmarkObstacles(places, 0.05, LandmarkParameters())
     decisions = Decisions(
@@ -47,7 +47,10 @@ def made(fake):
     def make(time, steps, late=0.0, moved=(0.0, 0.0, 0.0)):
         frame = fake.frame(time)
         now = replace(
-            frame.now, time=time + late, step_count=steps, odometry=frame.now.odometry + moved
+            frame.context,
+            time=time + late,
+            step_count=steps,
+            odometry=frame.context.odometry + moved,
         )
         return decisions.make(frame.estimate, frame.measured, now)
 

@@ -12,7 +12,7 @@ def test_a_margin_is_below_half_the_width_of_the_sole_of_the_robot_that_walks(ke
     body = robot_model()
     half = body.sole.half_width
     scenario = load_scenario("walk", [f"walking.{key}={half}"])
-    with pytest.raises(ScenarioError, match=f"walking.{key}: .* below half the width"):
+    with pytest.raises(ScenarioError, match=f"walking.{key}: .* less than half the width"):
         walking_parameters(body, scenario)
     monkeypatch.setattr(body, "sole", replace(body.sole, half_width=1.1 * half))
     walking_parameters(body, scenario)

@@ -4,7 +4,7 @@ import hashlib
 import struct
 from math import nan
 
-from hsr8.decisions import Decided
+from hsr8.decisions import Decision
 from navigation.belief.belief import Belief
 
 CHANNELS = ("pose", "pose covariance", "tracks", "local map", "state")
@@ -35,15 +35,15 @@ def fingerprints(belief: Belief) -> tuple[bytes, ...]:
 
 
 def decision_fingerprints(
-    decided: Decided, believed: tuple[bytes, ...] | None = None
+    decision: Decision, believed: tuple[bytes, ...] | None = None
 ) -> tuple[bytes, ...]:
     """Digest of each part of a decision, in the order of `DECISIONS`.
 
     Args:
-        decided: what was decided.
+        decision: to hash.
         believed: fingerprints of the belief in it, where they are known.
     """
-    task, motion, gaze = decided.task, decided.motion, decided.gaze
+    task, motion, gaze = decision.task, decision.motion, decision.gaze
     place = f"{task.is_goal} {task.index} {task.aligning} {task.done}".encode()
     place += task.target.tobytes() + struct.pack("<d", task.heading)
     move = motion.situation.encode() + motion.velocity.tobytes()
@@ -55,7 +55,7 @@ def decision_fingerprints(
         move += struct.pack("<qd", track, radius)
     evaluations = (gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
     look = struct.pack("<6d", gaze.pan, gaze.tilt, *evaluations) + gaze.gaze_map.tobytes()
-    believed = believed or fingerprints(decided.belief)
+    believed = believed or fingerprints(decision.belief)
     return _digest(b"".join(believed)), _digest(place), _digest(move), _digest(look)
 
 

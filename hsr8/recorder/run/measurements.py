@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.decisions import Now
+from hsr8.decisions import DecisionContext
 from hsr8.errors import UsageError
 from hsr8.recorder.files.guarded_file import GuardedWriter, read_payloads
 from hsr8.recorder.frame_record import FrameRecord
@@ -41,17 +41,17 @@ class Measured:
 
     Attributes:
         frame: what reached the belief.
-        now: the moment it was decided for.
+        context: state that the decision was made for.
         fresh: no decision was in force.
         fingerprints: of the belief after it, one per channel.
-        decided: of what was decided, one per decision channel.
+        decision: of what was decided, one per decision channel.
     """
 
     frame: Frame
-    now: Now
+    context: DecisionContext
     fresh: bool
     fingerprints: tuple[bytes, ...]
-    decided: tuple[bytes, ...]
+    decision: tuple[bytes, ...]
 
 
 class MeasurementWriter:
@@ -69,10 +69,10 @@ class MeasurementWriter:
 
     def add(self, frame: FrameRecord) -> None:
         """Append a camera frame."""
-        payload = _packed(frame.measured) + _packed_now(frame.now, frame.decided.fresh)
+        payload = _packed(frame.measured) + _packed_now(frame.context, frame.decision.fresh)
         estimate = fingerprints(frame.estimate)
         known = estimate if frame.belief is frame.estimate else None
-        payload += b"".join(decision_fingerprints(frame.decided, known))
+        payload += b"".join(decision_fingerprints(frame.decision, known))
         payload += b"".join(estimate)
         self._file.write(payload)
 
@@ -127,9 +127,11 @@ def _packed(frame: Frame) -> bytes:
     return b"".join(parts)
 
 
-def _packed_now(now: Now, fresh: bool) -> bytes:
-    numbers = np.concatenate([[now.time], now.odometry, *_view_numbers(now.view)], dtype="<f8")
-    return numbers.tobytes() + _STEP.pack(now.step_count, fresh)
+def _packed_now(context: DecisionContext, fresh: bool) -> bytes:
+    numbers = np.concatenate(
+        [[context.time], context.odometry, *_view_numbers(context.view)], dtype="<f8"
+    )
+    return numbers.tobytes() + _STEP.pack(context.step_count, fresh)
 
 
 def _view_numbers(view: CameraView) -> tuple[Array, ...]:
@@ -181,7 +183,7 @@ def _unpacked(payload: bytes) -> Measured:
     place += 8 * _NOW
     step_count, fresh = _STEP.unpack_from(payload, place)
     place += _STEP.size
-    now = Now(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
+    now = DecisionContext(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
     prints = [payload[k : k + FINGERPRINT] for k in range(place, len(payload), FINGERPRINT)]
     decided, believed = prints[: len(DECISIONS)], prints[len(DECISIONS) :]
     return Measured(frame, now, fresh, tuple(believed), tuple(decided))

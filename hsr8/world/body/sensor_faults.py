@@ -32,7 +32,7 @@ class SensorFaults:
         self._held: dict[int, BodySensors] = {}
         self._turned = 0.0
 
-    def spoil(self, sensors: BodySensors, tick: int) -> BodySensors:
+    def apply_fault(self, sensors: BodySensors, tick: int) -> BodySensors:
         """What the robot is told of the reading of control tick `tick`."""
         for number, fault in enumerate(self._faults):
             if fault.acts(tick):

@@ -23,7 +23,7 @@ class ServoFaults:
         self._told: JointTargets | None = None
         self._held: dict[int, JointTargets] = {}
 
-    def spoil(self, targets: JointTargets, tick: int) -> JointTargets:
+    def apply_fault(self, targets: JointTargets, tick: int) -> JointTargets:
         """What the servos are told when `targets` are asked for in control tick `tick`."""
         if not self._faults:
             return targets

@@ -56,7 +56,7 @@ class ImageNoise:
         missed: list[int] = np.flatnonzero(self._rng.random(things) < share).tolist()
         return missed
 
-    def spoil(self, image: Image, ghosts: float) -> Image:
+    def apply(self, image: Image, ghosts: float) -> Image:
         """`image`, spoilt in place by `ghosts` false blobs on average and by grain."""
         if ghosts > 0.0:
             for _ in range(int(self._rng.poisson(ghosts))):

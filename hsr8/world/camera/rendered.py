@@ -76,7 +76,7 @@ class RenderedCamera:
         ghosts = faults.ghosts(tick)
         if faults.black(tick):
             black = np.zeros((settings.height, settings.width, 3), np.uint8)
-            self._latest = Exposure(lambda: noise.spoil(black, ghosts))
+            self._latest = Exposure(lambda: noise.apply(black, ghosts))
             return self._latest
         self._lights.set(light * faults.light(tick))
         away = self._frustum.misses(body.data)
@@ -88,7 +88,7 @@ class RenderedCamera:
         read = self._offscreen.read
         if self._blur is not None:
             read = partial(self._blurred, self._blur, turning(body.model, body.data))
-        self._latest = Exposure(lambda: noise.spoil(read(), ghosts))
+        self._latest = Exposure(lambda: noise.apply(read(), ghosts))
         return self._latest
 
     def settle(self) -> None:

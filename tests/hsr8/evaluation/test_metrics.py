@@ -175,7 +175,7 @@ def test_saccades_are_large_changes_of_the_wanted_gaze(metrics, fake):
     for k, pan in enumerate((0.0, 0.05, 0.6, 0.6, -0.3)):
         frame = fake.frame(0.06 * k)
         gaze = replace(frame.gaze, pan=pan)
-        frame = replace(frame, decided=replace(frame.decided, gaze=gaze))
+        frame = replace(frame, decision=replace(frame.decision, gaze=gaze))
         records.append(fake.record(0.06 * k, frame=frame))
     assert _feed(metrics, records)["saccades_per_s"] == pytest.approx(2 / 0.24)
 

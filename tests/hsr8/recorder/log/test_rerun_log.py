@@ -113,7 +113,7 @@ def test_the_field_is_shown_while_there_is_one(folder, model, layout, fake):
     for k, field in enumerate((Field(), None, None)):
         frame = fake.frame(0.6 * k)
         motion = replace(frame.motion, field=field)
-        frame = replace(frame, decided=replace(frame.decided, motion=motion))
+        frame = replace(frame, decision=replace(frame.decision, motion=motion))
         records.append(fake.record(0.6 * k, frame=frame))
     path = _logged(folder, model, layout, records)
     arrows = _values(path, "/plan/field", "Arrows3D:vectors")

@@ -39,7 +39,7 @@ def test_a_change_shows_in_its_channel_alone(fake, change, channel):
     ],
 )
 def test_a_change_of_a_decision_shows_in_its_channel_alone(fake, part, change, channel):
-    before = fake.frame(0.06).decided
+    before = fake.frame(0.06).decision
     before = replace(before, gaze=replace(before.gaze, pan=0.0))
     after = replace(before, **{part: replace(getattr(before, part), **change)})
     prints = zip(

@@ -52,9 +52,9 @@ def test_numbers_of_tracks_are_rounded_and_may_be_none_or_endless(fake):
         velocity=np.array([nan, -inf]),
         radius=inf,
     )
-    decided = replace(frame.decided, belief=replace(frame.belief, tracks=(track,)))
+    decided = replace(frame.decision, belief=replace(frame.belief, tracks=(track,)))
     truth = fake.record(0.6).truth
-    (found,) = from_line(to_line(replace(frame, decided=decided), truth)).tracks
+    (found,) = from_line(to_line(replace(frame, decision=decided), truth)).tracks
     assert found.label == 'a "new" colour'
     assert found.position == (1.2346, 0.0)
     assert isnan(found.velocity[0])

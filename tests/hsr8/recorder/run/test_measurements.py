@@ -1,4 +1,4 @@
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 from hypothesis import given
@@ -45,10 +45,12 @@ def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
     (found,) = a.observations
     assert np.array_equal(found.covariance, seen.covariance)
     assert np.array_equal(found.by_radius, seen.by_radius)
-    assert replace(found, covariance=seen.covariance, by_radius=seen.by_radius) == seen
+    numbers = [replace(o, covariance=None, by_radius=None) for o in (found, seen)]
+    assert astuple(numbers[0]) == astuple(numbers[1])
     assert back.fingerprints == fingerprints(frame.estimate)
-    assert back.decided == decision_fingerprints(frame.decided)
-    assert (back.now.time, back.now.step_count) == (frame.now.time, frame.now.step_count)
-    assert np.array_equal(back.now.odometry, frame.now.odometry)
-    assert np.array_equal(back.now.view.rotation, frame.now.view.rotation)
-    assert back.fresh == frame.decided.fresh
+    assert back.decision == decision_fingerprints(frame.decision)
+    assert back.context.time == frame.context.time
+    assert back.context.step_count == frame.context.step_count
+    assert np.array_equal(back.context.odometry, frame.context.odometry)
+    assert np.array_equal(back.context.view.rotation, frame.context.view.rotation)
+    assert back.fresh == frame.decision.fresh

@@ -61,7 +61,7 @@ def test_a_fault_spoils_its_own_sensor_while_it_acts_and_nothing_else(fault, spo
     faults, seen = SensorFaults([timed]), []
     for tick in range(7):
         true = reading(tick, yaw=0.1 * tick)
-        told = faults.spoil(true, tick)
+        told = faults.apply_fault(true, tick)
         seen.append(changed(true, told))
         assert changed(true, reading(tick, yaw=0.1 * tick)) == set()  # it was not written into
     assert seen[:2] == [set(), set()]
@@ -72,24 +72,26 @@ def test_a_fault_spoils_its_own_sensor_while_it_acts_and_nothing_else(fault, spo
 
 def test_sizes_are_what_they_say():
     true = reading()
-    told = SensorFaults([AttitudeBias(kind="attitude-bias", magnitude=0.1)]).spoil(true, 0)
+    told = SensorFaults([AttitudeBias(kind="attitude-bias", magnitude=0.1)]).apply_fault(true, 0)
     assert pitch(told.orientation) == pytest.approx(0.1, abs=1e-3)
     told = SensorFaults([EncoderOffset(kind="encoder-offset", magnitude=0.1, joint="l_knee")])
-    difference = told.spoil(true, 0).joint_position - true.joint_position
+    difference = told.apply_fault(true, 0).joint_position - true.joint_position
     assert difference[KNEE] == pytest.approx(0.1)
     assert np.count_nonzero(difference) == 1
-    told = SensorFaults([FootGain(kind="foot-gain", magnitude=2.0, foot="right")]).spoil(true, 0)
+    told = SensorFaults([FootGain(kind="foot-gain", magnitude=2.0, foot="right")]).apply_fault(
+        true, 0
+    )
     assert np.allclose(told.foot_force, true.foot_force * [[1.0], [2.0]])
     turning = SensorFaults([GyroBias(kind="gyro-bias", magnitude=0.2)])
     for tick in range(100):
-        told = turning.spoil(true, tick)
+        told = turning.apply_fault(true, tick)
     assert heading(told.orientation) - heading(true.orientation) == pytest.approx(0.1)
     assert told.gyro[2] - true.gyro[2] == pytest.approx(0.2)
 
 
 def test_what_is_frozen_is_the_first_reading_of_its_time():
     faults = SensorFaults([EncoderFrozen(kind="encoder-frozen", start=0.01, joint="l_knee")])
-    told = [faults.spoil(reading(tick), tick) for tick in range(5)]
+    told = [faults.apply_fault(reading(tick), tick) for tick in range(5)]
     for late in told[2:]:
         assert late.joint_position[KNEE] == reading(2).joint_position[KNEE]
         assert late.joint_velocity[KNEE] == 0.0

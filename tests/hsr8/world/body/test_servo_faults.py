@@ -14,14 +14,14 @@ def asked(tick):
 def told(faults, ticks=12):
     """What the left knee and the right one are told in every tick."""
     servos = ServoFaults(faults)
-    said = [servos.spoil(asked(tick), tick) for tick in range(ticks)]
+    said = [servos.apply_fault(asked(tick), tick) for tick in range(ticks)]
     assert all(t.offset[k] == 0.01 * t.position[k] for t in said for k in range(26))
     return [int(t.position[KNEE]) for t in said], [int(t.position[KNEE + 6]) for t in said]
 
 
 def test_without_a_fault_the_targets_pass_as_they_are():
     targets = asked(1)
-    assert ServoFaults([]).spoil(targets, 1) is targets
+    assert ServoFaults([]).apply_fault(targets, 1) is targets
 
 
 def test_a_stuck_servo_keeps_what_it_was_told_last():

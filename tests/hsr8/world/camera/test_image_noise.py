@@ -19,13 +19,13 @@ def grey(value=100):
 
 def test_no_noise_leaves_an_image_as_it_is():
     noise = make()
-    assert np.array_equal(noise.spoil(grey(), 0.0), grey())
+    assert np.array_equal(noise.apply(grey(), 0.0), grey())
     assert noise.light() == 1.0
     assert noise.missed(5, 0.0) == ()
 
 
 def test_the_same_seed_spoils_alike_and_another_one_otherwise():
-    images = [[make(seed, pixel=4.0).spoil(grey(), 1.0)] for seed in (1, 1, 2)]
+    images = [[make(seed, pixel=4.0).apply(grey(), 1.0)] for seed in (1, 1, 2)]
     assert np.array_equal(images[0], images[1])
     assert not np.array_equal(images[0], images[2])
 
@@ -33,7 +33,7 @@ def test_the_same_seed_spoils_alike_and_another_one_otherwise():
 @pytest.mark.parametrize("sigma", [1.0, 3.0, 10.0])
 def test_grain_has_the_strength_asked_for_and_changes_from_image_to_image(sigma):
     noise = make(pixel=sigma)
-    stack = np.array([noise.spoil(grey(), 0.0) for _ in range(20)], float)
+    stack = np.array([noise.apply(grey(), 0.0) for _ in range(20)], float)
     assert abs(stack.mean() - 100.0) < 0.1
     assert stack.std() == pytest.approx(np.hypot(sigma, 12**-0.5), rel=0.03)
     assert not np.array_equal(stack[0], stack[1])
@@ -41,7 +41,7 @@ def test_grain_has_the_strength_asked_for_and_changes_from_image_to_image(sigma)
 
 def test_grain_stays_within_the_range_of_a_pixel():
     noise = make(pixel=30.0)
-    dark, bright = noise.spoil(grey(0), 0.0), noise.spoil(grey(255), 0.0)
+    dark, bright = noise.apply(grey(0), 0.0), noise.apply(grey(255), 0.0)
     assert dark.max() < 200 < bright.max() == 255
     assert bright.min() > 60
 
@@ -56,7 +56,7 @@ def test_shares_and_rates_are_kept_on_average():
 
 def test_false_blobs_are_painted_in_colors_of_things():
     noise = make()
-    spoiled = noise.spoil(grey(128), 20.0)
+    spoiled = noise.apply(grey(128), 20.0)
     painted = (spoiled != 128).any(axis=2)
     assert 0.02 < painted.mean() < 1.0
     colors = spoiled[painted].astype(int)

@@ -1,4 +1,4 @@
-"""A walk without navigation: the commands come from the scenario, one after the other."""
+"""Command schedule: velocity and footstep commands by time, for walks without navigation."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from math import atan2, cos, hypot, inf, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.scenario.command import Command as Asked
+from hsr8.scenario.command import Command as CommandSection
 from hsr8.scenario.command import Footsteps, RandomCommands
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, Task
@@ -18,11 +18,11 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-9  # of simulated time [s]
 
 
-class CommandScript:
+class CommandSchedule:
     """Commands by time.
 
     Args:
-        pieces: duration [s] and command, in order; after the last the robot stands.
+        pieces: duration [s] and command, in order; after the last one the robot stands still.
     """
 
     def __init__(self, pieces: Sequence[tuple[float, Command]]) -> None:
@@ -30,20 +30,28 @@ class CommandScript:
         self._commands = [*(command for _, command in pieces), VelocityCommand()]
 
     def at(self, time: float) -> Command:
-        """The command in force at `time` [s]."""
+        """Return the command in force at `time` [s]."""
         return self._commands[max(0, bisect_right(self._starts, time + ROUNDING) - 1)]
 
 
-def command_script(asked: Asked, duration: float, rng: np.random.Generator) -> CommandScript:
-    """The script of a scenario that lasts `duration` [s]; `rng` draws what is drawn."""
-    if asked.constant:
-        velocity = VelocityCommand(asked.vx or 0.0, asked.vy or 0.0, asked.wz or 0.0)
-        return CommandScript([(inf, velocity)])
-    if asked.footstep is not None:
-        return CommandScript([(inf, _command_state(asked.footstep))])
-    if asked.random is not None:
-        return CommandScript(_drawn(asked.random, duration, rng))
-    return CommandScript(
+def command_schedule(
+    section: CommandSection, duration: float, rng: np.random.Generator
+) -> CommandSchedule:
+    """Return the schedule of a scenario's section ``command``.
+
+    Args:
+        section: of the scenario.
+        duration: of the run [s].
+        rng: draws random commands.
+    """
+    if section.constant:
+        velocity = VelocityCommand(section.vx or 0.0, section.vy or 0.0, section.wz or 0.0)
+        return CommandSchedule([(inf, velocity)])
+    if section.footstep is not None:
+        return CommandSchedule([(inf, _command_state(section.footstep))])
+    if section.random is not None:
+        return CommandSchedule(_drawn(section.random, duration, rng))
+    return CommandSchedule(
         [
             (
                 s.duration,
@@ -51,7 +59,7 @@ def command_script(asked: Asked, duration: float, rng: np.random.Generator) -> C
                 if s.footstep is None
                 else _command_state(s.footstep),
             )
-            for s in asked.stretch
+            for s in section.stretch
         ]
     )
 
@@ -62,11 +70,11 @@ def _drawn(
     pieces: list[tuple[float, Command]] = []
     end = 0.0
     while end < duration:
-        held = float(rng.uniform(*random.interval))
+        interval = float(rng.uniform(*random.interval))
         stop = rng.uniform() < random.stops
         velocity = [float(rng.uniform(*bounds)) for bounds in (random.vx, random.vy, random.wz)]
-        pieces.append((held, VelocityCommand() if stop else VelocityCommand(*velocity)))
-        end += held
+        pieces.append((interval, VelocityCommand() if stop else VelocityCommand(*velocity)))
+        end += interval
     return pieces
 
 
@@ -81,29 +89,29 @@ def _command_state(step: Footsteps) -> CommandState:
     )
 
 
-class ScriptedMission:
-    """Nowhere to go and never done."""
+class ScheduledMission:
+    """Mission without destination: never done, with a target straight ahead for the gaze."""
 
     def update(self, pose: Array) -> Task:
-        """A target straight ahead, so that the gaze has somewhere to look."""
+        """Return the task at the believed pose (3,)."""
         x, y, yaw = pose.tolist()
         ahead = np.array([x + cos(yaw), y + sin(yaw)])
         return Task(ahead, yaw, is_goal=False, index=0, aligning=False, done=False)
 
 
-class ScriptedPlanner:
-    """Tells the script as a motion decision, whatever the robot believes.
+class ScheduledPlanner:
+    """Motion planner that reports the scheduled velocity, whatever the robot believes.
 
     Args:
-        script: commands by time.
+        schedule: commands by time.
     """
 
-    def __init__(self, script: CommandScript) -> None:
-        self._script = script
+    def __init__(self, schedule: CommandSchedule) -> None:
+        self._schedule = schedule
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
-        """The velocity in force now."""
-        vx, vy, wz = self._script.at(belief.time).velocity
+        """Return the velocity in force."""
+        vx, vy, wz = self._schedule.at(belief.time).velocity
         return MotionDecision(
             velocity=np.array([vx, vy, wz]),
             direction=float(belief.pose[2]) + atan2(vy, vx),

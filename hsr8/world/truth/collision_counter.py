@@ -28,7 +28,7 @@ class Collision:
     closing: bool
 
 
-class Episodes:
+class CollisionCounter:
     """Groups contacts into collisions."""
 
     def __init__(self) -> None:

@@ -3,9 +3,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hsr8.command_schedule import (
+    CommandSchedule,
+    ScheduledMission,
+    ScheduledPlanner,
+    command_schedule,
+)
 from hsr8.scenario.command import Command, RandomCommands
 from hsr8.scenario.loader import load_scenario
-from hsr8.script import CommandScript, ScriptedMission, ScriptedPlanner, command_script
 from walking.command import CommandState, VelocityCommand
 
 
@@ -15,9 +20,9 @@ class At:
         self.pose = np.array([0.3, -0.2, 0.5])
 
 
-def script_of(*overrides, duration=10.0, seed=0):
+def schedule_of(*overrides, duration=10.0, seed=0):
     command = load_scenario("walk", list(overrides)).command
-    return command_script(command, duration, np.random.default_rng(seed))
+    return command_schedule(command, duration, np.random.default_rng(seed))
 
 
 STRETCHES = "command.stretch=[{duration = 2.0, vx = 0.1}, {duration = 1.0, vy = 0.05, wz = -0.4}]"
@@ -34,23 +39,23 @@ STRETCHES = "command.stretch=[{duration = 2.0, vx = 0.1}, {duration = 1.0, vy = 
     ],
 )
 def test_each_stretch_is_walked_in_turn_and_then_it_stands(time, expected):
-    script = script_of(STRETCHES)
-    assert script.at(time) == VelocityCommand(*expected)
-    planner = ScriptedPlanner(script)
-    task = ScriptedMission().update(At(time).pose)
+    schedule = schedule_of(STRETCHES)
+    assert schedule.at(time) == VelocityCommand(*expected)
+    planner = ScheduledPlanner(schedule)
+    task = ScheduledMission().update(At(time).pose)
     assert planner.plan(At(time), task).velocity.tolist() == list(expected)
 
 
 def test_a_change_comes_in_its_tick_whatever_floating_point_makes_of_the_time():
-    script = CommandScript([(0.005, VelocityCommand(0.001 * k)) for k in range(1000)])
+    schedule = CommandSchedule([(0.005, VelocityCommand(0.001 * k)) for k in range(1000)])
     for k in range(1000):
-        assert script.at(k * 0.005) == VelocityCommand(0.001 * k)
+        assert schedule.at(k * 0.005) == VelocityCommand(0.001 * k)
 
 
 @pytest.mark.parametrize("time", [0.0, 5.0, 1e4])
 def test_one_velocity_takes_the_place_of_the_script(time):
-    script = script_of("command.vx=0.3", "command.wz=0")
-    assert script.at(time) == VelocityCommand(0.3, 0.0, 0.0)
+    schedule = schedule_of("command.vx=0.3", "command.wz=0")
+    assert schedule.at(time) == VelocityCommand(0.3, 0.0, 0.0)
 
 
 def test_footsteps_are_asked_explicitly():
@@ -59,16 +64,16 @@ def test_footsteps_are_asked_explicitly():
         "{single_support=0.4, double_support=0.1, forward=0.03, side=0.09, direction=0.2, "
         "swing_height=0.03}"
     )
-    assert script_of(f"command.footstep={table}").at(3.0) == state
-    script = script_of(f"command.stretch=[{{duration=1, footstep={table}}}, {{duration=1}}]")
-    assert [script.at(t) for t in (0.5, 1.5)] == [state, VelocityCommand()]
+    assert schedule_of(f"command.footstep={table}").at(3.0) == state
+    schedule = schedule_of(f"command.stretch=[{{duration=1, footstep={table}}}, {{duration=1}}]")
+    assert [schedule.at(t) for t in (0.5, 1.5)] == [state, VelocityCommand()]
     assert state.velocity == pytest.approx((0.06, 0.0, 0.4))
 
 
 @given(st.integers(0, 2**32 - 1))
 def test_drawn_commands_stay_in_their_box_and_come_from_the_seed(seed):
     asked = Command(random=RandomCommands(vx=(-0.1, 0.3), wz=(-0.5, 0.0), stops=0.3))
-    one, same = (command_script(asked, 20.0, np.random.default_rng(seed)) for _ in range(2))
+    one, same = (command_schedule(asked, 20.0, np.random.default_rng(seed)) for _ in range(2))
     velocities = np.array([one.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
     again = np.array([same.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
     assert np.array_equal(again, velocities)
@@ -80,12 +85,12 @@ def test_drawn_commands_stay_in_their_box_and_come_from_the_seed(seed):
 
 def test_the_share_of_stops_is_that_asked_for():
     asked = Command(random=RandomCommands(stops=0.25, interval=(0.5, 0.5)))
-    script = command_script(asked, 5000.0, np.random.default_rng(1))
-    stops = np.mean([script.at(0.5 * k + 0.1) == VelocityCommand() for k in range(10000)])
+    schedule = command_schedule(asked, 5000.0, np.random.default_rng(1))
+    stops = np.mean([schedule.at(0.5 * k + 0.1) == VelocityCommand() for k in range(10000)])
     assert stops == pytest.approx(0.25, abs=0.02)
 
 
 def test_the_gaze_has_something_ahead():
-    task = ScriptedMission().update(np.array([1.0, 2.0, np.pi / 2]))
+    task = ScheduledMission().update(np.array([1.0, 2.0, np.pi / 2]))
     assert np.allclose(task.target, (1.0, 3.0))
     assert not task.done

@@ -1,0 +1,40 @@
+import pytest
+
+from hsr8.world.truth.collision_counter import CollisionCounter
+from hsr8.world.truth.truth import Contact
+
+
+def _touch(obstacle, moving=False, closing=True):
+    return Contact(obstacle, f"thing {obstacle}", moving, "l_sole", 1.0, closing)
+
+
+def _count(times, obstacle=0):
+    counter = CollisionCounter()
+    for time in times:
+        counter.add(time, (_touch(obstacle),))
+    return len(counter.collisions)
+
+
+def test_a_long_touch_is_one_collision():
+    assert _count([0.02 * k for k in range(500)]) == 1
+
+
+@pytest.mark.parametrize(("pause", "collisions"), [(0.48, 1), (0.5, 2), (3.0, 2)])
+def test_a_pause_of_half_a_second_makes_a_new_one(pause, collisions):
+    assert _count([1.0, 1.0 + pause]) == collisions
+
+
+def test_each_obstacle_has_its_own_episodes():
+    counter = CollisionCounter()
+    for k in range(10):
+        counter.add(0.02 * k, (_touch(0), _touch(3, moving=True), _touch(0)))
+    assert [c.obstacle for c in counter.collisions] == [0, 3]
+    assert [c.name for c in counter.collisions] == ["thing 0", "thing 3"]
+    assert [c.moving for c in counter.collisions] == [False, True]
+
+
+def test_who_closed_the_gap_is_judged_at_the_beginning():
+    counter = CollisionCounter()
+    counter.add(0.0, (_touch(0, closing=False),))
+    counter.add(0.02, (_touch(0, closing=True),))
+    assert [c.closing for c in counter.collisions] == [False]
