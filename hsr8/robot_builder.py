@@ -30,7 +30,7 @@ from vision.detector import Detector
 from vision.self_mask import BodyPart
 from walking.body.robot_model import RobotModel
 from walking.parameters import WalkingParameters
-from walking.similarity import parameters_for
+from walking.scaling import parameters_for
 from walking.walker import Walker
 
 # Arms in view of the head camera: shoulder, elbow, hand in R [m], with room for their swing.

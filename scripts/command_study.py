@@ -10,9 +10,9 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from walking.admission import Limit
 from walking.body.robot_model import RobotModel
 from walking.command import CommandState, HeadTarget
+from walking.command_limits import Limit
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
 

@@ -68,7 +68,7 @@ MODULES = (
     "walking/footsteps/foothold_kernel",
     "walking/gait/swing_kernel",
     "walking/body/steady_gains",
-    "walking/servos/touch_down",
+    "walking/servos/touchdown",
     "walking/body/estimation_kernel",
 )
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {

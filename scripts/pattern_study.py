@@ -374,7 +374,7 @@ def page(options: argparse.Namespace, first: list[str], second: list[str]) -> st
             "`paper` the ZMP may be clipped in double support, which its ZMP functions leave "
             "out; `robust` plans to use the next sole, too, so it is off the footholds' DCM "
             "without being off its plan. `preview` has no plan of its DCM. Replan: "
-            "CPU time of plan, admission and pendulum in one tick, one core of a shared machine.",
+            "CPU time of plan, transition and pendulum in one tick, one core of a shared machine.",
             "",
             *first,
             "",

@@ -23,7 +23,7 @@ from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.robot_measures import HSR_VIII
-from walking.similarity import carried, parameters_for
+from walking.scaling import parameters_for, scale_parameters
 
 import mujoco
 import numpy as np
@@ -170,7 +170,7 @@ class Walker:
 
         def scaled(now: float) -> tuple[VelocityCommand, HeadTarget]:
             command, head = script(now / self.time)
-            return carried(command, HSR_VIII, self.model.measures()), head
+            return scale_parameters(command, HSR_VIII, self.model.measures()), head
 
         return scaled
 

@@ -19,7 +19,7 @@ from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD
-from walking.rehearsal import rehearse
+from walking.warm_up import warm_up
 
 import numpy as np
 from command_study import EVERY, random_states
@@ -140,8 +140,8 @@ HEAD = (
 
 
 CONDITIONS = (
-    "From sensors and command to the joints' set-points, in ms, one core, in full physics under "
-    "sensor noise; the first tick of every robot is among them, after the rehearsal that is made "
+    "From sensors and command to the joints' setpoints, in ms, one core, in full physics under "
+    "sensor noise; the first tick of every robot is among them, after the warm-up that is made "
     "with the robot. The collector is Python's garbage "
     "collector, on as it comes or frozen and off. Causes of slow ticks: a collection in the tick "
     "and its oldest generation, the process taken off its core, or neither."
@@ -156,7 +156,7 @@ def main() -> None:
     print(HEAD)
     for generator in GENERATORS:
         parameters = parameters_of([f"pattern.generator={generator}"])
-        rehearse(robot, parameters)
+        warm_up(robot, parameters)
         for name, script_of in SCRIPTS.items():
             for collecting in (True, False):
                 gc.collect()

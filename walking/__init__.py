@@ -1,4 +1,4 @@
-"""Walking: velocity commands become footsteps, footsteps become joint set-points.
+"""Walking: velocity commands become footsteps, footsteps become joint setpoints.
 
 The library knows the robot through one :class:`walking.body.robot_model.RobotModel` and the
 world through :class:`walking.sensing.BodySensors` alone, so it would run on the real

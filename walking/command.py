@@ -32,8 +32,8 @@ class CommandState:
 
     The command state of the modifiable walking pattern (Lee et al., IEEE T-RO 2008). A robot
     under a command state steps; a zero velocity command closes the stance and stops it. The
-    defaults are HSR-VIII's usual footstep in place; `walking.similarity.carried` makes it that
-    of another robot.
+    defaults are HSR-VIII's usual footstep in place; `walking.scaling.scale_parameters` scales them
+    to another robot.
 
     Attributes:
         single_support: time on one foot [s].

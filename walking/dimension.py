@@ -42,7 +42,7 @@ class Dimension:
     def _powers(self) -> tuple[float, ...]:
         return self.leg, self.hip, self.sole, self.time, self.weight, self.ankle
 
-    def carry(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
+    def scale(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
         """What `value` of the robot with measures `old` is for one with measures `new`."""
         factor = 1.0
         for power, a, b in zip(self._powers, old.values(), new.values(), strict=True):
@@ -51,26 +51,26 @@ class Dimension:
 
 
 @dataclass(frozen=True, slots=True)
-class ShareLeft:
+class DecayPerTick:
     """A share of something that is left after a control tick, as of an exponential decay."""
 
-    def carry(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
+    def scale(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
         """The share that leaves as much after the same phase of the gait."""
         return float(value ** (old.time / new.time))
 
 
 @dataclass(frozen=True, slots=True)
-class ShareTaken:
+class GainPerTick:
     """A share of a difference that is made up for in a control tick."""
 
-    def carry(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
+    def scale(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
         """The share that makes up for as much in the same phase of the gait."""
         if old.time == new.time:
             return value  # not even rounded
-        return 1.0 - ShareLeft().carry(1.0 - value, old, new)
+        return 1.0 - DecayPerTick().scale(1.0 - value, old, new)
 
 
-Rule = Dimension | ShareLeft | ShareTaken
+Rule = Dimension | DecayPerTick | GainPerTick
 """How a parameter goes over to another robot."""
 
 NUMBER = Dimension()
@@ -102,10 +102,10 @@ RATE = TIME**-1.0
 RATE_CHANGE = TIME**-2.0
 """An angular acceleration."""
 ANKLE_TIME = Dimension(ankle=1.0) * TIME
-"""Set-point of an ankle per angular velocity: the softer the servo, the larger."""
+"""Setpoint of an ankle per angular velocity: the softer the servo, the larger."""
 PER_LENGTH = LENGTH**-1.0
 """An angle per length of the walk."""
-LEFT_PER_TICK = ShareLeft()
+DECAY_PER_TICK = DecayPerTick()
 """A share left after a control tick."""
-TAKEN_PER_TICK = ShareTaken()
+GAIN_PER_TICK = GainPerTick()
 """A share made up for in a control tick."""

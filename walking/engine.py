@@ -4,20 +4,20 @@ from math import cos, hypot, sin
 
 import numpy as np
 
-from walking.admission import AdmissionReport, Limit
-from walking.balance.catching import CatchingPendulum
+from walking.balance.capture_step import CapturePendulum
+from walking.balance.com_offset import ComOffset
 from walking.balance.foot_placement import FootPlacement
-from walking.balance.pressure_hold import PressureHold
 from walking.balance.stabilizer import Stabilizer
 from walking.body.estimation import Estimation
 from walking.body.joints import HEAD
 from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget
-from walking.footsteps.caution import Caution
+from walking.command_limits import CommandLimits, Limit
 from walking.footsteps.cycle import Cycle
 from walking.footsteps.heading_hold import HeadingHold
 from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.slowdown import Slowdown
 from walking.footsteps.speed_hold import SpeedHold
 from walking.footsteps.steering import Steering
 from walking.footsteps.stride import STILL, Strides
@@ -27,12 +27,12 @@ from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import Footing, SupportRegion
+from walking.published_state import camera_pose, published_plan
 from walking.sensing import BodySensors
 from walking.servos.head import Head
 from walking.servos.posture import ready_stance
-from walking.servos.touch_down import TouchDown
+from walking.servos.touchdown import TouchdownDetector
 from walking.servos.whole_body import WholeBody
-from walking.snapshot import camera_pose, plan_seen
 from walking.state import WalkingState
 from walking.targets import JointTargets
 
@@ -69,9 +69,9 @@ class WalkingEngine:
         self._pendulum = PendulumState(zmp.bx, zmp.by, zmp_x=zmp.bx, zmp_y=zmp.by)
         self._steering = Steering(planner, parameters.limits, selective=generator.selective)
         self._stabilizer = Stabilizer(robot, parameters.stabilizer, lipm.omega)
-        self._catching = CatchingPendulum(lipm, generator, gait, pattern.dcm_gain, self._pendulum)
+        self._capture = CapturePendulum(lipm, generator, gait, pattern.dcm_gain, self._pendulum)
         self._placement = FootPlacement(
-            lipm, generator, planner, gait, stabilizer=self._stabilizer, catching=self._catching
+            lipm, generator, planner, gait, stabilizer=self._stabilizer, pendulum=self._capture
         )
         self._whole_body = WholeBody(
             robot,
@@ -80,12 +80,12 @@ class WalkingEngine:
             gait=gait,
             pendulum=self._pendulum,
         )
-        self._touch = TouchDown(parameters.estimator)
-        self._caution = Caution(parameters.stabilizer)
+        self._touch = TouchdownDetector(parameters.estimator)
+        self._caution = Slowdown(parameters.stabilizer)
         self._cycle = Cycle()
         self._heading = HeadingHold(parameters.stabilizer)
         self._speed = SpeedHold(parameters.stabilizer)
-        self._pressure = PressureHold(parameters.stabilizer)
+        self._pressure = ComOffset(parameters.stabilizer)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._estimation = Estimation(robot, lipm.omega, parameters.estimator, self._odometry)
         ready = robot.ready[HEAD].tolist()
@@ -104,11 +104,11 @@ class WalkingEngine:
         return self._parameters
 
     @property
-    def admission(self) -> AdmissionReport:
+    def command_limits(self) -> CommandLimits:
         """What became of the last tick's command."""
         placement = self._placement
         return self._steering.report(
-            self._binding, placement.given, placement.admitted, self._gait.timing
+            self._binding, placement.applied, placement.admitted, self._gait.timing
         )
 
     @property
@@ -132,11 +132,11 @@ class WalkingEngine:
         Args:
             sensors: read at the start of the tick.
             command: velocity or footsteps wanted, new in any tick; limited to what the legs
-                can do, see `admission`.
+                can do, see `command_limits`.
             head: direction to look; limited to what the neck can do.
 
         Returns:
-            set-points of all joints.
+            setpoints of all joints.
         """
         tilt = self._sense(sensors)
         error = self._estimation.dcm_error
@@ -151,7 +151,7 @@ class WalkingEngine:
         footing.stand(gait.support_feet)
         region = footing.region(self._parameters.pattern.sole_margin)
         ramps = placement.decide(wish, steering.velocity, error, region, moving=steering.moving)
-        self._catching.advance(ramps, placement.landing, region)
+        self._capture.advance(ramps, placement.landing, region)
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
         footing.stand(gait.support_feet)
@@ -160,7 +160,7 @@ class WalkingEngine:
         gait.advance(moving=placement.moving)
         if not gait.double and abs(gait.swing_height - gait.timing.swing_height) > SAME_HEIGHT:
             self._bound.append(Limit.SWING_HEIGHT)
-        self._catching.touch_down()
+        self._capture.touchdown()
         return whole_body.follow(
             tilt,
             sensors.gyro,
@@ -188,7 +188,7 @@ class WalkingEngine:
             raise RuntimeError("the walking engine has no state before its first tick")
         gait, pendulum = self._gait, self._pendulum
         odometry = self._odometry.pose()
-        plan = plan_seen(
+        plan = published_plan(
             gait,
             pendulum,
             body,
@@ -202,7 +202,7 @@ class WalkingEngine:
             phase=gait.phase,
             odometry=odometry,
             camera=camera_pose(self._robot, self._sensors, body),
-            given=np.array(self._placement.given),
+            applied_velocity=np.array(self._placement.applied),
             footsteps=plan.footsteps,
             zmp=plan.zmp,
             dcm=plan.dcm,
@@ -212,7 +212,7 @@ class WalkingEngine:
             step_count=gait.completed,
             fallen=self.fallen,
             balance=plan.balance,
-            admission=self.admission,
+            command_limits=self.command_limits,
         )
 
     @property
@@ -301,7 +301,7 @@ class WalkingEngine:
         if gait.stepping and not gait.double and not gait.held:
             force = self._estimation.load(gait.swing)
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
-                gait.touch_down()
+                gait.touchdown()
 
     def _right_load(self, region: SupportRegion, zmp: tuple[float, float]) -> float:
         """Planned share of the weight on the right foot."""

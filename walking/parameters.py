@@ -1,7 +1,7 @@
 """Every number of the walking engine that is a choice, not a property of the robot.
 
 The defaults were chosen for HSR-VIII in full physics with ``scripts/walk_study.py``. Every
-number carries what it goes with from robot to robot; `walking.similarity.parameters_for`
+number carries what it goes with from robot to robot; `walking.scaling.parameters_for`
 makes of the defaults those of another robot.
 """
 
@@ -14,10 +14,11 @@ from walking.dimension import (
     ACCELERATION,
     ANKLE_TIME,
     CHANGE_WEIGHT,
+    DECAY_PER_TICK,
     DIFFUSION,
     FORCE,
+    GAIN_PER_TICK,
     HEIGHT,
-    LEFT_PER_TICK,
     LENGTH,
     NUMBER,
     PER_LENGTH,
@@ -27,7 +28,6 @@ from walking.dimension import (
     SOLE_SPEED,
     SPEED,
     STANCE,
-    TAKEN_PER_TICK,
     TIME,
 )
 
@@ -120,7 +120,7 @@ class PatternParameters:
 class EstimatorParameters:
     """How far each sensor is trusted."""
 
-    tilt_gain: Annotated[float, Interval(gt=0.0, le=1.0), TAKEN_PER_TICK] = 0.03
+    tilt_gain: Annotated[float, Interval(gt=0.0, le=1.0), GAIN_PER_TICK] = 0.03
     """Pull of the IMU's attitude on the integrated gyro, per tick [1]."""
     acceleration_noise: Annotated[float, Gt(0.0), ACCELERATION] = 4.0
     """Unknown acceleration of the centre of mass [m/s²]."""
@@ -131,7 +131,7 @@ class EstimatorParameters:
     contact_ticks: Annotated[int, Gt(0)] = 2
     """Control ticks that the load must last [1]."""
     contact_phase: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.55
-    """Share of the swing before which no touch-down is believed [1]."""
+    """Share of the swing before which no touchdown is believed [1]."""
     fall_tilt: Annotated[float, Gt(0.0), NUMBER] = 0.8
     """Tilt of the trunk at which the robot believes that it has fallen [rad]."""
 
@@ -152,7 +152,7 @@ class OdometryParameters:
 
 @dataclass(frozen=True)
 class StabilizerParameters:
-    """Feedback and feed-forward on the servos' set-points."""
+    """Feedback and feed-forward on the servos' setpoints."""
 
     dcm_rate: Annotated[float, Ge(0.0), RATE] = 4.24
     """Pole at which the ankles make an error of the measured DCM fade; the gain follows from it,
@@ -160,7 +160,7 @@ class StabilizerParameters:
     sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.010
     """Distance that the ZMP moved by the ankles keeps from the edge of the sole [m]."""
     gyro_gain: Annotated[float, Ge(0.0), ANKLE_TIME] = 0.02
-    """Ankle set-point per angular velocity of the trunk [s]."""
+    """Ankle setpoint per angular velocity of the trunk [s]."""
     load_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
     """Share of the planned joint torques fed forward [1]."""
     inertia_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
@@ -181,11 +181,11 @@ class StabilizerParameters:
     """Share of the trunk's tilt taken out of the swing foot [1]."""
     tilt_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.019
     """Tilt below which the swing foot ignores it [rad]."""
-    tilt_pull: Annotated[float, Interval(gt=0.0, le=1.0), TAKEN_PER_TICK] = 0.3
+    tilt_pull: Annotated[float, Interval(gt=0.0, le=1.0), GAIN_PER_TICK] = 0.3
     """Share of the way per tick on which the swing foot's compensation follows [1]."""
-    tilt_decay: Annotated[float, Interval(ge=0.0, lt=1.0), LEFT_PER_TICK] = 0.85
-    """What is left per tick of the foot's compensation after touch-down [1]."""
-    contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0), LEFT_PER_TICK] = 0.965
+    tilt_decay: Annotated[float, Interval(ge=0.0, lt=1.0), DECAY_PER_TICK] = 0.85
+    """What is left per tick of the foot's compensation after touchdown [1]."""
+    contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0), DECAY_PER_TICK] = 0.965
     """What is left per tick of the height at which a foot touched down early [1]."""
     max_slew_error: Annotated[float, Gt(0.0), LENGTH] = 0.03
     """DCM error beyond which the velocity no longer changes [m]."""

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from walking.admission import AdmissionReport
 from walking.body.odometry import Odometry
+from walking.command_limits import CommandLimits
 from walking.foothold import Foothold
 from walking.phase import Phase
 from walking.value import value
@@ -63,7 +63,7 @@ class WalkingState:
         phase: gait phase.
         odometry: pose of R in the odometry frame.
         camera: estimated pose of the head camera.
-        given: velocity (vx, vy, wz) the engine really walks (3,) [m/s, m/s, rad/s].
+        applied_velocity: velocity (vx, vy, wz) that the footsteps follow (3,) [m/s, m/s, rad/s].
         footsteps: planned footholds, the support foot first.
         zmp: planned zero-moment point in the odometry frame (2,) [m].
         dcm: planned divergent component of motion in the odometry frame (2,) [m].
@@ -72,13 +72,13 @@ class WalkingState:
         step_count: number of completed steps.
         fallen: whether the robot believes that it has fallen.
         balance: planned and measured motion in detail.
-        admission: what became of the last command.
+        command_limits: what became of the last command.
     """
 
     phase: Phase
     odometry: Odometry
     camera: HeadCameraPose
-    given: Array
+    applied_velocity: Array
     footsteps: tuple[Foothold, ...]
     zmp: Array
     dcm: Array
@@ -88,4 +88,4 @@ class WalkingState:
     step_count: int
     fallen: bool
     balance: Balance
-    admission: AdmissionReport | None = None
+    command_limits: CommandLimits | None = None

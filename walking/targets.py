@@ -10,15 +10,15 @@ Array = NDArray[np.float64]
 
 @value
 class JointTargets:
-    """Set-points of the 26 position servos for one control tick.
+    """Setpoints of the 26 position servos for one control tick.
 
-    The set-point sent to the servo is ``position + offset``. The offset makes up for the
+    The setpoint sent to the servo is ``position + offset``. The offset makes up for the
     compliance of the servo under the load expected of it (gravity, velocity lag); a body
     without dynamics follows ``position`` alone.
 
     Attributes:
         position: desired joint angles, order of ``JOINT_NAMES`` (26,) [rad].
-        offset: feed-forward offset of the set-points (26,) [rad].
+        offset: feed-forward offset of the setpoints (26,) [rad].
     """
 
     position: Array

@@ -4,18 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from walking.admission import AdmissionReport, Limit
 from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget, VelocityCommand
+from walking.command_limits import CommandLimits, Limit
 from walking.engine import WalkingEngine
 from walking.get_up.get_up import GetUp, Outcome
 from walking.parameters import WalkingParameters
 from walking.phase import Phase
-from walking.rehearsal import rehearse
 from walking.sensing import BodySensors
 from walking.state import WalkingState
 from walking.targets import JointTargets
+from walking.warm_up import warm_up
 
 
 class Walker:
@@ -35,11 +35,11 @@ class Walker:
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
         self._robot = robot
         self._parameters = parameters
-        rehearse(robot, parameters)
+        warm_up(robot, parameters)
         self._odometry = LegOdometry(parameters.odometry)
         self._engine = WalkingEngine(robot, parameters, self._odometry)
         self.get_up: GetUp | None = None
-        self._asked: Command = VelocityCommand()
+        self._command: Command = VelocityCommand()
         self._steps = 0
 
     @property
@@ -48,11 +48,11 @@ class Walker:
         return self._parameters
 
     @property
-    def admission(self) -> AdmissionReport:
+    def command_limits(self) -> CommandLimits:
         """What became of the last tick's command: nothing while the robot is down."""
         if self.get_up is None:
-            return self._engine.admission
-        return AdmissionReport(self._asked, VelocityCommand(), self.limits)
+            return self._engine.command_limits
+        return CommandLimits(self._command, VelocityCommand(), self.limits)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
@@ -78,9 +78,9 @@ class Walker:
             head: direction to look; straight ahead while the robot is down.
 
         Returns:
-            set-points of all joints.
+            setpoints of all joints.
         """
-        get_up, self._asked = self.get_up, command
+        get_up, self._command = self.get_up, command
         if get_up is None:
             targets = self._engine.step(sensors, command, head)
             if self._parameters.get_up.enabled and self._engine.fallen:
@@ -111,8 +111,8 @@ class Walker:
             step_count=steps,
             phase=phase,
             fallen=True,
-            given=np.zeros(3),
-            admission=self.admission,
+            applied_velocity=np.zeros(3),
+            command_limits=self.command_limits,
         )
 
     def _stand(self) -> None:

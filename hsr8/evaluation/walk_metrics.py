@@ -27,20 +27,20 @@ class Strides:
     Attributes:
         time: of all of them [s].
         achieved: sum of the mean velocities in the robot frame (3,) [m, m, rad].
-        errors: sums of what they were beyond the velocity asked and given (3,).
+        errors: sums of what they were beyond the commanded and the applied velocity (3,).
         squares: sums of the squares of that (3,).
     """
 
     def __init__(self) -> None:
         self.time = 0.0
         self.achieved = np.zeros(3)
-        self.errors = {name: np.zeros(3) for name in ("asked", "given")}
-        self.squares = {name: np.zeros(3) for name in ("asked", "given")}
+        self.errors = {name: np.zeros(3) for name in ("commanded", "applied")}
+        self.squares = {name: np.zeros(3) for name in ("commanded", "applied")}
 
     def add(self, took: float, achieved: Array, **wanted: Array) -> None:
-        """Take a stride: its duration [s], its velocity (3,) and what was ``asked`` and ``given``.
+        """Take a stride: its duration [s] and its mean velocity (3,) [m/s, m/s, rad/s].
 
-        The latter are means over the stride (3,) [m/s, m/s, rad/s].
+        ``commanded`` and ``applied`` are mean velocities over the stride, too.
         """
         self.time += took
         self.achieved += took * achieved
@@ -63,7 +63,7 @@ class StrideMeter:
         self._steps = 0
         self._yaw = 0.0
         self._last: tuple[float, Array, Array] | None = None
-        self._asked, self._given = np.zeros(3), np.zeros(3)
+        self._commanded, self._applied = np.zeros(3), np.zeros(3)
 
     def add(self, record: TickRecord) -> None:
         """Take one record."""
@@ -73,9 +73,9 @@ class StrideMeter:
         pose = np.array([x, y, self._yaw])
         if self._last is not None:
             elapsed = time - self._last[0]
-            self._asked += elapsed * self._last[1]
-            self._given += elapsed * self._last[2]
-        self._last = (time, np.array(record.command.velocity), record.walking.given)
+            self._commanded += elapsed * self._last[1]
+            self._applied += elapsed * self._last[2]
+        self._last = (time, np.array(record.command.velocity), record.walking.applied_velocity)
         if time < WARM_UP:
             self._steps = steps
             return
@@ -94,7 +94,7 @@ class StrideMeter:
 
     def _start(self, time: float, pose: Array, steps: int) -> None:
         self._begin, self._steps = (time, pose), steps
-        self._asked, self._given = np.zeros(3), np.zeros(3)
+        self._commanded, self._applied = np.zeros(3), np.zeros(3)
 
     def _finish(self, time: float, pose: Array) -> None:
         assert self._begin is not None
@@ -103,8 +103,8 @@ class StrideMeter:
         self.strides.add(
             took,
             mean_velocity(start, pose, took),
-            asked=self._asked / took,
-            given=self._given / took,
+            commanded=self._commanded / took,
+            applied=self._applied / took,
         )
 
 

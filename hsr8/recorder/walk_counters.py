@@ -5,7 +5,7 @@ from math import inf
 from typing import Protocol
 
 from hsr8.recorder.time_histogram import TimeHistogram
-from walking.admission import Limit
+from walking.command_limits import Limit
 
 ROUNDING = 1e-9  # of a ZMP on the edge of the sole [m]
 

@@ -194,8 +194,8 @@ def footsteps(axes: Axes, table: WalkingTable) -> None:
 def velocity(axes: Axes, table: WalkingTable, component: int) -> None:
     """Velocity asked, given and achieved over one stride; component 0 vx, 1 vy, 2 wz."""
     name = ("vx", "vy", "wz")[component]
-    axes.plot(table.time, table[f"asked_{name}"], color=INK, lw=0.9, ls="--", label="asked")
-    axes.plot(table.time, table[f"given_{name}"], color=ORANGE, lw=1.3, label="given")
+    axes.plot(table.time, table[f"commanded_{name}"], color=INK, lw=0.9, ls="--", label="commanded")
+    axes.plot(table.time, table[f"applied_{name}"], color=ORANGE, lw=1.3, label="applied")
     time, achieved = achieved_velocity(table)
     if len(time):
         axes.plot(time, achieved[:, component], color=BLUE, lw=1.3, label="achieved")

@@ -196,7 +196,7 @@ def _record(layout, time, pose=(0.0, 0.0, 0.0), *, contacts=(), fallen=False, fr
             phase=Phase.LEFT_SUPPORT if int(time / 0.34) % 2 else Phase.RIGHT_SUPPORT,
             odometry=Odometry(x, y, yaw, np.zeros((3, 3))),
             camera=HeadCameraPose(ROTATION, np.array([0.0, 0.0, 0.47]), 0.0, -0.3),
-            given=np.array([0.2, 0.0, 0.0]),
+            applied_velocity=np.array([0.2, 0.0, 0.0]),
             footsteps=(
                 Foothold(True, x, y + 0.035, yaw),
                 Foothold(False, x + 0.05, y - 0.035, yaw),

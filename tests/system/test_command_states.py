@@ -25,11 +25,11 @@ def test_footsteps_that_change_in_mid_swing_are_walked_and_accounted_for(simulat
         duration=STAND + STRETCH * COUNT + 1.2,
     )
     walking = [record.walking for record in recorded.records]
-    reports = [state.admission for state in walking]
+    reports = [state.command_limits for state in walking]
     assert not any(state.fallen for state in walking)
     assert max(np.hypot(state.roll, state.pitch) for state in walking) < 0.15
     assert walking[-1].step_count > 6
     assert str(walking[-1].phase) == "standing"
-    assert {r.asked for r in reports if isinstance(r.asked, CommandState)} == set(states)
-    assert all(r.given == r.asked for r in reports if not r.altered)
-    assert 0.1 < np.mean([r.altered for r in reports]) < 0.9
+    assert {r.commanded for r in reports if isinstance(r.commanded, CommandState)} == set(states)
+    assert all(r.applied == r.commanded for r in reports if not r.limited)
+    assert 0.1 < np.mean([r.limited for r in reports]) < 0.9

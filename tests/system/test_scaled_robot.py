@@ -15,8 +15,8 @@ from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.robot_measures import HSR_VIII
+from walking.scaling import parameters_for, scale_parameters
 from walking.sensing import BodySensors
-from walking.similarity import carried, parameters_for
 
 PADS = [f"{side}_sole_{pad}_force" for side in "lr" for pad in ("fl", "fr", "bl", "br")]
 
@@ -72,7 +72,7 @@ def walk(size, folder, command, seconds, parameters=None):
     body = Body(size, folder)
     robot = body.robot
     engine = WalkingEngine(robot, parameters_for(robot, parameters))
-    own, tilt = carried(command, HSR_VIII, robot.measures()), 0.0
+    own, tilt = scale_parameters(command, HSR_VIII, robot.measures()), 0.0
     for _ in range(round(seconds * sqrt(size) / CONTROL_PERIOD)):
         body.apply(engine.step(body.sense(), own, HeadTarget()))
         tilt = max(tilt, body.tilt)

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from walking.dimension import (
     ACCELERATION,
     CHANGE_WEIGHT,
+    DECAY_PER_TICK,
     DIFFUSION,
+    GAIN_PER_TICK,
     HEIGHT,
-    LEFT_PER_TICK,
     LENGTH,
     NUMBER,
     PER_LENGTH,
@@ -21,7 +22,6 @@ from walking.dimension import (
     SOLE_SPEED,
     SPEED,
     STANCE,
-    TAKEN_PER_TICK,
     TIME,
     Dimension,
 )
@@ -52,33 +52,33 @@ def test_units_are_those_of_the_laws():
 
 @given(DIMENSION, DIMENSION, ROBOT, ROBOT)
 def test_a_product_is_carried_as_its_factors(one, other, old, new):
-    whole = (one * other).carry(6.0, old, new)
-    assert whole == pytest.approx(one.carry(2.0, old, new) * other.carry(3.0, old, new))
+    whole = (one * other).scale(6.0, old, new)
+    assert whole == pytest.approx(one.scale(2.0, old, new) * other.scale(3.0, old, new))
 
 
-@pytest.mark.parametrize("rule", [LENGTH, RATE, LEFT_PER_TICK, TAKEN_PER_TICK])
+@pytest.mark.parametrize("rule", [LENGTH, RATE, DECAY_PER_TICK, GAIN_PER_TICK])
 @given(ROBOT, ROBOT)
 def test_the_way_leads_back_and_over_a_third_robot(rule, old, new):
-    there = rule.carry(0.3, old, new)
-    assert rule.carry(there, new, old) == pytest.approx(0.3)
-    between = rule.carry(0.3, old, HSR_VIII)
-    assert rule.carry(between, HSR_VIII, new) == pytest.approx(there)
+    there = rule.scale(0.3, old, new)
+    assert rule.scale(there, new, old) == pytest.approx(0.3)
+    between = rule.scale(0.3, old, HSR_VIII)
+    assert rule.scale(between, HSR_VIII, new) == pytest.approx(there)
 
 
 @given(ROBOT)
 def test_the_same_robot_keeps_every_bit(robot):
-    for rule in (NUMBER, LENGTH, LEFT_PER_TICK, TAKEN_PER_TICK):
-        assert rule.carry(0.37, robot, robot) == 0.37
+    for rule in (NUMBER, LENGTH, DECAY_PER_TICK, GAIN_PER_TICK):
+        assert rule.scale(0.37, robot, robot) == 0.37
 
 
 @given(ROBOT, ROBOT)
 def test_a_number_is_the_same_for_every_robot(old, new):
-    assert NUMBER.carry(0.37, old, new) == 0.37
+    assert NUMBER.scale(0.37, old, new) == 0.37
 
 
 @pytest.mark.parametrize("slower", [0.5, 3.0])
 def test_as_much_is_left_after_the_same_phase_of_the_gait(slower):
     other = replace(HSR_VIII, time=slower * HSR_VIII.time)
-    left = LEFT_PER_TICK.carry(0.9, HSR_VIII, other)
+    left = DECAY_PER_TICK.scale(0.9, HSR_VIII, other)
     assert left ** (40 * slower) == pytest.approx(0.9**40)
-    assert TAKEN_PER_TICK.carry(0.1, HSR_VIII, other) == pytest.approx(1.0 - left, rel=1e-12)
+    assert GAIN_PER_TICK.scale(0.1, HSR_VIII, other) == pytest.approx(1.0 - left, rel=1e-12)

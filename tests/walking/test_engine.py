@@ -273,6 +273,6 @@ def test_without_disturbance_the_measured_motion_is_the_planned(robot, ideal_bod
 
 def test_the_limits_are_those_of_the_report(robot, ideal_body):
     def watch(engine, _k):
-        assert engine.limits == engine.admission.limits
+        assert engine.limits == engine.command_limits.limits
 
     run(robot, ideal_body, twists, 2.0, None, watch)

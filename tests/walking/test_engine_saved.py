@@ -44,4 +44,4 @@ def test_a_saved_engine_continues_bit_for_bit(robot, ideal_body, generator, save
     one, other = saved.state(), kept.state()
     assert (one.zmp == other.zmp).all()
     assert one.footsteps == other.footsteps
-    assert one.admission == other.admission
+    assert one.command_limits == other.command_limits

@@ -6,8 +6,8 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from walking.admission import AdmissionReport, Limit
 from walking.command import HeadTarget, VelocityCommand
+from walking.command_limits import CommandLimits, Limit
 from walking.engine import WalkingEngine
 from walking.get_up.get_up import Outcome
 from walking.parameters import GetUpParameters, WalkingParameters
@@ -60,9 +60,9 @@ def test_a_fallen_robot_gets_up_or_gives_up(robot, ideal_body):
     assert walker.state().phase is Phase.GETTING_UP
     assert walker.state().fallen
     assert walker.limits == (Limit.FALLEN,)
-    assert walker.admission == AdmissionReport(FORWARD, VelocityCommand(), walker.limits)
-    assert walker.state().admission == walker.admission
-    assert not walker.state().given.any()
+    assert walker.command_limits == CommandLimits(FORWARD, VelocityCommand(), walker.limits)
+    assert walker.state().command_limits == walker.command_limits
+    assert not walker.state().applied_velocity.any()
     fall(walker, ideal_body, 1600)
     assert walker.state().phase is Phase.FALLEN
 

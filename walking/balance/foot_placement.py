@@ -1,8 +1,8 @@
 """Foot placement: where the swing foot lands and when, by plan or to catch the body."""
 
-from walking.admission import Limit
-from walking.balance.catching import CatchingPendulum
+from walking.balance.capture_step import CapturePendulum
 from walking.balance.stabilizer import Capture, Stabilizer
+from walking.command_limits import Limit
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL, Strides, Velocity
@@ -27,10 +27,10 @@ class FootPlacement:
         planner: knows what is in reach.
         gait: holds footholds and times.
         stabilizer: knows what the ankles cannot hold.
-        catching: the pendulum, and that of the plan while the body is being caught.
+        pendulum: of the body, and that of the plan during a capture step.
 
     Attributes:
-        given: velocity that the footsteps really walk (vx, vy, wz)
+        applied: velocity that the footsteps follow (vx, vy, wz)
             [m/s, m/s, rad/s].
         bound: constraints that altered the last tick's wish.
         moved: by how much balance moves the landing [m].
@@ -45,16 +45,16 @@ class FootPlacement:
         gait: Gait,
         *,
         stabilizer: Stabilizer,
-        catching: CatchingPendulum,
+        pendulum: CapturePendulum,
     ) -> None:
         self._lipm = lipm
         self._generator = generator
         self._planner = planner
         self._gait = gait
         self._stabilizer = stabilizer
-        self._catching = catching
+        self._pendulum = pendulum
         self._transition = Transition(gait, generator)
-        self.given: Velocity = STILL
+        self.applied: Velocity = STILL
         self.bound: list[Limit] = []
         self.moved = NOT_MOVED
         self.moving = False
@@ -117,22 +117,22 @@ class FootPlacement:
         """Reference of the plan that the generator admits, and the landing in it."""
         gait, transition = self._gait, self._transition
         if not self._selects:
-            self.given = velocity
+            self.applied = velocity
             transition.skip(wish, moving=self.moving)
             landing = gait.nominal(wish) if gait.adjustable else gait.landing
             return gait.plan(landing, wish, moving=self.moving), landing
-        catching, clock = self._catching, gait.clock
+        pendulum, clock = self._pendulum, gait.clock
         ramps = transition.admit(
-            catching.planned, region, wish, moving=self.moving, caught=catching.caught
+            pendulum.planned, region, wish, moving=self.moving, off_plan=pendulum.off_plan
         )
         share = transition.share
         if share < 1.0:
             if gait.clock != clock or self._differs(wish):
                 self.bound.append(Limit.ZMP_REGION)
-            a, b, c = (g + share * (v - g) for g, v in zip(self.given, velocity, strict=True))
-            self.given = (a, b, c)
+            a, b, c = (g + share * (v - g) for g, v in zip(self.applied, velocity, strict=True))
+            self.applied = (a, b, c)
         else:
-            self.given = velocity
+            self.applied = velocity
         return ramps, transition.landing
 
     def _differs(self, wish: Strides) -> bool:
@@ -144,19 +144,19 @@ class FootPlacement:
 
     def _catch(self, landing: Foothold, ramps: Ramps, wish: Strides, error: Point) -> Ramps:
         """Aim at the landing that catches the body; the reference that goes with it."""
-        gait, caught = self._gait, landing
+        gait, capture_landing = self._gait, landing
         capture = self._capture(landing, ramps, error)
         if capture and gait.hasten(capture.ticks, capture.landing):
             # The plan was made for other times.
-            self._catching.give_up()
+            self._pendulum.reset_plan()
             ramps = gait.plan(landing, wish, moving=self.moving)
             capture = self._capture(landing, ramps, error)
         if capture and not gait.double:
-            caught = capture.landing
-            self.moved = (caught.x - landing.x, caught.y - landing.y)
-        gait.aim(caught)
+            capture_landing = capture.landing
+            self.moved = (capture_landing.x - landing.x, capture_landing.y - landing.y)
+        gait.aim(capture_landing)
         same = self._planner.same
-        if gait.hurried or not same(caught, landing):
+        if gait.hurried or not same(capture_landing, landing):
             self.bound.append(Limit.BALANCE)
         elif Limit.ZMP_REGION not in self.bound and not same(gait.nominal(wish), gait.landing):
             self.bound.append(Limit.LANDING_SPEED)
@@ -167,12 +167,12 @@ class FootPlacement:
     def _capture(self, landing: Foothold, ramps: Ramps, error: Point) -> Capture | None:
         """What the footholds of the plan do not catch of the measured DCM, if anything."""
         gait, w = self._gait, self._lipm.omega
-        pendulum = self._catching.state
+        pendulum = self._pendulum.state
         support = gait.footholds[gait.support]
         if gait.hurried:
             x, y = dcm_reference(self._lipm, ramps)
         else:
-            x, y = self._generator.planned_dcm(self._catching.planned, ramps)
+            x, y = self._generator.planned_dcm(self._pendulum.planned, ramps)
         off = (
             pendulum.x + pendulum.vx / w + error[0] - x,
             pendulum.y + pendulum.vy / w + error[1] - y,

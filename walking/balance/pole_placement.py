@@ -4,7 +4,7 @@
 def dcm_gain(omega: float, lag: float, rate: float) -> float:
     """ZMP moved per error of the DCM so that the error fades with e^{-rate t}.
 
-    The error follows ξ' = ω (ξ - p), the ZMP follows the ankles' set-points u with the servo's
+    The error follows ξ' = ω (ξ - p), the ZMP follows the ankles' setpoints u with the servo's
     lag, p' = (u - p) / T (Morisawa et al., Humanoids 2014). Of the two poles of u = k ξ their
     sum is ω - 1/T whatever the gain; one is placed at `-rate`, which leaves the other one to the
     servo. Without a lag, this is the usual 1 + rate / ω.

@@ -3,7 +3,7 @@
 from math import cos, exp, sin
 
 from walking.balance.pole_placement import dcm_gain
-from walking.balance.step_timing import catching_time
+from walking.balance.step_timing import capture_time
 from walking.body.robot_model import RobotModel
 from walking.clamp import clamp
 from walking.dead_zone import dead_zone
@@ -78,9 +78,9 @@ class Stabilizer:
     ) -> Capture:
         """Landing and its time that catch what the ankles do not hold of a DCM error.
 
-        Left alone, the error grows by e^{ωt} until touch-down; moving the foothold by that
+        Left alone, the error grows by e^{ωt} until touchdown; moving the foothold by that
         much puts the foot under it (Pratt et al., Humanoids 2006). Where that is out of reach
-        the foot has to be down sooner, see `catching_time`.
+        the foot has to be down sooner, see `capture_time`.
 
         Args:
             planner: knows what is in reach.
@@ -98,18 +98,18 @@ class Stabilizer:
         dx = clamp(growth * x, p.capture_forward)
         dy = clamp(growth * y, p.capture_side)
         c, s = cos(support.yaw), sin(support.yaw)
-        caught = planner.reachable(support, landing, c * dx - s * dy, s * dx + c * dy)
+        reached = planner.reachable(support, landing, c * dx - s * dy, s * dx + c * dy)
         planned = time = ticks_left * CONTROL_PERIOD
         for off, room, ahead, reach in zip(
             self._in_foot(support, error),
             self._room,
             self._in_foot(support, reference),
-            self._in_foot(support, (caught.x - landing.x, caught.y - landing.y)),
+            self._in_foot(support, (reached.x - landing.x, reached.y - landing.y)),
             strict=True,
         ):
             missing = dead_zone(off, room)
-            time = min(time, catching_time(self._omega, planned, missing, ahead, reach))
-        return Capture(caught, int(time / CONTROL_PERIOD + ROUNDING))
+            time = min(time, capture_time(self._omega, planned, missing, ahead, reach))
+        return Capture(reached, int(time / CONTROL_PERIOD + ROUNDING))
 
     @staticmethod
     def _in_foot(foot: Foothold, vector: tuple[float, float]) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from math import exp, log
 
 
-def catching_time(omega: float, time: float, off: float, ahead: float, reach: float) -> float:
+def capture_time(omega: float, time: float, off: float, ahead: float, reach: float) -> float:
     """Time by which the swing foot has to carry, where its reach does not do until `time`.
 
     A DCM `ahead` of the ZMP by plan and `off` the plan is `(ahead + off) e^{ωt}` from the ZMP

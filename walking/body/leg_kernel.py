@@ -283,7 +283,7 @@ def offsets(
     ankles: Array,
     found: Array,
 ) -> None:
-    """Set-point offsets that make up for load and lag of the servos.
+    """Setpoint offsets that make up for load and lag of the servos.
 
     Args:
         forces: generalised, that the motion takes with nothing touching the feet: force [N] and
@@ -334,7 +334,7 @@ def offsets(
 
 @njit(cache=True)
 def ankle(task: AnkleTask, index: int, load: float, ankles: Array) -> Point:
-    """Set-points of pitch and roll that move the ZMP of a foot.
+    """Setpoints of pitch and roll that move the ZMP of a foot.
 
     Args:
         task: what the ankles are to do.

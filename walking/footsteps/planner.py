@@ -2,10 +2,10 @@
 
 from math import cos, sin, sqrt
 
-from walking.admission import Limit
 from walking.body.sole import Sole
 from walking.clamp import clamp
 from walking.command import CommandState
+from walking.command_limits import Limit
 from walking.foothold import Foothold
 from walking.footsteps import stride_kernel
 from walking.footsteps.foothold_kernel import Chain

@@ -1,7 +1,7 @@
 """From commands to what the footsteps obey: limits, slew, and the account of both."""
 
-from walking.admission import AdmissionReport, Limit
 from walking.command import Command, CommandState, VelocityCommand
+from walking.command_limits import CommandLimits, Limit
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL, Strides, Timing, Velocity
 from walking.footsteps.velocity import VelocitySlew, limited, speed_limits
@@ -51,7 +51,7 @@ class Steering:
         self._limits = limits
         self._selective = selective
         self._slew = VelocitySlew(limits)
-        self._asked: Command = VelocityCommand()
+        self._command: Command = VelocityCommand()
         self._state: CommandState | None = None
         self._bound: list[Limit] = []
         self._steady: Steady | None = None
@@ -82,7 +82,7 @@ class Steering:
             settled: whether the robot may move at all yet.
             balanced: whether the motion may change.
         """
-        self._asked, self._bound = command, []
+        self._command, self._bound = command, []
         steady, self._steady = self._steady, None
         if not balanced:
             self._hold(command)
@@ -126,26 +126,26 @@ class Steering:
         return self._planner.explicit(self._state, correction[2] * time)[0]
 
     def report(
-        self, binding: list[Limit], given: Velocity, strides: Strides | None, timing: Timing
-    ) -> AdmissionReport:
+        self, binding: list[Limit], applied: Velocity, strides: Strides | None, timing: Timing
+    ) -> CommandLimits:
         """Account of this tick.
 
         Args:
             binding: limits met after the command had become a wish.
-            given: velocity that the footsteps obey.
+            applied: velocity that the footsteps follow.
             strides: that the footsteps obey in place of the wished ones, if others.
             timing: that the footsteps obey.
         """
-        bound, asked = (*self._bound, *binding), self._asked
+        bound, commanded = (*self._bound, *binding), self._command
         if not bound:
-            return AdmissionReport(asked, asked, ())
+            return CommandLimits(commanded, commanded, ())
         if self._state is None:
             if not STRIDE_LIMITS.isdisjoint(bound):
                 time = timing.duration
-                given = self._planner.velocity(self._planner.strides(given, time), time)
-            return AdmissionReport(asked, VelocityCommand(*given), bound)
+                applied = self._planner.velocity(self._planner.strides(applied, time), time)
+            return CommandLimits(commanded, VelocityCommand(*applied), bound)
         obeyed = strides or self._planner.explicit(self._state, 0.0)[0]
-        return AdmissionReport(asked, self._planner.command_state(obeyed, timing), bound)
+        return CommandLimits(commanded, self._planner.command_state(obeyed, timing), bound)
 
     def _hold(self, command: Command) -> None:
         """Nothing changes; that alters a command unless it is the one already obeyed."""
@@ -192,12 +192,12 @@ class Steering:
             self._slew.start(STILL)
         wanted = self._slew.follow(dared)
         bound.extend(self._speed_limits(command))
-        given = self.velocity
-        self.timing = self._planner.cadence(given)
+        velocity = self.velocity
+        self.timing = self._planner.cadence(velocity)
         if self._differs(wanted):
             bound.append(Limit.ACCELERATION)
-        bound.extend(self._planner.stride_limits(given, self.timing.duration))
-        if before is None and given == was:
+        bound.extend(self._planner.stride_limits(velocity, self.timing.duration))
+        if before is None and velocity == was:
             self._steady = Steady(command, share, bound)
 
     def _follow_state(self, command: CommandState) -> None:
@@ -208,5 +208,5 @@ class Steering:
         self._bound.extend(late)
         time = self.timing.duration
         # A velocity command that comes next sets out from here.
-        given = self._planner.command_state(strides, self.timing)
-        self._slew.start((given.forward / time, 0.0, given.direction / time))
+        start = self._planner.command_state(strides, self.timing)
+        self._slew.start((start.forward / time, 0.0, start.direction / time))

@@ -2,9 +2,9 @@
 
 from math import sqrt
 
-from walking.admission import Limit
 from walking.clamp import clamp
 from walking.command import VelocityCommand
+from walking.command_limits import Limit
 from walking.footsteps.stride import STILL, Velocity
 from walking.parameters import CONTROL_PERIOD, LimitParameters
 

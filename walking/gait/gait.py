@@ -311,7 +311,7 @@ class Gait:
         rows[0], rows[1:] = support.row, self._future
         return rows
 
-    def touch_down(self) -> None:
+    def touchdown(self) -> None:
         """The swing foot has met the floor early: leave it where it is."""
         self.held = True
         self.landing = Foothold(self.swing == 0, *self.feet[self.swing, :HEIGHT].tolist())

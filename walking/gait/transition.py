@@ -82,7 +82,7 @@ class Transition:
         wish: Strides,
         *,
         moving: bool,
-        caught: bool = False,
+        off_plan: bool = False,
     ) -> Ramps:
         """Reference of the admitted plan; the gait has its times.
 
@@ -91,12 +91,12 @@ class Transition:
             region: where the ZMP may be in this tick.
             wish: strides of the wanted plan.
             moving: whether the wanted plan goes on walking.
-            caught: whether the swing foot is on its way to catch the body, beside this plan.
+            off_plan: whether the swing foot makes a capture step that leaves this plan.
         """
         gait = self._gait
         continues = self._stepping and gait.stepping and gait.completed == self._footstep
         self._footstep = gait.completed
-        if not continues or (gait.held and not caught):
+        if not continues or (gait.held and not off_plan):
             self.landing = gait.landing
         aimed = gait.aimed(self.landing, gait.nominal(wish)) if gait.adjustable else self.landing
         ramps = gait.plan(aimed, wish, moving=moving)

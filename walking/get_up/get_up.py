@@ -37,7 +37,7 @@ class GetUp:
     Args:
         robot: limits and ready posture.
         parameters: speed, patience and number of attempts.
-        angles: set-points at the moment of the fall (26,) [rad].
+        angles: setpoints at the moment of the fall (26,) [rad].
         motions: key postures.
 
     Attributes:
@@ -75,7 +75,7 @@ class GetUp:
         """One control tick.
 
         Returns:
-            set-points of all joints.
+            setpoints of all joints.
         """
         w, x, y, z = sensors.orientation.tolist()
         gx, gy, gz = sensors.gyro.tolist()

@@ -1,4 +1,4 @@
-"""Joint set-points on their way from one posture to the next."""
+"""Joint setpoints on their way from one posture to the next."""
 
 from math import ceil
 
@@ -21,7 +21,7 @@ class PostureTrack:
         angles: where the joints start (26,) [rad].
 
     Attributes:
-        angles: present set-points (26,) [rad].
+        angles: present setpoints (26,) [rad].
     """
 
     def __init__(self, robot: RobotModel, speed: float, angles: Array) -> None:
@@ -51,7 +51,7 @@ class PostureTrack:
         self._last = self._ticks + round(hold / CONTROL_PERIOD)
 
     def advance(self) -> Array:
-        """Set-points of the next tick (26,) [rad]."""
+        """Setpoints of the next tick (26,) [rad]."""
         self._tick += 1
         share = minimum_jerk(self._tick / self._ticks)
         self.angles = self._origin + share * (self._goal - self._origin)

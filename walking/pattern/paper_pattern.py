@@ -8,7 +8,7 @@ convergent one ζ = x - x'/ω obey
     ξ(τ) = e^{ωτ} ξ(0) - A,    A = ∫ ω e^{ω(τ-s)} p(s) ds
     ζ(τ) = e^{-ωτ} ζ(0) + B,   B = ∫ ω e^{-ω(τ-s)} p(s) ds
 
-so a walking state wanted at touch-down is two linear equations in the ZMP function p. For
+so a walking state wanted at touchdown is two linear equations in the ZMP function p. For
 |p| ≤ P the set of reachable (A, B) is convex and its boundary is reached by one switch from
 +P to -P or back; the function of least peak for given (A, B) is therefore that boundary
 function scaled down, and the command is feasible exactly if the scale is at most one.

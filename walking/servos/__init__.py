@@ -1,1 +1,1 @@
-"""Set-points: pattern and feet become joint angles."""
+"""Setpoints: pattern and feet become joint angles."""

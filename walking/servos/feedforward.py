@@ -1,4 +1,4 @@
-"""Set-point offsets that make up for the compliance of the position servos."""
+"""Setpoint offsets that make up for the compliance of the position servos."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +47,7 @@ class FeedForward:
         *,
         task: AnkleTask,
     ) -> Array:
-        """Offsets of all set-points (26,) [rad].
+        """Offsets of all setpoints (26,) [rad].
 
         The floor gives all that the motion of the whole body takes, by inverse dynamics; the
         legs share it, and each foot has it under its own sole as far as the ZMP allows.

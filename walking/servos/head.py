@@ -28,7 +28,7 @@ class Head:
         self._law = np.array([parameters.max_rate, parameters.max_acceleration, CONTROL_PERIOD])
 
     def advance(self, target: HeadTarget) -> tuple[float, float]:
-        """Set-points of pan and tilt of this tick [rad]."""
+        """Setpoints of pan and tilt of this tick [rad]."""
         return head_kernel.advance(
             self._position, self._velocity, (target.pan, target.tilt), self._limits, self._law
         )

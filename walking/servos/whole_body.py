@@ -95,7 +95,7 @@ class WholeBody:
         )
         self.pelvis, self.turn_rate = pelvis, (pelvis[2] - before) / CONTROL_PERIOD
         w2, (left, right) = self._w2, gait.footholds
-        set_points = self._feedforward.offsets(
+        setpoints = self._feedforward.offsets(
             position,
             pelvis,
             gait.spots,
@@ -104,4 +104,4 @@ class WholeBody:
             task=((left.yaw, right.yaw), zmp_shift, gyro),
         )
         self.com = self._robot.moved_com()
-        return JointTargets(position=position, offset=set_points)
+        return JointTargets(position=position, offset=setpoints)

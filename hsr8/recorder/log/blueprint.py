@@ -57,7 +57,7 @@ def _walking() -> rrb.Container:
         ),
     )
     texts = rrb.Tabs(
-        rrb.TextLogView(name="Altered commands", origin="/admission"),
+        rrb.TextLogView(name="Limited commands", origin="/command_limits"),
         rrb.TextLogView(name="Events", origin="/events"),
     )
     zmp = [
@@ -72,9 +72,9 @@ def _walking() -> rrb.Container:
         *(
             rrb.TimeSeriesView(name=name, origin=f"/plots/{entity}", time_ranges=ranges)
             for name, entity, ranges in (
-                ("Forward", "speed_forward", None),
-                ("Left", "speed_left", None),
-                ("Turn", "speed_turn", None),
+                ("Forward", "speed_vx", None),
+                ("Left", "speed_vy", None),
+                ("Turn", "speed_wz", None),
                 ("Knee", "torque_knee", AROUND),
                 ("Hip", "torque_hip", AROUND),
                 ("Ankle", "torque_ankle", AROUND),
@@ -147,7 +147,7 @@ def _overview(field_size: float, pictures: bool) -> rrb.Container:
                 ("Pose error", "pose_error"),
                 ("ZMP left [m]", "zmp_left"),
                 ("ZMP forward [m]", "zmp_forward"),
-                ("Speed", "speed_forward"),
+                ("Speed", "speed_vx"),
                 ("Tilt", "tilt"),
                 ("Clearance", "clearance"),
             )

@@ -15,7 +15,7 @@ from hsr8.recorder.log.plot_layer import BLUE, GREEN, GREY, ORANGE, RED, SAND, V
 from hsr8.recorder.record import TickRecord
 from hsr8.recorder.run.walking_table import LEG_JOINTS, LIGHT, OdometryToWorld
 from navigation.angles import wrap
-from walking.admission import Limit
+from walking.command_limits import Limit
 from walking.state import WalkingState
 
 Array = NDArray[np.float64]
@@ -73,7 +73,7 @@ class WalkLayer:
             Curves(
                 stream,
                 f"/plots/speed_{name.split()[0]}/commanded",
-                ((f"asked, {name}", GREY), (f"given, {name}", ORANGE)),
+                ((f"commanded, {name}", GREY), (f"applied, {name}", ORANGE)),
             )
             for name in speeds
         )
@@ -86,7 +86,7 @@ class WalkLayer:
         self._torque = tuple(self._torque_curves(stream, group) for group in TORQUES)
         self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
         self._phase = Lane(stream, "/state/gait", GAIT)
-        self._said = Channel(stream, "/admission", rr.TextLog.columns)
+        self._said = Channel(stream, "/command_limits", rr.TextLog.columns)
         self._meter = _Speedometer()
         self._stood: tuple[str, int] | None = None
         self._told: tuple[Limit, ...] = ()
@@ -123,9 +123,9 @@ class WalkLayer:
         pins = np.full((len(times), len(POINTS), 3), PIN)
         pins[..., :2] = points
         self._points.add_rows(times, [len(POINTS)] * len(times), origins=pins.reshape(-1, 3))
-        asked = np.array([record.command.velocity for record in records])
-        given = np.array([walking.given for walking in walks])
-        for curves, a, g in zip(self._commanded, asked.T, given.T, strict=True):
+        commanded = np.array([record.command.velocity for record in records])
+        applied = np.array([walking.applied_velocity for walking in walks])
+        for curves, a, g in zip(self._commanded, commanded.T, applied.T, strict=True):
             curves.add(times, np.column_stack([a, g]))
         torque = np.array([truth.joint_torque for truth in truths])
         for curves, columns in self._torque:
@@ -133,7 +133,7 @@ class WalkLayer:
         self._tilt.add(times, np.degrees([(walking.roll, walking.pitch) for walking in walks]))
         for record, area in zip(records, np.split(support, np.cumsum(corners[:-1])), strict=True):
             self._add_gait(record.time, record.walking, area)
-            self._tell_admission(record)
+            self._log_limits(record)
 
     def watch(self, record: TickRecord) -> None:
         """Take every record: what is too short for the rate of the plots."""
@@ -196,16 +196,17 @@ class WalkLayer:
             strip[:, :2] = *support, support[0]
             self._support.add(time, strips=[strip])
 
-    def _tell_admission(self, record: TickRecord) -> None:
-        admission = record.walking.admission
-        limits = () if admission is None else admission.limits
+    def _log_limits(self, record: TickRecord) -> None:
+        report = record.walking.command_limits
+        limits = () if report is None else report.limits
         news = tuple(dict.fromkeys(limit for limit in limits if limit is not ROUTINE))
-        if news == self._told or admission is None:
+        if news == self._told or report is None:
             return
         self._told = news
-        asked, given = admission.asked.velocity, record.walking.given.tolist()
+        commanded = report.commanded.velocity
+        applied = record.walking.applied_velocity.tolist()
         text = "obeyed" if not news else ", ".join(news)
-        said = f"{text}: asked {_words(asked)}, given {_words(given)}"
+        said = f"{text}: commanded {_words(commanded)}, applied {_words(applied)}"
         self._said.add(record.time, text=[said], level=["WARN" if news else "INFO"])
 
 

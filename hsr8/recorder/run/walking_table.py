@@ -21,8 +21,8 @@ from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import Truth
-from walking.admission import Limit
 from walking.body.joints import JOINT_NAMES
+from walking.command_limits import Limit
 from walking.phase import Phase
 from walking.state import WalkingState
 
@@ -35,7 +35,7 @@ LIMITS = tuple(Limit)
 COLUMNS = (
     "phase",
     "steps",
-    *(f"{kind}_{c}" for kind in ("asked", "given") for c in ("vx", "vy", "wz")),
+    *(f"{kind}_{c}" for kind in ("commanded", "applied") for c in ("vx", "vy", "wz")),
     *(f"robot_{c}" for c in ("x", "y", "yaw")),
     *(
         f"{name}_{c}"
@@ -238,7 +238,7 @@ def _values(records: Sequence[TickRecord]) -> Array:
         [
             [(PHASES.index(walking.phase), walking.step_count) for walking in walks],
             [record.command.velocity for record in records],
-            [walking.given for walking in walks],
+            [walking.applied_velocity for walking in walks],
             [truth.robot for truth in truths],
             there.point(np.array([walking.zmp for walking in walks])),
             np.where(pressed, [truth.zmp for truth in truths], np.nan),
@@ -255,7 +255,7 @@ def _values(records: Sequence[TickRecord]) -> Array:
 
 def _bound(walking: WalkingState) -> int:
     """The constraints that altered the command, a bit each."""
-    limits = walking.admission.limits if walking.admission is not None else ()
+    limits = walking.command_limits.limits if walking.command_limits is not None else ()
     return sum({1 << LIMITS.index(limit) for limit in limits})
 
 

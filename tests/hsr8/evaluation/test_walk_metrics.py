@@ -9,8 +9,8 @@ from hsr8.evaluation.walk_metrics import WalkMetrics
 from hsr8.recorder.walk_counters import WalkCounters
 from hsr8.world.truth.saturation import Saturation
 from hsr8.world.truth.truth import ActivePush
-from walking.admission import Limit
 from walking.command import VelocityCommand
+from walking.command_limits import Limit
 from walking.phase import Phase
 
 STEP = 0.34
@@ -27,7 +27,7 @@ def integrated(start, velocity, time):
     return np.array([x, y, yaw + wz * time])
 
 
-def records(fake, velocity, duration, *, given=None, steps=True):
+def records(fake, velocity, duration, *, applied=None, steps=True):
     """An arc walked at `velocity`, the body swaying by 2 cm with the gait, over the wrap of yaw."""
     counters = WalkCounters()
     for k in range(round(duration * 50) + 1):
@@ -40,7 +40,7 @@ def records(fake, velocity, duration, *, given=None, steps=True):
             record.walking,
             step_count=int(time / STEP + 1e-9) if steps else 0,
             phase=Phase.DOUBLE_SUPPORT if steps else Phase.STANDING,
-            given=np.array(velocity if given is None else given),
+            applied_velocity=np.array(velocity if applied is None else applied),
         )
         yield replace(
             record, walking=walking, counters=counters, command=VelocityCommand(*velocity)
@@ -58,13 +58,15 @@ def results_of(stream):
 def test_the_sway_of_the_gait_is_no_velocity(fake, velocity):
     results = results_of(records(fake, velocity, 8.0))
     assert list(results["mean_velocity"].values()) == pytest.approx(velocity, abs=0.004)
-    assert list(results["velocity_error"]["asked"].values()) == pytest.approx([0] * 3, abs=0.004)
+    assert list(results["velocity_error"]["commanded"].values()) == pytest.approx(
+        [0] * 3, abs=0.004
+    )
     assert results["steps"] == 23
 
 
 def test_errors_are_signed_and_from_what_was_asked_and_given(fake):
-    stream = records(fake, (0.2, 0.0, 0.0), 8.0, given=(0.15, 0.0, 0.1))
-    error = results_of(stream)["velocity_error"]["given"]
+    stream = records(fake, (0.2, 0.0, 0.0), 8.0, applied=(0.15, 0.0, 0.1))
+    error = results_of(stream)["velocity_error"]["applied"]
     assert list(error.values()) == pytest.approx([0.05, 0.0, -0.1], abs=0.003)
 
 
@@ -73,7 +75,7 @@ def test_what_happens_in_the_first_seconds_does_not_count(fake):
         for record in stream:
             yield replace(record, command=VelocityCommand(9.0 if record.time < 2.98 else 0.2))
 
-    error = results_of(late(records(fake, (0.2, 0.0, 0.0), 8.0)))["velocity_error"]["asked"]
+    error = results_of(late(records(fake, (0.2, 0.0, 0.0), 8.0)))["velocity_error"]["commanded"]
     assert error["vx"] == pytest.approx(0.0, abs=0.003)
 
 

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import pytest
 
 from hsr8.recorder.walk_counters import WalkCounters
-from walking.admission import Limit
+from walking.command_limits import Limit
 
 
 def test_every_tick_is_counted_once_and_every_limit_that_bound_too():

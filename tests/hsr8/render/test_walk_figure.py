@@ -8,7 +8,7 @@ from hsr8.recorder.log.walk_layer import GAIT
 from hsr8.recorder.run.walking_table import COLUMNS, LEG_JOINTS, LIMITS, WalkingTable
 from hsr8.render import walk_panels
 from hsr8.render.walk_figure import TIME_PANELS, draw, save
-from walking.admission import Limit
+from walking.command_limits import Limit
 from walking.phase import Phase
 
 STEP, SPEED, TURN = 0.34, 0.2, 0.5

@@ -2,11 +2,11 @@
 
 import pytest
 
-from walking.admission import Limit
-from walking.balance.catching import CatchingPendulum
+from walking.balance.capture_step import CapturePendulum
 from walking.balance.foot_placement import FootPlacement
 from walking.balance.stabilizer import Stabilizer
 from walking.command import VelocityCommand
+from walking.command_limits import Limit
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.steering import Steering
@@ -39,10 +39,10 @@ class Pendulum:
         start = self.gait.plan(stance[1], self.planner.still, moving=False)[-1]
         state = PendulumState(start.bx, start.by, zmp_x=start.bx, zmp_y=start.by)
         self.steering = Steering(self.planner, parameters.limits, selective=made.selective)
-        self.catching = CatchingPendulum(lipm, made, self.gait, pattern.dcm_gain, state)
+        self.capture = CapturePendulum(lipm, made, self.gait, pattern.dcm_gain, state)
         stabilizer = Stabilizer(robot, parameters.stabilizer, lipm.omega)
         self.placement = FootPlacement(
-            lipm, made, self.planner, self.gait, stabilizer=stabilizer, catching=self.catching
+            lipm, made, self.planner, self.gait, stabilizer=stabilizer, pendulum=self.capture
         )
         self._first = first
 
@@ -57,9 +57,9 @@ class Pendulum:
         ramps = placement.decide(
             steering.wish(STILL), steering.velocity, error, region, moving=steering.moving
         )
-        self.catching.advance(ramps, placement.landing, region)
+        self.capture.advance(ramps, placement.landing, region)
         gait.advance(moving=placement.moving)
-        self.catching.touch_down()
+        self.capture.touchdown()
 
     def to_swing(self, command, phase=0.3):
         """Walk until a foot swings, some footsteps on."""
@@ -79,7 +79,7 @@ def test_a_steady_undisturbed_walk_is_as_it_is_wished(robot, generator):
         placement = walk.placement
         assert placement.bound == []
         assert placement.moved == NONE
-        assert placement.given == command.velocity
+        assert placement.applied == command.velocity
         assert placement.admitted is None
 
 
@@ -142,7 +142,7 @@ def test_mirrored_errors_move_mirrored_landings(robot, generator, velocity, erro
 
 def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, monkeypatch):
     walk = Pendulum(robot, "robust").to_swing(VelocityCommand(0.1))
-    slow, before = walk.gait.landing.x, walk.placement.given
+    slow, before = walk.gait.landing.x, walk.placement.applied
     generator, asked = walk.placement._generator, []
 
     def admits(*_):
@@ -155,7 +155,7 @@ def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, mon
         walk.steering.follow(fast, 1.0, settled=True, balanced=True)
     walk.tick(fast)
     half = [0.5 * (a + b) for a, b in zip(before, walk.steering.velocity, strict=True)]
-    assert walk.placement.given == pytest.approx(half)
+    assert walk.placement.applied == pytest.approx(half)
     assert Limit.ZMP_REGION in walk.placement.bound
     assert walk.placement.admitted is not None
     assert slow < walk.placement.landing.x < walk.gait.nominal(walk.steering.wish(STILL)).x

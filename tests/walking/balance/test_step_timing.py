@@ -5,7 +5,7 @@ from math import exp
 import numpy as np
 import pytest
 
-from walking.balance.step_timing import catching_time
+from walking.balance.step_timing import capture_time
 from walking.parameters import CONTROL_PERIOD
 from walking.pattern.lipm import Lipm
 
@@ -30,29 +30,27 @@ def test_it_is_the_last_tick_at_which_the_landing_does(off, ahead, reach):
         for k in range(round(planned / CONTROL_PERIOD) + 1)
         if np.sign(off) * landing_error(k * CONTROL_PERIOD, planned, off, ahead) <= abs(reach)
     ]
-    time = catching_time(OMEGA, planned, off, ahead, reach)
+    time = capture_time(OMEGA, planned, off, ahead, reach)
     assert int(time / CONTROL_PERIOD + 1e-6) == max(ticks, default=0)
 
 
 def test_a_landing_in_reach_keeps_its_time():
-    assert catching_time(OMEGA, 0.3, 0.01, 0.005, 0.2) == 0.3
-    assert catching_time(OMEGA, 0.3, 0.0, -0.02, 0.0) == 0.3
+    assert capture_time(OMEGA, 0.3, 0.01, 0.005, 0.2) == 0.3
+    assert capture_time(OMEGA, 0.3, 0.0, -0.02, 0.0) == 0.3
 
 
 def test_no_time_is_short_enough_for_a_fall_over_the_edge_that_the_landing_cannot_follow():
-    assert catching_time(OMEGA, 0.3, 0.05, -0.02, 0.01) == 0.0
-    assert catching_time(OMEGA, 0.3, 0.05, 0.0, -0.01) == 0.0
+    assert capture_time(OMEGA, 0.3, 0.05, -0.02, 0.01) == 0.0
+    assert capture_time(OMEGA, 0.3, 0.05, 0.0, -0.01) == 0.0
 
 
 def test_the_mirrored_fall_takes_the_same_time():
-    assert catching_time(OMEGA, 0.3, 0.06, 0.01, 0.1) == catching_time(
-        OMEGA, 0.3, -0.06, -0.01, -0.1
-    )
+    assert capture_time(OMEGA, 0.3, 0.06, 0.01, 0.1) == capture_time(OMEGA, 0.3, -0.06, -0.01, -0.1)
 
 
 def test_it_stays_the_same_instant_while_the_fall_goes_on():
     off, ahead, reach, planned = 0.06, 0.005, 0.12, 0.3
-    time = catching_time(OMEGA, planned, off, ahead, reach)
+    time = capture_time(OMEGA, planned, off, ahead, reach)
     growth = exp(OMEGA * 0.05)
-    later = catching_time(OMEGA, planned - 0.05, off * growth, ahead * growth, reach)
+    later = capture_time(OMEGA, planned - 0.05, off * growth, ahead * growth, reach)
     assert later == pytest.approx(time - 0.05)

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.admission import Limit
 from walking.body.sole import Sole
 from walking.command import CommandState
+from walking.command_limits import Limit
 from walking.foothold import Foothold
 from walking.footsteps.foothold_kernel import sequence
 from walking.footsteps.planner import FootstepPlanner

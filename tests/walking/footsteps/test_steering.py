@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.admission import Limit
 from walking.body.sole import Sole
 from walking.command import VelocityCommand
+from walking.command_limits import Limit
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.steering import STRIDE_LIMITS, Steering
 from walking.footsteps.stride import STILL
@@ -63,10 +63,10 @@ def test_a_command_is_reported_as_altered_if_and_only_if_it_is(walk, selective):
             at_rest = command != VelocityCommand() or steering.velocity == STILL
             assert bool(bound) is (error > 1e-9 or not at_rest)
             report = steering.report([], steering.velocity, None, steering.timing)
-            assert report.altered is bool(steering.bound)
+            assert report.limited is bool(steering.bound)
             if not STRIDE_LIMITS.isdisjoint(steering.bound):
                 continue
-            assert report.given.velocity == pytest.approx(steering.velocity, abs=1e-9)
+            assert report.applied.velocity == pytest.approx(steering.velocity, abs=1e-9)
 
 
 @given(walks)

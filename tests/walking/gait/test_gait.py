@@ -124,7 +124,7 @@ def test_early_contact_leaves_the_foot_where_it_is(gait):
     while gait.swing_phase < 0.7:
         tick(gait, FORWARD)
     x, height = gait.feet[1, [0, HEIGHT]].tolist()
-    gait.touch_down()
+    gait.touchdown()
     while gait.completed == 0:
         tick(gait, FORWARD)
     assert gait.footholds[1].x == pytest.approx(x)

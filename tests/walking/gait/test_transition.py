@@ -52,13 +52,13 @@ def setting(robot):
     return gait, generator, Transition(gait, generator), region
 
 
-def tick(setting, wish, *, caught=False, timing=None, moving=True):
+def tick(setting, wish, *, off_plan=False, timing=None, moving=True):
     gait, _, transition, region = setting
     transition.remember()
     if timing is not None:
         gait.retime(timing)
     state = PendulumState(0.0, 0.0)
-    return transition.admit(state, region, wish, moving=moving, caught=caught)
+    return transition.admit(state, region, wish, moving=moving, off_plan=off_plan)
 
 
 def test_an_admitted_change_is_made_at_once(setting):
@@ -163,7 +163,7 @@ def swinging(setting):
 def test_a_foot_that_has_met_the_floor_is_where_it_is(setting):
     gait, _, transition, _ = setting
     swinging(setting)
-    gait.touch_down()
+    gait.touchdown()
     tick(setting, FAST)
     assert transition.landing == gait.landing
 
@@ -173,6 +173,6 @@ def test_while_the_body_is_caught_the_plan_keeps_its_own_landing(setting):
     swinging(setting)
     kept = transition.landing
     gait.aim(Foothold(False, kept.x + 0.01, kept.y, 0.0))
-    gait.touch_down()
-    tick(setting, SLOW, caught=True)
+    gait.touchdown()
+    tick(setting, SLOW, off_plan=True)
     assert transition.landing == kept

@@ -1,4 +1,4 @@
-"""Set-points from posture to posture."""
+"""Setpoints from posture to posture."""
 
 import numpy as np
 import pytest

@@ -161,7 +161,7 @@ def test_the_zmp_is_in_the_support_polygon_between_ticks_with_a_new_command_in_e
                 assert (equations[:, :2] @ point + equations[:, 2]).max() < 1e-9
         before = gait._shift.end
         lost += engine._placement._generator._plan is None
-        changed += engine.admission.altered
+        changed += engine.command_limits.limited
     assert engine.state().step_count > 20
     assert lost == 0
     assert changed > 1000

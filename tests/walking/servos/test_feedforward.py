@@ -1,4 +1,4 @@
-"""Set-point offsets for load and lag."""
+"""Setpoint offsets for load and lag."""
 
 from copy import copy
 from dataclasses import replace

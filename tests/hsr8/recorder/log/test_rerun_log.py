@@ -18,8 +18,8 @@ from hsr8.recorder.log_level import LogLevel
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
 from navigation.parameters.gaze import GazeParameters
-from walking.admission import AdmissionReport, Limit
 from walking.command import VelocityCommand
+from walking.command_limits import CommandLimits, Limit
 
 
 @pytest.fixture(autouse=True)
@@ -259,19 +259,19 @@ def _values(path, entity, component="Scalars:scalars"):
 def test_pushes_and_altered_commands_are_logged_when_they_change(log, fake):
     path, listener = log
     asked, given = VelocityCommand(0.5), VelocityCommand(0.3)
-    altered = AdmissionReport(asked, given, (Limit.SPEED, Limit.LANDING_FROZEN))
-    routine = AdmissionReport(given, given, (Limit.LANDING_FROZEN,))
+    altered = CommandLimits(asked, given, (Limit.SPEED, Limit.LANDING_FROZEN))
+    routine = CommandLimits(given, given, (Limit.LANDING_FROZEN,))
     push = ActivePush(
         0, 0.2, 0.05, "torso_link", 0.0, np.array([0.0, 0.0, 0.3]), np.array([4.0, 0.0, 0.0])
     )
     for k in range(50):
         record = fake.record(0.02 * k, pushes=(push,) if 10 <= k < 13 else ())
         report = altered if 20 <= k < 30 else routine
-        listener.on_record(replace(record, walking=replace(record.walking, admission=report)))
+        listener.on_record(replace(record, walking=replace(record.walking, command_limits=report)))
     listener.close("completed")
     rows = _rows(path)
     assert rows["/world/pushes"] == 3 + 1 + 1
-    assert rows["/admission"] == 2
+    assert rows["/command_limits"] == 2
 
 
 def test_the_achieved_velocity_is_logged_once_a_footstep(log, walk):
@@ -279,6 +279,6 @@ def test_the_achieved_velocity_is_logged_once_a_footstep(log, walk):
     for record in walk(4.0):
         listener.on_record(record)
     listener.close("goal")
-    values = _values(path, "/plots/speed_forward/achieved")
+    values = _values(path, "/plots/speed_vx/achieved")
     assert len(values) >= 9
     assert [v[1][0] for v in values] == pytest.approx([0.2] * len(values))

@@ -14,9 +14,9 @@ from hsr8.recorder.run.walking_table import (
 )
 from hsr8.world.model.index import ModelIndex
 from hsr8.world.truth.truth import ActivePush
-from walking.admission import AdmissionReport, Limit
 from walking.body.odometry import Odometry
 from walking.command import VelocityCommand
+from walking.command_limits import CommandLimits, Limit
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def test_what_was_recorded_is_read_back(written):
     assert table.time.tolist() == [r.time for r in records]
     assert set(table.columns) == set(COLUMNS)
     assert table["robot_x"] == pytest.approx([r.truth.robot[0] for r in records])
-    assert table["given_vx"] == pytest.approx([0.2] * len(records))
+    assert table["applied_vx"] == pytest.approx([0.2] * len(records))
     assert table["left_y"] == pytest.approx([0.042] * len(records))
     assert table["left_force"] == pytest.approx([17.0] * len(records))
     assert table.sole == pytest.approx((0.01, 0.0525, 0.03))
@@ -83,12 +83,12 @@ def test_a_window_holds_both_ends(written):
 
 def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
     asked = VelocityCommand(0.5)
-    report = AdmissionReport(asked, asked, (Limit.SPEED, Limit.BALANCE, Limit.SPEED))
+    report = CommandLimits(asked, asked, (Limit.SPEED, Limit.BALANCE, Limit.SPEED))
     push = ActivePush(
         0, 0.0, 0.05, "torso_link", 0.0, np.array([0.1, 0.2, 0.3]), np.array([1.0, -2.0, 0.0])
     )
     records = [fake.record(0.0), fake.record(0.02, pushes=(push,))]
-    records[1] = replace(records[1], walking=replace(records[1].walking, admission=report))
+    records[1] = replace(records[1], walking=replace(records[1].walking, command_limits=report))
     writer = WalkingTableWriter(tmp_path / "w.bin", model, ModelIndex.of(model, 2, 1))
     for record in records:
         writer.on_record(record)

@@ -13,12 +13,12 @@ from walking.pattern.ramps import ZmpRamp
 from walking.pattern.support import SupportRegion
 
 
-class CatchingPendulum:
+class CapturePendulum:
     """Two pendulums that are one unless a footstep is moved to catch the body.
 
     A generator that plans its ZMP cannot plan for footholds that a push dictates. While one
     does, its plan goes on beside, to tell how far the body is off; the body's pendulum tracks
-    the DCM that leads to the foothold which is really aimed at. At touch-down both are one.
+    the DCM that leads to the foothold which is really aimed at. At touchdown both are one.
 
     Args:
         lipm: pendulum.
@@ -47,7 +47,7 @@ class CatchingPendulum:
         self.state = self.planned = state
 
     @property
-    def caught(self) -> bool:
+    def off_plan(self) -> bool:
         """Whether the body has left the plan."""
         return self.planned is not self.state
 
@@ -66,7 +66,10 @@ class CatchingPendulum:
         if gait.hurried:
             self._tracker.follow(state, ramps, region)
             return
-        if not (gait.landing is landing or gait.double or self.caught) and gait.landing != landing:
+        if (
+            not (gait.landing is landing or gait.double or self.off_plan)
+            and gait.landing != landing
+        ):
             self.planned = replace(state)
         planned = self.planned
         if planned is state:
@@ -80,12 +83,12 @@ class CatchingPendulum:
         generator.advance(planned, ramps, region)
         self._tracker.advance(state, (x, y), (planned.zmp_x, planned.zmp_y), region)
 
-    def touch_down(self) -> None:
+    def touchdown(self) -> None:
         """After the gait's tick: the plan begins anew from where the body is."""
-        if self.caught and (self._gait.double or not self._gait.stepping):
-            self.give_up()
+        if self.off_plan and (self._gait.double or not self._gait.stepping):
+            self.reset_plan()
 
-    def give_up(self) -> None:
+    def reset_plan(self) -> None:
         """Have no plan but the footholds."""
         self.planned = self.state
         self._generator.forget()

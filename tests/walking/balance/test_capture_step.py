@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from walking.balance.catching import CatchingPendulum
+from walking.balance.capture_step import CapturePendulum
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.footsteps.stride import Timing
@@ -52,19 +52,19 @@ def beyond(dx, dy):
     return replace(LANDING, x=LANDING.x + dx, y=LANDING.y + dy)
 
 
-def catching(state, landing, **changes):
+def capture(state, landing, **changes):
     timing = Timing(DOUBLE, 54, 0.025)
     usual = {"hurried": False, "double": False, "stepping": True, "ticks_left": LEFT}
     gait = SimpleNamespace(**(usual | {"landing": landing, "timing": timing} | changes))
-    return CatchingPendulum(LIPM, Plan(), gait, 2.5, state), gait
+    return CapturePendulum(LIPM, Plan(), gait, 2.5, state), gait
 
 
 def test_a_walk_that_lands_where_it_is_planned_has_one_pendulum():
     state, alone = PendulumState(0.01, 0.03, 0.1, 0.05), PendulumState(0.01, 0.03, 0.1, 0.05)
-    pendulum, _ = catching(state, replace(LANDING))  # another foothold, the same place
+    pendulum, _ = capture(state, replace(LANDING))  # another foothold, the same place
     pendulum.advance(reference(LANDING), LANDING, REGION)
     Plan().advance(alone, [], REGION)
-    assert not pendulum.caught
+    assert not pendulum.off_plan
     assert pendulum.planned is pendulum.state is state
     assert state == alone
 
@@ -74,9 +74,9 @@ def test_the_plan_goes_on_and_the_body_is_led_to_the_other_foothold(move):
     """On the DCM of the plan, moved as the footholds move it, a body needs the plan's own ZMP."""
     planned, other = reference(LANDING), reference(beyond(*move))
     start = PendulumState(0.01, 0.03, 0.1, 0.05)
-    pendulum, _ = catching(replace(start), beyond(*move))
+    pendulum, _ = capture(replace(start), beyond(*move))
     pendulum.advance(planned, LANDING, REGION)
-    assert pendulum.caught
+    assert pendulum.off_plan
     alone = replace(start)
     Plan().advance(alone, planned, REGION)
     assert pendulum.planned == alone
@@ -91,26 +91,26 @@ def test_the_plan_goes_on_and_the_body_is_led_to_the_other_foothold(move):
 
 def test_a_footstep_in_a_hurry_has_no_plan():
     state = PendulumState(*dcm_reference(LIPM, reference(LANDING)))
-    pendulum, _ = catching(state, LANDING, hurried=True)
+    pendulum, _ = capture(state, LANDING, hurried=True)
     pendulum.advance(reference(LANDING), LANDING, REGION)
-    assert not pendulum.caught
+    assert not pendulum.off_plan
     # On the DCM of the footholds, its ZMP is theirs.
     assert (state.zmp_x, state.zmp_y) == pytest.approx((0.01, FOOT.y))
 
 
 @pytest.mark.parametrize("lands", [{"double": True}, {"stepping": False}])
 def test_at_touch_down_both_are_one_again(lands):
-    pendulum, gait = catching(PendulumState(0.01, 0.03), beyond(0.03, 0.0))
+    pendulum, gait = capture(PendulumState(0.01, 0.03), beyond(0.03, 0.0))
     pendulum.advance(reference(LANDING), LANDING, REGION)
-    pendulum.touch_down()
-    assert pendulum.caught
+    pendulum.touchdown()
+    assert pendulum.off_plan
     vars(gait).update(lands)
-    pendulum.touch_down()
+    pendulum.touchdown()
     assert pendulum.planned is pendulum.state
     assert pendulum._generator.forgotten == 1
 
 
 def test_in_double_support_nothing_is_caught():
-    pendulum, _ = catching(PendulumState(0.01, 0.03), beyond(0.03, 0.0), double=True)
+    pendulum, _ = capture(PendulumState(0.01, 0.03), beyond(0.03, 0.0), double=True)
     pendulum.advance(reference(LANDING), LANDING, REGION)
-    assert not pendulum.caught
+    assert not pendulum.off_plan

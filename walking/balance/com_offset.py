@@ -6,7 +6,7 @@ from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 Point = tuple[float, float]
 
 
-class PressureHold:
+class ComOffset:
     """Offset of the body that brings the centre of pressure, on the average, under the plan.
 
     Over a cycle of two footsteps the floor pushes under the mass centre, wherever the model has

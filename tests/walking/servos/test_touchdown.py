@@ -1,13 +1,13 @@
-"""Touch-down of a swinging foot."""
+"""Touchdown of a swinging foot."""
 
 from walking.parameters import EstimatorParameters
-from walking.servos.touch_down import TouchDown
+from walking.servos.touchdown import TouchdownDetector
 
 PARAMETERS = EstimatorParameters()
 
 
 def test_touch_down_needs_the_phase_the_force_and_the_duration():
-    touch = TouchDown(PARAMETERS)
+    touch = TouchdownDetector(PARAMETERS)
     assert not touch.update(0.3, 50.0)
     assert not touch.update(0.7, 50.0)
     assert touch.update(0.72, 50.0)
@@ -16,4 +16,4 @@ def test_touch_down_needs_the_phase_the_force_and_the_duration():
 
 
 def test_one_touch_is_none():
-    assert not TouchDown(PARAMETERS).update(0.7, 50.0)
+    assert not TouchdownDetector(PARAMETERS).update(0.7, 50.0)

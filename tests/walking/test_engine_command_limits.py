@@ -7,8 +7,8 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from walking.admission import Limit
 from walking.command import CommandState, HeadTarget, VelocityCommand
+from walking.command_limits import Limit
 from walking.engine import WalkingEngine
 from walking.footsteps.planner import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
@@ -139,13 +139,13 @@ def test_altered_is_reported_if_and_only_if_the_footsteps_are_not_as_asked(
         if k % 100 < 15:
             sensors = tilted(sensors, *tilt)
         ideal_body.apply(engine.step(sensors, command, AHEAD))
-        report, truth = engine.admission, observer.obeys(command)
-        assert report.asked == command
+        report, truth = engine.command_limits, observer.obeys(command)
+        assert report.commanded == command
         seen.update(report.limits)
         if truth is None:
             continue
         obeyed += truth
-        if report.altered is truth:
+        if report.limited is truth:
             wrong.append((k, command, report.limits))
     assert not wrong
     assert obeyed > 50

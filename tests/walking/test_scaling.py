@@ -8,7 +8,7 @@ import pytest
 from walking.command import CommandState, VelocityCommand
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.robot_measures import HSR_VIII, RobotMeasures
-from walking.similarity import carried, parameters_for, rules_of
+from walking.scaling import parameters_for, rules_of, scale_parameters
 
 SECTIONS = [type(getattr(WalkingParameters(), f.name)) for f in fields(WalkingParameters)]
 
@@ -63,16 +63,20 @@ def test_a_choice_is_kept_and_the_rest_is_the_robots_own(robot):
 @pytest.mark.parametrize("other", [scaled(HSR_VIII, 0.5), scaled(HSR_VIII, 3.0), SLENDER])
 def test_going_over_composes_and_can_be_undone(other):
     start, third = WalkingParameters(), scaled(SLENDER, 0.7)
-    made = carried(start, HSR_VIII, other)
-    direct = carried(start, HSR_VIII, third)
-    assert numbers(carried(made, other, third)) == pytest.approx(numbers(direct), rel=1e-12)
-    assert numbers(carried(made, other, HSR_VIII)) == pytest.approx(numbers(start), rel=1e-12)
+    made = scale_parameters(start, HSR_VIII, other)
+    direct = scale_parameters(start, HSR_VIII, third)
+    assert numbers(scale_parameters(made, other, third)) == pytest.approx(
+        numbers(direct), rel=1e-12
+    )
+    assert numbers(scale_parameters(made, other, HSR_VIII)) == pytest.approx(
+        numbers(start), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("size", [0.3, 0.8, 1.3, 4.0])
 def test_dimensionless_numbers_stay_what_they_are(size):
     old, new = HSR_VIII, scaled(HSR_VIII, size)
-    made = carried(WalkingParameters(), old, new)
+    made = scale_parameters(WalkingParameters(), old, new)
 
     def groups(p, y):
         w = sqrt(GRAVITY / p.pattern.lipm_height)
@@ -98,7 +102,7 @@ def test_dimensionless_numbers_stay_what_they_are(size):
 
 def test_constraints_hold_at_any_size():
     for size in (0.1, 10.0):
-        made = carried(WalkingParameters(), HSR_VIII, scaled(HSR_VIII, size))
+        made = scale_parameters(WalkingParameters(), HSR_VIII, scaled(HSR_VIII, size))
         assert 0.0 < made.estimator.tilt_gain < 1.0
         assert 0.0 < made.stabilizer.contact_decay < 1.0
         assert round(made.gait.footstep_time / CONTROL_PERIOD) > 10
@@ -106,7 +110,7 @@ def test_constraints_hold_at_any_size():
 
 def test_a_softer_ankle_is_moved_further():
     soft = replace(HSR_VIII, ankle=2.0 * HSR_VIII.ankle)
-    made = carried(WalkingParameters(), HSR_VIII, soft)
+    made = scale_parameters(WalkingParameters(), HSR_VIII, soft)
     before = numbers(WalkingParameters())
     changed = {name for name, value in numbers(made).items() if value != before[name]}
     assert changed == {"stabilizer.gyro_gain"}
@@ -125,9 +129,9 @@ def test_measures_follow_the_mass_and_the_servos(robot):
 
 def test_a_command_is_carried_over_whole():
     double = replace(HSR_VIII, leg=2.0 * HSR_VIII.leg, hip=2.0 * HSR_VIII.hip)
-    made = carried(CommandState(forward=0.1), HSR_VIII, double)
+    made = scale_parameters(CommandState(forward=0.1), HSR_VIII, double)
     assert (made.forward, made.side, made.swing_height) == (0.2, 0.168, 0.05)
     assert made.single_support == CommandState().single_support
-    assert carried(VelocityCommand(0.2, 0.1, 0.5), HSR_VIII, scaled(HSR_VIII, 4.0)) == (
+    assert scale_parameters(VelocityCommand(0.2, 0.1, 0.5), HSR_VIII, scaled(HSR_VIII, 4.0)) == (
         VelocityCommand(0.4, 0.2, 0.25)
     )

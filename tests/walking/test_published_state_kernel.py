@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from walking import snapshot_kernel
-from walking.snapshot_kernel import frame_of, place, turn
+from walking import published_state_kernel as kernel
+from walking.published_state_kernel import frame_of, place, turn
 
 SEEDS = st.integers(0, 10**6)
 
@@ -47,8 +47,8 @@ def test_compiled_it_is_what_it_says(plainly, seed, yaw):
     rng, motion = draw(seed)
     rows, vector, outcomes = rng.uniform(-1.0, 1.0, (3, 4)), (0.3, -0.2), []
     for call in (
-        lambda name, *a: getattr(snapshot_kernel, name)(*a),
-        lambda name, *a: plainly(snapshot_kernel, name, *a),
+        lambda name, *a: getattr(kernel, name)(*a),
+        lambda name, *a: plainly(kernel, name, *a),
     ):
         own, frame = rows.copy(), call("frame_of", *motion)
         call("place", frame, own, yaw)
@@ -63,7 +63,10 @@ def test_all_that_a_snapshot_shows_is_brought_over_alike(plainly, seed, corners)
     pendulum, error, com = (tuple(rng.uniform(-1.0, 1.0, n).tolist()) for n in (6, 4, 3))
     edges, references = rng.uniform(-1.0, 1.0, (corners, 5)), rng.uniform(-1.0, 1.0, (2, 10))
     planned, way, omega, outcomes = rng.uniform(-1.0, 1.0, (5, 4)), (0.3, -0.2), 7.2, []
-    for call in (snapshot_kernel.show, lambda *a: plainly(snapshot_kernel, "show", *a)):
+    for call in (
+        kernel.show,
+        lambda *a: plainly(kernel, "show", *a),
+    ):
         own = np.empty((5 + corners, 2)), np.empty((2, 4)), planned.copy()
         turned = call(*motion, pendulum, error, omega, com, edges, references, way, *own)
         outcomes.append((turned, *(table.tolist() for table in own)))
@@ -86,8 +89,8 @@ def test_all_that_a_snapshot_shows_is_brought_over_alike(plainly, seed, corners)
 @given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
 def test_a_trunk_is_turned_about_its_axes(plainly, roll, pitch):
     found, plain = np.empty((3, 3)), np.empty((3, 3))
-    snapshot_kernel.incline(roll, pitch, found)
-    plainly(snapshot_kernel, "incline", roll, pitch, plain)
+    kernel.incline(roll, pitch, found)
+    plainly(kernel, "incline", roll, pitch, plain)
     np.testing.assert_allclose(found, plain, atol=1e-15)
     expected = Rotation.from_euler("YX", [pitch, roll]).as_matrix()
     np.testing.assert_allclose(found, expected, atol=1e-15)

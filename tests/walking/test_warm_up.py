@@ -2,13 +2,13 @@
 
 import pytest
 
-from walking import snapshot_kernel
+from walking import published_state_kernel
 from walking.body import estimation_kernel, head_kernel, leg_kernel
 from walking.footsteps import foothold_kernel, stride_kernel
 from walking.gait import swing_foot_kernel, swing_kernel
 from walking.parameters import WalkingParameters
 from walking.pattern import support_kernel, zmp_kernel
-from walking.rehearsal import rehearse
+from walking.warm_up import warm_up
 
 
 @pytest.mark.parametrize(
@@ -27,8 +27,8 @@ from walking.rehearsal import rehearse
         (leg_kernel, "offsets"),
         (head_kernel, "advance"),
         (head_kernel, "camera_pose"),
-        (snapshot_kernel, "show"),
-        (snapshot_kernel, "incline"),
+        (published_state_kernel, "show"),
+        (published_state_kernel, "incline"),
         (stride_kernel, "strides"),
         (stride_kernel, "stance_after"),
         (stride_kernel, "clear"),
@@ -42,5 +42,5 @@ def test_it_calls_what_a_tick_calls(robot, monkeypatch, module, name):
         return kernel(*arguments)
 
     monkeypatch.setattr(module, name, counted)
-    rehearse(robot, WalkingParameters())
+    warm_up(robot, WalkingParameters())
     assert calls

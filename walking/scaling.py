@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
 from walking.body.robot_model import RobotModel
-from walking.dimension import Dimension, Rule, ShareLeft, ShareTaken
+from walking.dimension import DecayPerTick, Dimension, GainPerTick, Rule
 from walking.parameters import WalkingParameters
 from walking.robot_measures import HSR_VIII, RobotMeasures
 
@@ -21,11 +21,11 @@ def parameters_for(robot: RobotModel, given: WalkingParameters | None = None) ->
             is kept, the rest is the robot's own.
     """
     defaults = WalkingParameters()
-    own = carried(defaults, HSR_VIII, robot.measures())
+    own = scale_parameters(defaults, HSR_VIII, robot.measures())
     return own if given is None else _chosen(given, defaults, own)
 
 
-def carried(parameters: Section, old: RobotMeasures, new: RobotMeasures) -> Section:
+def scale_parameters(parameters: Section, old: RobotMeasures, new: RobotMeasures) -> Section:
     """Parameters of a robot with measures `old`, made those of one with measures `new`.
 
     Args:
@@ -38,9 +38,9 @@ def carried(parameters: Section, old: RobotMeasures, new: RobotMeasures) -> Sect
     made: dict[str, Any] = {}
     for name, value in _values(parameters).items():
         if is_dataclass(value):
-            made[name] = carried(value, old, new)
+            made[name] = scale_parameters(value, old, new)
         elif name in rules:
-            made[name] = rules[name].carry(value, old, new)
+            made[name] = rules[name].scale(value, old, new)
     return replace(parameters, **made)  # type: ignore[type-var]
 
 
@@ -50,7 +50,7 @@ def rules_of(section: type) -> dict[str, Rule]:
     rules = {}
     for name, hint in get_type_hints(section, include_extras=True).items():
         for mark in getattr(hint, "__metadata__", ()):
-            if isinstance(mark, Dimension | ShareLeft | ShareTaken):
+            if isinstance(mark, Dimension | DecayPerTick | GainPerTick):
                 rules[name] = mark
     return rules
 

@@ -15,7 +15,7 @@ from walking.gait.gait import Gait
 from walking.parameters import WalkingParameters
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import Footing
-from walking.snapshot import camera_pose, plan_seen
+from walking.published_state import camera_pose, published_plan
 
 PARAMETERS = WalkingParameters()
 LEFT = FootMeasurement(0.01, 0.042, -0.22, 0.1)
@@ -66,7 +66,7 @@ def gait(robot):
 
 
 def seen(robot, gait, odometry):
-    return plan_seen(
+    return published_plan(
         gait,
         PendulumState(0.01, 0.005, 0.1, -0.2, 0.02, 0.01),
         BODY,

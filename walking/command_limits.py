@@ -28,7 +28,7 @@ class Limit(StrEnum):
 
 
 @comparable_value
-class AdmissionReport:
+class CommandLimits:
     """One tick's answer to the command.
 
     Attributes:
@@ -41,11 +41,11 @@ class AdmissionReport:
             `FootstepPlanner.same`) in the landing under way.
     """
 
-    asked: Command
-    given: Command
+    commanded: Command
+    applied: Command
     limits: tuple[Limit, ...]
 
     @property
-    def altered(self) -> bool:
+    def limited(self) -> bool:
         """Whether anything but the command itself is given."""
         return bool(self.limits)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from walking import snapshot_kernel
+from walking import published_state_kernel
 from walking.body.joints import HEAD
 from walking.body.measurement import BodyMeasurement
 from walking.body.odometry import Odometry
@@ -21,7 +21,7 @@ Point = tuple[float, float]
 
 
 @value
-class PlanSeen:
+class PublishedPlan:
     """What a snapshot tells of the plan, all of it in the odometry frame; see `WalkingState`.
 
     Attributes:
@@ -43,7 +43,7 @@ def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) 
     """Head camera in the robot frame: tilt by IMU, height by the loaded leg."""
     R_BC, p_BC = robot.camera_pose(sensors.joint_position)
     R_RB = np.empty((3, 3))
-    snapshot_kernel.incline(body.roll, body.pitch, R_RB)
+    published_state_kernel.incline(body.roll, body.pitch, R_RB)
     load = body.right_load
     position = R_RB @ p_BC
     position[2] += -(1.0 - load) * body.feet[0].z - load * body.feet[1].z
@@ -52,7 +52,7 @@ def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) 
     return HeadCameraPose(R_RB @ R_BC, position, pan, tilt, pan_rate, tilt_rate)
 
 
-def plan_seen(
+def published_plan(
     gait: Gait,
     pendulum: PendulumState,
     body: BodyMeasurement,
@@ -62,7 +62,7 @@ def plan_seen(
     omega: float,
     footing: Footing,
     capture: Point,
-) -> PlanSeen:
+) -> PublishedPlan:
     """The plan where the planned support foot stands as odometry sees it.
 
     Args:
@@ -78,7 +78,7 @@ def plan_seen(
     edges, footsteps = footing.edges(), gait.footsteps()
     points, feet = np.empty((5 + len(edges), 2)), np.empty((2, 4))
     support, foot = gait.footholds[gait.support], body.feet[gait.support]
-    turned = snapshot_kernel.show(
+    turned = published_state_kernel.show(
         (support.x, support.y, support.yaw),
         (foot.x, foot.y, foot.yaw),
         (odometry.x, odometry.y, odometry.yaw),
@@ -93,7 +93,7 @@ def plan_seen(
         feet,
         footsteps,
     )
-    return PlanSeen(
+    return PublishedPlan(
         footsteps=tuple(map(Foothold.from_row, footsteps.tolist())),
         zmp=points[0],
         dcm=points[1],

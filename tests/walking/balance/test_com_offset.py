@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.balance.pressure_hold import PressureHold
+from walking.balance.com_offset import ComOffset
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 
 PARAMETERS = StabilizerParameters()
@@ -17,7 +17,7 @@ offs = st.floats(-0.012, 0.012)
 
 def walk(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False):
     """Offsets tick by tick; the centre of pressure sways about the mass centre."""
-    hold, found = PressureHold(PARAMETERS), []
+    hold, found = ComOffset(PARAMETERS), []
     for tick in range(cycles * CYCLE):
         swayed = sway * sin(2.0 * pi * tick / CYCLE)
         error = off[0] + hold.offset[0] + swayed, off[1] + hold.offset[1] - swayed
@@ -48,7 +48,7 @@ def test_footsteps_that_balance_are_not_learned_from():
 
 
 def test_the_offset_outlasts_a_rest():
-    hold = PressureHold(PARAMETERS)
+    hold = ComOffset(PARAMETERS)
     for tick in range(4 * CYCLE):
         hold.update((0.01, 0.0), begins=tick % CYCLE == 0, disturbed=False)
     before = hold.offset

@@ -1,9 +1,9 @@
-"""Touch-down of a swinging foot."""
+"""Touchdown of a swinging foot."""
 
 from walking.parameters import EstimatorParameters
 
 
-class TouchDown:
+class TouchdownDetector:
     """Decides that a swinging foot has met the floor.
 
     Args:

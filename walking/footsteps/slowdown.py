@@ -5,7 +5,7 @@ from math import exp
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 
 
-class Caution:
+class Slowdown:
     """Slows the walk while DCM errors beyond those of an even floor keep coming.
 
     Args:

@@ -14,7 +14,7 @@ START = 0.03  # time in double support before the first footstep [s]
 TICKS = 20
 
 
-def rehearse(robot: RobotModel, parameters: WalkingParameters) -> None:
+def warm_up(robot: RobotModel, parameters: WalkingParameters) -> None:
     """Have everything compiled, or loaded, that a tick calls; the robot does not move.
 
     Args:

@@ -2,8 +2,8 @@
 
 import pytest
 
-from walking.admission import Limit
 from walking.command import CommandState, HeadTarget, VelocityCommand
+from walking.command_limits import Limit
 from walking.engine import WalkingEngine
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.steering import Steering
@@ -23,22 +23,22 @@ def walk(engine, body, command, seconds):
     reports = []
     for _ in range(round(seconds / CONTROL_PERIOD)):
         body.apply(engine.step(body.sense(), command, AHEAD))
-        reports.append(engine.admission)
+        reports.append(engine.command_limits)
     return reports
 
 
 def test_before_the_body_has_settled_nothing_is_given(engine, ideal_body):
     report = walk(engine, ideal_body, VelocityCommand(0.2), 0.1)[-1]
     assert report.limits == (Limit.SETTLING,)
-    assert report.given == VelocityCommand()
+    assert report.applied == VelocityCommand()
 
 
 def test_acceleration_binds_until_the_speed_is_reached(engine, ideal_body):
     command = VelocityCommand(0.2)
     reports = walk(engine, ideal_body, command, 2.0)
-    assert any(Limit.ACCELERATION in r.limits and r.given.vx < 0.2 for r in reports)
+    assert any(Limit.ACCELERATION in r.limits and r.applied.vx < 0.2 for r in reports)
     assert not any(Limit.ACCELERATION in r.limits for r in reports[-50:])
-    assert any(not r.altered and r.given == command for r in reports[-50:])
+    assert any(not r.limited and r.applied == command for r in reports[-50:])
 
 
 @pytest.mark.parametrize(
@@ -57,26 +57,26 @@ def test_acceleration_binds_until_the_speed_is_reached(engine, ideal_body):
 )
 def test_the_limit_that_binds_is_named(engine, ideal_body, command, limit):
     report = walk(engine, ideal_body, command, 3.0)[-1]
-    assert report.asked == command
+    assert report.commanded == command
     assert limit in report.limits
-    assert report.given != command
+    assert report.applied != command
 
 
 def test_what_is_given_for_a_command_state_is_within_the_limits(engine, ideal_body):
-    given = walk(engine, ideal_body, CommandState(0.05, 2.0, 0.3, 0.1, 0.0, 0.2), 1.0)[-1].given
-    assert given.forward == LIMITS.step_forward
-    assert given.single_support == pytest.approx(LIMITS.min_single)
-    assert given.double_support == pytest.approx(LIMITS.max_double)
-    assert given.swing_height == LIMITS.max_swing_height
-    wide = walk(engine, ideal_body, CommandState(side=0.4), 1.0)[-1].given
+    applied = walk(engine, ideal_body, CommandState(0.05, 2.0, 0.3, 0.1, 0.0, 0.2), 1.0)[-1].applied
+    assert applied.forward == LIMITS.step_forward
+    assert applied.single_support == pytest.approx(LIMITS.min_single)
+    assert applied.double_support == pytest.approx(LIMITS.max_double)
+    assert applied.swing_height == LIMITS.max_swing_height
+    wide = walk(engine, ideal_body, CommandState(side=0.4), 1.0)[-1].applied
     assert wide.side == pytest.approx(2.0 * HALF_STANCE + LIMITS.step_side)
 
 
 def test_a_footstep_within_all_limits_is_given_as_asked(engine, ideal_body):
     command = CommandState(0.3, 0.08, 0.06, 0.09, 0.05, 0.02)
     reports = walk(engine, ideal_body, command, 3.0)
-    assert sum(not r.altered for r in reports) > 100
-    assert all(r.given == command for r in reports if not r.altered)
+    assert sum(not r.limited for r in reports) > 100
+    assert all(r.applied == command for r in reports if not r.limited)
 
 
 def test_while_the_body_is_off_balance_only_another_command_is_altered(robot):
@@ -98,7 +98,7 @@ def test_while_the_body_is_off_balance_only_another_command_is_altered(robot):
 
 
 def test_nothing_is_altered_by_standing_until_the_body_has_settled(engine, ideal_body):
-    assert not any(r.altered for r in walk(engine, ideal_body, VelocityCommand(), 1.0))
+    assert not any(r.limited for r in walk(engine, ideal_body, VelocityCommand(), 1.0))
 
 
 def test_a_landing_asked_for_too_late_is_reported(engine, ideal_body):
@@ -108,4 +108,4 @@ def test_a_landing_asked_for_too_late_is_reported(engine, ideal_body):
         step = CommandState(forward=0.06 * (k % 2))
         frozen += Limit.LANDING_FROZEN in walk(engine, ideal_body, step, CONTROL_PERIOD)[0].limits
     assert 10 < frozen < 150
-    assert engine.state().admission == engine.admission
+    assert engine.state().command_limits == engine.command_limits

@@ -4,11 +4,11 @@ from math import exp
 
 import pytest
 
-from walking.admission import Limit
 from walking.body.sole import Sole
 from walking.command import VelocityCommand
-from walking.footsteps.caution import Caution
+from walking.command_limits import Limit
 from walking.footsteps.planner import FootstepPlanner
+from walking.footsteps.slowdown import Slowdown
 from walking.footsteps.steering import Steering
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters, WalkingParameters
 
@@ -16,23 +16,23 @@ PARAMETERS = StabilizerParameters()
 
 
 def test_errors_of_an_even_floor_slow_nothing():
-    caution = Caution(PARAMETERS)
+    caution = Slowdown(PARAMETERS)
     assert {caution.update(PARAMETERS.slowdown_start_error * k / 10) for k in range(11)} == {1.0}
 
 
 def test_the_share_falls_with_the_error_down_to_the_least():
-    shares = [Caution(PARAMETERS).update(0.001 * k) for k in range(100)]
+    shares = [Slowdown(PARAMETERS).update(0.001 * k) for k in range(100)]
     assert shares == sorted(shares, reverse=True)
     assert shares[-1] == pytest.approx(PARAMETERS.min_speed_ratio)
 
 
 def test_an_error_is_forgotten_with_its_time_constant():
-    caution, error = Caution(PARAMETERS), 0.03
+    caution, error = Slowdown(PARAMETERS), 0.03
     caution.update(error)
     for _ in range(round(0.5 / CONTROL_PERIOD)):
         share = caution.update(0.0)
     left = error * exp(-0.5 / PARAMETERS.slowdown_time)
-    assert share == pytest.approx(Caution(PARAMETERS).update(left))
+    assert share == pytest.approx(Slowdown(PARAMETERS).update(left))
     for _ in range(round(5.0 / CONTROL_PERIOD)):
         share = caution.update(0.0)
     assert share == 1.0
