@@ -71,7 +71,7 @@ def _drawn(
     end = 0.0
     while end < duration:
         interval = float(rng.uniform(*random.interval))
-        stop = rng.uniform() < random.stops
+        stop = rng.uniform() < random.stop_fraction
         velocity = [float(rng.uniform(*bounds)) for bounds in (random.vx, random.vy, random.wz)]
         pieces.append((interval, VelocityCommand() if stop else VelocityCommand(*velocity)))
         end += interval

@@ -73,7 +73,7 @@ def case(letter: str) -> Case:
         run(name, (PAPER, *STAND_INS), 0, duration),
         run(name, (PAPER, *STAND_INS, *WITHOUT), 0, duration),
     )
-    v_max = ran[0].scenario.robot.speed.forward
+    v_max = ran[0].scenario.robot.speed.vx
     for frame in ran[0].frames:
         if frame.motion.situation not in situations or not frame.motion.extended_radii:
             continue
@@ -182,7 +182,7 @@ def foot_velocity(robot_velocity: Array, foot: PathPoint) -> Array:
 
 def _speeds(axes: Axes, shown: Case) -> None:
     """Which speeds are free, the one asked for and the one chosen."""
-    v_max = shown.ran[0].scenario.robot.speed.forward
+    v_max = shown.ran[0].scenario.robot.speed.vx
     axes.add_patch(Rectangle((0.0, 0.0), v_max, 1.0, facecolor=MOVER, alpha=0.35))
     for low, high in free_intervals((shown.encounter,), v_max, inf):
         axes.add_patch(Rectangle((low, 0.0), high - low, 1.0, facecolor="#BFDCC9"))

@@ -89,7 +89,7 @@ def row(name: str, seeds: list[int]) -> str:
 def hits_blindly(scenario: Scenario, layout: Layout) -> bool:
     """Whether a robot on the nominal walk touches anything; a tour is walked once round."""
     start = layout.start[:2]
-    pace = scenario.world.encounters.pace * scenario.robot.speed.forward
+    pace = scenario.world.encounters.pace * scenario.robot.speed.vx
     walk = NominalWalk([start, *map(tuple, layout.waypoints.tolist())], pace)
     times = np.arange(0.0, walk.duration, STEP).tolist()
     places = np.array([walk.at(time)[0] for time in times])

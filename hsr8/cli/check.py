@@ -145,7 +145,7 @@ def _command(command: Command) -> str:
         return f"footsteps of {command.footstep.forward:g} m"
     if command.random is not None:
         least, most = command.random.interval
-        return f"drawn every {least:g} to {most:g} s, {command.random.stops:.0%} stops"
+        return f"drawn every {least:g} to {most:g} s, {command.random.stop_fraction:.0%} stops"
     total = sum(stretch.duration for stretch in command.stretch)
     return f"{len(command.stretch)} stretches, {total:g} s"
 

@@ -36,7 +36,7 @@ METRICS = (
 )
 ON_ARRIVAL = ("time_to_goal_s", "arrival_error_deg", "path_length_m")  # where both succeeded
 SAME_WORLD = ("world.", "mission.")  # seeds pair only if these sections agree
-LOOKS = ("world.brightness", "world.beacons", "world.moved_beacon")  # but for these keys
+LOOKS = ("world.brightness", "world.beacons", "world.beacon_displacement")  # but for these keys
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,13 +50,12 @@ def check(scenario: Scenario) -> list[Problem]:
 
 def _speeds(scenario: Scenario) -> Iterator[Problem]:
     speed, limits = scenario.robot.speed, scenario.walking.limits
-    axes = {"forward": "vx", "backward": "vx_backward", "lateral": "vy", "turn": "wz"}
-    for name, axis in axes.items():
-        asked, possible = getattr(speed, name), getattr(limits, axis)
-        if asked > possible:
+    for axis in ("vx", "vx_backward", "vy", "wz"):
+        given, limit = getattr(speed, axis), getattr(limits, axis)
+        if given > limit:
             yield Problem(
-                ("robot", "speed", name),
-                f"{asked:g} is more than walking can: walking.limits.{axis} = {possible:g}",
+                ("robot", "speed", axis),
+                f"must be at most walking.limits.{axis} = {limit:g}, got {given:g}",
             )
 
 

@@ -9,7 +9,7 @@ from hsr8.scenario.section import Section, ordered
 
 Velocity = Annotated[float, Interval(ge=-1.0, le=1.0)]
 TurnRate = Annotated[float, Interval(ge=-4.0, le=4.0)]
-Share = Annotated[float, Interval(ge=0.0, le=1.0)]
+Fraction = Annotated[float, Interval(ge=0.0, le=1.0)]
 Seconds = Annotated[float, Interval(ge=0.005, le=7200.0)]
 VelocityRange = Annotated[tuple[Velocity, Velocity], AfterValidator(ordered)]
 TurnRange = Annotated[tuple[TurnRate, TurnRate], AfterValidator(ordered)]
@@ -65,7 +65,7 @@ class RandomCommands(Section):
     """Least and greatest turn rate [rad/s]."""
     interval: SecondsRange = (0.5, 2.0)
     """Shortest and longest time for which a velocity is held [s]."""
-    stops: Share = 0.15
+    stop_fraction: Fraction = 0.15
     """Share of the draws that are a stop [1]."""
 
 

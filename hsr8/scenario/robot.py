@@ -11,13 +11,13 @@ from hsr8.scenario.world import Start
 class SpeedEnvelope(Section):
     """Speeds navigation may ask of walking."""
 
-    forward: Speed = 0.20
+    vx: Speed = 0.20
     """Fastest walk forward [m/s]."""
-    backward: Speed = 0.10
+    vx_backward: Speed = 0.10
     """Fastest walk backward [m/s]."""
-    lateral: Speed = 0.08
+    vy: Speed = 0.08
     """Fastest walk sideways [m/s]."""
-    turn: Annotated[float, Interval(gt=0.0, le=3.0)] = 0.8
+    wz: Annotated[float, Interval(gt=0.0, le=3.0)] = 0.8
     """Fastest turn [rad/s]."""
     acceleration: Annotated[float, Interval(gt=0.0, le=5.0)] = 0.3
     """Largest change of speed [m/s²]."""

@@ -120,10 +120,10 @@ class Scenario(Section):
         """Speed envelope navigation plans with; a command lasts for one footstep."""
         speed = self.robot.speed
         return SpeedLimits(
-            vx=speed.forward,
-            vx_backward=speed.backward,
-            vy=speed.lateral,
-            wz=speed.turn,
+            vx=speed.vx,
+            vx_backward=speed.vx_backward,
+            vy=speed.vy,
+            wz=speed.wz,
             acceleration=speed.acceleration,
             footstep=self.walking.gait.footstep_time,
         )

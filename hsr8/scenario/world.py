@@ -114,7 +114,7 @@ class Encounters(Section):
     n: Count = 0
     """Movers to draw, spread over the nominal walk [1]."""
     speed_ratio: RatioRange = (0.4, 1.0)
-    """Slowest and fastest, relative to the robot's forward speed `robot.speed.forward` [1]."""
+    """Slowest and fastest, relative to the robot's forward speed `robot.speed.vx` [1]."""
     bearing_deg: BearingRange = (0.0, 90.0)
     """Where the nominal robot sees it come: 0 ahead, 180 behind, either side [deg]."""
     pace: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.75
@@ -145,7 +145,7 @@ class World(Section):
     """Further movers, on collision courses with the nominal walk."""
     beacons: bool = True
     """Whether the six beacons stand around the field."""
-    moved_beacon: Annotated[float, Interval(ge=-2.0, le=2.0)] = 0.0
+    beacon_displacement: Annotated[float, Interval(ge=-2.0, le=2.0)] = 0.0
     """Distance along the rim at which the first beacon stands from where it is known to [m]."""
     brightness: Annotated[float, Interval(ge=0.1, le=2.0)] = 1.0
     """Strength of all lights, relative to the usual [1]."""

@@ -118,8 +118,8 @@ def test_no_number_is_out_of_all_bounds(key, value):
     "setting",
     [
         "walking.pattern.lipm_height=1e-9",
-        "robot.speed.turn=1e-09",
-        "robot.speed.forward=1e-05",
+        "robot.speed.wz=1e-09",
+        "robot.speed.vx=1e-05",
         "walking.gait.preview_steps=100000000",
         "walking.gait.min_footstep_time=11.0",
         "walking.odometry.yaw_drift=500000",

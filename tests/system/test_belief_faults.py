@@ -16,7 +16,7 @@ def errors(recorded):
 
 
 def test_a_beacon_moved_by_half_a_metre_is_ignored(simulate):
-    _, recorded, _ = simulate("quick", "world.moved_beacon=0.5", duration=5.0)
+    _, recorded, _ = simulate("quick", "world.beacon_displacement=0.5", duration=5.0)
     position, heading, lost = errors(recorded)
     assert any("yellow/cyan" in f.belief.seen_beacons for f in recorded.frames)
     assert not lost[-1]

@@ -111,7 +111,7 @@ class Attempt:
         world = self._world
         if not world.beacons:
             return ()
-        return with_first_moved(standard_beacons(world.size), world.moved_beacon)
+        return with_first_moved(standard_beacons(world.size), world.beacon_displacement)
 
     def _given_points(self) -> list[Point] | None:
         mission = self._scenario.mission
@@ -215,7 +215,7 @@ class Attempt:
         centre = (x, y)
         angle = float(rng.uniform(-pi, pi))
         length = float(rng.uniform(*world.lane))
-        speed = float(rng.uniform(*world.speed_ratio)) * self._scenario.robot.speed.forward
+        speed = float(rng.uniform(*world.speed_ratio)) * self._scenario.robot.speed.vx
         kind = world.motions[int(rng.integers(len(world.motions)))]
         if kind == "circle":
             sense = 1.0 if rng.random() < 0.5 else -1.0
@@ -254,7 +254,7 @@ class Attempt:
         encounters = self._world.encounters
         if encounters.n == 0 or not points:
             return
-        top_speed = self._scenario.robot.speed.forward
+        top_speed = self._scenario.robot.speed.vx
         walk = NominalWalk([start, *points], encounters.pace * top_speed)
         share = walk.duration / encounters.n
         for k in range(encounters.n):

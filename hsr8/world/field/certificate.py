@@ -71,7 +71,7 @@ def certify(layout: Layout, speed: SpeedEnvelope) -> Certificate:
         inside = [bool((target & connected).any()) for target in targets]
         search = Reachable(lattice, targets[: (*inside, False).index(False)])
         off = abs(layout.start[2] - EIGHTH * round(layout.start[2] / EIGHTH))
-        search.follow(layout.start[2], off / speed.turn, ceil(LONGEST / lattice.layer))
+        search.follow(layout.start[2], off / speed.wz, ceil(LONGEST / lattice.layer))
         if search.passed == len(points):
             path = _from_start(layout, search.path())
             return Certificate(True, len(points), len(points), search.time, path)

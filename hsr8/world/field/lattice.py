@@ -65,8 +65,8 @@ class Lattice:
 
     def __init__(self, layout: Layout, speed: SpeedEnvelope, cell: float) -> None:
         self.cell = cell
-        self.layer = cell / speed.forward / LAYERS_PER_CELL
-        self.turn = self._layers(0.25 * pi / speed.turn)
+        self.layer = cell / speed.vx / LAYERS_PER_CELL
+        self.turn = self._layers(0.25 * pi / speed.wz)
         half = 0.5 * np.asarray(layout.field_size) - DISC
         self.x, i = _aligned(half[0], layout.start[0], cell)
         self.y, j = _aligned(half[1], layout.start[1], cell)
@@ -75,7 +75,7 @@ class Lattice:
         reach = np.array([o.radius for o in layout.movers]) + DISC + HALF_MOVE * cell
         self._reach2 = (reach + 0.5 * self.layer * self._movers.top_speeds()) ** 2
         self._standing = self._clear(layout, (0.0, 0.0))
-        self.moves = self._moves(layout, speed.forward)
+        self.moves = self._moves(layout, speed.vx)
 
     def free(self, layer: int) -> Bits:
         """Places that are free during a layer (n, m), 0 or `ALL`."""

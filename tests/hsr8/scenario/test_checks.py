@@ -9,7 +9,7 @@ COURSE = 'mission = {kind = "course"}\n'
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
-        (COURSE + "[robot.speed]\nforward = 0.9", "walking.limits.vx"),
+        (COURSE + "[robot.speed]\nvx = 0.9", "walking.limits.vx"),
         (COURSE + "[vision]\nmin_radius = 0.2", "must be below max_radius = 0.12"),
         (COURSE + "[belief.local_map]\ncell = 1e-9", "more than 1000 cells"),
         (

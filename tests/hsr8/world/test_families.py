@@ -72,7 +72,7 @@ def test_movers_stay_in_the_field_and_touch_nothing(family):
 
 def test_speeds_are_those_asked_for(family):
     scenario, layouts = family
-    world, top = scenario.world, scenario.robot.speed.forward
+    world, top = scenario.world, scenario.robot.speed.vx
     for layout in layouts:
         speeds = layout.motion().top_speeds() / top
         assert len(speeds) == world.n_moving + world.encounters.n
@@ -96,7 +96,7 @@ def test_encounters_run_into_who_walks_straight_on(name):
     scenario = load_scenario(name)
     encounters = scenario.world.encounters
     layout = drawn(scenario, 5)
-    pace = encounters.pace * scenario.robot.speed.forward
+    pace = encounters.pace * scenario.robot.speed.vx
     places = [layout.start[:2], *map(tuple, layout.waypoints.tolist())]
     walk = NominalWalk(places, pace)
     low, high = encounters.bearing_deg
@@ -130,7 +130,7 @@ def test_one_way_movers_go_once():
 @pytest.mark.parametrize("name", ["behind", "conflict"])
 def test_nothing_that_stood_sets_off_beside_the_robot(name):
     scenario = load_scenario(name)
-    pace = scenario.world.encounters.pace * scenario.robot.speed.forward
+    pace = scenario.world.encounters.pace * scenario.robot.speed.vx
     gaps = []
     for seed in range(4):
         layout = drawn(scenario, seed)

@@ -38,8 +38,8 @@ def assert_walks_through(world, path, speed):
     times, places = sampled(path)
     steps = np.diff(path, axis=0)
     pace = np.hypot(steps[:, 1], steps[:, 2]) / steps[:, 0]
-    assert pace.max() <= speed.forward + 1e-9
-    assert (np.abs(steps[:, 3]) / steps[:, 0]).max() <= speed.turn + 1e-9
+    assert pace.max() <= speed.vx + 1e-9
+    assert (np.abs(steps[:, 3]) / steps[:, 0]).max() <= speed.wz + 1e-9
     # It walks forward only, and turns on the spot.
     going = pace > 1e-9
     along = np.cos(path[1:, 3]) * steps[:, 1] + np.sin(path[1:, 3]) * steps[:, 2]
@@ -116,7 +116,7 @@ def test_a_mirrored_world_has_a_mirrored_certificate(name):
 def test_a_robot_that_turns_slower_needs_longer():
     world = layout(waypoints=((0.5, 0.0), (0.5, 0.4)))
     usual = certify(world, SPEED)
-    slow = certify(world, SpeedEnvelope(turn=0.2))
+    slow = certify(world, SpeedEnvelope(wz=0.2))
     # A right angle, but for what the width of the via point saves.
     assert slow.time - usual.time > 0.5 * (0.5 * pi) * (1.0 / 0.2 - 1.0 / 0.8)
 

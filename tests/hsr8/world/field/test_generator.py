@@ -34,7 +34,7 @@ def worlds(request):
 def test_counts_and_ranges_are_those_asked_for(worlds):
     scenario, layouts = worlds
     low, high = scenario.world.radius
-    slow, fast = (r * scenario.robot.speed.forward for r in scenario.world.speed_ratio)
+    slow, fast = (r * scenario.robot.speed.vx for r in scenario.world.speed_ratio)
     for layout in layouts:
         assert len(layout.static) == scenario.world.n_static
         assert len(layout.movers) == scenario.world.n_moving

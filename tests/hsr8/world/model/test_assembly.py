@@ -110,7 +110,7 @@ def test_a_mover_pushes_a_standing_robot():
     hand = (
         'world.mover=[{motion="line", start=[-1.2, 0.0], heading_deg=180, speed=0.3, radius=0.1}]'
     )
-    layout = draw_layout(load_scenario("walk", [hand, "robot.speed.forward=0.3"]), 0)
+    layout = draw_layout(load_scenario("walk", [hand, "robot.speed.vx=0.3"]), 0)
     model = assemble(layout, "vision", Optics())
     index = ModelIndex.of(model, 0, 1)
     data, movers = mujoco.MjData(model), layout.motion()
