@@ -72,7 +72,7 @@ def test_footsteps_are_asked_explicitly():
 
 @given(st.integers(0, 2**32 - 1))
 def test_drawn_commands_stay_in_their_box_and_come_from_the_seed(seed):
-    asked = Command(random=RandomCommands(vx=(-0.1, 0.3), wz=(-0.5, 0.0), stops=0.3))
+    asked = Command(random=RandomCommands(vx=(-0.1, 0.3), wz=(-0.5, 0.0), stop_fraction=0.3))
     one, same = (command_schedule(asked, 20.0, np.random.default_rng(seed)) for _ in range(2))
     velocities = np.array([one.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
     again = np.array([same.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
@@ -84,7 +84,7 @@ def test_drawn_commands_stay_in_their_box_and_come_from_the_seed(seed):
 
 
 def test_the_share_of_stops_is_that_asked_for():
-    asked = Command(random=RandomCommands(stops=0.25, interval=(0.5, 0.5)))
+    asked = Command(random=RandomCommands(stop_fraction=0.25, interval=(0.5, 0.5)))
     schedule = command_schedule(asked, 5000.0, np.random.default_rng(1))
     stops = np.mean([schedule.at(0.5 * k + 0.1) == VelocityCommand() for k in range(10000)])
     assert stops == pytest.approx(0.25, abs=0.02)

@@ -72,7 +72,7 @@ def test_the_run_it_leads_to_is_the_one_that_was_checked(capsys):
     [
         (["command.vx=0.3"], "0.3 m/s forward"),
         (["command.footstep={forward=0.05}"], "footsteps of 0.05 m"),
-        (["command.random={stops=0.2}"], "drawn every 0.5 to 2 s, 20% stops"),
+        (["command.random={stop_fraction=0.2}"], "drawn every 0.5 to 2 s, 20% stops"),
         (["disturbance.random={}"], "5 stretches, 32 s"),
         (['fault=[{kind="push",start=1,magnitude=1}]'], "push at 1 s"),
         (["disturbance.random={}"], "drawn, 0.2 to 0.8 N s on torso_link"),

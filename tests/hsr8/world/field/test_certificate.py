@@ -161,7 +161,7 @@ def test_a_world_placed_by_hand_is_what_it_is():
 def test_an_empty_field_takes_the_straight_way_at_full_speed():
     found = certify(layout(), SPEED)
     assert found.solvable
-    assert found.time == pytest.approx(2.0 / SPEED.forward, abs=0.1 / SPEED.forward)
+    assert found.time == pytest.approx(2.0 / SPEED.vx, abs=0.1 / SPEED.vx)
     assert found.length == pytest.approx(2.0, abs=0.1)
 
 
