@@ -59,7 +59,7 @@ def test_gaps_equal_brute_force(track, limits):
 
 
 def test_what_can_only_be_reached_sideways_counts_too(track, limits):
-    wide = replace(limits, lateral=0.5)
+    wide = replace(limits, vy=0.5)
     s = scene([track((0.0, 1.4))], wide)
     aside = np.zeros((1, 6, 3))
     aside[..., 1] = wide.lateral
