@@ -1,4 +1,7 @@
-"""Parameters of the gaze: partial evaluations, gaze map, deadline votes, timing."""
+"""Parameters of the gaze: partial evaluations, gaze map, votes, timing.
+
+Public keys of a scenario have bounds and a docstring; all other fields are constants.
+"""
 
 from dataclasses import dataclass, field
 from math import pi
@@ -6,7 +9,7 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
 
-from navigation.parameters.bounds import NonNegative, Positive, Rings, Share
+from navigation.parameters.bounds import NonNegative, Positive
 
 GazeMode = Literal[
     "deadline",
@@ -27,127 +30,79 @@ class EvaluationParameters:
     """Partial evaluations (1)-(4)."""
 
     d_nm: Positive = 0.30
-    """Nearest sample points of the local map [m]."""
-    d_fm: Positive = 1.30
-    """Farthest sample points of the local map [m]."""
-    ring_step: Positive = 0.20
-    """Distance of the sample points along a ray [m]."""
-    ray_step: Positive = pi / 18.0
-    """Angle between the rays of sample points [rad]."""
-    lambda_cf: Share = 0.85
-    """Confidence below which a sample point is under-confident [1]."""
+    """Minimum distance of the sample points of the local map [m]."""
+    d_fm: Annotated[float, Ge(0.01), Le(50.0)] = 1.30
+    """Maximum distance of the sample points of the local map [m]."""
     map_ratio: Literal["printed", "fraction"] = "fraction"
-    """psi_lm: N_lp/N_cp as printed, or the share N_lp/(N_lp + N_cp)."""
-    t_sf: Positive = 0.05
-    """Position uncertainty at which psi_sf is one [m]."""
-    t_heading: NonNegative = 0.09
-    """Heading uncertainty at which psi_sf is one; 0 leaves the heading out [rad]."""
-    omega_o: Positive = 20.0
-    """Normalisation of the obstacle evaluation [1/m]."""
-    gamma_o: Positive = 0.25
-    """Obstacle evaluation at which psi_ob is one [1/s]."""
-    min_distance: Positive = 0.05
-    """Distance below which an obstacle's evaluation grows no more [m]."""
-    aim_height: NonNegative = 0.05
-    """Height at which an obstacle is looked at: its foot gives the range [m]."""
-    d_n_thres: Positive = 0.80
-    """Obstacle-free distance at which psi_way is one [m]."""
-    attention_range: Positive = 2.5
-    """Distance up to which obstacles take part in the gaze [m]."""
-    beacon_range: Positive = 4.5
-    """Distance up to which beacons are worth a look [m]."""
+    """psi_lm: N_lp/N_cp as printed, or the fraction N_lp/(N_lp + N_cp)."""
+
+    ring_step: float = 0.20  # distance of the sample points along a ray [m]
+    ray_step: float = pi / 18.0  # angle between the rays of sample points [rad]
+    lambda_cf: float = 0.85  # confidence below which a sample point is under-confident [1]
+    t_sf: float = 0.05  # position uncertainty at which psi_sf is one [m]
+    t_heading: float = 0.09  # heading uncertainty at which psi_sf is one; 0 ignores it [rad]
+    omega_o: float = 20.0  # normalization of the obstacle evaluation [1/m]
+    gamma_o: float = 0.25  # obstacle evaluation at which psi_ob is one [1/s]
+    min_distance: float = 0.05  # lower bound of the distance in the obstacle evaluation [m]
+    aim_height: float = 0.05  # height on an obstacle at which the gaze aims [m]
+    d_n_thres: float = 0.80  # obstacle-free distance at which psi_way is one [m]
+    attention_range: float = 2.5  # maximum distance of obstacles in the set O [m]
+    beacon_range: float = 4.5  # maximum distance of beacons that get votes [m]
 
 
 @dataclass(frozen=True)
 class DeadlineParameters:
-    """Votes by age over half the worst-case time to contact."""
+    """Votes by age over half the worst-case time to collision."""
 
-    static_speed: NonNegative = 0.02
-    """Speed a static obstacle is feared to have [m/s]."""
-    unknown_speed: Share = 0.70
-    """Speed an undecided obstacle is feared to have, share of the robot's [1]."""
-    mover_speed: Share = 0.80
-    """Largest speed a mover is feared to have, share of the robot's [1]."""
-    exponent: Positive = 1.5
-    """Growth of a vote with its urgency [1]."""
-    max_urgency: Positive = 4.0
-    """Largest urgency of a vote [1]."""
-    unknown_bonus: NonNegative = 1.0
-    """Age added to undecided obstacles [s]."""
-    fresh_bonus: NonNegative = 3.0
-    """Age added besides to undecided obstacles of few detections, at any distance [s]."""
-    fresh_hits: Annotated[int, Ge(0)] = 8
-    """Detections below which they are few [1]."""
-    static_weight: NonNegative = 0.12
-    """Weight of votes of static obstacles [1]."""
-    map_weight: NonNegative = 0.05
-    """Weight of votes of the local map [1]."""
-    map_rings: Rings = (0.45, 0.8, 1.2, 1.7)
-    """Distances of the ground that votes [m]."""
-    map_rays: Annotated[int, Ge(2)] = 17
-    """Directions of it, from one end of the gaze's reach to the other [1]."""
-    path_weight: NonNegative = 0.2
-    """Weight of the vote of the way [1]."""
-    unseen_ground_weight: NonNegative = 0.8
-    """Vote for ground the confidence gate waits for [1]."""
-    look_request_weight: NonNegative = 3.0
-    """Vote for ground the body turned aside for [1]."""
-    beacon_weight: NonNegative = 1.6
-    """Weight of the votes of the beacons together [1]."""
-    t_heading: Positive = 0.06
-    """Heading uncertainty at which the beacons vote fully [rad]."""
-    switch_ratio: Annotated[float, Ge(1.0)] = 1.03
-    """Gain in the gaze map that moves the gaze [1]."""
-    saccade_time: NonNegative = 0.25
-    """Time ahead for which votes are cast: the head turns, and the body with it [s]."""
-    look_ratio: Positive = 0.5
-    """Share of the time to contact within which to look again [1]."""
-    min_time: Positive = 0.4
-    """Shortest time to contact counted [s]."""
-    min_age: NonNegative = 0.1
-    """Age of what was seen in the latest frame [s]."""
-    max_age: Positive = 8.0
-    """Age of ground from which its votes grow no more [s]."""
-    clearance: NonNegative = 0.05
-    """Distance from contact at which a look comes too late [m]."""
-    map_speed: NonNegative = 0.70
-    """Feared speed of what comes from ground not seen, share of the robot's [1]."""
-    path_distance: Positive = 0.8
-    """Distance of the floor looked at along the way [m]."""
-    look_request_tilt: float = -0.6
-    """Tilt of a look at what the body turned aside for; shows the floor from 0.3 m on [rad]."""
+    static_speed: float = 0.02  # assumed speed of a static obstacle [m/s]
+    unknown_speed: float = 0.70  # assumed speed of an undecided obstacle, ratio to the robot's [1]
+    mover_speed: float = 0.80  # maximum assumed speed of a mover, ratio to the robot's [1]
+    exponent: float = 1.5  # exponent of the urgency [1]
+    max_urgency: float = 4.0  # upper bound of the urgency [1]
+    unknown_bonus: float = 1.0  # age added to undecided obstacles [s]
+    fresh_bonus: float = 3.0  # additional age of undecided obstacles of few detections [s]
+    fresh_hits: int = 8  # number of detections below which they are few [1]
+    static_weight: float = 0.12  # weight of static obstacles [1]
+    map_weight: float = 0.05  # weight of the local map [1]
+    map_rings: tuple[float, ...] = (0.45, 0.8, 1.2, 1.7)  # distances of the ground that votes [m]
+    map_rays: int = 17  # number of its directions, over the whole reach of the gaze [1]
+    path_weight: float = 0.2  # weight of the floor along the path [1]
+    unseen_ground_weight: float = 0.8  # vote for unseen ground that slows the robot down [1]
+    look_request_weight: float = 3.0  # vote for the look request of the rear check [1]
+    beacon_weight: float = 1.6  # weight of all beacons together [1]
+    t_heading: float = 0.06  # heading uncertainty at which the beacons vote fully [rad]
+    switch_ratio: float = 1.03  # gain in the gaze map that moves the gaze [1]
+    saccade_time: float = 0.25  # prediction time of the votes: duration of a saccade [s]
+    look_ratio: float = 0.5  # fraction of the time to collision within which to look again [1]
+    min_time: float = 0.4  # lower bound of the time to collision [s]
+    min_age: float = 0.1  # age of what the latest frame shows [s]
+    max_age: float = 8.0  # upper bound of the age of ground [s]
+    clearance: float = 0.05  # gap that counts as a collision [m]
+    map_speed: float = 0.70  # assumed speed of movers from unseen ground, ratio to the robot's [1]
+    path_distance: float = 0.8  # distance of the floor along the path that votes [m]
+    look_request_tilt: float = -0.6  # tilt of a requested look: shows the floor from 0.3 m on [rad]
 
 
 @dataclass(frozen=True)
 class InformationParameters:
-    """Greedy information gain: what one detection is taken to tell."""
+    """Greedy information gain: expected accuracy of one detection."""
 
-    sight_sigma: Positive = 0.01
-    """Standard deviation of a place seen at no distance [m]."""
-    sight_rate: NonNegative = 0.015
-    """Growth of that with distance [1]."""
-    presence: Annotated[float, Ge(0.0), Le(0.5)] = 0.02
-    """Chance that something stands on a sample point never seen [1]."""
+    sight_sigma: float = 0.01  # standard deviation of a detected position at distance 0 [m]
+    sight_rate: float = 0.015  # increase of the standard deviation with distance [1]
+    presence: float = 0.02  # probability of an obstacle at a sample point never seen [1]
 
 
 @dataclass(frozen=True)
 class UrgencyParameters:
-    """Votes of obstacles by age over time to contact; the other evaluations as in (6)."""
+    """Votes of obstacles by age over time to collision; the other evaluations as in (6)."""
 
-    max_urgency: Positive = 10.0
-    """Largest urgency [1]."""
-    bonus: NonNegative = 0.3
-    """Age added to obstacles [s]."""
-    unknown_bonus: NonNegative = 1.0
-    """Age added to undecided obstacles instead [s]."""
-    min_time: Positive = 0.4
-    """Shortest time to contact counted [s]."""
-    side_weight: Share = 0.6
-    """Weight of what is not ahead [1]."""
-    static_weight: NonNegative = 0.15
-    """Weight of static obstacles [1]."""
-    unseen_ground_weight: NonNegative = 0.8
-    """Vote for ground the confidence gate waits for [1]."""
+    max_urgency: float = 10.0  # upper bound of the urgency [1]
+    bonus: float = 0.3  # age added to decided obstacles [s]
+    unknown_bonus: float = 1.0  # age added to undecided obstacles [s]
+    min_time: float = 0.4  # lower bound of the time to collision [s]
+    side_weight: float = 0.6  # weight of obstacles at a right angle to the path [1]
+    static_weight: float = 0.15  # weight of static obstacles [1]
+    unseen_ground_weight: float = 0.8  # vote for unseen ground that slows the robot down [1]
 
 
 @dataclass(frozen=True)
@@ -155,50 +110,46 @@ class GazeParameters:
     """Gaze map (5)-(6) and the timing of the gaze."""
 
     mode: GazeMode = "deadline"
-    """deadline: ours; urgency: what it grew from; integrated: (1)-(6); psi-lm, psi-sf, psi-ob,
-    psi-way: one of them alone; info: greedy information gain; sweep: from side to side by the
-    clock; fixed: ahead."""
+    """deadline: age over time to collision, the default; urgency: its predecessor; integrated:
+    (1)-(6); psi-lm, psi-sf, psi-ob, psi-way: one evaluation alone; info: greedy information gain;
+    sweep: sinusoidal pan; fixed: straight ahead."""
     w_lm: NonNegative = 0.09
     """Weight of the local map in (6) [1]."""
     w_way: NonNegative = 0.23
-    """Weight of the way point in (6) [1]."""
+    """Weight of the waypoint in (6) [1]."""
     w_sf: NonNegative = 0.23
     """Weight of self-localization in (6) [1]."""
     w_ob: NonNegative = 0.45
     """Weight of obstacles in (6) [1]."""
-    step: Positive = pi / 36.0
-    """Step of the gaze map [rad]."""
+    step: Annotated[float, Ge(0.01), Le(7.0)] = pi / 36.0
+    """Resolution of the gaze map [rad]."""
     box_fraction: Annotated[float, Gt(0.0), Le(0.5)] = 0.45
-    """Half width of the box of a vote, share of the field of view [1]."""
+    """Half width of the box of a vote as a fraction of the field of view [1]."""
     obstacle_votes: Literal["mean", "sum"] = "sum"
     """Votes of the obstacles in (6): divided by their number as printed, or summed."""
     map_votes: Literal["mean", "each"] = "each"
     """Vote of the local map: at the mean under-confident point as printed, or at each."""
     candidates: Literal["obstacles", "beacons"] = "beacons"
-    """Who votes for self-localization: obstacles and beacons, or beacons alone."""
+    """Candidates for self-localization: obstacles and beacons, or beacons alone."""
     switch_ratio: Annotated[float, Ge(1.0)] = 1.1
-    """Gain in the gaze map that moves the gaze; mode deadline has its own [1]."""
-    max_pan: Positive = pi / 2.0
-    """Largest pan to either side [rad]."""
-    min_tilt: Annotated[float, Lt(0.0)] = -pi / 3.0
+    """Gain in the gaze map that moves the gaze, except in mode deadline [1]."""
+    max_pan: Annotated[float, Ge(0.01), Le(7.0)] = pi / 2.0
+    """Maximum pan to either side [rad]."""
+    min_tilt: Annotated[float, Ge(-2.0), Lt(0.0)] = -pi / 3.0
     """Lowest tilt [rad]."""
-    max_tilt: NonNegative = pi / 9.0
+    max_tilt: Annotated[float, Ge(0.0), Le(2.0)] = pi / 9.0
     """Highest tilt [rad]."""
     dwell: NonNegative = 0.1
-    """Time the gaze rests after arrival before it is decided again [s]."""
-    arrival_tolerance: Positive = 0.06
-    """Distance from the target at which the head has arrived [rad]."""
-    max_saccade_time: Positive = 0.6
-    """Time after which the gaze is decided again even without arrival [s]."""
+    """Dwell: time between the arrival of the head and the next decision [s]."""
     fixed_tilt: float = -0.45
     """Tilt of the fixed gaze and of the sweep [rad]."""
     sweep_amplitude: NonNegative = 1.2
     """Pan amplitude of the sweep [rad]."""
     sweep_period: Positive = 4.0
     """Period of the sweep [s]."""
+
+    arrival_tolerance: float = 0.06  # distance from the target at which a saccade ends [rad]
+    max_saccade_time: float = 0.6  # time until the next decision if the head does not arrive [s]
     urgency: UrgencyParameters = field(default_factory=UrgencyParameters)
-    """Urgency votes."""
     deadline: DeadlineParameters = field(default_factory=DeadlineParameters)
-    """Deadline votes."""
     information: InformationParameters = field(default_factory=InformationParameters)
-    """Greedy information gain."""

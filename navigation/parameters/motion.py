@@ -1,11 +1,14 @@
-"""Parameters of the motion: field, movers, gate, filter, looks over the shoulder, body."""
+"""Parameters of the motion: univector field, moving obstacles, safety filter, velocity mapping.
+
+Public keys of a scenario have bounds and a docstring; all other fields are constants.
+"""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Lt
+from annotated_types import Gt, Lt
 
-from navigation.parameters.bounds import Angle, Count, NonNegative, Positive, Rings, Share
+from navigation.parameters.bounds import NonNegative, Positive
 
 
 @dataclass(frozen=True)
@@ -16,38 +19,14 @@ class UnivectorParameters:
     """Radius of the robot [m]."""
     margin: NonNegative = 0.03
     """Margin added to the robot's radius in S_r [m]."""
-    omega_soe: NonNegative = 1.0
-    """Weight of speed and uncertainty in (7) [1]."""
     eta_vo: NonNegative = 0.5
-    """Growth of the extended radius with the obstacle's speed [s]."""
+    """Gain of the extended radius on the speed of the obstacle [s]."""
     eta_imp: NonNegative = 0.05
-    """Growth of the extended radius with the partial evaluations [m]."""
+    """Gain of the extended radius on the partial evaluations [m]."""
     d_con: Positive = 0.80
     """Distance within which the field bends towards the arrival heading [m]."""
     arrival: Literal["hard", "ramped", "nposture"] = "ramped"
     """(8): switched at d_con as printed, ramped in, or Kim's posture field."""
-    k_alpha: Positive = 1.0
-    """Arrival gain on the bearing of the destination [1]."""
-    k_beta: Annotated[float, Lt(0.0)] = -0.6
-    """Arrival gain on the heading still to turn [1]."""
-    arrival_clamp: Positive = 1.3
-    """Largest deviation of the ramped field from the destination [rad]."""
-    arrival_ramp: Positive = 0.5
-    """Width of the ramp, share of d_con [1]."""
-    side_set: Positive = 2.304
-    """|beta| beyond which the ramped arrival remembers the side it circles on [rad]."""
-    side_clear: Positive = 1.798
-    """|beta| below which it forgets that side [rad]."""
-    posture_gain: Positive = 8.0
-    """Gain of Kim's posture field [1]."""
-    posture_offset: Positive = 0.25
-    """Distance of its reference point beyond the destination [m]."""
-    holonomic_distance: NonNegative = 0.45
-    """Distance from the goal within which the body turns to the goal's heading [m]."""
-    slow_distance: Positive = 0.30
-    """Distance from the goal within which k_rho falls [m]."""
-    slow_fraction: Share = 0.2
-    """k_rho at the goal [1]."""
     d_e: Positive = 0.20
     """Radius offset of the spiral (9) [m]."""
     d_b: Positive = 0.25
@@ -55,7 +34,7 @@ class UnivectorParameters:
     k_r: Positive = 0.30
     """Curvature of the outer spiral (9) [m]."""
     inside: Literal["zero", "outward"] = "outward"
-    """Field inside the extended radius: none as printed, or straight outward."""
+    """Field inside the extended radius: zero as printed, or straight outward."""
     blend: Literal["weights", "distance"] = "distance"
     """(10): fixed weights as printed, or weights by distance."""
     w_muf: NonNegative = 0.75
@@ -65,17 +44,25 @@ class UnivectorParameters:
     grouping: bool = False
     """Whether obstacles with gaps too narrow for the robot are passed on one side."""
     side_memory: bool = False
-    """Whether the side on which an obstacle is passed is kept while it is near."""
-    goal_fraction: Share = 0.6
-    """Share of the room between a destination and an obstacle left to its radius [1]."""
-    min_goal_gap: Positive = 0.02
-    """Least such room [m]."""
-    min_goal_offset: Positive = 0.03
-    """Least radius offset beside a destination [m]."""
-    virtual_weight: NonNegative = 1.5
-    """Weight of dynamic virtual obstacles in the blend by distance [1]."""
-    memory: NonNegative = 1.0
-    """Time unseen after which what may move leaves the field to the filter [s]."""
+    """Whether the passing side of an obstacle is kept while it is near."""
+
+    omega_soe: float = 1.0  # weight of speed and uncertainty in (7) [1]
+    k_alpha: float = 1.0  # arrival gain on the bearing of the destination [1]
+    k_beta: float = -0.6  # arrival gain on the remaining heading error, negative [1]
+    arrival_clamp: float = 1.3  # maximum deviation of the ramped field from the destination [rad]
+    arrival_ramp: float = 0.5  # width of the ramp as a fraction of d_con [1]
+    side_set: float = 2.304  # |beta| above which the ramped arrival latches its side [rad]
+    side_clear: float = 1.798  # |beta| below which the ramped arrival releases its side [rad]
+    posture_gain: float = 8.0  # gain of Kim's posture field [1]
+    posture_offset: float = 0.25  # distance of its reference point beyond the destination [m]
+    holonomic_distance: float = 0.45  # distance within which the body turns to the goal heading [m]
+    slow_distance: float = 0.30  # distance from the goal within which k_rho falls [m]
+    slow_fraction: float = 0.2  # k_rho at the goal [1]
+    goal_fraction: float = 0.6  # fraction of the room at a destination left to an obstacle [1]
+    min_goal_gap: float = 0.02  # lower bound of that room [m]
+    min_goal_offset: float = 0.03  # lower bound of d_e at a destination [m]
+    virtual_weight: float = 1.5  # weight of dynamic virtual obstacles in the blend by distance [1]
+    memory: float = 1.0  # time unseen after which only the safety filter avoids a mover [s]
 
 
 @dataclass(frozen=True)
@@ -83,183 +70,130 @@ class MovingObstacleParameters:
     """Dynamic virtual obstacle (11) and velocity modification."""
 
     virtual_obstacle: Literal["off", "printed", "uncapped"] = "uncapped"
-    """(11) as printed, uncapped with a remembered side, or not at all."""
+    """(11): off, as printed, or uncapped with a remembered side."""
     xi: Annotated[float, Gt(0.0), Lt(1.0)] = 0.6
     """Convexity of the dynamic virtual obstacle [1]."""
-    omega_dist: Positive = 12.0
-    """Length of the virtual path of the printed form [1]."""
-    path_time: Positive = 6.0
-    """Length of the virtual path of the own form, per relative speed [s]."""
-    side_switch: NonNegative = 0.05
-    """Distance from a mover's path within which the destination decides the side [m]."""
-    side_hold: NonNegative = 0.08
-    """Distance beyond a mover's path at which the own form changes its side [m]."""
-    side_aligned: Share = 0.2
-    """Sine of the angle between path and destination up to which that decides nothing [1]."""
-    min_speed: Positive = 0.015
-    """Speed below which an obstacle has no path [m/s]."""
     velocity_modification: Literal["off", "closed", "sampled"] = "sampled"
-    """Free speeds from the quadratic, from samples, or not at all."""
+    """Velocity modification: off, roots of the quadratic, or sampled speeds."""
     radius: Literal["extended", "physical"] = "physical"
-    """Radius velocity modification avoids: S_oe, or the bodies and a margin."""
+    """Radius in velocity modification: S_oe, or the physical radii and a margin."""
     margin: NonNegative = 0.05
-    """That margin [m]."""
+    """Margin added to the physical radii [m]."""
     horizon: Positive = 6.0
-    """Contacts later than this are ignored [s]."""
+    """Maximum time to collision in velocity modification [s]."""
     wait_in_band: bool = True
-    """Whether a robot in a mover's way may brake, which puts the contact off at best."""
-    samples: Annotated[int, Ge(2)] = 21
-    """Number of sampled speeds [1]."""
-    acceleration_time: Positive = 0.8
-    """Time over which the sampled form may accelerate [s]."""
+    """Whether a robot inside the collision band may brake, which only delays the collision."""
+
+    omega_dist: float = 12.0  # length of the virtual path in (11) as printed [1]
+    path_time: float = 6.0  # length of the uncapped virtual path per relative speed [s]
+    side_switch: float = 0.05  # distance from the path within which the goal decides the side [m]
+    side_hold: float = 0.08  # distance beyond the path at which the uncapped form changes side [m]
+    side_aligned: float = 0.2  # sine of path to goal below which the goal does not decide [1]
+    min_speed: float = 0.015  # speed below which an obstacle has no virtual path [m/s]
+    samples: int = 21  # number of sampled speeds [1]
+    acceleration_time: float = 0.8  # time over which a sampled speed may be reached [s]
 
 
 @dataclass(frozen=True)
 class UnseenGroundParameters:
-    """Slow down before ground that was never seen."""
+    """Speed limit towards ground that was not seen recently."""
 
     enabled: bool = True
-    """Whether the gate is used."""
-    confidence: Share = 0.3
-    """Confidence below which the ground counts as unseen [1]."""
-    near: Positive = 0.36
-    """Nearest ground asked for; a look at obstacles, 20 deg down, shows none nearer [m]."""
-    far: Positive = 0.60
-    """Farthest ground asked for [m]."""
-    half_width: NonNegative = 0.10
-    """Half width of the ground asked for [m]."""
-    rows: Annotated[int, Ge(2)] = 4
-    """Rows of points from the nearest to the farthest [1]."""
-    speed: NonNegative = 0.03
-    """Largest speed towards unseen ground [m/s]."""
+    """Whether unseen ground limits the speed."""
+
+    confidence: float = 0.3  # confidence below which ground counts as unseen [1]
+    near: float = 0.36  # nearest ground checked; a look 20 deg down shows none nearer [m]
+    far: float = 0.60  # farthest ground checked [m]
+    half_width: float = 0.10  # half width of the ground checked [m]
+    rows: int = 4  # rows of points from the nearest to the farthest [1]
+    speed: float = 0.03  # maximum speed towards unseen ground [m/s]
 
 
 @dataclass(frozen=True)
 class SafetyFilterParameters:
-    """Time-to-contact filter over rolled-out footsteps."""
+    """Safety filter: time to collision of rolled-out footsteps."""
 
     enabled: bool = True
-    """Whether the filter is used."""
-    headings: Count = 24
-    """Number of candidate directions [1]."""
-    speeds: Count = 6
-    """Number of candidate speeds per direction [1]."""
-    steps: Annotated[int, Ge(0)] = 4
-    """Footsteps rolled out with the body's real motion before the straight path [1]."""
-    turn_change: Positive = 0.4
-    """Largest change of the turn rate from footstep to footstep [rad/s]."""
-    static_horizon: Positive = 2.0
-    """Time to contact below which static obstacles count [s]."""
-    moving_horizon: Positive = 6.0
-    """Time to contact below which movers count [s]."""
-    bend_time: Positive = 2.0
-    """Time over which a mover's bend is averaged: it counts as going along that chord [s]."""
-    reversal_horizon: Positive = 2.5
-    """Time to contact below which the reversal of a mover counts [s]."""
-    urgent_time: Positive = 1.5
-    """Time to contact below which a contact is urgent [s]."""
-    urgent_weight: NonNegative = 20.0
-    """Penalty of an urgent contact [1]."""
-    weight: NonNegative = 6.0
-    """Penalty of any other contact [1]."""
-    change_weight: NonNegative = 0.15
-    """Penalty of a change of velocity [1]."""
-    particle_weight: NonNegative = 2.0
-    """Weight of a lost mover's particles together [1]."""
-    reversal_weight: NonNegative = 0.12
-    """Weight of the reversal of a visible mover [1]."""
+    """Whether the safety filter is used."""
     reachable: bool = False
-    """Whether an unseen mover also counts as all it can have reached from its last place."""
-    reachable_radius: NonNegative = 0.4
-    """Largest growth of that disc [m]."""
-    reachable_delay: NonNegative = 0.3
-    """Time unseen before it grows [s]."""
-    reachable_age: Positive = 6.0
-    """Time unseen after which it is dropped [s]."""
+    """Whether an unseen mover also counts as its reachable set."""
     margin: NonNegative = 0.045
-    """Distance kept from the bodies of obstacles: a stepping foot reaches out so far beyond
-    `univector.s_robot` [m]."""
-    max_sigma: NonNegative = 0.06
-    """Largest part of a mover's position uncertainty added to that [m]."""
-    inside_weight: NonNegative = 10.0
-    """Extra penalty of a contact with a disc the robot is already in [1]."""
-    inside_depth: NonNegative = 40.0
-    """Extra penalty for the depth in it, as a share of its radius [1]."""
-    inside_closing: NonNegative = 100.0
-    """Extra penalty per closing speed [s/m]."""
+    """Distance to the bodies of obstacles, for a stepping foot beyond `univector.s_robot` [m]."""
+
+    headings: int = 24  # number of candidate directions [1]
+    speeds: int = 6  # number of candidate speeds per direction [1]
+    steps: int = 4  # footsteps in the rollout before the straight path [1]
+    turn_change: float = 0.4  # maximum change of the turn rate between footsteps [rad/s]
+    static_horizon: float = 2.0  # maximum time to collision with static obstacles [s]
+    moving_horizon: float = 6.0  # maximum time to collision with movers [s]
+    bend_time: float = 2.0  # time over which the path of a turning mover is averaged [s]
+    reversal_horizon: float = 2.5  # maximum time to collision with the reversal of a mover [s]
+    urgent_time: float = 1.5  # time to collision below which a collision is urgent [s]
+    urgent_weight: float = 20.0  # penalty of an urgent collision [1]
+    weight: float = 6.0  # penalty of any other collision [1]
+    change_weight: float = 0.15  # penalty of a change of velocity [1]
+    particle_weight: float = 2.0  # weight of all particles of a lost mover together [1]
+    reversal_weight: float = 0.12  # weight of the reversal of a visible mover [1]
+    reachable_radius: float = 0.4  # maximum growth of the reachable set [m]
+    reachable_delay: float = 0.3  # time unseen before the reachable set grows [s]
+    reachable_age: float = 6.0  # time unseen after which the reachable set is dropped [s]
+    max_sigma: float = 0.06  # maximum position uncertainty added to the radius of a mover [m]
+    inside_weight: float = 10.0  # penalty of a collision with a disc that contains the robot [1]
+    inside_depth: float = 40.0  # additional penalty per depth as a fraction of its radius [1]
+    inside_closing: float = 100.0  # additional penalty per closing speed [s/m]
 
 
 @dataclass(frozen=True)
 class LandmarkParameters:
     """Landmarks of the map as obstacles."""
 
-    attention_range: NonNegative = 1.0
-    """Distance within which one counts; farther off only `mppi` heeds what stands [m]."""
-    sigma: Positive = 0.005
-    """Standard deviation of place and velocity, that of a static track known for long [m, m/s]."""
+    attention_range: float = 1.0  # maximum distance of a landmark that counts [m]
+    # Standard deviation of position and velocity, as of a static track known for long [m, m/s].
+    sigma: float = 0.005
 
 
 @dataclass(frozen=True)
 class WaypointSearchParameters:
-    """Way points round still obstacles that block the straight way."""
+    """Waypoints around static obstacles that block the straight path."""
 
     enabled: bool = False
-    """Whether the search is used."""
-    cell: Positive = 0.10
-    """Side of a cell [m]."""
-    reach: Positive = 1.2
-    """Largest distance of the way point [m]."""
-    around: Positive = 1.0
-    """How far the search goes beyond robot and destination [m]."""
+    """Whether waypoints are searched for."""
+
+    cell: float = 0.10  # side of a grid cell [m]
+    reach: float = 1.2  # maximum distance of the waypoint [m]
+    around: float = 1.0  # margin of the grid around robot and destination [m]
 
 
 @dataclass(frozen=True)
 class RearCheckParameters:
-    """Looks over the shoulder: the body turns aside so that the gaze reaches what is behind."""
+    """Rear check: the body turns until the gaze reaches the ground behind the robot."""
 
     enabled: bool = True
-    """Whether the body turns aside."""
-    near_angle: Angle = 0.4
-    """Angle of the body to its way for ground just out of the gaze's reach [rad]."""
-    far_angle: Angle = 0.95
-    """Angle of the body to its way for ground right behind [rad]."""
-    far_weight: NonNegative = 0.77
-    """Weight of the urgency of ground right behind, for which the robot slows down [1]."""
-    rings: Rings = (0.40, 0.65, 0.90, 1.20)
-    """Distances of the ground looked at; a lost mover farther off than all does not count [m]."""
-    rays: Annotated[int, Ge(2)] = 4
-    """Directions of it on either side, as many beside as right behind [1]."""
-    mover_speed: NonNegative = 1.1
-    """Feared speed of what was not seen, share of the robot's [1]."""
-    start_urgency: Positive = 0.7
-    """Age of ground over the time to contact from which the body turns aside [1]."""
-    stop_urgency: NonNegative = 0.3
-    """The same below which it turns back [1]."""
-    max_turn_time: Positive = 2.5
-    """Longest time turned aside [s]."""
-    retry_delay: NonNegative = 2.0
-    """Time until the next try, if nothing was seen by then [s]."""
-    clearance: NonNegative = 0.25
-    """Gap to what may move within which the robot leaves first and looks round later [m]."""
-    min_approach: Positive = 0.02
-    """Least speed at which something unseen is taken to come nearer [m/s]."""
-    min_time: Positive = 0.4
-    """Shortest time to contact counted [s]."""
-    max_age: Positive = 8.0
-    """Age of ground from which nothing grows worse [s]."""
-    max_urgency: Positive = 2.0
-    """Largest urgency of a point on the ground [1]."""
+    """Whether the rear check is used."""
+
+    near_angle: float = 0.4  # body angle for ground just out of the gaze's reach [rad]
+    far_angle: float = 0.95  # body angle for ground right behind [rad]
+    far_weight: float = 0.77  # weight of ground right behind, which costs speed [1]
+    # Distances of the checked ground; a lost mover farther away than all is ignored [m].
+    rings: tuple[float, ...] = (0.40, 0.65, 0.90, 1.20)
+    rays: int = 4  # directions per sector [1]
+    mover_speed: float = 1.1  # assumed speed of unseen movers, ratio to the robot's [1]
+    start_urgency: float = 0.7  # urgency above which the body turns [1]
+    stop_urgency: float = 0.3  # urgency below which the body turns back [1]
+    max_turn_time: float = 2.5  # maximum duration of a rear check [s]
+    retry_delay: float = 2.0  # time until the next rear check after a failed one [s]
+    clearance: float = 0.25  # gap to a mover within which no rear check starts [m]
+    min_approach: float = 0.02  # lower bound of the assumed closing speed [m/s]
+    min_time: float = 0.4  # lower bound of the time to collision [s]
+    max_age: float = 8.0  # upper bound of the age of ground [s]
+    max_urgency: float = 2.0  # upper bound of the urgency of a point [1]
 
 
 @dataclass(frozen=True)
 class VelocityMappingParameters:
-    """From a direction and a speed to a body velocity."""
+    """Velocity mapping from direction and speed to a body velocity."""
 
-    turn_gain: Positive = 1.5
-    """Turn rate per heading error [1/s]."""
-    turn_first_angle: NonNegative = 0.5
-    """Heading error below which a fast path is walked without turning first [rad]."""
-    sidestep_ratio: NonNegative = 1.2
-    """Speed up to which no path needs a turn first, share of the largest sideways [1]."""
-    lost_turn_rate: NonNegative = 0.5
-    """Turn rate of a lost robot, whose head alone does not reach all around [rad/s]."""
+    turn_gain: float = 1.5  # turn rate per heading error [1/s]
+    turn_first_angle: float = 0.5  # heading error above which a fast path starts with a turn [rad]
+    sidestep_ratio: float = 1.2  # speed of a fast path, ratio to the maximum lateral speed [1]
+    lost_turn_rate: float = 0.5  # turn rate of a lost robot, which searches for beacons [rad/s]

@@ -1,7 +1,7 @@
 """Parameters of the decisions: mission, gaze, planner and motion.
 
-Defaults are the profile `extended`; `NavigationParameters.paper` is the reference with
-the printed structure. Every difference between the two is a field of a section.
+The defaults are the profile `extended`; `NavigationParameters.paper` is the reference with the
+printed structure.
 """
 
 from dataclasses import dataclass, field
@@ -23,16 +23,16 @@ from navigation.parameters.planner import PlannerParameters
 
 @dataclass(frozen=True)
 class MissionParameters:
-    """Sequence of via points, arrival at the goal."""
+    """Via points and arrival at the goal."""
 
     r_via: Positive = 0.15
     """Distance at which a via point is passed [m]."""
     r_goal: Positive = 0.05
     """Distance at which the goal is reached and the turn to its heading begins [m]."""
-    r_release: Positive = 0.08
-    """Distance beyond which a robot turning at the goal walks back to it [m]."""
     heading_tolerance: Positive = 0.07
     """Heading error at which the mission is done [rad]."""
+
+    r_release: float = 0.08  # distance at which a robot that turns at the goal walks back [m]
 
 
 @dataclass(frozen=True)
@@ -40,38 +40,26 @@ class NavigationParameters:
     """All parameters of the decisions; the defaults are the profile `extended`."""
 
     mission: MissionParameters = field(default_factory=MissionParameters)
-    """Way points and arrival."""
     evaluation: EvaluationParameters = field(default_factory=EvaluationParameters)
-    """Partial evaluations."""
     gaze: GazeParameters = field(default_factory=GazeParameters)
-    """Gaze."""
     planner: PlannerParameters = field(default_factory=PlannerParameters)
-    """Choice of the planner, and the baselines."""
     univector: UnivectorParameters = field(default_factory=UnivectorParameters)
-    """Univector field."""
     moving_obstacles: MovingObstacleParameters = field(default_factory=MovingObstacleParameters)
-    """Moving obstacles."""
     unseen_ground: UnseenGroundParameters = field(default_factory=UnseenGroundParameters)
-    """Confidence gate."""
     safety_filter: SafetyFilterParameters = field(default_factory=SafetyFilterParameters)
-    """Time-to-contact filter."""
     landmarks: LandmarkParameters = field(default_factory=LandmarkParameters)
-    """Landmarks as obstacles."""
     rear_check: RearCheckParameters = field(default_factory=RearCheckParameters)
-    """Looks over the shoulder."""
     waypoint_search: WaypointSearchParameters = field(default_factory=WaypointSearchParameters)
-    """Way-point search."""
     velocity_mapping: VelocityMappingParameters = field(default_factory=VelocityMappingParameters)
-    """Body command."""
 
     @classmethod
     def extended(cls) -> "NavigationParameters":
-        """Our best."""
+        """Profile `extended`, the defaults."""
         return cls()
 
     @classmethod
     def paper(cls) -> "NavigationParameters":
-        """Printed structure and constants with the least repairs: a reference."""
+        """Profile `paper`: printed structure and constants with the minimum of repairs."""
         return cls(
             evaluation=EvaluationParameters(map_ratio="printed", t_heading=0.0),
             gaze=GazeParameters(

@@ -94,9 +94,7 @@ def test_the_profile_paper_is_the_librarys():
 
 
 def test_a_command_lasts_for_one_footstep():
-    scenario = load_scenario(
-        "course", ["walking.gait.footstep_time=0.4", "robot.speed.vx=0.15"]
-    )
+    scenario = load_scenario("course", ["walking.gait.footstep_time=0.4", "robot.speed.vx=0.15"])
     limits = scenario.speed_limits()
     assert limits.footstep == 0.4
     assert limits.vx == 0.15
