@@ -238,7 +238,7 @@ def main() -> None:
         "## Computed again from the records",
         "",
         "Physics from the set-points of each tick, the estimator from the recorded measurements, "
-        "the decisions from the recorded beliefs: `hsr8 check replay`.",
+        "the decisions from the recorded beliefs: `hsr8 verify`.",
         "",
         *replays.table(),
         "",

@@ -43,7 +43,7 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("info", "RUN", "--json"),
     ("diff", "RUN", "OTHER"),
     ("compare", "RUN", "OTHER"),
-    ("check replay", "RUN"),
+    ("verify", "RUN"),
     ("run", "RUN", "--resume", "--quiet", "--no-log"),
     ("plot", "RUN", "--out", "PNG"),
     ("render", "RUN", "--out", "PNG", "--size", "64x48", "--camera", "head", "--quiet"),
@@ -56,7 +56,7 @@ ON_SWEEPS: tuple[tuple[str, ...], ...] = (
     ("compare", "OTHER", "SWEEP", "--json"),
     ("sweep", "quick", "--seeds", "0:2", "--duration", "0.1", "--quiet", "--out", "SWEEP"),
 )
-RARE = {"check replay": 0.15, "run": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
+RARE = {"verify": 0.15, "run": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
 RARE |= {"bug-report": 0.3, "check": 0.3, "sweep": 0.02}
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
 KINDS = ("text", "table", "setting", "start", "model", "folder", "log", "sweep", "colours")

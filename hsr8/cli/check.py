@@ -8,7 +8,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.command_line import run_command, settings
-from hsr8.cli.cost import estimate
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_png, writing
 from hsr8.plugin_file import require_plugins
@@ -36,13 +35,13 @@ def main(options: Check) -> int:
     """
     scenario = load_scenario(options.scenario, settings(options), options.seed)
     require_plugins(scenario.plugin)
-    if options.picture is not None:
-        require_png("--picture", options.picture)
+    if options.image is not None:
+        require_png("--image", options.image)
     world = draw_world(scenario, scenario.seed)
     layout = world.layout
-    if options.picture is not None:
-        with writing("--picture", options.picture):
-            write_png(options.picture, PlanView(layout, certificate=world.certificate).draw())
+    if options.image is not None:
+        with writing("--image", options.image):
+            write_png(options.image, PlanView(layout, certificate=world.certificate).draw())
     summary = summarize(scenario, world)
     if options.json:
         print(json.dumps(summary))
@@ -57,7 +56,6 @@ def summarize(scenario: Scenario, world: FairWorld) -> Summary:
     """World, mission and cost of a scenario as plain values."""
     layout, certificate = world.layout, world.certificate
     clearance = _least_clearance(layout, certificate)
-    cost = estimate(scenario)
     return {
         "name": scenario.name,
         "seed": scenario.seed,
@@ -87,8 +85,6 @@ def summarize(scenario: Scenario, world: FairWorld) -> Summary:
         "certified_length_m": round(certificate.length, 2),
         "certified_clearance_m": None if clearance is None else round(clearance, 3),
         "rejected_worlds": world.rejected,
-        "estimated_wall_time_s": round(cost.wall, 1),
-        "estimated_log_mb": round(cost.disk, 1),
     }
 
 
@@ -126,12 +122,7 @@ def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
     )
     facts.add_row("camera", f"{camera.source},{view} every {camera.period_ms} ms")
     facts.add_row("profile", scenario.navigation.profile)
-    facts.add_row(
-        "time",
-        f"at most {scenario.duration:g} s simulated, about "
-        f"{summary['estimated_wall_time_s']} s on two cores",
-    )
-    facts.add_row("log", f"about {summary['estimated_log_mb']} MB")
+    facts.add_row("simulated time", f"at most {scenario.duration:g} s")
     console.print(facts)
     if layout.obstacles:
         console.print(_obstacles(layout))

@@ -1,4 +1,4 @@
-"""``hsr8 colours``: a colour table from labelled images."""
+"""``hsr8 color-table``: learn a color table from labelled images."""
 
 import json
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from hsr8.cli.options import Colours
+from hsr8.cli import options as cli
 from hsr8.cli.output_file import writing
 from hsr8.errors import UsageError
 from vision.color import COLOR_CLASSES, ColorTable, Labels
@@ -32,7 +32,7 @@ def mask_colors() -> dict[str, tuple[int, int, int]]:
     }
 
 
-def main(options: Colours) -> int:
+def main(options: cli.ColorTable) -> int:
     """Learn the table, write it, and tell how well it recognises its own images.
 
     Raises:
@@ -41,7 +41,7 @@ def main(options: Colours) -> int:
     if options.out.suffix != SUFFIX:
         raise UsageError(f"--out {options.out}: a colour table is a {SUFFIX} file")
     if not options.images:
-        raise UsageError("colours needs IMAGE: images with masks beside them, NAME.mask.png")
+        raise UsageError("IMAGE: missing; expected images with masks NAME.mask.png")
     pairs = [_read(path) for path in options.images]
     try:
         table = learn(pairs)

@@ -1,17 +1,32 @@
-"""The commands and their options; nothing heavy is imported, so that ``--help`` is quick."""
+"""Commands and their options; no heavy import, so that ``--help`` is fast."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import tyro
 from tyro.conf import Positional, UseAppendAction
+from tyro.constructors import PrimitiveConstructorSpec
 
 
 def _arg(metavar: str, text: str) -> object:
     return tyro.conf.arg(metavar=metavar, help=text, help_behavior_hint="")
 
 
+def _optional(kind: Callable[[str], Any], *choices: str) -> PrimitiveConstructorSpec[Any]:
+    """Parse one value of an option whose default is None; the word ``None`` is not a value."""
+    return PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="VALUE",
+        instance_from_str=lambda words: kind(words[0]),
+        is_instance=lambda value: value is not None,
+        str_from_instance=lambda value: [str(value)],
+        choices=choices or None,
+    )
+
+
+INTEGER, NUMBER = _optional(int), _optional(float)
 ScenarioName = Annotated[str, _arg("SCENARIO", "name (see `hsr8 list`) or TOML file")]
 Settings = UseAppendAction[
     Annotated[
@@ -19,36 +34,45 @@ Settings = UseAppendAction[
         _arg("KEY=VALUE", "any setting, e.g. --set world.n_moving=8; may be repeated"),
     ]
 ]
+Duration = Annotated[
+    float | None,
+    NUMBER,
+    _arg("S", "simulated time at most [s]; default: that of the scenario"),
+]
 Body = Annotated[
     Literal["full", "kinematic"] | None,
-    _arg("{full,kinematic}", "full physics, or feet that land exactly as planned, faster"),
+    _optional(str, "full", "kinematic"),
+    _arg("{full,kinematic}", "full physics, or feet that land exactly as planned (faster)"),
 ]
 Camera = Annotated[
     Literal["rendered", "analytic", "omnidirectional"] | None,
+    _optional(str, "rendered", "analytic", "omnidirectional"),
     _arg(
         "{rendered,analytic,omnidirectional}",
-        "rendered: OpenGL images; analytic: geometric projection, no OpenGL; omnidirectional: "
-        "analytic with a 360 deg view",
+        "rendered: images drawn with OpenGL; analytic: geometry only; "
+        "omnidirectional: analytic, 360 deg",
     ),
 ]
-RunPath = Annotated[
-    Path, tyro.conf.arg(metavar="RUN", help="run folder, or a folder whose newest run is meant")
+RunPath = Annotated[Path, _arg("RUN", "run folder, or a parent folder for its newest run")]
+Json = Annotated[
+    bool, tyro.conf.arg(help="print one JSON object on standard output", help_behavior_hint="")
+]
+Quiet = Annotated[
+    bool, tyro.conf.arg(help="print neither progress nor results", help_behavior_hint="")
 ]
 
 
 @dataclass(frozen=True)
 class Run:
-    """Run a scenario: physics, head camera, belief, gaze, walking; all of it logged."""
+    """Run a scenario and record it: physics, head camera, belief, gaze, walking."""
 
-    scenario: Positional[
-        Annotated[str, _arg("SCENARIO", "name (see `hsr8 list`) or TOML file; with --resume a run")]
-    ]
-    seed: Annotated[int | None, _arg("N", "seed of world and noise; else the scenario's")] = None
-    out: Path = Path("runs")
-    """Folder for run folders."""
-    duration: Annotated[
-        float | None, _arg("S", "simulated time at most [s]; else the scenario's")
+    scenario: Positional[ScenarioName]
+    seed: Annotated[
+        int | None, INTEGER, _arg("N", "seed of world and noise; default: that of the scenario")
     ] = None
+    out: Path = Path("runs")
+    """Parent folder of run folders."""
+    duration: Duration = None
     set: Settings = ()
     body: Body = None
     camera: Camera = None
@@ -56,40 +80,28 @@ class Run:
     """Write no Rerun log."""
     log_level: Annotated[
         Literal["minimal", "standard", "full"] | None,
+        _optional(str, "minimal", "standard", "full"),
         _arg(
             "{minimal,standard,full}",
-            "minimal: poses, curves, events; standard (default): images and beliefs too; "
+            "minimal: poses, curves, events; standard (default): also images and beliefs; "
             "full: every frame",
         ),
     ] = None
     view: Annotated[
         Literal["native", "web"] | None,
-        _arg(
-            "[{native,web}]",
-            "show the log as it is written too: in a window, or to a browser on this machine",
-        ),
+        _optional(str, "native", "web"),
+        _arg("{native,web}", "show the log during the run: in a window or in a browser"),
     ] = None
-    checkpoint: Annotated[
-        str, _arg("every=S", "save the run every so many whole simulated seconds; else never")
-    ] = ""
-    resume: bool = False
-    """Go on with a run that was killed, from its last checkpoint, to the identical end."""
-    verify_determinism: bool = False
-    """Run twice, in processes of their own, and compare every bit."""
-    dry_run: bool = False
-    """Check everything, say what it would take, and run nothing."""
-    json: bool = False
-    """Print the results as one JSON object, and nothing else, on standard output."""
-    quiet: bool = False
-    """No progress line, no result table."""
+    json: Json = False
+    quiet: Quiet = False
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """Run a scenario over many seeds, a process each, and sum up the results.
+    """Run a scenario over many seeds in parallel and summarize the results.
 
-    What has a result in the folder is not run again: the same command line goes on where a
-    stopped sweep ended, and more seeds join the old ones.
+    Runs with a result in the folder are not repeated: the same command line continues a
+    stopped sweep, and further seeds are added.
     """
 
     scenario: Positional[ScenarioName]
@@ -98,162 +110,112 @@ class Sweep:
         _arg("SEEDS", "A:B for A to B-1, or a list: 1000:1200, 1,5,9, or 0:10,42"),
     ]
     out: Annotated[
-        Path | None, _arg("DIR", "folder of the sweep; by default sweeps/ and the scenario's name")
+        Path | None, _arg("DIR", "folder of the sweep; default: sweeps/ and the scenario's name")
     ] = None
-    workers: Annotated[int | None, _arg("N", "runs at a time; by default, one per CPU")] = None
+    workers: Annotated[
+        int | None, INTEGER, _arg("N", "parallel runs; default: number of CPUs")
+    ] = None
     set: Settings = ()
     vary: UseAppendAction[
         Annotated[
             tuple[tuple[str, ...], ...],
             _arg(
                 "KEY=V1,V2,...",
-                "sweep over these values too, a folder each; repeated, over all combinations",
+                "also vary a setting, one folder per value; repeated: all combinations",
             ),
         ]
     ] = ()
-    duration: Annotated[
-        float | None, _arg("S", "simulated time at most [s]; else the scenario's")
-    ] = None
+    duration: Duration = None
     body: Body = None
     camera: Camera = None
     executor: str = "local"
-    """Who runs: local, dask, dask://HOST:PORT, ray or ray://HOST:PORT."""
+    """Executor: local, dask, dask://HOST:PORT, ray or ray://HOST:PORT."""
     shard: Annotated[
         str | None,
         _arg("I/N", "run part I of N; afterwards the same line without --shard writes the report"),
     ] = None
     timeout: Annotated[
         float | None,
-        _arg("S", "wall time after which a run hangs [s]; by default 60 s + 20 x its duration"),
+        NUMBER,
+        _arg("S", "wall-clock limit per run [s]; default: 60 s + 20 x its duration"),
     ] = None
     keep: Literal["all", "failed", "none"] = "all"
-    """Run folders that stay; one takes about 100 kB per simulated second."""
+    """Run folders to keep; one takes about 100 kB per simulated second."""
     log: bool = False
     """Write the Rerun log of every run."""
-    dry_run: bool = False
-    """Check everything, say what it would take, and run nothing."""
-    json: bool = False
-    """Print the results as one JSON object on standard output."""
-    quiet: bool = False
-    """No progress, no result table."""
+    json: Json = False
+    quiet: Quiet = False
 
 
 @dataclass(frozen=True)
 class Compare:
-    """Compare two sweeps, or two runs, on their common seeds: paired differences with tests."""
+    """Compare two sweeps or two runs on their common seeds: paired differences with tests."""
 
-    a: Positional[Annotated[Path, tyro.conf.arg(metavar="A", help="sweep's folder, or run folder")]]
-    b: Positional[Annotated[Path, tyro.conf.arg(metavar="B", help="the one compared with it")]]
+    a: Positional[Annotated[Path, _arg("A", "folder of a sweep or of a run")]]
+    b: Positional[Annotated[Path, _arg("B", "folder to compare with A")]]
     metric: UseAppendAction[
         Annotated[
             tuple[str, ...],
-            _arg("NAME", "a number of metrics.json, else the usual ones; may be repeated"),
+            _arg("NAME", "numeric key of metrics.json; may be repeated; default: the usual ones"),
         ]
     ] = ()
-    json: bool = False
-    """Print one JSON object, else a page of Markdown."""
+    json: Json = False
 
 
 @dataclass(frozen=True)
 class List:
-    """List the scenarios that come with hsr8."""
+    """List the built-in scenarios."""
 
-    json: bool = False
-    """Print one JSON object."""
-
-
-@dataclass(frozen=True)
-class Diff:
-    """Compare two runs bit for bit: the first tick, channel and values that differ."""
-
-    a: Positional[RunPath]
-    b: Positional[RunPath]
-    json: bool = False
-    """Print one JSON object."""
-
-
-@dataclass(frozen=True)
-class Info:
-    """Tell what a run folder holds: results, events, versions, files."""
-
-    run: Positional[RunPath]
-    json: bool = False
-    """Print one JSON object."""
-
-
-@dataclass(frozen=True)
-class BugReport:
-    """Pack what helps to find a mistake into one ZIP file: versions, OpenGL, the run."""
-
-    run: Positional[
-        Annotated[Path | None, _arg("[RUN]", "run folder; without one, this machine alone")]
-    ] = None
-    out: Path = Path("hsr8-bug-report.zip")
-    """File to write."""
-    json: bool = False
-    """Print one JSON object."""
-
-
-@dataclass(frozen=True)
-class Schema:
-    """Print the JSON Schema of scenario files, for editors that check as one types."""
-
-    out: Annotated[Path | None, _arg("FILE", "file to write; else standard output")] = None
-
-
-@dataclass(frozen=True)
-class Completion:
-    """Print the completion script of a shell; `--help` says where it goes.
-
-    bash: hsr8 completion bash > ~/.local/share/bash-completion/completions/hsr8
-
-    zsh: hsr8 completion zsh > ~/.zfunc/_hsr8, in a folder of $fpath
-
-    fish: hsr8 completion fish > ~/.config/fish/completions/hsr8.fish
-    """
-
-    shell: Positional[Literal["bash", "zsh", "fish"]] = "bash"
-    """Shell to complete in."""
+    json: Json = False
 
 
 @dataclass(frozen=True)
 class Check:
-    """Check a scenario without running it: settings, world, fairness."""
+    """Check a scenario without running it: settings, world, feasibility."""
 
     scenario: Positional[ScenarioName]
-    seed: Annotated[int | None, _arg("N", "seed of the world; else the scenario's")] = None
-    set: Settings = ()
-    picture: Annotated[
-        Path | None, _arg("FILE", "draw the world and the certificate's way as a PNG")
+    seed: Annotated[
+        int | None, INTEGER, _arg("N", "seed of the world; default: that of the scenario")
     ] = None
-    json: bool = False
-    """Print one JSON object."""
+    set: Settings = ()
+    image: Annotated[
+        Path | None, _arg("PNG", "draw the world and the path of the feasibility certificate")
+    ] = None
+    json: Json = False
 
 
 @dataclass(frozen=True)
-class CheckReplay:
-    """Compute a run again: physics, belief and decisions from their records, bit for bit."""
+class Verify:
+    """Recompute a run from its records and compare physics, belief and decisions bit for bit."""
 
     run: Positional[RunPath]
-    json: bool = False
-    """Print one JSON object."""
+    json: Json = False
 
 
 @dataclass(frozen=True)
-class Doctor:
-    """Look whether everything is in place: OpenGL, libraries, models, disk."""
+class Info:
+    """Show a run folder: results, events, versions, files."""
 
-    json: bool = False
-    """Print one JSON object."""
+    run: Positional[RunPath]
+    json: Json = False
+
+
+@dataclass(frozen=True)
+class Diff:
+    """Compare two runs bit for bit: first tick, channel and values that differ."""
+
+    a: Positional[RunPath]
+    b: Positional[RunPath]
+    json: Json = False
 
 
 @dataclass(frozen=True)
 class Render:
-    """Draw the video of a run: H.264, with a thumbnail beside it."""
+    """Render the video of a run: H.264, with a thumbnail."""
 
     run: Positional[RunPath]
     camera: str = "dashboard"
-    """dashboard, follow, head, top, or any camera of the model."""
+    """Camera: dashboard, follow, head, top, or any camera of the model."""
     fps: int = 25
     """Frames per second of the video [1/s]."""
     size: str = "960x540"
@@ -264,24 +226,22 @@ class Render:
         Path | None,
         _arg(
             "FILE",
-            "by default video.mp4 in the run folder; .gif and .webp are animations, "
-            ".png is one picture, at --start",
+            "output file; default: video.mp4 in the run folder; .gif and .webp: animation, "
+            ".png: one image, at --start",
         ),
     ] = None
     start: float = 0.0
     """Simulated time at which the video begins [s]."""
-    stop: Annotated[float | None, _arg("S", "simulated time at which it ends [s]")] = None
+    stop: Annotated[
+        float | None, NUMBER, _arg("S", "simulated time at which the video ends [s]")
+    ] = None
     speed: Annotated[
         float | None,
-        _arg(
-            "X",
-            "simulated seconds per second of video; else so that it lasts a minute at most",
-        ),
+        NUMBER,
+        _arg("X", "simulated seconds per second of video; default: a video of at most a minute"),
     ] = None
-    json: bool = False
-    """Print one JSON object."""
-    quiet: bool = False
-    """No progress bar."""
+    json: Json = False
+    quiet: Quiet = False
 
 
 @dataclass(frozen=True)
@@ -290,56 +250,70 @@ class Replay:
 
     run: Positional[RunPath]
     screenshot: Annotated[
-        Path | None, _arg("PNG", "write a picture of the viewer instead; needs no display")
+        Path | None, _arg("PNG", "write a screenshot of the viewer instead; needs no display")
     ] = None
     time: Annotated[
-        float | None, _arg("S", "simulated time of the picture [s]; else the middle of the run")
+        float | None,
+        NUMBER,
+        _arg("S", "simulated time of the screenshot [s]; default: the middle of the run"),
     ] = None
     size: str = "1600x900"
     """Width x height of the window [pixel]."""
-    json: bool = False
-    """Print one JSON object."""
+    json: Json = False
 
 
 @dataclass(frozen=True)
 class Plot:
-    """Plot how a run walked: ZMP, CoM, DCM, soles, velocities, torques, tilt."""
+    """Plot the walking of a run: ZMP, CoM, DCM, soles, velocities, torques, tilt."""
 
     run: Positional[RunPath]
     what: Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"] = "walking"
-    """What to plot; walking is all of it."""
+    """Quantity to plot; walking is all of them."""
     out: Annotated[
-        Path | None, _arg("FILE", ".png, .svg or .pdf; by default a PNG in the run folder")
+        Path | None, _arg("FILE", ".png, .svg or .pdf; default: a PNG in the run folder")
     ] = None
     start: Annotated[float, tyro.conf.arg(name="from", metavar="S")] = 0.0
     """Simulated time at which the plot begins [s]."""
     stop: Annotated[
         float | None,
+        NUMBER,
         tyro.conf.arg(
             name="to",
             metavar="S",
-            help="simulated time at which it ends [s]",
+            help="simulated time at which the plot ends [s]",
             help_behavior_hint="",
         ),
     ] = None
-    json: bool = False
-    """Print one JSON object."""
+    json: Json = False
 
 
 @dataclass(frozen=True)
-class Colours:
-    """Build a colour table for vision from labelled images.
+class ColorTable:
+    """Learn a color table for vision from labelled images.
 
-    Beside each image, NAME.png or NAME.jpg, lies its mask, NAME.mask.png: black where there
-    is nothing to recognise, white where nobody has judged, else the colour that marks the
-    class. A wrong mask is refused with the list of these colours.
+    The mask of NAME.png or NAME.jpg is NAME.mask.png in the same folder. Pixels of the mask are
+    black for background, white for "not labelled", or the color that marks a class. A wrong
+    mask is refused with the list of these colors.
     """
 
-    images: Positional[Annotated[tuple[Path, ...], _arg("IMAGE", "images with masks beside them")]]
-    out: Path = Path("colours.npz")
-    """File of the table; name it in a scenario as vision.color_table."""
-    json: bool = False
-    """Print one JSON object."""
+    images: Positional[Annotated[tuple[Path, ...], _arg("IMAGE", "images that have masks")]]
+    out: Path = Path("colors.npz")
+    """File of the table; value of vision.color_table in a scenario."""
+    json: Json = False
+
+
+@dataclass(frozen=True)
+class Schema:
+    """Print the JSON Schema of scenario files, for completion and checks in editors."""
+
+    out: Annotated[Path | None, _arg("FILE", "output file; default: standard output")] = None
+
+
+@dataclass(frozen=True)
+class Doctor:
+    """Check the installation: OpenGL, libraries, models, disk."""
+
+    json: Json = False
 
 
 Command = (
@@ -348,15 +322,13 @@ Command = (
     | Compare
     | List
     | Check
-    | CheckReplay
+    | Verify
     | Info
     | Diff
     | Render
     | Replay
     | Plot
-    | Colours
+    | ColorTable
     | Schema
-    | Completion
     | Doctor
-    | BugReport
 )

@@ -17,11 +17,10 @@ from rich.table import Table
 from hsr8.cli import termination
 from hsr8.cli.command_line import flat, option_tables, run_words, settings
 from hsr8.cli.options import Sweep
-from hsr8.cli.sweep_cost import tell_cost
 from hsr8.errors import Hsr8Error, UsageError
 from hsr8.evaluation.sweep.definition import Definition, code_digest
 from hsr8.evaluation.sweep.driver import drive, pending
-from hsr8.evaluation.sweep.executor import open_executor, parse_executor, require_executor
+from hsr8.evaluation.sweep.executor import open_executor, parse_executor
 from hsr8.evaluation.sweep.folder import REPORT, SweepFolder
 from hsr8.evaluation.sweep.job import Job, Row
 from hsr8.evaluation.sweep.progress import SweepProgress
@@ -68,20 +67,6 @@ def main(options: Sweep) -> int:
         require_plugins(scenario.plugin)
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
     definitions = _definitions(options, scenarios, variants)
-    if options.dry_run:
-        require_executor(options.executor)
-        for name, definition in definitions.items():
-            SweepFolder.require(out / name, definition)
-        runs = len(pending(seeds, (), shard))
-        tell_cost(
-            options,
-            list(scenarios.values()),
-            seeds=runs,
-            workers=workers,
-            out=out,
-            command=_command(options),
-        )
-        return 0
     sweeps: dict[str, SweepFolder] = {}
     jobs: list[Job] = []
     with ExitStack() as stack:

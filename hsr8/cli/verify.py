@@ -1,61 +1,51 @@
-"""``hsr8 run --verify-determinism``: the same run once more, in another process."""
+"""``hsr8 verify``: a run computed again from what it recorded."""
 
-import shutil
-import subprocess
-import sys
-import tempfile
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import asdict
+from typing import TYPE_CHECKING
 
-from hsr8.cli.diff import first_difference
-from hsr8.errors import Hsr8Error
-from hsr8.recorder.run import run_folder
+from hsr8.cli.options import Verify
+from hsr8.errors import UsageError
+from hsr8.recorder.files import atomic
+from hsr8.recorder.run.manifest import other_versions
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.recorder.run.tape import read_tape
 
-ENDED = (0, 1)  # exit codes of a run that came to its end
+if TYPE_CHECKING:
+    from hsr8.evaluation.replay import Replayed
 
-
-@dataclass(frozen=True, slots=True)
-class Verified:
-    """What came of the second run.
-
-    Attributes:
-        difference: the first one, in a sentence; empty where there is none.
-        hashes: how many hashes of the whole state were compared.
-        second: folder of the second run, kept where it differs.
-    """
-
-    difference: str
-    hashes: int
-    second: Path
-
-    @property
-    def equal(self) -> bool:
-        """Whether every bit is the same."""
-        return not self.difference
+FAILED = 1
 
 
-def verify(folder: Path) -> Verified:
-    """Run what `folder` holds again, without a log, and compare.
+def main(options: Verify) -> int:
+    """Compute physics, belief and decisions again and compare them, bit for bit.
 
     Raises:
-        Hsr8Error: the second run did not come to its end.
+        UsageError: there is no such run, or its records cannot be read.
     """
-    first = open_run(folder)
-    out = Path(tempfile.mkdtemp(prefix="hsr8-verify-"))
-    difference = ""
-    try:
-        words = [sys.executable, "-P", "-m", "hsr8", "run", str(first.scenario_file)]
-        words += ["--no-log", "--quiet", "--out", str(out)]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-        if done.returncode not in ENDED:
-            raise Hsr8Error(f"the second run failed: {done.stderr.strip() or done.returncode}")
-        second = open_run(out)
-        difference = first_difference(first, second)
-        hashes = len(read_tape(folder / run_folder.TAPE, whole=True))
-        return Verified(difference, hashes, second.path)
-    finally:
-        told = any(out.rglob(run_folder.CRASH))  # a message names this file
-        if not difference and not told:
-            shutil.rmtree(out, ignore_errors=True)
+    run = open_run(options.run)
+    if not options.json:
+        print(f"run         {run.path}", flush=True)
+    from hsr8.evaluation.replay import replay  # noqa: PLC0415  takes seconds
+
+    stages = replay(run)
+    if not any(stage.count for stage in stages):
+        raise UsageError(
+            f"{run.path} holds nothing to compute again: it ended before its first second"
+        )
+    equal = all(stage.equal for stage in stages)
+    if options.json:
+        told = [asdict(stage) | {"equal": stage.equal} for stage in stages]
+        print(atomic.dumps({"run": str(run.path), "equal": equal, "stages": told}))
+        return 0 if equal else FAILED
+    for stage in stages:
+        print(f"{stage.stage:<12}{_verdict(stage)}")
+    if not equal:
+        for name, then, now in other_versions(run.manifest):
+            print(f"            {name} was {then}, is {now}")
+    return 0 if equal else FAILED
+
+
+def _verdict(stage: "Replayed") -> str:
+    if stage.equal:
+        return f"equal, {stage.count} {stage.unit}, bit for bit"
+    unit = stage.unit.removesuffix("s")
+    return f"different: {stage.channel} of {unit} {stage.place} ({stage.time:.3f} s)"

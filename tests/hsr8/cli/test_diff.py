@@ -122,7 +122,7 @@ def test_a_record_of_a_run_that_ended_is_not_read_short(recorded, tmp_path, caps
     assert entry(["diff", str(recorded[0]), str(copy)]) == 2
     assert f"{name}" in (said := capsys.readouterr().err)
     assert "cut off" in said
-    assert entry(["check", "replay", str(copy)]) == 2
+    assert entry(["verify", str(copy)]) == 2
     assert "cut off" in capsys.readouterr().err
 
 

@@ -61,7 +61,7 @@ def test_a_run_without_the_table_says_so(run, tmp_path, capsys):
     assert "run it again" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("module", ["hsr8.cli.plot", "hsr8.cli.check_replay"])
+@pytest.mark.parametrize("module", ["hsr8.cli.plot", "hsr8.cli.verify"])
 def test_what_takes_seconds_to_load_waits_for_the_first_line(module):
     script = f"import sys, {module}; print('matplotlib' in sys.modules, 'pinocchio' in sys.modules)"
     done = subprocess.run(

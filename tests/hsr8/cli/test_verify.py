@@ -1,64 +1,191 @@
 import json
-import subprocess
-import tempfile
+import shutil
+import struct
+import zlib
 
 import pytest
 
-from hsr8.cli import verify as module
 from hsr8.cli.main import entry
-from hsr8.cli.verify import verify
-from hsr8.errors import Hsr8Error
 from hsr8.recorder.run.run_reader import open_run
 
-FAST = [
-    "run",
-    "quick",
-    "--body",
-    "kinematic",
-    "--camera",
-    "analytic",
-    "--duration",
-    "1",
-    "--no-log",
-]
+RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duration", "2"]
 
 
-def test_another_process_makes_the_same_run(tmp_path, capsys):
-    assert entry([*FAST, "--out", str(tmp_path), "--verify-determinism", "--json"]) == 1
-    assert json.loads(capsys.readouterr().out)["deterministic"] is True
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """A run whose frames come late."""
+    out = tmp_path_factory.mktemp("runs")
+    entry([*RUN, "--no-log", "--quiet", "--set", "camera.latency_ms=60", "--out", str(out)])
+    return open_run(out).path
 
 
-def test_a_run_that_cannot_be_repeated_is_found_out(tmp_path, capsys):
-    """The folder says another seed than the one it was made with."""
-    entry([*FAST, "--out", str(tmp_path), "--quiet"])
-    run = open_run(tmp_path)
-    text = run.scenario_file.read_text()
-    assert "seed = 2\n" in text
-    run.scenario_file.write_text(text.replace("seed = 2\n", "seed = 3\n"))
-    verified = verify(run.path)
-    assert not verified.equal
-    assert "tick 0" in verified.difference
-    assert verified.second.is_dir()
+@pytest.fixture
+def run(recorded, tmp_path):
+    return shutil.copytree(recorded, tmp_path / "run")
 
 
-@pytest.mark.parametrize("stopped", [Hsr8Error, KeyboardInterrupt])
-def test_a_second_run_that_comes_to_no_end_leaves_nothing(tmp_path, monkeypatch, stopped):
-    def second(*_, **__):
-        if stopped is KeyboardInterrupt:
-            raise KeyboardInterrupt
-        return subprocess.CompletedProcess([], 3, "", "no memory")
-
-    entry([*FAST, "--out", str(tmp_path / "runs"), "--quiet"])
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(module.subprocess, "run", second)
-    with pytest.raises(stopped):
-        verify(open_run(tmp_path / "runs").path)
-    assert [path.name for path in tmp_path.iterdir()] == ["runs"]
+def payloads(content):
+    """Offset and payload of every frame of a file of measurements."""
+    place = 8
+    while place < len(content):
+        length, _ = struct.unpack_from("<II", content, place)
+        yield place, content[place + 8 : place + 8 + length]
+        place += 8 + length
 
 
-def test_a_difference_fails_the_run(tmp_path, monkeypatch, capsys):
-    found = module.Verified("tick 7 (0.035 s), set-point", 3, tmp_path)
-    monkeypatch.setattr("hsr8.cli.recorded_run.verify", lambda folder: found)
-    settings = ["--set", "criteria.goal_reached=false"]
-    assert entry([*FAST, "--out", str(tmp_path), *settings, "--verify-determinism"]) == 1
-    assert "tick 7" in capsys.readouterr().out
+def rewrite(run, index, change):
+    """Change a frame's payload and make its checksum right again."""
+    file = run / "measurements.bin"
+    content = bytearray(file.read_bytes())
+    place, payload = list(payloads(content))[index]
+    payload = bytes(change(bytearray(payload)))
+    struct.pack_into("<II", content, place, len(payload), zlib.crc32(payload))
+    content[place + 8 : place + 8 + len(payload)] = payload
+    file.write_bytes(content)
+
+
+def flipped(index):
+    def change(payload):
+        payload[index] ^= 1
+        return payload
+
+    return change
+
+
+def stages(capsys):
+    """Every stage by name, as JSON told it."""
+    return {s["stage"]: s for s in json.loads(capsys.readouterr().out)["stages"]}
+
+
+def test_a_run_is_computed_again_bit_for_bit(run, capsys):
+    assert entry(["verify", str(run)]) == 0
+    assert capsys.readouterr().out.count("bit for bit") == 3
+    assert entry(["verify", str(run), "--json"]) == 0
+    told = stages(capsys)
+    assert {name: (s["equal"], s["count"]) for name, s in told.items()} == {
+        "physics": (True, 401),
+        "estimator": (True, 33),
+        "decisions": (True, 33),
+    }
+
+
+@pytest.mark.parametrize(("byte", "channel"), [(-40, "pose"), (-24, "tracks"), (-16, "local map")])
+def test_the_first_frame_and_channel_that_differ_are_named(run, capsys, byte, channel):
+    rewrite(run, 20, flipped(byte))
+    assert entry(["verify", str(run)]) == 1
+    assert f": {channel} of frame 20 (1.200 s)" in capsys.readouterr().out
+
+
+def test_a_change_of_a_measurement_shows(run, capsys):
+    rewrite(run, 7, flipped(8 + 4))  # x of the odometry, in its tenth digit
+    assert entry(["verify", str(run), "--json"]) == 1
+    found = stages(capsys)["estimator"]
+    assert (found["place"], found["channel"]) == (7, "pose")
+
+
+@pytest.mark.parametrize(
+    ("byte", "channel"),
+    [(-72, "belief at the decision"), (-64, "task"), (-56, "motion"), (-48, "gaze")],
+)
+def test_a_decision_that_differs_is_named(run, capsys, byte, channel):
+    rewrite(run, 11, flipped(byte))
+    assert entry(["verify", str(run), "--json"]) == 1
+    told = stages(capsys)
+    assert (told["decisions"]["place"], told["decisions"]["channel"]) == (11, channel)
+    assert told["physics"]["equal"]
+    assert told["estimator"]["equal"]
+
+
+def test_another_number_of_footsteps_makes_another_plan(run, capsys):
+    """What the decisions are told beside the belief is compared too."""
+    step_count = -(4 + 5) * 8 - 9
+    rewrite(run, 12, flipped(step_count))
+    assert entry(["verify", str(run), "--json"]) == 1
+    assert stages(capsys)["decisions"]["place"] >= 12
+
+
+def test_another_set_point_gives_another_world(run, capsys):
+    file = run / "tape.bin"
+    content = bytearray(file.read_bytes())
+    (length, _) = struct.unpack_from("<II", content, 8)
+    content[16 + 40 + 8 * 26 * 199 + 6] ^= 1  # of one joint, in the last tick of a second
+    struct.pack_into("<II", content, 8, length, zlib.crc32(content[16 : 16 + length]))
+    file.write_bytes(content)
+    assert entry(["verify", str(run), "--json"]) == 1
+    found = stages(capsys)["physics"]
+    assert (found["place"], found["channel"]) == (200, "world")
+
+
+def test_another_scenario_gives_another_belief(run, capsys):
+    scenario = run / "scenario.toml"
+    text = scenario.read_text()
+    assert "drift = 0.0001" in text
+    scenario.write_text(text.replace("drift = 0.0001", "drift = 0.0004"))
+    assert entry(["verify", str(run)]) == 1
+    assert "of frame 1" in capsys.readouterr().out
+
+
+def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
+    file = run / "measurements.bin"
+    content = file.read_bytes()
+    places = [place for place, _ in payloads(content)]
+
+    def refused(text):
+        assert entry(["verify", str(run)]) == 2
+        printed = capsys.readouterr()
+        assert text in printed.err
+        assert printed.err.count("\n") == 1
+        assert printed.out.splitlines() == [f"run         {run}"]
+
+    file.write_bytes(content[: places[5] + 100] + b"?" + content[places[5] + 101 :])
+    refused("is damaged in frame 5")
+    file.write_bytes(content[: places[9] + 20])
+    refused("is cut off in frame 9")
+    file.write_bytes(content[: places[9] + 3])
+    refused("is cut off in frame 9")
+    file.write_bytes(content[:8])
+    refused("is cut off: it holds 0 of")
+    manifest = run / "manifest.json"
+    ended = manifest.read_text()
+    manifest.write_text(json.dumps(json.loads(ended) | {"exit_reason": "running"}))
+    assert entry(["verify", str(run), "--json"]) == 0  # there is still the physics
+    manifest.write_text(ended)
+    capsys.readouterr()
+    file.write_bytes(b"something else")
+    refused("is no file of measurements")
+    file.unlink()
+    refused("cannot read the file of measurements")
+
+
+def test_a_damaged_cut_or_missing_tape_is_one_clear_error(run, capsys):
+    file = run / "tape.bin"
+    content = file.read_bytes()
+
+    def refused(text):
+        assert entry(["verify", str(run)]) == 2
+        assert text in capsys.readouterr().err
+
+    file.write_bytes(content[:1000] + b"?" + content[1001:])
+    refused("is damaged in block 0")
+    file.write_bytes(content[:-1])
+    refused("is cut off in block")
+    file.write_bytes(b"something else")
+    refused("is no tape")
+    file.write_bytes(b"HSR8TAP9" + content[8:])
+    refused("is a tape of format 9, hsr8")
+    file.unlink()
+    refused("cannot read the tape")
+
+
+def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
+    file, manifest = run / "measurements.bin", run / "manifest.json"
+    content = file.read_bytes()
+    file.write_bytes(content[:-5])
+    manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))
+    assert entry(["verify", str(run), "--json"]) == 0
+    assert stages(capsys)["estimator"]["count"] == 32
+
+
+def test_a_scenario_is_still_checked_by_its_name(capsys):
+    assert entry(["check", "quick", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["name"] == "quick"
