@@ -2,7 +2,7 @@
 
     python scripts/fuzz.py --cases 50000
 
-A run and a sweep to damage are made first, short ones with a log and a checkpoint.
+A run and a sweep to damage are made first, short ones with a log.
 """
 
 import argparse
@@ -21,7 +21,6 @@ from unittest.mock import patch
 
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
-from hsr8.evaluation import checkpoint
 from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
 from hsr8.recorder.log.log_reader import decode
@@ -44,11 +43,9 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("diff", "RUN", "OTHER"),
     ("compare", "RUN", "OTHER"),
     ("verify", "RUN"),
-    ("run", "RUN", "--resume", "--quiet", "--no-log"),
     ("plot", "RUN", "--out", "PNG"),
     ("render", "RUN", "--out", "PNG", "--size", "64x48", "--camera", "head", "--quiet"),
     ("replay", "RUN"),
-    ("bug-report", "RUN", "--out", "ZIP"),
     ("check", "SCENARIO"),
 )
 ON_SWEEPS: tuple[tuple[str, ...], ...] = (
@@ -56,8 +53,8 @@ ON_SWEEPS: tuple[tuple[str, ...], ...] = (
     ("compare", "OTHER", "SWEEP", "--json"),
     ("sweep", "quick", "--seeds", "0:2", "--duration", "0.1", "--quiet", "--out", "SWEEP"),
 )
-RARE = {"verify": 0.15, "run": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
-RARE |= {"bug-report": 0.3, "check": 0.3, "sweep": 0.02}
+RARE = {"verify": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
+RARE |= {"check": 0.3, "sweep": 0.02}
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
 KINDS = ("text", "table", "setting", "start", "model", "folder", "log", "sweep", "colours")
 FILES = (
@@ -70,7 +67,6 @@ FILES = (
     run_folder.MEASUREMENTS,
     run_folder.TAPE,
     run_folder.FRAMES,
-    checkpoint.FILE,
 )
 
 
@@ -186,7 +182,7 @@ class Folders:
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir()
         places = {"RUN": path, "SWEEP": path, "OTHER": self._run if of_run else self._sweep}
-        places |= {"PNG": out / "p.png", "ZIP": out / "p.zip", "SCENARIO": path / "scenario.toml"}
+        places |= {"PNG": out / "p.png", "SCENARIO": path / "scenario.toml"}
         words = [str(places.get(word, word)) for word in command]
         ask([*words[0].split(), *words[1:]])
 
@@ -265,9 +261,9 @@ def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any
 
 
 def made(scratch: Path) -> tuple[Path, Path]:
-    """A run as a kill leaves it, with log and checkpoint, and a sweep of two runs."""
+    """A run as a kill leaves it, with its log, and a sweep of two runs."""
     short = ("quick", *LIGHT, "--quiet", "--duration")
-    ask(["run", *short, "1.2", "--checkpoint", "every=1", "--out", str(scratch)])
+    ask(["run", *short, "1.2", "--out", str(scratch)])
     (run,) = (scratch / "quick").iterdir()
     manifest = run / run_folder.MANIFEST
     manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))

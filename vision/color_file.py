@@ -45,7 +45,7 @@ def load_table(path: Path) -> ColorTable:
     except Exception:  # readers of a forged archive raise anything
         raise VisionError(
             f"{path} is no colour table: it must hold the arrays 'labels' and 'names' "
-            "(`hsr8 colours` writes such files)"
+            "(`hsr8 color-table` writes such files)"
         ) from None
     if names != list(COLOR_CLASSES):
         raise VisionError(

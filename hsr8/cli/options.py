@@ -112,9 +112,9 @@ class Sweep:
     out: Annotated[
         Path | None, _arg("DIR", "folder of the sweep; default: sweeps/ and the scenario's name")
     ] = None
-    workers: Annotated[
-        int | None, INTEGER, _arg("N", "parallel runs; default: number of CPUs")
-    ] = None
+    workers: Annotated[int | None, INTEGER, _arg("N", "parallel runs; default: number of CPUs")] = (
+        None
+    )
     set: Settings = ()
     vary: UseAppendAction[
         Annotated[

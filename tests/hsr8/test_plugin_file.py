@@ -172,12 +172,6 @@ def test_commands_refuse_what_cannot_be_made(folder, capsys, command):
     assert "has no class Behind" in capsys.readouterr().err
 
 
-def test_a_run_with_own_decisions_has_no_checkpoints(folder, capsys):
-    own = ("--set", "plugin.gaze=mine.py:Down")
-    assert entry(["run", "quick", *FAST, *own, "--checkpoint", "1"]) == 2
-    assert "--checkpoint" in capsys.readouterr().err
-
-
 def test_a_walk_asks_no_planner(folder):
     with pytest.raises(hsr8.errors.ScenarioError, match="asks no planner"):
         hsr8.load_scenario("walk", ["plugin.planner=mine.py:Ahead"])
