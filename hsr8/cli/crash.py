@@ -1,5 +1,6 @@
-"""What nobody expected to fail: people get one line, the traceback goes into a file."""
+"""Unexpected exceptions: one line for the user, the traceback in a file."""
 
+import errno
 import tempfile
 import traceback
 from pathlib import Path
@@ -11,21 +12,21 @@ from hsr8.plugin_file import line_of
 from hsr8.recorder.files import atomic
 
 FILE = "crash.txt"
-EXPECTED = (Hsr8Error, BrokenPipeError)  # told by the command line itself
+OUTPUT_ERRORS = (errno.EPIPE, errno.ENOSPC)
 
 
 class InternalError(Hsr8Error):
-    """A mistake in hsr8 itself."""
+    """Error in hsr8 itself."""
 
 
 class CrashReport:
-    """Turns unexpected exceptions into errors that people understand; keeps their traceback.
+    """Context that turns unexpected exceptions into errors and keeps their traceback.
 
-    Those from a planner or a gaze of one's own become a `UsageError`, all others an
+    Exceptions of a user-defined planner or gaze become a `UsageError`, all others an
     `InternalError`.
 
     Args:
-        folder: where ``crash.txt`` goes; a new temporary folder by default.
+        folder: of ``crash.txt``; a new temporary folder by default.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
@@ -40,42 +41,33 @@ class CrashReport:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if not isinstance(error, Exception | SystemExit) or isinstance(error, EXPECTED):
+        output_failed = isinstance(error, OSError) and error.errno in OUTPUT_ERRORS
+        if not isinstance(error, Exception | SystemExit) or output_failed:
+            return
+        if isinstance(error, Hsr8Error):
             return
         if isinstance(error.__cause__, KeyboardInterrupt):
             # Ctrl-C during the import of a compiled module arrives as an ImportError.
             raise KeyboardInterrupt from error
-        own = line_of(error)
-        if own is not None:
-            raise UsageError(f"{own}: {self._told(error)}") from error
+        plugin = line_of(error)
+        if plugin is not None:
+            raise UsageError(f"{plugin}: {self._report(error)}") from error
         if isinstance(error, Exception):
-            raise InternalError(f"internal error, {self._told(error)}") from error
+            raise InternalError(f"internal error, {self._report(error)}") from error
 
-    def _told(self, error: BaseException) -> str:
-        return f"{_what(error)}\n  traceback: {self._keep(error)}"
-
-    def _keep(self, error: BaseException) -> str:
-        """Where the traceback is; a run folder on a full disk does not take it."""
+    def _report(self, error: BaseException) -> str:
+        """Write the traceback; return type, first line and file."""
+        first, *_ = [*str(error).strip().splitlines(), "no message"]
+        notes = getattr(error, "__notes__", [])
+        summary = ", ".join([f"{type(error).__name__}: {first}", *notes])
         trace = "".join(traceback.format_exception(error))
-        try:
-            if self._folder is not None:
-                return _write(self._folder, trace)
-        except OSError:
-            pass
-        try:
-            return _write(Path(tempfile.mkdtemp(prefix="hsr8-")), trace)
-        except OSError as failure:
-            return f"cannot be written: {failure}"
-
-
-def _what(error: BaseException) -> str:
-    """Its kind, its first line, and when it happened in a run."""
-    first, *_ = [*str(error).strip().splitlines(), "no message"]
-    when = getattr(error, "__notes__", [])
-    return ", ".join([f"{type(error).__name__}: {first}", *when])
-
-
-def _write(folder: Path, trace: str) -> str:
-    file = folder / FILE
-    atomic.write_text(file, trace)
-    return str(file)
+        failure: OSError | None = None
+        for folder in (self._folder, None):  # the disk of the run folder may be full
+            try:
+                file = (folder or Path(tempfile.mkdtemp(prefix="hsr8-"))) / FILE
+                atomic.write_text(file, trace)
+            except OSError as unwritable:
+                failure = unwritable
+            else:
+                return f"{summary}\n  traceback: {file}"
+        return f"{summary}\n  traceback: cannot be written: {failure}"

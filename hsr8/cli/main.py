@@ -55,19 +55,21 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         3 diverged or internal error, 130 interrupted.
     """
     atexit.register(gc.freeze)  # no last collection: it takes a tenth of a second
+    sys.stdout = sys.stdout or open(os.devnull, "w")
+    sys.stderr = sys.stderr or open(os.devnull, "w")
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # file names may hold any bytes
             stream.reconfigure(errors="backslashreplace")
     try:
         code = _run(list(sys.argv[1:] if arguments is None else arguments))
         print(end="", flush=True)
-    except OSError as error:  # of standard output or standard error
+    except OSError as error:  # a closed pipe or a full disk
         with suppress(OSError, AttributeError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(error, BrokenPipeError):
             return SIGPIPE_EXIT
         with suppress(OSError):
-            print(f"hsr8: cannot write to standard output: {error.strerror}", file=sys.stderr)
+            print(f"hsr8: cannot write: {error.strerror}", file=sys.stderr)
         return Hsr8Error.exit_code
     return code
 

@@ -35,18 +35,18 @@ def test_settings_are_obeyed(capsys):
 
 def test_a_picture_is_drawn(tmp_path, capsys):
     path = tmp_path / "world.png"
-    assert main(Check("quick", picture=path)) == 0
+    assert main(Check("quick", image=path)) == 0
     assert cv2.imread(str(path)).shape == (900, 900, 3)
 
 
 def test_a_picture_that_cannot_be_written_is_one_clear_error(tmp_path):
     with pytest.raises(UsageError, match="cannot be written"):
-        main(Check("quick", picture=tmp_path / "no" / "world.png"))
+        main(Check("quick", image=tmp_path / "no" / "world.png"))
 
 
 def test_a_picture_is_a_png(tmp_path):
     with pytest.raises(UsageError, match=r"ends in \.png"):
-        main(Check("quick", picture=tmp_path / "world.jpg"))
+        main(Check("quick", image=tmp_path / "world.jpg"))
 
 
 def test_columns_have_their_units(capsys):

@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.cli.color_table import main, mask_colors
 from hsr8.cli.main import entry
-from hsr8.cli.options import Colours
+from hsr8.cli.options import ColorTable
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.scenario.loader import load_scenario
 from vision.color_file import load_table
@@ -27,14 +27,14 @@ def picture(tmp_path):
 
 def test_a_table_is_learnt_written_and_named_in_a_scenario(picture, tmp_path, capsys):
     out = tmp_path / "colours.npz"
-    assert main(Colours((picture,), out, json=True)) == 0
+    assert main(ColorTable((picture,), out, json=True)) == 0
     rows = {r["class"]: r for r in json.loads(capsys.readouterr().out)["classes"]}
     assert rows["red"]["pixels"] == 200
     assert rows["red"]["recognised"] > 0.99
     assert rows["background"]["recognised"] > 0.99
     assert load_table(out).labels.max() == 1
     assert load_scenario("quick", [f"vision.color_table={out}"]).vision.color_table == str(out)
-    assert main(Colours((picture,), out)) == 0
+    assert main(ColorTable((picture,), out)) == 0
     assert "red" in capsys.readouterr().out
 
 
@@ -44,24 +44,19 @@ def test_a_mask_color_that_marks_nothing_is_told_with_its_place(picture):
     mask[3, 7] = (0, 0, 250)
     cv2.imwrite(str(path), mask)
     with pytest.raises(UsageError, match=r"\(7, 3\).*\(250, 0, 0\).*red"):
-        main(Colours((picture,)))
+        main(ColorTable((picture,)))
 
 
 def test_what_is_missing_or_no_image_is_told(picture, tmp_path):
     with pytest.raises(UsageError, match=r"b\.png: cannot be read"):
-        main(Colours((tmp_path / "b.png",)))
+        main(ColorTable((tmp_path / "b.png",)))
     picture.with_name("a.mask.png").write_bytes(b"no image")
     with pytest.raises(UsageError, match="no image"):
-        main(Colours((picture,)))
+        main(ColorTable((picture,)))
     with pytest.raises(UsageError, match="npz"):
-        main(Colours((picture,), tmp_path / "table.txt"))
+        main(ColorTable((picture,), tmp_path / "table.txt"))
 
 
 def test_a_wrong_table_in_a_scenario_is_a_mistake_of_the_scenario(tmp_path):
     with pytest.raises(ScenarioError, match=r"vision\.color_table.*nowhere\.npz"):
         load_scenario("quick", ["vision.color_table=nowhere.npz"])
-
-
-def test_images_are_needed(capsys):
-    assert entry(["colours"]) == 2
-    assert "colours needs IMAGE" in capsys.readouterr().err

@@ -1,0 +1,166 @@
+"""Every mistake is one message with exit code 2 and without a traceback."""
+
+import json
+import os
+import shlex
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from hsr8.cli.main import entry
+from hsr8.recorder.run.manifest import Manifest
+from hsr8.recorder.run.run_folder import RunFolder
+
+LINES = [
+    # commands
+    ("rum quick", "rum: unknown command; did you mean 'run'?"),
+    ("rendr runs/quick", "did you mean 'render'?"),
+    ("frobnicate", "commands: run, sweep"),
+    ("quick", "quick: unknown command"),
+    ("--json list", "--json: unknown command"),
+    ("check replay runs/quick", "check replay: renamed to verify"),
+    ("colours a.png", "colours: renamed to color-table"),
+    ("completion bash", "completion: renamed to --tyro-print-completion"),
+    ("bug-report", "bug-report: unknown command"),
+    ("--tyro-print-completion", "unknown shell"),
+    ("--tyro-print-completion tcl", "expected bash, zsh, fish"),
+    # options
+    ("run", "SCENARIO"),
+    ("run quick --sed 3", "--seed N"),
+    ("run quick --seed", "Missing value for argument '--seed'"),
+    ("run quick --seed abc", "--seed: invalid literal for int() with base 10: 'abc'"),
+    ("run quick --seed None", "--seed: invalid literal"),
+    ("run quick --seed 1.5", "--seed"),
+    ("run quick --seed -1", "seed"),
+    ("run quick --duration 5s", "could not convert string to float: '5s'"),
+    ("run quick --duration -1e3", "--duration: duration: must be greater than 0, got -1000.0"),
+    ("run quick --duration nan", "duration"),
+    ("run quick --body kinemtic", "('full', 'kinematic')"),
+    ("run quick --camera egl", "--camera egl: renamed to --camera rendered"),
+    ("run quick --camera=all-round", "renamed to --camera omnidirectional"),
+    ("run quick --view", "Missing value for argument '--view'"),
+    ("run quick --view webb", "('native', 'web')"),
+    ("run quick --view web --no-log", "--view: shows the log, got --no-log"),
+    ("run quick --log-level most", "('minimal', 'standard', 'full')"),
+    ("run quick --json=yes", "Unrecognized options: yes"),
+    ("run quick 7", "Unrecognized options: 7"),
+    ("run quick --resume", "Unrecognized options: --resume"),
+    ("run quick --out /dev/null", "cannot write the run folder /dev/null/quick"),
+    ("render a b", "Unrecognized options: b"),
+    ("doctor please", "Unrecognized options: please"),
+    ("check quick --picture=x.png", "--picture: renamed to --image"),
+    ("check quick --image x.jpg", "--image x.jpg"),
+    ("check quick --image none/x.png", "--image none/x.png"),
+    ("color-table", "IMAGE"),
+    ("schema --out none/s.json", "--out none/s.json: cannot be written"),
+    ("sweep quick", "--seeds SEEDS"),
+    ("sweep quick --seeds 0-10", "1000:1200"),
+    ("sweep quick --seeds -3:3", "-3:3"),
+    ("sweep quick --seeds 0:2 --workers 0", "--workers 0"),
+    ("sweep quick --seeds 0:2 --timeout -1", "--timeout -1"),
+    ("sweep quick --seeds 0:2 --set seed=3", "--set seed=3"),
+    # settings and scenarios
+    ("run quik", "did you mean 'quick'"),
+    ("run yrad.toml", "did you mean 'yard.toml'"),
+    ("run runs/quick", "runs/quick"),
+    ("run quick --set", "--set: missing value; expected KEY=VALUE"),
+    ("run quick --set nonsense", "nonsense"),
+    ("run quick --set world.n_movin=3", "did you mean 'n_moving'"),
+    ("run quick --set n_moving=3", "'world.n_moving'"),
+    ("run quick --set wrld.n_moving=3", "world"),
+    ("run quick --set world.n_moving=many", "n_moving"),
+    ("run quick --set world.n_moving=-1", "n_moving"),
+    ("run quick --set camera.width=100000", "camera.width"),
+    ("run quick --set navigation.gaze.mode=stare", "navigation.gaze.mode"),
+    ("run quick --set camera.source=egl", "camera.source"),
+    ("run quick --set plugin.planner=nope.py:A", "cannot read nope.py"),
+    ("run quick --set vision.color_table=no.npz", "vision.color_table"),
+    ("run typo.toml", "typo.toml:2"),
+    ("run broken.toml", "broken.toml"),
+    ("check typo.toml", "did you mean 'n_moving'"),
+    ("check orphan.toml", "orphan.toml"),
+    ("check empty", "empty"),
+    # run folders
+    ("info nowhere", "there is no run folder nowhere"),
+    ("info yard.toml", "yard.toml"),
+    ("info damaged", "manifest.json"),
+    ("info future", "format"),
+    ("diff RUN nowhere", "nowhere"),
+    ("diff RUN RUN", "RUN"),
+    ("compare nowhere RUN", "nowhere"),
+    ("compare empty RUN", "empty"),
+    ("verify RUN", "RUN"),
+    ("replay RUN", "--no-log"),
+    ("plot RUN --what speed", "walking"),
+    ("plot RUN", "run it again"),
+    ("render RUN --size big", "--size 'big'"),
+    ("render RUN --size -5x5", "--size '-5x5'"),
+    ("render RUN --fps ten", "--fps"),
+    ("render RUN --fps 0", "--fps 0"),
+    ("render RUN --speed -inf", "--speed -inf"),
+    # images and models
+    ("color-table none.png", "none.png: cannot be read"),
+    ("color-table unmasked.png", "unmasked.mask.png"),
+    ("color-table text.png", "text.png"),
+    ("color-table image.png", "(0, 0, 250)"),
+    ("color-table image.png --out table.txt", "--out table.txt"),
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Scenario files, run folders and images, most of them wrong."""
+    path = tmp_path_factory.mktemp("mistakes")
+    (path / "yard.toml").write_text('extends = "quick"\n')
+    (path / "typo.toml").write_text('extends = "quick"\nworld.n_movin = 3\n')
+    (path / "broken.toml").write_text("extends = \n")
+    (path / "orphan.toml").write_text('extends = "nothing"\n')
+    for name in ("runs/quick", "empty", "damaged", "future"):
+        (path / name).mkdir(parents=True)
+    (path / "damaged/manifest.json").write_text("{")
+    run = RunFolder.create(path, "made", 7)
+    RunFolder(run, Manifest.now("quick", 7, (), "analytic"), "", movers=1).close("goal")
+    manifest = json.loads((run / "manifest.json").read_text())
+    (path / "future/manifest.json").write_text(json.dumps(manifest | {"format": 99}))
+    run.rename(path / "RUN")
+    image = np.zeros((8, 8, 3), np.uint8)
+    for name in ("unmasked.png", "image.png"):
+        cv2.imwrite(str(path / name), image)
+    cv2.imwrite(str(path / "image.mask.png"), image + np.uint8((250, 0, 0)))
+    (path / "text.png").write_text("not an image")
+    return path
+
+
+@pytest.fixture(autouse=True)
+def in_folder(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr("hsr8.cli.render.require_gl", lambda: "llvmpipe")
+
+
+def test_the_table_is_long():
+    assert len(LINES) >= 50
+    assert len(dict(LINES)) == len(LINES)
+
+
+@pytest.mark.parametrize(("line", "expected"), LINES, ids=[line for line, _ in LINES])
+def test_a_mistake_is_one_message(line, expected, capsys):
+    before = sorted(Path.cwd().rglob("*"))
+    assert entry(shlex.split(line)) == 2
+    printed = capsys.readouterr()
+    message = printed.err.removeprefix("quick, seed 2\n")
+    assert message.startswith("hsr8: ")
+    assert message.count("hsr8: ") == 1
+    assert expected in " ".join(message.split())
+    assert "Traceback" not in message
+    assert printed.out == "" or line.startswith(("verify", "plot"))
+    assert sorted(Path.cwd().rglob("*")) == before
+
+
+def test_missing_models_are_one_message(folder, monkeypatch, capsys):
+    monkeypatch.setattr("hsr8.world.model.models.PACKAGE", folder / "hsr8")
+    assert entry(["run", "quick", "--camera", "analytic", "--quiet"]) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("hsr8: ")
+    assert "models" in message
