@@ -55,8 +55,8 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         3 diverged or internal error, 130 interrupted.
     """
     atexit.register(gc.freeze)  # no last collection: it takes a tenth of a second
-    sys.stdout = sys.stdout or open(os.devnull, "w")
-    sys.stderr = sys.stderr or open(os.devnull, "w")
+    sys.stdout = sys.stdout or io.StringIO()  # None where the stream is closed
+    sys.stderr = sys.stderr or io.StringIO()  # None where the stream is closed
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # file names may hold any bytes
             stream.reconfigure(errors="backslashreplace")

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from hsr8.cli.color_table import main, mask_colors
-from hsr8.cli.main import entry
 from hsr8.cli.options import ColorTable
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.scenario.loader import load_scenario

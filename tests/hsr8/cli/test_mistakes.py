@@ -1,7 +1,6 @@
 """Every mistake is one message with exit code 2 and without a traceback."""
 
 import json
-import os
 import shlex
 from pathlib import Path
 

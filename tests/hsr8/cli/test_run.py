@@ -78,7 +78,6 @@ def test_the_resolved_scenario_is_the_same_run(tmp_path, capsys):
         (["--view", "native"], "there is no display"),
         (["--set", "plugin.planner=nope.py:A"], "cannot read nope.py"),
         (["--out", "/dev/null"], "cannot write the run folder /dev/null/quick: Not a directory"),
-        (["--set", "walking.gait.swing_height=0.2"], "walking"),
     ],
 )
 def test_a_run_that_cannot_begin_leaves_no_folder(tmp_path, monkeypatch, capsys, more, text):
