@@ -23,7 +23,7 @@ from hsr8.world.body.sensor_faults import SensorFaults
 from hsr8.world.body.servo_faults import ServoFaults
 from hsr8.world.camera.analytic import AnalyticCamera
 from hsr8.world.camera.faults import CameraFaults
-from hsr8.world.camera.feed import CameraFeed, Picture
+from hsr8.world.camera.feed import CameraFeed, CapturedFrame
 from hsr8.world.camera.rendered import RenderedCamera
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex
@@ -299,7 +299,7 @@ class Simulation:
             return self._finish(self._end[1], record)
         targets = self._servo_faults.apply_fault(targets, tick)
         if self.tape is not None:
-            self.tape.add(self._body.set_points(targets))
+            self.tape.add(self._body.setpoints(targets))
         self._body.apply(targets)
         self.tick += 1
         if self.tick == self._ticks:
@@ -320,12 +320,12 @@ class Simulation:
         image = None if picture.exposure is None else picture.exposure.image
         return SensorFrame(time, body, shutter, picture.captured, image, picture.detections)
 
-    def _take(self) -> Picture:
+    def _take(self) -> CapturedFrame:
         body = self._body
         if self._rendered is not None:
-            return Picture(body.time, self._rendered.capture(body))
+            return CapturedFrame(body.time, self._rendered.capture(body))
         assert self._analytic is not None
-        return Picture(body.time, detections=self._analytic.capture(body))
+        return CapturedFrame(body.time, detections=self._analytic.capture(body))
 
     def _ending(self, tick: int, truth: Truth) -> tuple[int, str] | None:
         """Tick and reason of an end that is now decided."""

@@ -149,7 +149,7 @@ def log_end(file: Path) -> float:
 def tape_end(folder: Path) -> float:
     """End of the last whole second of the tape [s]."""
     block = read_tape(folder / run_folder.TAPE, whole=False)[-1]
-    return (block.tick + len(block.set_points)) * CONTROL_PERIOD
+    return (block.tick + len(block.setpoints)) * CONTROL_PERIOD
 
 
 def main() -> None:

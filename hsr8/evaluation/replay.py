@@ -73,8 +73,8 @@ def replay_physics(run: Run, tape: list[Block]) -> Replayed:
                 "physics", "ticks", ticks, block.tick, block.tick * CONTROL_PERIOD, "world"
             )
         try:
-            for set_points in block.set_points:
-                body.apply(JointTargets(set_points, STAND_STILL))
+            for setpoints in block.setpoints:
+                body.apply(JointTargets(setpoints, STAND_STILL))
                 ticks += 1
         except SimulationDiverged:
             time = ticks * CONTROL_PERIOD

@@ -84,7 +84,7 @@ def motion(a: Run, b: Run) -> list[RunDifference]:
 
 def _first_set_point(a: list[Block], b: list[Block]) -> RunDifference | None:
     none = np.empty((0, len(JOINT_NAMES)))
-    rows = [np.concatenate([none, *(block.set_points for block in tape)]) for tape in (a, b)]
+    rows = [np.concatenate([none, *(block.setpoints for block in tape)]) for tape in (a, b)]
     n = min(map(len, rows))
     differ = rows[0][:n].view(np.int64) != rows[1][:n].view(np.int64)
     ticks = np.flatnonzero(differ.any(axis=1))

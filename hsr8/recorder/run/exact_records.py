@@ -15,7 +15,7 @@ def tape_of(run: Run) -> list[Block]:
     """
     file = run.path / run_folder.TAPE
     tape = read_tape(file, whole=run.ended)
-    if run.ended and not (tape and len(tape[-1].set_points) == 0):
+    if run.ended and not (tape and len(tape[-1].setpoints) == 0):
         raise UsageError(f"{file} is cut off: it lacks the end of the run")
     return tape
 

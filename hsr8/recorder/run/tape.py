@@ -34,13 +34,13 @@ class Block:
         tick: number of its first control tick.
         world: hash of the state of the world before it, hexadecimal.
         robot: hash of world and belief before it.
-        set_points: of each tick (n, 26) [rad].
+        setpoints: of each tick (n, 26) [rad].
     """
 
     tick: int
     world: str
     robot: str
-    set_points: Array
+    setpoints: Array
 
 
 class TapeWriter:
@@ -72,9 +72,9 @@ class TapeWriter:
         state.update(robot)
         self._payload += state.digest()
 
-    def add(self, set_points: Array) -> None:
+    def add(self, setpoints: Array) -> None:
         """Append one control tick (26,) [rad]."""
-        self._rows.append(set_points.tobytes())
+        self._rows.append(setpoints.tobytes())
 
     def flush(self) -> None:
         """End the block, if it has any ticks, and hand it to the operating system."""

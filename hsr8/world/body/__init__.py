@@ -1,1 +1,1 @@
-"""The body in the world: physics or kinematics, its sensors, and what disturbs both."""
+"""Body of the robot: physics or kinematics, sensors, faults and pushes."""

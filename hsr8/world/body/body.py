@@ -1,4 +1,4 @@
-"""The body the robot side drives: one protocol, two bodies (physics and kinematic)."""
+"""Protocol of the two robot bodies, physics and kinematic."""
 
 from typing import Protocol
 
@@ -22,19 +22,19 @@ class Body(Protocol):
         """Simulated time [s]."""
 
     def sense(self) -> BodySensors:
-        """Read the body's sensors now."""
+        """Read encoders, IMU and foot pads."""
 
-    def set_points(self, targets: JointTargets) -> NDArray[np.float64]:
-        """What the servos are told (26,) [rad]; given as `targets` again, the same happens."""
+    def setpoints(self, targets: JointTargets) -> NDArray[np.float64]:
+        """Return the servo setpoints (26,) [rad]; as `targets` they have the same effect."""
 
     def apply(self, targets: JointTargets) -> None:
         """Advance one control tick towards `targets`."""
 
     def update_kinematics(self) -> None:
-        """Bring the poses in ``data`` up to date with its state, for a camera."""
+        """Update the poses in ``data`` from its state, for a camera."""
 
     def truth(self) -> Truth:
-        """State of the world now; contacts are those since the last call."""
+        """Return the ground truth now, with the contacts since the last call."""
 
     def state_bytes(self) -> bytes:
-        """Everything that determines the future of the world, for hashing."""
+        """Return the state that determines the future of the world, for hashing."""

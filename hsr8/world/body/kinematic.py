@@ -1,7 +1,7 @@
-"""A body without dynamics: joints follow their targets, the stance foot stays planted.
+"""Kinematic body: joints follow their targets exactly, the stance foot stays planted.
 
-Footsteps land exactly where the joint targets put them, but for a small seeded slip at
-each change of support. It serves fast tuning and tests; the loop around it is the same.
+Footsteps land where the joint targets put them, with a small seeded slip at each change of
+support. The loop around the body is the same as with physics.
 """
 
 import mujoco
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.sensor_noise import SensorNoise
-from hsr8.world.body.kinematic_kernel import GRAVITY, felt, stand
+from hsr8.world.body.kinematic_kernel import GRAVITY, base_pose, imu_motion
 from hsr8.world.body.physics import place_robot
 from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.body.surroundings import Surroundings
@@ -22,24 +22,25 @@ from walking.targets import JointTargets
 
 Array = NDArray[np.float64]
 
-# Standard deviations of a foot's slip at touch-down. With them the robot drifts as in full
-# physics, see `walking.odometry`.
+# Standard deviations of the slip of a foot at touch-down. With them the robot drifts as in full
+# physics, see `walking.body.odometry`.
 SLIP = 0.0003  # per axis [m]
 YAW_SLIP = 0.0006  # about the vertical [rad]
-LANDED = 0.0005  # the swing foot takes over when it is lower than the stance foot by this [m]
-LIFTED = 0.001  # a foot higher than the other by this carries nothing [m]
+LANDED = 0.0005  # the swing foot becomes the stance foot when lower than it by this [m]
+LIFTED = 0.001  # a foot higher than the other one by this carries no load [m]
 BOTH = 2
-SHARES = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])  # of the weight on the left and right foot
+# Fractions of the weight on the left and the right foot: left, right, double support.
+LOAD_FRACTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
 ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-WATCH_TICKS = 4  # contacts with obstacles are looked for every 20 ms
+CONTACT_TICKS = 4  # control ticks between checks for contacts [1]
 
 
 class KinematicBody:
-    """The robot without physics.
+    """Robot without dynamics.
 
     Args:
         model: compiled world.
-        layout: what stands and moves in it.
+        layout: obstacles, beacons and start pose.
         noise: sensor noise.
         rng: generator of sensors and slip.
     """
@@ -49,8 +50,8 @@ class KinematicBody:
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
-        self._around = Surroundings(model, layout)
-        self._index = self._around.index
+        self._surroundings = Surroundings(model, layout)
+        self._index = self._surroundings.index
         sensor_rng, self._slip_rng = rng.spawn(2)
         self._suite = SensorSuite(noise, sensor_rng, CONTROL_PERIOD)
         self._weight = float(model.body_subtreemass[self._index.base_body]) * GRAVITY
@@ -64,12 +65,12 @@ class KinematicBody:
         self._rates = np.zeros_like(self._joints)
         self._gyro = np.zeros(3)
         self._force = np.array([0.0, 0.0, GRAVITY])
-        self._loads = self._weight * SHARES
+        self._loads = self._weight * LOAD_FRACTIONS
         self._pads = np.repeat(self._loads[:, :, None] / 4.0, 4, axis=2)
-        self._carrying = BOTH
+        self._support = BOTH
         self._stance = 0
         self._anchor = self._foot_on_floor(0)
-        self._other = np.zeros(4)
+        self._other_sole = np.zeros(4)
         self._plant()
 
     @property
@@ -78,7 +79,6 @@ class KinematicBody:
         return self._tick * CONTROL_PERIOD
 
     def sense(self) -> BodySensors:
-        """Read encoders, IMU and foot pads, computed from the planned motion."""
         root = self._index.root_qpos
         return self._suite.read(
             joint_position=self._joints,
@@ -86,18 +86,17 @@ class KinematicBody:
             gyro=self._gyro,
             accelerometer=self._force,
             orientation=self.data.qpos[root + 3 : root + 7],
-            foot_force=self._pads[self._carrying],
+            foot_force=self._pads[self._support],
         )
 
-    def set_points(self, targets: JointTargets) -> Array:
-        """What the servos are told (26,) [rad]."""
+    def setpoints(self, targets: JointTargets) -> Array:
         return targets.position
 
     def apply(self, targets: JointTargets) -> None:
-        """Put the joints at their targets and the body where the planted foot says.
+        """Move the joints to their targets and the base over the planted foot.
 
-        The poses in ``data`` are those of the world in the ticks that look for contacts, and
-        after `update_kinematics`.
+        The poses in ``data`` are up to date in ticks that check for contacts, and after
+        `update_kinematics`.
         """
         self._tick += 1
         self._rates = (targets.position - self._joints) / CONTROL_PERIOD
@@ -108,27 +107,26 @@ class KinematicBody:
         qpos[self._index.joint_qpos] = self._joints
         self._plant()
         after, velocity = qpos[root : root + 7], self.data.qvel[dof : dof + 3]
-        felt(before, after, CONTROL_PERIOD, velocity, self._gyro, self._force)
+        imu_motion(before, after, CONTROL_PERIOD, velocity, self._gyro, self._force)
         self.data.qvel[dof + 3 : dof + 6] = self._gyro
         self.data.qvel[self._index.joint_dof] = self._rates
-        if self._tick % WATCH_TICKS == 0:
-            self._around.move(self.data, self.time)
+        if self._tick % CONTACT_TICKS == 0:
+            self._surroundings.move(self.data, self.time)
             mujoco.mj_kinematics(self.model, self.data)
             mujoco.mj_collision(self.model, self.data)
-            self._around.watch.watch(self.data)
+            self._surroundings.watch.watch(self.data)
 
     def update_kinematics(self) -> None:
-        """Bring all poses up to date."""
-        self._around.move(self.data, self.time)
+        self._surroundings.move(self.data, self.time)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
     def truth(self) -> Truth:
-        """State of the world now; a kinematic robot never falls."""
+        """Return the ground truth now; a kinematic robot never falls."""
         data, root = self.data, self._index.root_qpos
-        if self._tick % WATCH_TICKS:
-            self._around.move(data, self.time)
+        if self._tick % CONTACT_TICKS:
+            self._surroundings.move(data, self.time)
             mujoco.mj_kinematics(self.model, data)
         robot = np.array(
             [*data.qpos[root : root + 2].tolist(), heading(data.qpos[root + 3 : root + 7])]
@@ -138,43 +136,43 @@ class KinematicBody:
             time=self.time,
             qpos=data.qpos.copy(),
             robot=robot,
-            obstacle_positions=self._around.positions(self.time),
-            obstacle_velocities=self._around.velocities(self.time),
-            contacts=self._around.watch.take(),
-            clearance=self._around.watch.clearance(data),
+            obstacle_positions=self._surroundings.positions(self.time),
+            obstacle_velocities=self._surroundings.velocities(self.time),
+            contacts=self._surroundings.watch.take(),
+            clearance=self._surroundings.watch.clearance(data),
             joint_torque=np.zeros(len(self._joints)),
-            foot_force=self._loads[self._carrying],
-            zmp=SHARES[self._carrying] @ feet,
+            foot_force=self._loads[self._support],
+            zmp=LOAD_FRACTIONS[self._support] @ feet,
             fallen=False,
         )
 
     def state_bytes(self) -> bytes:
-        """Configuration, movers and the place of the planted foot."""
+        """Return configuration, movers and pose of the planted foot."""
         return b"".join(a.tobytes() for a in (self.data.qpos, self.data.mocap_pos, self._anchor))
 
     def _foot_on_floor(self, side: int) -> Array:
-        """x, y, yaw of a foot projected onto the floor (3,)."""
+        """Return x, y, yaw of a foot projected onto the floor (3,)."""
         site = self._index.foot_sites[side]
         x_axis = self.data.site_xmat[site].reshape(3, 3)[:, 0]
         return np.array([*self.data.site_xpos[site][:2], np.arctan2(x_axis[1], x_axis[0])])
 
     def _plant(self) -> None:
-        """Move the base so that the stance foot lies flat where it is anchored."""
+        """Move the base so that the stance foot lies flat at its anchor."""
         data, root = self.data, self._index.root_qpos
         pose = data.qpos[root : root + 7]
         pose[:] = ORIGIN
         mujoco.mj_kinematics(self.model, data)
-        self._stand(pose)
-        if self._other[3] < -LANDED:
+        self._set_base(pose)
+        if self._other_sole[3] < -LANDED:
             self._stance = 1 - self._stance
             slip = self._slip_rng.standard_normal(3) * (SLIP, SLIP, YAW_SLIP)
-            self._anchor = self._other[:3] + slip
-            self._stand(pose)
-        self._carrying = BOTH if self._other[3] < LIFTED else self._stance
+            self._anchor = self._other_sole[:3] + slip
+            self._set_base(pose)
+        self._support = BOTH if self._other_sole[3] < LIFTED else self._stance
 
-    def _stand(self, pose: Array) -> None:
+    def _set_base(self, pose: Array) -> None:
         data = self.data
-        stand(
+        base_pose(
             data.xpos,
             data.xquat,
             self._feet,
@@ -182,5 +180,5 @@ class KinematicBody:
             self._stance,
             self._anchor,
             pose,
-            self._other,
+            self._other_sole,
         )

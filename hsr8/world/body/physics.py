@@ -1,4 +1,4 @@
-"""The full body: MuJoCo physics, two steps a control tick."""
+"""Physics body: MuJoCo, two physics steps per control tick."""
 
 from collections.abc import Sequence
 from math import isfinite
@@ -26,8 +26,8 @@ from walking.targets import JointTargets
 
 Array = NDArray[np.float64]
 
-FALLEN_SHARE = 0.64  # a pelvis below this share of its height when ready lies [1]
-FALLEN_TILT = 0.5  # cosine of the tilt beyond which the robot has fallen [1]
+FALLEN_RATIO = 0.64  # pelvis height over its height in walk_ready, below which it has fallen [1]
+FALLEN_TILT = 0.5  # cosine of the tilt, below which the robot has fallen [1]
 
 
 @reading_models()
@@ -35,7 +35,7 @@ def place_robot(model: mujoco.MjModel, data: mujoco.MjData, start: Array) -> Non
     """Set the robot to ``walk_ready`` at x, y, heading `start` (3,) [m, m, rad].
 
     Raises:
-        ModelError: it has no such keyframe.
+        ModelError: the model has no such keyframe.
     """
     mujoco.mj_resetDataKeyframe(model, data, model.key("walk_ready").id)
     root = int(model.joint("root").qposadr[0])
@@ -47,18 +47,18 @@ def place_robot(model: mujoco.MjModel, data: mujoco.MjData, start: Array) -> Non
 
 
 class PhysicsBody:
-    """The robot in full physics.
+    """Robot in full physics.
 
     Args:
         model: compiled world.
-        layout: what stands and moves in it.
+        layout: obstacles, beacons and start pose.
         noise: sensor noise.
         rng: generator of the sensors.
-        pushes: what disturbs it, in the order in which it begins.
-        faults: what fails in body and world.
+        pushes: sorted by start.
+        faults: of the scenario.
 
     Raises:
-        ValueError: the control period is no multiple of the physics step.
+        ValueError: the control period is not a multiple of the physics step.
     """
 
     def __init__(
@@ -73,8 +73,8 @@ class PhysicsBody:
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
-        self._around = Surroundings(model, layout)
-        self._index = self._around.index
+        self._surroundings = Surroundings(model, layout)
+        self._index = self._surroundings.index
         self._pusher = Pusher(model, pushes, CONTROL_PERIOD)
         self._faults = WorldFaults(model, self._index, faults)
         self._saturation = SaturationWatch(model, self._index)
@@ -82,16 +82,16 @@ class PhysicsBody:
         self._substeps = round(CONTROL_PERIOD / model.opt.timestep)
         if abs(self._substeps * model.opt.timestep - CONTROL_PERIOD) > 1e-9:
             raise ValueError(
-                f"the control period {CONTROL_PERIOD} s is no multiple of the physics step "
-                f"{model.opt.timestep} s"
+                f"option timestep: the control period, {CONTROL_PERIOD} s, is not a multiple of "
+                f"the physics step, got {model.opt.timestep} s"
             )
         self._substep = 0
         self._timestep = float(model.opt.timestep)
         self._state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION))
         place_robot(model, self.data, np.array(layout.start))
-        self._lying = FALLEN_SHARE * float(self.data.qpos[self._index.root_qpos + 2])
-        self._around.move(self.data, 0.0)
-        # Warnings are counted and raised by `apply`; MuJoCo shall not write a file of its own.
+        self._fallen_height = FALLEN_RATIO * float(self.data.qpos[self._index.root_qpos + 2])
+        self._surroundings.move(self.data, 0.0)
+        # `apply` counts and raises warnings; MuJoCo must not write its log file.
         mujoco.set_mju_user_warning(lambda _message: None)
         mujoco.mj_forward(model, self.data)
 
@@ -101,7 +101,6 @@ class PhysicsBody:
         return self._substep * self._timestep
 
     def sense(self) -> BodySensors:
-        """Read encoders, IMU and foot pads."""
         data, index = self.data, self._index
         root, dof = index.root_qpos, index.root_dof
         return self._suite.read(
@@ -113,71 +112,67 @@ class PhysicsBody:
             foot_force=data.sensordata[index.foot_force],
         )
 
-    def set_points(self, targets: JointTargets) -> Array:
-        """What the servos are told (26,) [rad]."""
+    def setpoints(self, targets: JointTargets) -> Array:
         return targets.position + targets.offset
 
     def apply(self, targets: JointTargets) -> None:
-        """Send the set-points and advance one control tick.
+        """Send the setpoints and advance one control tick.
 
         Raises:
             SimulationDiverged: MuJoCo warned or the state is no longer finite.
         """
-        model, data, around = self.model, self.data, self._around
-        data.ctrl[self._index.actuators] = self.set_points(targets)
+        model, data, surroundings = self.model, self.data, self._surroundings
+        data.ctrl[self._index.actuators] = self.setpoints(targets)
         root = self._index.root_qpos
         tick = self._substep // self._substeps
-        self._faults.act(model, data, tick)
-        if self._pusher.busy(tick):
-            # Whether a camera has brought the poses up to date must not matter.
+        self._faults.apply_fault(model, data, tick)
+        if self._pusher.active(tick):
+            # The result must not depend on an update of the poses by a camera.
             mujoco.mj_kinematics(model, data)
-            self._pusher.act(data, tick, heading(data.qpos[root + 3 : root + 7]))
+            self._pusher.apply(data, tick, heading(data.qpos[root + 3 : root + 7]))
         for _ in range(self._substeps):
-            around.step(data, self._substep)
+            surroundings.step(data, self._substep)
             mujoco.mj_step(model, data)
             self._substep += 1
-        around.watch.watch(data)
+        surroundings.watch.watch(data)
         self._saturation.watch(data)
-        self._guard()
+        self._check_divergence()
 
     def update_kinematics(self) -> None:
-        """Bring geom, camera and light poses up to date; the state stays as it is."""
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
     def truth(self) -> Truth:
-        """State of the world now."""
         data, index = self.data, self._index
         root = index.root_qpos
         qpos = data.qpos.copy()
         quaternion = qpos[root + 3 : root + 7]
         x, y, z = qpos[root : root + 3].tolist()
         robot = np.array([x, y, heading(quaternion)])
-        load, pressure = self._around.watch.feet(data)
+        load, pressure = self._surroundings.watch.feet(data)
         return Truth(
             time=self.time,
             qpos=qpos,
             robot=robot,
-            obstacle_positions=self._around.placed(data),
-            obstacle_velocities=self._around.velocities(self.time),
-            contacts=self._around.watch.take(),
-            clearance=self._around.watch.clearance(data),
+            obstacle_positions=self._surroundings.current_positions(data),
+            obstacle_velocities=self._surroundings.velocities(self.time),
+            contacts=self._surroundings.watch.take(),
+            clearance=self._surroundings.watch.clearance(data),
             joint_torque=data.actuator_force[index.actuators],
             foot_force=load,
             zmp=pressure,
-            fallen=z < self._lying or up_component(quaternion) < FALLEN_TILT,
+            fallen=z < self._fallen_height or up_component(quaternion) < FALLEN_TILT,
             pushes=self._pusher.take(),
             saturation=self._saturation,
         )
 
     def state_bytes(self) -> bytes:
-        """MuJoCo's integration state."""
         mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
         return self._state.tobytes()
 
-    def _guard(self) -> None:
-        # A sum of squares is finite only if all of its terms are.
+    def _check_divergence(self) -> None:
+        # A sum of squares is finite only if all terms are finite.
         qacc = self.data.qacc
         if isfinite(qacc.dot(qacc)) and not any(self.data.warning.number.tolist()):
             return
@@ -188,6 +183,6 @@ class PhysicsBody:
         raise SimulationDiverged(
             f"the physics diverged at tick {round(self.time / CONTROL_PERIOD)} "
             f"(t = {self.time:.3f} s): body {body!r} moves at {speeds[dof]:.3g} rad/s or m/s; "
-            f"largest set-point of the last command: {JOINT_NAMES[worst]} at "
+            f"largest setpoint of the last command: {JOINT_NAMES[worst]} at "
             f"{self.data.ctrl[self._index.actuators[worst]]:.3f} rad"
         )

@@ -1,4 +1,4 @@
-"""Pushes: when, how hard and where the world pushes the robot."""
+"""Pushes: external forces on the robot, scheduled or random."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class ScheduledPush:
-    """One push, in whole control ticks.
+    """Push in whole control ticks.
 
     Attributes:
-        first: tick in which it begins.
-        ticks: how many it lasts.
+        first: first tick.
+        ticks: duration [ticks].
         force: [N].
-        direction: from the robot's forward when it begins, counter-clockwise [rad].
+        direction: from the heading of the robot at the start, counter-clockwise [rad].
         body: name of the pushed body.
-        point: where, from the body's centre of mass, along its axes [m].
+        point: from the centre of mass of the body, along its axes [m].
     """
 
     first: int
@@ -43,16 +43,16 @@ def schedule(
     rng: np.random.Generator,
     faults: Sequence[Fault],
 ) -> tuple[ScheduledPush, ...]:
-    """All pushes of a run in the order in which they begin.
+    """Return all pushes of a run, sorted by start.
 
     Args:
-        disturbance: section of the scenario, which draws pushes.
+        disturbance: section of the scenario with random pushes.
         duration: of the run [s].
         period: control tick [s].
-        rng: draws the random ones.
-        faults: of the scenario, some of which are pushes.
+        rng: draws the random pushes.
+        faults: of the scenario, possibly with pushes.
     """
-    pushes = [_of_fault(fault, period) for fault in faults if isinstance(fault, Push)]
+    pushes = [_from_fault(fault, period) for fault in faults if isinstance(fault, Push)]
     drawn = disturbance.random
     time = drawn.start if drawn is not None else duration
     while drawn is not None and time < duration:
@@ -69,7 +69,7 @@ class Pusher:
 
     Args:
         model: compiled world.
-        pushes: in the order in which they begin.
+        pushes: sorted by start.
         period: control tick [s].
     """
 
@@ -81,21 +81,15 @@ class Pusher:
         self._bodies = [int(model.body(push.body).id) for push in pushes]
         self._next = 0
         self._acting: dict[int, Array] = {}
-        self._seen: dict[int, ActivePush] = {}
+        self._applied: dict[int, ActivePush] = {}
 
-    def busy(self, tick: int) -> bool:
-        """Whether there is anything to do in control tick `tick`."""
+    def active(self, tick: int) -> bool:
+        """Return whether a push begins, lasts or ends in control tick `tick`."""
         due = self._next < len(self._pushes) and self._pushes[self._next].first <= tick
         return due or bool(self._acting)
 
-    def act(self, data: mujoco.MjData, tick: int, heading: float) -> None:
-        """Set the forces of one control tick.
-
-        Args:
-            data: of the model.
-            tick: about to be made.
-            heading: of the robot [rad].
-        """
+    def apply(self, data: mujoco.MjData, tick: int, heading: float) -> None:
+        """Set the external forces for control tick `tick`; `heading` of the robot in [rad]."""
         for number in self._acting:
             data.xfrc_applied[self._bodies[number]] = 0.0
         while self._next < len(self._pushes) and self._pushes[self._next].first <= tick:
@@ -112,7 +106,7 @@ class Pusher:
             lever = data.xmat[body].reshape(3, 3) @ push.point
             data.xfrc_applied[body, :3] += force
             data.xfrc_applied[body, 3:] += np.cross(lever, force)
-            self._seen[number] = ActivePush(
+            self._applied[number] = ActivePush(
                 number=number,
                 begin=push.first * self._period,
                 duration=push.ticks * self._period,
@@ -123,13 +117,13 @@ class Pusher:
             )
 
     def take(self) -> tuple[ActivePush, ...]:
-        """Pushes that acted since the last call, in order; forgets them."""
-        seen = tuple(self._seen[number] for number in sorted(self._seen))
-        self._seen.clear()
-        return seen
+        """Return and clear the pushes that acted since the last call, in order."""
+        applied = tuple(self._applied[number] for number in sorted(self._applied))
+        self._applied.clear()
+        return applied
 
 
-def _of_fault(fault: Push, period: float) -> ScheduledPush:
+def _from_fault(fault: Push, period: float) -> ScheduledPush:
     ticks = _ticks(fault.duration, period)
     first, direction = round(fault.start / period), radians(fault.direction_deg)
     force = fault.magnitude / (ticks * period)

@@ -1,4 +1,4 @@
-"""Faults of the body's sensors: between what they measure and what the robot is told."""
+"""Sensor faults: changes to the readings of encoders, IMU and foot pads."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,35 +21,35 @@ AXES = {"roll": 0, "pitch": 1, "yaw": 2}
 
 
 class SensorFaults:
-    """Spoils readings, one fault after the other in the order of the scenario.
+    """Applies sensor faults in the order of the scenario.
 
     Args:
-        faults: of the scenario; those of other parts are left to them.
+        faults: of the scenario; faults of other parts are ignored.
     """
 
     def __init__(self, faults: Sequence[Fault]) -> None:
         self._faults = [f for f in faults if isinstance(f, SensorFault)]
-        self._held: dict[int, BodySensors] = {}
-        self._turned = 0.0
+        self._frozen: dict[int, BodySensors] = {}
+        self._yaw_error = 0.0
 
     def apply_fault(self, sensors: BodySensors, tick: int) -> BodySensors:
-        """What the robot is told of the reading of control tick `tick`."""
+        """Return the readings of control tick `tick` with the faults applied."""
         for number, fault in enumerate(self._faults):
             if fault.acts(tick):
-                sensors = self._spoiled(sensors, number, fault)
-        if self._turned:
-            turned = quaternion_product(quaternion_from_yaw(self._turned), sensors.orientation)
+                sensors = self._with_fault(sensors, number, fault)
+        if self._yaw_error:
+            turned = quaternion_product(quaternion_from_yaw(self._yaw_error), sensors.orientation)
             sensors = replace(sensors, orientation=turned)
         return sensors
 
-    def _spoiled(self, now: BodySensors, number: int, fault: SensorFault) -> BodySensors:
+    def _with_fault(self, now: BodySensors, number: int, fault: SensorFault) -> BodySensors:
         if isinstance(fault, ImuFrozen | EncoderFrozen):
-            return _frozen(now, self._held.setdefault(number, now), fault)
+            return _frozen(now, self._frozen.setdefault(number, now), fault)
         if isinstance(fault, GyroBias):
             gyro = now.gyro.copy()
             gyro[AXES[fault.axis]] += fault.magnitude
             if fault.axis == "yaw":
-                self._turned += CONTROL_PERIOD * fault.magnitude
+                self._yaw_error += CONTROL_PERIOD * fault.magnitude
             return replace(now, gyro=gyro)
         if isinstance(fault, AttitudeBias):
             roll, pitch = (fault.magnitude, 0.0) if fault.axis == "roll" else (0.0, fault.magnitude)

@@ -1,8 +1,8 @@
-"""Noise on one reading of the body's sensors, compiled: it is taken in every control tick.
+"""Sensor noise on one reading of encoders, IMU and foot pads, compiled.
 
-A row of errors, as a reading, holds joint angles (26) [rad], joint rates (26) [rad/s], turn rates
-(3) [rad/s], specific force (3) [m/s²] and foot forces (8) [N]. Then an error has roll, pitch and
-drift of the heading [rad], a reading the quaternion of its attitude, w-x-y-z.
+A row of errors and a reading both hold joint angles (26) [rad], joint rates (26) [rad/s], turn
+rates (3) [rad/s], specific force (3) [m/s²] and foot forces (8) [N]. They end with roll, pitch
+and heading drift [rad] for errors, and with the attitude quaternion w-x-y-z for a reading.
 """
 
 from math import cos, sin, sqrt
@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
 
-RATE, GYRO, FORCE, PADS, ATTITUDE = 26, 52, 55, 58, 66  # first column of each but the angles
+RATE, GYRO, FORCE, PADS, ATTITUDE = 26, 52, 55, 58, 66  # first columns
 ERRORS, WIDTH = ATTITUDE + 3, ATTITUDE + 4  # columns of an error and of a reading
 
 
 @njit(cache=True)
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Hamilton product: first `b`, then `a`."""
+    """Return the Hamilton product: first `b`, then `a`."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -43,7 +43,7 @@ def reading(
     gain: Array,
     gyro_bias: float,
 ) -> Array:
-    """Turn true values into one noisy reading (`WIDTH`,).
+    """Return one noisy reading (`WIDTH`,) of true values.
 
     Args:
         joint_position: true angles (26,) [rad].

@@ -1,4 +1,4 @@
-"""Sensor noise: what stands between the true state of the body and what the robot feels."""
+"""Sensor suite: noisy readings of encoders, IMU and foot pads."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +9,11 @@ from walking.sensing import BodySensors
 
 Array = NDArray[np.float64]
 
-BLOCK = 200  # readings whose errors are drawn at a time
+BLOCK = 200  # readings per draw of errors
 
 
 class SensorSuite:
-    """Adds seeded noise to true readings; one instance a run.
+    """Adds seeded noise to true readings; one instance per run.
 
     Args:
         noise: magnitudes.
@@ -26,7 +26,7 @@ class SensorSuite:
         self._gyro_bias = float(noise.gyro_bias)
         self._rng = rng
         self._bias_step = noise.gyro_bias * period
-        self._yaw_drift = 0.0  # at the last of the errors drawn
+        self._yaw_drift = 0.0  # at the last drawn error
         self._gain = 1.0 + noise.foot_force_gain * rng.standard_normal((2, 4))
         widths = (26, 26, 3, 3, 8, 1, 1, 1)
         sigmas = (
@@ -40,8 +40,8 @@ class SensorSuite:
             noise.yaw_drift * float(np.sqrt(period)),
         )
         self._sigma = np.repeat(sigmas, widths)
-        self._errors = np.zeros((0, ERRORS))  # of the readings to come
-        self._read = 0
+        self._errors = np.zeros((0, ERRORS))  # of the next readings
+        self._next = 0
 
     def read(
         self,
@@ -53,11 +53,11 @@ class SensorSuite:
         orientation: Array,
         foot_force: Array,
     ) -> BodySensors:
-        """Turn true values (units as in ``BodySensors``) into one noisy reading."""
-        if self._read == len(self._errors):
+        """Return one noisy reading of true values (units as in ``BodySensors``)."""
+        if self._next == len(self._errors):
             self._draw()
-        error = self._errors[self._read]
-        self._read += 1
+        error = self._errors[self._next]
+        self._next += 1
         read = reading(
             joint_position,
             joint_velocity,
@@ -85,4 +85,4 @@ class SensorSuite:
         steps = errors[:, ATTITUDE + 2] + self._bias_step
         errors[:, ATTITUDE + 2] = np.cumsum([self._yaw_drift, *steps])[1:]
         self._yaw_drift = float(errors[-1, ATTITUDE + 2])
-        self._errors, self._read = errors, 0
+        self._errors, self._next = errors, 0

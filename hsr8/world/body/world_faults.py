@@ -1,4 +1,4 @@
-"""Faults of body and floor in the physics: weak servos, slippery soles, bumps."""
+"""World faults: weak servos, low friction and bumps on the floor."""
 
 from collections.abc import Sequence
 from math import hypot
@@ -8,34 +8,34 @@ import mujoco
 from hsr8.scenario.fault import Bump, Fault, LowFriction, ServoWeak
 from hsr8.world.model.index import ModelIndex
 
-TOUCHES = (3, 1)  # contype and conaffinity of what the robot touches
-RULES = 1  # priority of the soles, so that their friction alone counts
+COLLIDES = (3, 1)  # contype and conaffinity of geoms that collide with the robot
+SOLE_PRIORITY = 1  # so that the friction of the soles alone counts
 
 
 class WorldFaults:
-    """Sets what fails in a model, from the clock alone: the model is no part of a snapshot.
+    """Applies world faults to a model.
 
     Args:
         model: compiled world.
         index: addresses in it.
-        faults: of the scenario; those of other parts are left to them.
+        faults: of the scenario; faults of other parts are ignored.
     """
 
     def __init__(self, model: mujoco.MjModel, index: ModelIndex, faults: Sequence[Fault]) -> None:
         self._index = index
         self._weak = [f for f in faults if isinstance(f, ServoWeak)]
-        self._slippery = [f for f in faults if isinstance(f, LowFriction)]
+        self._low_friction = [f for f in faults if isinstance(f, LowFriction)]
         bumps = [f for f in faults if isinstance(f, Bump)]
         self._bumps = list(zip(bumps, index.bumps, strict=True))
-        self._any = bool(self._weak or self._slippery or self._bumps)
-        self._placed = any(f.place is not None for f in self._slippery)
+        self._any = bool(self._weak or self._low_friction or self._bumps)
+        self._local = any(f.place is not None for f in self._low_friction)
         self._torque = model.actuator_forcerange.copy()
         self._friction = [float(model.geom_friction[g, 0]) for g in index.foot_geoms]
-        if self._slippery:
-            model.geom_priority[list(index.foot_geoms)] = RULES
+        if self._low_friction:
+            model.geom_priority[list(index.foot_geoms)] = SOLE_PRIORITY
 
-    def act(self, model: mujoco.MjModel, data: mujoco.MjData, tick: int) -> None:
-        """Set what fails in control tick `tick`, which is about to be made."""
+    def apply_fault(self, model: mujoco.MjModel, data: mujoco.MjData, tick: int) -> None:
+        """Apply the faults of control tick `tick` before it is simulated."""
         if not self._any:
             return
         if self._weak:
@@ -44,18 +44,18 @@ class WorldFaults:
                 if weak.acts(tick):
                     model.actuator_forcerange[self._index.actuators[weak.joints]] *= weak.magnitude
         for bump, geom in self._bumps:
-            touches = TOUCHES if bump.acts(tick) else (0, 0)
-            model.geom_contype[geom], model.geom_conaffinity[geom] = touches
-        if self._placed:
-            # Whether a camera has brought the poses up to date must not matter.
+            mask = COLLIDES if bump.acts(tick) else (0, 0)
+            model.geom_contype[geom], model.geom_conaffinity[geom] = mask
+        if self._local:
+            # The result must not depend on an update of the poses by a camera.
             mujoco.mj_kinematics(model, data)
         for side, geom in enumerate(self._index.foot_geoms):
             friction = self._friction[side]
             x, y, _ = data.geom_xpos[geom].tolist()
-            for slip in self._slippery:
+            for slip in self._low_friction:
                 if slip.acts(tick) and _within(slip, x, y):
                     friction = slip.magnitude
-            if self._slippery:
+            if self._low_friction:
                 model.geom_friction[geom, 0] = friction
 
 

@@ -1,1 +1,1 @@
-"""The head camera: rendered, or geometry alone, with what spoils its images."""
+"""Head camera: rendered or analytic, with image noise and faults."""

@@ -1,9 +1,7 @@
-"""A camera without pixels: cylinders projected geometrically, seen with known noise.
+"""Analytic camera: detections from the geometry of the cylinders, without rendering.
 
-It yields the same detections as vision would and needs no OpenGL. Occlusion, borders,
-range and missed detections are modelled; colours are taken as recognised.
-
-An omnidirectional one differs in its field of view alone: occlusion, range, noise and misses stay.
+It needs no OpenGL. Occlusion, image borders, range, noise and missed detections are modelled;
+colours are always recognised. The omnidirectional camera differs in its field of view alone.
 """
 
 from collections.abc import Sequence
@@ -15,7 +13,7 @@ import numpy as np
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
 from hsr8.world.body.body import Body
-from hsr8.world.camera.analytic_kernel import box, look
+from hsr8.world.camera.analytic_kernel import project, project_all
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import HEAD_CAMERA
@@ -26,24 +24,24 @@ from vision.detection import Detection
 
 OBSTACLE_RANGE = 4.5  # farther obstacles are not reported [m]
 BEACON_RANGE = 5.5  # farther beacons are not reported [m]
-DETECTED = 0.999  # share of visible things that are detected
-HIDDEN = 0.7  # hidden share of the width beyond which nothing is detected
-# Errors as vision's are in full physics, docs/results/vision.md.
-LEAST_SIGMA = 0.002  # of the range [m]
+DETECTION_RATE = 0.999  # fraction of visible objects that are detected
+MAX_HIDDEN = 0.7  # hidden fraction of the width beyond which nothing is detected
+# Errors as those of vision in full physics, docs/results/vision.md.
+MIN_SIGMA = 0.002  # of the range [m]
 RANGE_SIGMA = 0.0027  # per squared distance [1/m]
 BEARING_SIGMA = 0.0009  # [rad]
 RADIUS_SIGMA = 0.0018  # [m]
 PART_RANGE_SIGMA = 0.0065  # of an obstacle cut by the border or partly hidden [1/m]
-PART_SIDE_SIGMA = 0.012  # of its middle, across the line of sight [m]
+PART_SIDE_SIGMA = 0.012  # of its axis, across the line of sight [m]
 PART_RADIUS_SIGMA = 0.010  # [m]
 OBSTACLE_COLORS = tuple(c.name for c in COLOR_CLASSES.values() if c.kind == "obstacle")
-CLEAR = 0.04  # hidden share of the outline up to which a thing is seen whole
-FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of what is not there [m]
-FALSE_RANGE = (0.3, 2.5)  # where things seem to be that are not there [m]
+MAX_HIDDEN_WHOLE = 0.04  # hidden fraction of the width up to which an object counts as whole
+FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of false detections [m]
+FALSE_RANGE = (0.3, 2.5)  # distance of false detections [m]
 
 
 @dataclass(frozen=True, slots=True)
-class _Thing:
+class _Cylinder:
     kind: str
     label: str
     radius: float
@@ -57,7 +55,7 @@ class AnalyticCamera:
         layout: obstacles and beacons.
         camera: intrinsics.
         rng: generator of noise and misses.
-        settings: whether it sees all around.
+        settings: of the camera.
         faults: of the images.
     """
 
@@ -75,120 +73,123 @@ class AnalyticCamera:
         self._omnidirectional = settings.omnidirectional
         self._faults = faults
         self._movers = layout.motion()
-        self._things = [
-            *(_Thing("obstacle", o.color, o.radius, o.height) for o in layout.obstacles),
-            *(_Thing("beacon", b.name, b.radius, b.height) for b in layout.beacons),
+        self._cylinders = [
+            *(_Cylinder("obstacle", o.color, o.radius, o.height) for o in layout.obstacles),
+            *(_Cylinder("beacon", b.name, b.radius, b.height) for b in layout.beacons),
         ]
         places = [*(o.position for o in layout.obstacles), *(b.position for b in layout.beacons)]
-        self._places = np.array(places, dtype=float).reshape(-1, 2)
+        self._positions = np.array(places, dtype=float).reshape(-1, 2)
         self._moving = slice(len(layout.obstacles) - len(self._movers), len(layout.obstacles))
-        self._sizes = np.array([(t.radius, t.height) for t in self._things]).reshape(-1, 2)
-        self._beacon = np.array([t.kind == "beacon" for t in self._things], dtype=bool)
+        self._sizes = np.array([(t.radius, t.height) for t in self._cylinders]).reshape(-1, 2)
+        self._beacon = np.array([t.kind == "beacon" for t in self._cylinders], dtype=bool)
         self._eye = np.zeros(16)
         self._eye[12:] = camera.width, camera.height, camera.focal, self._omnidirectional
         self._index: tuple[int, int] | None = None
 
     def capture(self, body: Body) -> tuple[Detection, ...]:
-        """Detections of the world as it is now, by distance and label."""
+        """Return the detections in the present world, by distance and label."""
         body.update_kinematics()
         model, data = body.model, body.data
         if self._index is None:
             root = int(model.joint("root").qposadr[0])
             self._index = (model.camera(HEAD_CAMERA).id, root)
         camera_id, root = self._index
-        # MuJoCo's camera looks along -z with y up; ours along +z with y down.
+        # MuJoCo cameras look along -z with y up, frame C along +z with y down.
         rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
         self._eye[:3], self._eye[3:12] = data.cam_xpos[camera_id], rotation.ravel()
         x, y = data.qpos[root : root + 2].tolist()
         robot = (x, y, heading(data.qpos[root + 3 : root + 7]))
         tick = ticks(body.time)
-        found = self._detect(body.time, robot, self._faults.missed(tick))
-        found += self._not_there(robot, self._faults.ghosts(tick))
+        detections = self._detect(body.time, robot, self._faults.missed(tick))
+        detections += self._false_detections(robot, self._faults.false_detections(tick))
         if self._faults.black(tick):
             return ()
-        return tuple(sorted(found, key=lambda d: (d.distance, d.label)))
+        return tuple(sorted(detections, key=lambda d: (d.distance, d.label)))
 
     def _detect(
         self, time: float, robot: tuple[float, float, float], missed: float
     ) -> list[Detection]:
-        """Detections of what is there; `missed` is the share that a fault hides."""
+        """Return the detections of cylinders; a fault hides the fraction `missed`."""
         if len(self._movers):
-            self._places[self._moving] = self._movers.positions(time)
-        offsets = self._places - self._eye[:2]
+            self._positions[self._moving] = self._movers.positions(time)
+        offsets = self._positions - self._eye[:2]
         order = np.argsort(np.hypot(offsets[:, 0], offsets[:, 1]), kind="stable")
-        places = self._places[order]
-        seen = look(places, self._sizes[order], self._beacon[order], self._eye)
-        found = []
-        for i, place, row in zip(order.tolist(), places.tolist(), seen.tolist(), strict=True):
-            thing, (distance, hidden, *where) = self._things[i], row
-            if distance <= thing.radius:
+        positions = self._positions[order]
+        views = project_all(positions, self._sizes[order], self._beacon[order], self._eye)
+        detections = []
+        for i, row in zip(order.tolist(), views.tolist(), strict=True):
+            cylinder, (distance, hidden, *box) = self._cylinders[i], row
+            if distance <= cylinder.radius:
                 continue
-            limit = BEACON_RANGE if thing.kind == "beacon" else OBSTACLE_RANGE
+            limit = BEACON_RANGE if cylinder.kind == "beacon" else OBSTACLE_RANGE
             draw = self._rng.random()
             noise = self._rng.standard_normal(3)
-            if distance > limit or hidden > HIDDEN or draw > DETECTED:
+            if distance > limit or hidden > MAX_HIDDEN or draw > DETECTION_RATE:
                 continue
             if missed and self._fault_rng.random() < missed:
                 continue
-            if where[2]:
-                polar = _polar(place[0], place[1], robot)
-                found.append(_detection(polar, thing, where, hidden=hidden, noise=noise.tolist()))
-        return found
+            if box[2]:
+                x, y = self._positions[i].tolist()
+                polar = _polar(x, y, robot)
+                noisy = _detection(polar, cylinder, box, hidden=hidden, noise=noise.tolist())
+                detections.append(noisy)
+        return detections
 
-    def _not_there(self, robot: tuple[float, float, float], mean: float) -> list[Detection]:
-        """Detections of obstacles that are not there, so many on average."""
+    def _false_detections(self, robot: tuple[float, float, float], mean: float) -> list[Detection]:
+        """Return false detections of obstacles, `mean` on average."""
         rng, eye = self._fault_rng, self._eye
         ahead = atan2(eye[8], eye[5]) - robot[2]
         half = pi if self._omnidirectional else 0.5 * self._camera.horizontal_fov
-        found = []
+        detections = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]
-            thing = _Thing("obstacle", color, FALSE_RADIUS, FALSE_HEIGHT)
+            cylinder = _Cylinder("obstacle", color, FALSE_RADIUS, FALSE_HEIGHT)
             polar = (rng.uniform(*FALSE_RANGE), ahead + rng.uniform(-half, half))
             direction = polar[1] + robot[2]
             x = robot[0] + polar[0] * cos(direction) - float(eye[0])
             y = robot[1] + polar[0] * sin(direction) - float(eye[1])
-            where = box(x, y, thing.radius, thing.height, False, eye)
-            if where[2]:
-                found.append(_detection(polar, thing, where, hidden=0.0, noise=(0.0, 0.0, 0.0)))
-        return found
+            box = project(x, y, cylinder.radius, cylinder.height, False, eye)
+            if box[2]:
+                noise = (0.0, 0.0, 0.0)
+                detections.append(_detection(polar, cylinder, box, hidden=0.0, noise=noise))
+        return detections
 
 
 def _polar(x: float, y: float, robot: tuple[float, float, float]) -> tuple[float, float]:
-    """Distance [m] and bearing [rad] of a point from the robot."""
+    """Return distance [m] and bearing [rad] of a point from the robot."""
     x, y = x - robot[0], y - robot[1]
     return hypot(x, y), atan2(y, x) - robot[2]
 
 
 def _deviations(distance: float, whole: bool) -> tuple[float, float, float]:
-    """Standard deviations of range [m], bearing [rad] and radius [m]."""
+    """Return the standard deviations of range [m], bearing [rad] and radius [m]."""
     if whole:
-        return max(LEAST_SIGMA, RANGE_SIGMA * distance**2), BEARING_SIGMA, RADIUS_SIGMA
-    sigma = max(LEAST_SIGMA, PART_RANGE_SIGMA * distance**2)
+        return max(MIN_SIGMA, RANGE_SIGMA * distance**2), BEARING_SIGMA, RADIUS_SIGMA
+    sigma = max(MIN_SIGMA, PART_RANGE_SIGMA * distance**2)
     return sigma, PART_SIDE_SIGMA / distance, PART_RADIUS_SIGMA
 
 
 def _detection(
     polar: tuple[float, float],
-    thing: _Thing,
-    where: Sequence[float],
+    cylinder: _Cylinder,
+    box: Sequence[float],
     *,
     hidden: float,
     noise: Sequence[float],
 ) -> Detection:
-    """A noisy look at a thing at true (distance, bearing) in R."""
+    """Return a noisy detection of a cylinder at true (distance, bearing) in R."""
     distance, true_bearing = polar
-    left, top, right, bottom, cut = where
-    beacon = thing.kind == "beacon"
-    whole = beacon or (not cut and hidden <= CLEAR)
+    left, top, right, bottom, cut = box
+    beacon = cylinder.kind == "beacon"
+    whole = beacon or (not cut and hidden <= MAX_HIDDEN_WHOLE)
     range_sigma, bearing_sigma, radius_sigma = _deviations(distance, whole)
     if beacon:
         radius_sigma = 0.0
     bearing = true_bearing + bearing_sigma * noise[1]
-    radius = thing.radius + radius_sigma * noise[2]
+    radius = cylinder.radius + radius_sigma * noise[2]
     return Detection(
         kind="beacon" if beacon else "obstacle",
-        label=thing.label,
+        label=cylinder.label,
         bearing=atan2(sin(bearing), cos(bearing)),
         distance=max(0.05, distance + range_sigma * noise[0]),
         covariance=np.array([[range_sigma**2, 0.0], [0.0, bearing_sigma**2]]),
@@ -196,6 +197,6 @@ def _detection(
         radius_sigma=radius_sigma,
         by_radius=np.zeros(2),
         cut=bool(cut),
-        occluded=hidden > CLEAR,
+        occluded=hidden > MAX_HIDDEN_WHOLE,
         box=(int(left), int(top), int(right), int(bottom)),
     )

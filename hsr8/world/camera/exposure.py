@@ -1,4 +1,4 @@
-"""An image that is still being drawn when it is handed on."""
+"""Image that is read only when it is needed, so that rendering runs in parallel."""
 
 from collections.abc import Callable
 
@@ -9,12 +9,10 @@ Image = NDArray[np.uint8]
 
 
 class Exposure:
-    """One image of a camera.
-
-    OpenGL draws beside the program, so whoever asks late waits least.
+    """One image of a camera, read at most once.
 
     Args:
-        read: waits until the image is drawn and returns it; called once at most.
+        read: waits until the image is rendered and returns it.
     """
 
     __slots__ = ("_image", "_read")
@@ -24,7 +22,7 @@ class Exposure:
         self._image: Image | None = None
 
     def image(self) -> Image:
-        """The image (height, width, 3)."""
+        """Return the image (height, width, 3)."""
         if self._read is not None:
             self._image, self._read = self._read(), None
         assert self._image is not None

@@ -1,4 +1,4 @@
-"""How images reach the robot: some never, the others after the camera's latency."""
+"""Camera feed: capture period, latency and dropped images."""
 
 from collections import deque
 from collections.abc import Callable
@@ -15,13 +15,13 @@ from walking.value import value
 
 
 @value
-class Picture:
-    """What the camera delivers.
+class CapturedFrame:
+    """Camera frame: an image, or the detections of a camera without pixels.
 
     Attributes:
-        captured: when it was taken [s].
-        exposure: its image, or None of a camera without pixels.
-        detections: what a camera without pixels reports instead.
+        captured: time of the capture [s].
+        exposure: image of a rendered camera.
+        detections: of an analytic camera.
     """
 
     captured: float
@@ -30,13 +30,13 @@ class Picture:
 
 
 class CameraFeed:
-    """Takes a picture every period and hands it over when it has arrived.
+    """Captures a frame every period and delivers it after the latency.
 
     Args:
         settings: period and latency.
-        rng: generator of the dropped images.
-        faults: images that are dropped, or late by whole periods; one that a newer one overtakes
-            never arrives.
+        rng: draws dropped frames.
+        faults: dropped frames and additional latency in whole periods; a frame that a newer one
+            overtakes never arrives.
     """
 
     def __init__(
@@ -49,28 +49,28 @@ class CameraFeed:
         self._faults = faults
         self._period = settings.period_ms // CONTROL_PERIOD_MS
         self._latency = settings.latency_ms // CONTROL_PERIOD_MS
-        self._under_way: deque[tuple[int, Picture]] = deque()
+        self._pending: deque[tuple[int, CapturedFrame]] = deque()
 
     def shutter(self, tick: int) -> bool:
-        """Whether a picture is taken in control tick `tick`."""
+        """Return whether a frame is captured in control tick `tick`."""
         return tick % self._period == 0
 
-    def arrived(self, tick: int, take: Callable[[], Picture]) -> Picture | None:
-        """The picture that arrives in control tick `tick`, if any.
+    def arrived(self, tick: int, capture: Callable[[], CapturedFrame]) -> CapturedFrame | None:
+        """Return the frame that arrives in control tick `tick`, if any.
 
         Args:
             tick: control tick.
-            take: takes a picture of the world as it is now; called if one is due.
+            capture: captures the present world; called if a frame is due.
         """
         if self.shutter(tick):
-            picture = take()
+            frame = capture()
             dropped = self._faults.dropped(tick)
             if not (dropped and self._rng.random() < dropped):
-                late = ceil(self._faults.late(tick) / self._period) * self._period
+                late = ceil(self._faults.latency(tick) / self._period) * self._period
                 due = tick + self._latency + late
-                while self._under_way and self._under_way[-1][0] >= due:
-                    self._under_way.pop()  # the newer one overtakes it
-                self._under_way.append((due, picture))
-        if self._under_way and self._under_way[0][0] == tick:
-            return self._under_way.popleft()[1]
+                while self._pending and self._pending[-1][0] >= due:
+                    self._pending.pop()  # overtaken
+                self._pending.append((due, frame))
+        if self._pending and self._pending[0][0] == tick:
+            return self._pending.popleft()[1]
         return None

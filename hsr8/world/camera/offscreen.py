@@ -1,4 +1,4 @@
-"""Drawing without a window, begun and read apart."""
+"""Asynchronous offscreen rendering: start an image, read it later."""
 
 import mujoco
 import numpy as np
@@ -8,13 +8,13 @@ from hsr8.gl import flush, require_gl
 
 Image = NDArray[np.uint8]
 
-MOST_GEOMS = 10000  # in a picture
+MAX_GEOMS = 10000  # per image
 
 
 class Offscreen:
-    """Draws one camera of a model; close it after use, and use it in one thread only.
+    """Renders one camera of a model; close it after use, and use it in one thread only.
 
-    OpenGL draws beside the program from `begin` to `read`. MuJoCo's own renderer waits at once.
+    OpenGL renders in parallel from `begin` to `read`; `mujoco.Renderer` would wait at once.
 
     Args:
         model: compiled world; its offscreen buffer must hold the image.
@@ -22,13 +22,13 @@ class Offscreen:
         width, height: of the image [pixel].
 
     Raises:
-        RenderingUnavailable: no OpenGL draws here.
+        RenderingUnavailable: OpenGL cannot render here.
     """
 
     def __init__(self, model: mujoco.MjModel, camera: str, width: int, height: int) -> None:
         require_gl()
         self._model = model
-        self._scene = mujoco.MjvScene(model, maxgeom=MOST_GEOMS)
+        self._scene = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
         self._option = mujoco.MjvOption()
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
@@ -41,7 +41,7 @@ class Offscreen:
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._drawing)
 
     def begin(self, data: mujoco.MjData) -> None:
-        """Begin to draw `data` as it is now; it may change as soon as this returns."""
+        """Start rendering the present `data`, which may change after the call."""
         everything = mujoco.mjtCatBit.mjCAT_ALL
         mujoco.mjv_updateScene(
             self._model, data, self._option, None, self._camera, everything, self._scene
@@ -51,7 +51,7 @@ class Offscreen:
         flush()
 
     def read(self) -> Image:
-        """Wait for what was begun last: a new image (height, width, 3)."""
+        """Wait for the image started last and return it (height, width, 3)."""
         self._make_current()
         mujoco.mjr_readPixels(self._upside_down, None, self._rect, self._drawing)
         return self._upside_down[::-1].copy()
@@ -65,6 +65,6 @@ class Offscreen:
             self._context = None
 
     def _make_current(self) -> None:
-        """Others may have drawn in between."""
+        """Select the context: other renderers may have changed it."""
         assert self._context is not None
         self._context.make_current()

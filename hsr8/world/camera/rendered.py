@@ -1,4 +1,4 @@
-"""The head camera: images rendered from the model's own camera, without a display."""
+"""Rendered head camera: images from the camera of the model, without a display."""
 
 from functools import partial
 from typing import TYPE_CHECKING
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
-THINGS = ("obstacle_", "mover_", "beacon_")  # names of what the robot looks for begin so
-NOT_DRAWN = 5  # a group of geoms that MuJoCo does not draw
+OBJECTS = ("obstacle_", "mover_", "beacon_")  # prefixes of the bodies that a fault can hide
+HIDDEN_GROUP = 5  # geom group that MuJoCo does not render
 
 
 class RenderedCamera:
@@ -38,7 +38,7 @@ class RenderedCamera:
         faults: of the images.
 
     Raises:
-        RenderingUnavailable: no OpenGL draws here.
+        RenderingUnavailable: OpenGL cannot render here.
     """
 
     def __init__(
@@ -60,39 +60,39 @@ class RenderedCamera:
         self._latest: Exposure | None = None
         self._lights = _Lights(model)
         self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)
-        self._group, self._usual_group = model.geom_group, model.geom_group.copy()
-        bodies = [i for i in range(model.nbody) if model.body(i).name.startswith(THINGS)]
-        self._things = [
+        self._group, self._original_group = model.geom_group, model.geom_group.copy()
+        bodies = [i for i in range(model.nbody) if model.body(i).name.startswith(OBJECTS)]
+        self._objects = [
             slice(model.body_geomadr[i], model.body_geomadr[i] + model.body_geomnum[i])
             for i in bodies
         ]
 
     def capture(self, body: "Body") -> Exposure:
-        """Image (height, width, 3) of the world as it is now; it need not be drawn yet."""
+        """Start an image (height, width, 3) of the present world."""
         self.settle()
         body.update_kinematics()
         settings, noise, faults, tick = self._settings, self.noise, self._faults, ticks(body.time)
-        light, missed = noise.light(), noise.missed(len(self._things), faults.missed(tick))
-        ghosts = faults.ghosts(tick)
+        light, missed = noise.light(), noise.missed(len(self._objects), faults.missed(tick))
+        blobs = faults.false_detections(tick)
         if faults.black(tick):
             black = np.zeros((settings.height, settings.width, 3), np.uint8)
-            self._latest = Exposure(lambda: noise.apply(black, ghosts))
+            self._latest = Exposure(lambda: noise.apply(black, blobs))
             return self._latest
         self._lights.set(light * faults.light(tick))
-        away = self._frustum.misses(body.data)
+        hidden = self._frustum.outside(body.data)
         for i in missed:
-            away[self._things[i]] = True
-        self._group[away] = NOT_DRAWN
+            hidden[self._objects[i]] = True
+        self._group[hidden] = HIDDEN_GROUP
         self._offscreen.begin(body.data)
-        self._group[:] = self._usual_group
+        self._group[:] = self._original_group
         read = self._offscreen.read
         if self._blur is not None:
-            read = partial(self._blurred, self._blur, turning(body.model, body.data))
-        self._latest = Exposure(lambda: noise.apply(read(), ghosts))
+            read = partial(self._blurred, self._blur, angular_velocity(body.model, body.data))
+        self._latest = Exposure(lambda: noise.apply(read(), blobs))
         return self._latest
 
     def settle(self) -> None:
-        """Wait for the latest image, also when nobody asks for it: its noise is drawn in turn."""
+        """Read the latest image, so that noise is drawn in the order of the captures."""
         if self._latest is not None:
             self._latest.image()
             self._latest = None
@@ -102,20 +102,20 @@ class RenderedCamera:
         self._offscreen.close()
 
     def _blurred(self, blur: MotionBlur, rate: Array) -> Image:
-        return blur.smear(self._offscreen.read(), rate)
+        return blur.blur(self._offscreen.read(), rate)
 
 
-def turning(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
-    """Angular velocity of the head camera in its frame C, right, down and ahead (3,) [rad/s]."""
+def angular_velocity(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
+    """Return the angular velocity of the head camera in its frame C (3,) [rad/s]."""
     mujoco.mj_comVel(model, data)
     velocity = np.zeros(6)
     camera = model.camera(HEAD_CAMERA).id
     mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_CAMERA, camera, velocity, 1)
-    return velocity[:3] * (1.0, -1.0, -1.0)  # MuJoCo's camera looks along -z with y up
+    return velocity[:3] * (1.0, -1.0, -1.0)  # MuJoCo cameras look along -z with y up
 
 
 class _Lights:
-    """The lights of a model, which can be dimmed."""
+    """Dimmable lights of a model."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._factor = 1.0
@@ -124,9 +124,9 @@ class _Lights:
         self._lights = [(light, light.copy()) for light in lights]
 
     def set(self, factor: float) -> None:
-        """Make all lights `factor` times as strong as the model has them."""
+        """Scale all lights of the model by `factor`."""
         if factor == self._factor:
             return
         self._factor = factor
-        for light, usual in self._lights:
-            light[:] = factor * usual
+        for light, original in self._lights:
+            light[:] = factor * original

@@ -31,9 +31,9 @@ def test_round_trip_is_exact(tmp_path_factory, blocks):
     file = tmp_path_factory.mktemp("t") / "tape.bin"
     write(file, blocks)
     *back, end = read_tape(file, whole=True)
-    assert [b.set_points.tobytes() for b in back] == [rows.tobytes() for rows in blocks]
+    assert [b.setpoints.tobytes() for b in back] == [rows.tobytes() for rows in blocks]
     assert [b.tick for b in back] == np.cumsum([0, *map(len, blocks)])[:-1].tolist()
-    assert end.set_points.shape == (0, 26)
+    assert end.setpoints.shape == (0, 26)
     assert len({b.world for b in (*back, end)}) == len(back) + 1
 
 
@@ -70,7 +70,7 @@ def test_a_tape_is_gone_on_with(tmp_path):
         tape.add(rows[tick])
         tape.close()
     back = read_tape(tmp_path / "t", whole=True)
-    assert np.array_equal(np.concatenate([b.set_points for b in back]), rows)
+    assert np.array_equal(np.concatenate([b.setpoints for b in back]), rows)
     assert [b.tick for b in back] == [0, 1]
 
 

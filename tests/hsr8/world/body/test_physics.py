@@ -122,5 +122,5 @@ def test_divergence_names_tick_and_body_and_command(world, silent):
 def test_a_physics_step_that_does_not_divide_the_tick_is_refused(world, silent):
     layout, model = world()
     model.opt.timestep = 0.003
-    with pytest.raises(ValueError, match="no multiple"):
+    with pytest.raises(ValueError, match="not a multiple"):
         PhysicsBody(model, layout, silent, np.random.default_rng(0))

@@ -59,7 +59,7 @@ def test_a_push_acts_in_its_ticks_only_and_from_the_robots_side(model, heading, 
     pusher = Pusher(model, [push], TICK)
     body = model.body("torso_link").id
     for tick in range(8):
-        pusher.act(data, tick, heading)
+        pusher.apply(data, tick, heading)
         force = data.xfrc_applied[body]
         acts = tick in (3, 4)
         assert force[:2] == pytest.approx(wanted if acts else (0.0, 0.0), abs=1e-12)
@@ -82,7 +82,7 @@ def test_pushes_at_once_add_up_and_a_point_makes_a_moment(model):
     pusher = Pusher(model, pushes, TICK)
     applied = []
     for tick in range(7):
-        pusher.act(data, tick, 0.0)
+        pusher.apply(data, tick, 0.0)
         applied.append(data.xfrc_applied[model.body("torso_link").id].copy())
     forces, moments = np.array(applied)[:, 0], np.array(applied)[:, 4]
     assert forces.tolist() == [1.0, 1.0, 3.0, 3.0, 2.0, 2.0, 0.0]

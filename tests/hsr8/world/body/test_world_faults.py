@@ -32,8 +32,8 @@ def test_weak_servos_have_a_share_of_their_torque_left_and_get_it_back():
     model, data, index, faults = world(weak)
     usual = model.actuator_forcerange.copy()
     for tick in range(6):
-        faults.act(model, data, tick)
-        faults.act(model, data, tick)  # it is the same however often it is asked
+        faults.apply_fault(model, data, tick)
+        faults.apply_fault(model, data, tick)  # it is the same however often it is asked
         share = model.actuator_forcerange[index.actuators] / usual[index.actuators]
         left = 0.25 if 2 <= tick < 4 else 1.0
         assert np.allclose(share[:6], left)
@@ -45,17 +45,17 @@ def test_a_patch_is_slippery_for_the_sole_on_it():
     model, data, index, faults = world(
         LowFriction(kind="low-friction", magnitude=0.1, place=(0.01, y), radius=radius)
     )
-    faults.act(model, data, 0)
+    faults.apply_fault(model, data, 0)
     assert model.geom_friction[list(index.foot_geoms), 0].tolist() == [0.1, 0.8]
     data.qpos[index.root_qpos] += 1.0
-    faults.act(model, data, 1)
+    faults.apply_fault(model, data, 1)
     assert model.geom_friction[list(index.foot_geoms), 0].tolist() == [0.8, 0.8]
 
 
 def test_the_friction_of_a_slippery_floor_is_that_of_its_contacts():
     model, data, index, faults = world(LowFriction(kind="low-friction", magnitude=0.1, start=0.05))
     for tick, friction in ((0, 0.8), (10, 0.1)):
-        faults.act(model, data, tick)
+        faults.apply_fault(model, data, tick)
         mujoco.mj_step(model, data)
         feet = [
             c.friction[0] for c in data.contact[: data.ncon] if set(c.geom) & {*index.foot_geoms}
@@ -71,7 +71,7 @@ def test_a_bump_is_touched_while_it_acts_only():
     model, data, index, faults = world(bump)
     touched = []
     for tick in (0, 10, 20):
-        faults.act(model, data, tick)
+        faults.apply_fault(model, data, tick)
         mujoco.mj_forward(model, data)
         touched.append(bool(np.isin(data.contact.geom, index.bumps).any()))
     assert touched == [False, True, False]

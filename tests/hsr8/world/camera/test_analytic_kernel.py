@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.world.camera.analytic_kernel import DISTANCE, HIDDEN, NEAREST, box, look
+from hsr8.world.camera.analytic_kernel import DISTANCE, HIDDEN, MIN_DEPTH, project, project_all
 from tests.vision.scene import CAMERA, pose
 
 RADIUS, HEIGHT = 0.08, 0.3
@@ -28,13 +28,15 @@ def cylinders(seed, n):
 @pytest.mark.parametrize("seed", range(4))
 def test_compiled_and_plain_agree(seed, omnidirectional):
     arguments = (*cylinders(seed, 30), eye(pose(0.3 * seed, -0.3), omnidirectional))
-    np.testing.assert_allclose(look(*arguments), look.py_func(*arguments), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(
+        project_all(*arguments), project_all.py_func(*arguments), rtol=1e-12, atol=1e-12
+    )
 
 
 @given(place=places, pan=st.floats(-1.5, 1.5), tilt=st.floats(-0.6, 0.2))
 def test_a_box_bounds_the_projected_edges_of_the_cylinder(place, pan, tilt):
     view = pose(pan, tilt)
-    left, top, right, bottom, cut = box(*place, RADIUS, HEIGHT, False, eye(view))
+    left, top, right, bottom, cut = project(*place, RADIUS, HEIGHT, False, eye(view))
     across = np.array([-place[1], place[0]]) * RADIUS / np.hypot(*place)
     points = np.array(
         [[*(place + s * across), z] for s in (-1, 1) for z in (0.0, 0.5 * HEIGHT, HEIGHT)]
@@ -42,7 +44,7 @@ def test_a_box_bounds_the_projected_edges_of_the_cylinder(place, pan, tilt):
     local = (points - view.position) @ view.rotation
     size = np.array([CAMERA.width, CAMERA.height])
     if right == 0.0:
-        if (local[:, 2] > NEAREST).all():
+        if (local[:, 2] > MIN_DEPTH).all():
             pixels = CAMERA.project(local)
             assert (pixels.max(axis=0) < 2.0).any() or (pixels.min(axis=0) > size - 2.0).any()
         return
@@ -64,7 +66,7 @@ def test_what_is_hidden_is_the_overlap_of_two_intervals_of_azimuth(turn, offset)
         ]
     )
     sizes = np.array([[0.2, HEIGHT], [0.2, HEIGHT]])
-    seen = look(there, sizes, np.zeros(2, bool), eye(pose()))
+    seen = project_all(there, sizes, np.zeros(2, bool), eye(pose()))
     a, b = np.arcsin(0.2 / near), np.arcsin(0.2 / far)
     overlap = min(b, offset + a) - max(-b, offset - a)
     assert seen[:, DISTANCE] == pytest.approx([near, far])

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import CameraDrops, CameraLatency
 from hsr8.world.camera.faults import CameraFaults
-from hsr8.world.camera.feed import CameraFeed, Picture
+from hsr8.world.camera.feed import CameraFeed, CapturedFrame
 
 
 def deliveries(ticks=400, seed=0, faults=(), **settings):
@@ -18,7 +18,7 @@ def deliveries(ticks=400, seed=0, faults=(), **settings):
     )
     arrived = []
     for tick in range(ticks):
-        picture = feed.arrived(tick, lambda tick=tick: Picture(0.005 * tick))
+        picture = feed.arrived(tick, lambda tick=tick: CapturedFrame(0.005 * tick))
         if picture is not None:
             arrived.append((tick, picture.captured))
     return arrived

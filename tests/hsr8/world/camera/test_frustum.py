@@ -28,7 +28,7 @@ def look(body, pan, tilt):
 def test_it_misses_what_is_behind_and_beside_but_not_what_is_ahead(body):
     frustum = Frustum(body.model, "egocentric", 4.0 / 3.0)
     look(body, 0.0, -0.2)
-    missed = frustum.misses(body.data)
+    missed = frustum.outside(body.data)
     names = {body.model.geom(geom).name for geom in np.flatnonzero(missed)}
     assert {"obstacle_06", "obstacle_03", "obstacle_09", "l_sole_visual"} <= names
     assert not {"obstacle_00", "obstacle_01", "obstacle_11", "floor"} & names
@@ -41,7 +41,7 @@ def test_without_what_it_misses_every_picture_is_the_same(body):
     with mujoco.Renderer(model, *SHAPE) as renderer:
         for pan, tilt in rng.uniform((-1.5, -1.0), (1.5, 0.3), (12, 2)):
             look(body, pan, tilt)
-            missed = frustum.misses(body.data)
+            missed = frustum.outside(body.data)
             assert missed.any()
             images = []
             for groups in (usual, np.where(missed, 5, usual)):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from hsr8.world.camera.frustum_kernel import misses
+from hsr8.world.camera.frustum_kernel import outside
 
 RNG = np.random.default_rng(0)
 NORMALS = np.array([[-0.8, 0, -0.6], [0.8, 0, -0.6], [0, -0.9, -0.4], [0, 0.9, -0.4], [0, 0, -1]])
@@ -21,8 +21,8 @@ def scene(things=60, boxes=5):
 @pytest.mark.parametrize("_", range(5))
 def test_compiled_and_plain_agree_and_do_what_matrices_say(_):
     places, eye, rotation, normals, reach, boxes, halves = given = scene()
-    missed = misses(*given)
-    assert np.array_equal(missed, misses.py_func(*given))
+    missed = outside(*given)
+    assert np.array_equal(missed, outside.py_func(*given))
     inward = rotation.reshape(3, 3) @ normals.T
     depth = (places - eye) @ inward
     wanted = (depth < -reach[:, None]).any(axis=1)
@@ -36,5 +36,5 @@ def test_a_corner_of_a_box_that_reaches_in_is_not_missed():
     corners = np.stack(np.meshgrid(*[[-1, 1]] * 3), -1).reshape(-1, 3)
     inside = (places[boxes] - eye)[:, None] + corners * halves[:, None]
     within = (inside @ (rotation.reshape(3, 3) @ normals.T) >= 0.0).all(axis=2).any(axis=1)
-    missed = misses(places, eye, rotation, normals, reach, boxes, halves)[boxes]
+    missed = outside(places, eye, rotation, normals, reach, boxes, halves)[boxes]
     assert not (missed & within).any()

@@ -14,8 +14,8 @@ SHUTTER = 0.01
 MIDDLE = slice(110, 130)  # rows where a pan shifts straight sideways
 
 
-def blur(image, *turning):
-    return MotionBlur(CAMERA, SHUTTER).smear(image, np.array(turning))
+def blur(image, *rotation):
+    return MotionBlur(CAMERA, SHUTTER).blur(image, np.array(rotation))
 
 
 def bars():
@@ -33,16 +33,16 @@ def test_a_camera_at_rest_leaves_its_images_sharp():
     assert np.array_equal(blur(noise(), 0.0, 0.0, 0.0), noise())
 
 
-@pytest.mark.parametrize("turning", [(0.0, 6.0, 0.0), (4.0, 0.0, 0.0), (1.0, -3.0, 2.0)])
-def test_what_is_alike_everywhere_stays_so(turning):
+@pytest.mark.parametrize("rotation", [(0.0, 6.0, 0.0), (4.0, 0.0, 0.0), (1.0, -3.0, 2.0)])
+def test_what_is_alike_everywhere_stays_so(rotation):
     grey = np.full((240, 320, 3), 93, np.uint8)
-    assert np.array_equal(blur(grey, *turning), grey)
+    assert np.array_equal(blur(grey, *rotation), grey)
 
 
-@pytest.mark.parametrize("turning", [(0.0, 6.0, 0.0), (4.0, 0.0, 0.0), (1.0, -3.0, 2.0)])
-def test_turning_the_other_way_smears_alike(turning):
-    turning = np.array(turning)
-    one, other = blur(noise(), *turning), blur(noise(), *-turning)
+@pytest.mark.parametrize("rotation", [(0.0, 6.0, 0.0), (4.0, 0.0, 0.0), (1.0, -3.0, 2.0)])
+def test_turning_the_other_way_smears_alike(rotation):
+    rotation = np.array(rotation)
+    one, other = blur(noise(), *rotation), blur(noise(), *-rotation)
     assert np.abs(one.astype(int) - other.astype(int)).max() <= 1
     assert not np.array_equal(one, noise())
 
@@ -71,7 +71,7 @@ def test_a_pan_leaves_level_edges_sharp_on_the_horizon():
 
 def test_an_image_twice_as_long_exposed_is_smeared_twice_as_far():
     def spread(shutter):
-        row = MotionBlur(CAMERA, shutter).smear(bars(), np.array([0.0, 3.0, 0.0]))[120, :, 0]
+        row = MotionBlur(CAMERA, shutter).blur(bars(), np.array([0.0, 3.0, 0.0]))[120, :, 0]
         return np.count_nonzero((row > 2) & (row < 238))
 
     assert spread(0.02) == pytest.approx(2 * spread(0.01), abs=2)
@@ -102,7 +102,7 @@ def test_an_obstacle_is_found_if_it_looks_about_as_wide_as_the_smear(share, foun
         radius = rng.uniform(0.06, 0.11)
         shutter = 2.0 * radius / distance / share / rate
         thing, gaze = at(distance, rng.uniform(-15.0, 15.0), "red", radius), pose(tilt=-0.35)
-        turning = gaze.rotation.T @ (0.0, 0.0, rate)
-        image = MotionBlur(CAMERA, shutter).smear(paint([thing], gaze), turning)
+        rotation = gaze.rotation.T @ (0.0, 0.0, rate)
+        image = MotionBlur(CAMERA, shutter).blur(paint([thing], gaze), rotation)
         seen = detector.detect(image, replace(gaze, pan_smear=rate * shutter))
         assert (len(seen) == 1) is found

@@ -8,7 +8,7 @@ import pytest
 from hsr8.scenario.camera import Camera, CameraNoise
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.body.physics import PhysicsBody
-from hsr8.world.camera.rendered import RenderedCamera, turning
+from hsr8.world.camera.rendered import RenderedCamera, angular_velocity
 from vision.camera import CameraPose, PinholeCamera
 from vision.detector import Detector
 from vision.parameters import VisionParameters
@@ -82,7 +82,7 @@ def test_the_camera_turns_as_its_attitude_does(world, silent, kind):
         before = attitude(body)
         body.apply(JointTargets(position=position.copy(), offset=np.zeros(26)))
         after = attitude(body)
-        rate = turning(body.model, body.data)
+        rate = angular_velocity(body.model, body.data)
     mean = cv2.Rodrigues(before.T @ after)[0].ravel() / CONTROL_PERIOD
     assert np.linalg.norm(mean) > 1.5
     assert rate == pytest.approx(mean, abs=0.06)
