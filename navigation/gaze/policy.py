@@ -67,7 +67,7 @@ class GazePolicy(Protocol):
         """Return the next gaze; `now` is the present one."""
 
 
-class VotingGaze:
+class VotingGaze(GazePolicy):
     """Gaze at the highest centre of the gaze map.
 
     The gaze stays if the highest centre does not exceed it by the switch ratio. With a ratio of 1
@@ -86,9 +86,12 @@ class VotingGaze:
             grid: cells of the gaze map.
             switch_ratio: gain in the gaze map that moves the gaze, at least 1.
         """
-        self.votes = votes
+        self._votes = votes
         self._grid = grid
         self._ratio = switch_ratio
+
+    def votes(self, context: GazeContext) -> Votes:
+        return self._votes(context)
 
     def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
         if float(gaze_map.max()) >= self._ratio * self._grid.value_at(gaze_map, *now):
@@ -96,7 +99,7 @@ class VotingGaze:
         return now
 
 
-class FixedGaze:
+class FixedGaze(GazePolicy):
     """Gaze straight ahead. The map of (6) is computed for the log only."""
 
     steady = True

@@ -68,7 +68,7 @@ class GazeScene:
         return float(self.psi_ob[self.attended].max(initial=0.0))
 
     def aims(self, parameters: NavigationParameters) -> tuple[Mask, Array, Array]:
-        """Return the obstacles of O within reach (n,), and pan and tilt to each (k,), (k,) [rad]."""
+        """Return the obstacles of O within reach (n,), pan and tilt to each (k,), (k,) [rad]."""
         limit, height = parameters.gaze.max_pan, parameters.evaluation.aim_height
         members = self.attended & self.reachable
         pan = np.clip(self.bearing[members], -limit, limit)
