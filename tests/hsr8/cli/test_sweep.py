@@ -281,47 +281,6 @@ def test_the_page_about_sweeps_is_right(instant, monkeypatch, capsys):
     assert "Share(count=200" in capsys.readouterr().out
 
 
-def test_a_dry_run_tells_the_cost_and_leaves_nothing(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    words = ["sweep", "quick", *TINY, "--seeds", "0:10", "--vary", "world.n_moving=0,2"]
-    assert entry([*words, "--workers", "4", "--dry-run", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["runs"] == 20
-    assert told["simulated_time_s"] == 20 * 30.0
-    assert entry([*words, "--workers", "2", "--keep", "none", "--dry-run", "--json"]) == 0
-    fewer = json.loads(capsys.readouterr().out)
-    assert fewer["estimated_wall_time_s"] == pytest.approx(
-        2 * told["estimated_wall_time_s"], abs=0.3
-    )
-    assert fewer["estimated_disk_mb"] == 0.0
-    assert entry([*words, "--dry-run"]) == 0
-    said = capsys.readouterr().out
-    assert "2 x 10 seeds" in said
-    assert said.splitlines()[-1].endswith("--vary world.n_moving=0,2")
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_dry_run_refuses_what_the_sweep_would(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    (tmp_path / "afile").touch()
-    (tmp_path / "lost").mkdir()
-    (tmp_path / "lost" / "runs.jsonl").touch()
-    other = ["sweep", "quick", *TINY, "--seeds", "0:2", "--quiet", "--out", "other"]
-    monkeypatch.setattr("hsr8.cli.sweep.drive", lambda *_: None)
-    entry([*other, "--set", "world.n_moving=0"])
-    capsys.readouterr()
-    for more, text in (
-        (["--out", "afile"], "cannot write the sweep afile: "),
-        (["--out", "afile/within"], "cannot write the sweep afile/within: Not a directory"),
-        (["--out", "lost"], "holds results but no sweep.json"),
-        (["--out", "other"], "other holds runs of something else"),
-        (["--executor", "dask"], "needs a package that is missing"),
-    ):
-        assert entry([*other[:-2], *more, "--dry-run"]) == 2
-        assert text in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("option", ["--set", "--vary"])
 def test_seeds_are_no_setting_of_a_sweep(instant, capsys, option):
     assert entry([*FAST, "--seeds", "0:2", option, "seed=1"]) == 2
