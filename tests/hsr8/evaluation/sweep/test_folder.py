@@ -96,14 +96,14 @@ def test_the_seed_of_the_scenario_means_nothing(folder, definition):
 
 
 @pytest.mark.parametrize("text", ["{}", "no json", "[]", '{"name": 3}'])
-def test_a_damaged_definition_is_told(folder, text):
+def test_a_damaged_definition_is_reported(folder, text):
     (folder.path / "sweep.json").write_text(text)
     with pytest.raises(UsageError, match=r"sweep\.json"):
         SweepFolder.read(folder.path)
 
 
-def test_a_folder_that_is_none_is_told(tmp_path, definition):
-    with pytest.raises(UsageError, match="holds no sweep"):
+def test_other_folders_are_reported(tmp_path, definition):
+    with pytest.raises(UsageError, match="not a sweep"):
         SweepFolder.read(tmp_path)
     (tmp_path / "file").write_text("")
     with pytest.raises(UsageError, match="--out"):
