@@ -97,7 +97,7 @@ def test_a_killed_server_is_a_crash_and_the_next_run_has_a_new_one(executor, tmp
     server = int(Path(f"/proc/{pid}/stat").read_text().split()[3])
     os.kill(server, signal.SIGKILL)
     assert _results(executor, 1)[2]["outcome"] == "crashed"
-    while Path(f"/proc/{server}/cmdline").read_bytes():  # it ends after its run
+    while Path(f"/proc/{server}/stat").read_text().split()[2] != "Z":  # it ends after its run
         time.sleep(0.02)
     executor.submit(Job(4, str(tmp_path), "", 100.0))
     assert "exit code 7" in _results(executor, 1)[4]["error"]
