@@ -3,7 +3,7 @@
     import hsr8
 
     result = hsr8.run("course", seed=7)
-    print(result.passed, result.metrics["time_to_goal_s"])
+    print(result.criteria_met, result.metrics["time_to_goal_s"])
 
 `run` and `Result` make runs at once, `load_scenario` and `Simulation` tick by tick; `open_run` and
 `read_log` read them back. `docs/python.md` shows how a planner or a gaze of one's own takes part,

@@ -1,8 +1,8 @@
-"""Numbers of file formats: which one a file has, and which one this version of hsr8 reads.
+"""Format numbers of files: a file of another format is refused by its number.
 
-A binary file begins with a magic word, a name of seven letters and its format, a digit of base
-36; a run folder has its number in the manifest. A number is raised whenever older files can no
-longer be read, so that they are refused by it and not by what happens to be missing in them.
+A binary file begins with a magic word: a name of seven letters and its format, a digit of base 36.
+The format of a run folder is in its manifest. A format number is raised whenever older files can
+no longer be read.
 """
 
 from pathlib import Path
@@ -12,33 +12,33 @@ from hsr8.version import VERSION
 
 
 def check_magic(content: bytes, magic: bytes, path: Path | str, file: str) -> None:
-    """Refuse what does not begin with `magic`.
+    """Refuse content that does not begin with `magic`.
 
     Args:
         content: of the file.
-        magic: what it must begin with, its format last.
+        magic: expected first bytes, the format last.
         path: of the file, for messages.
-        file: what the file is, for messages: ``tape``.
+        file: kind of file, for messages: ``tape``.
 
     Raises:
-        UsageError: it is another kind of file, or of another format.
+        UsageError: the file is of another kind or format.
     """
     if content.startswith(magic):
         return
-    found = content[len(magic) - 1 : len(magic)].decode("ascii", "replace")
-    if not (content.startswith(magic[:-1]) and found.isalnum() and found.isascii()):
-        raise UsageError(f"{path} is no {file} of this version of hsr8")
-    check_number(int(found, 36), int(magic[-1:], 36), path, file)
+    digit = content[len(magic) - 1 : len(magic)].decode("ascii", "replace")
+    if not (content.startswith(magic[:-1]) and digit.isalnum() and digit.isascii()):
+        raise UsageError(f"{path}: not a {file} of hsr8")
+    check_number(int(digit, 36), int(magic[-1:], 36), path, file)
 
 
-def check_number(found: int, known: int, path: Path | str, file: str) -> None:
-    """Refuse a format that is not the known one; arguments as `check_magic`.
+def check_number(number: int, expected: int, path: Path | str, file: str) -> None:
+    """Refuse a format `number` other than `expected`; for the rest see `check_magic`.
 
     Raises:
-        UsageError: it is another.
+        UsageError: the formats differ.
     """
-    if found != known:
+    if number != expected:
         raise UsageError(
-            f"{path} is a {file} of format {found}, hsr8 {VERSION} reads format {known}: "
+            f"{path}: {file} of format {number}, hsr8 {VERSION} reads format {expected}: "
             "run the scenario again, or use the version of hsr8 that wrote it"
         )

@@ -1,10 +1,10 @@
 """The closed loop: world, sensors, robot, and back, one control tick after the other."""
 
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
-from typing import Any, Self, SupportsIndex
+from typing import Self, SupportsIndex
 
 import cv2
 
@@ -34,19 +34,6 @@ from walking.phase import Phase
 GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
 FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]
 TICKS_A_SECOND = round(1.0 / CONTROL_PERIOD)
-CHANGING = (
-    "tick",
-    "_body",
-    "_robot",
-    "_watch",
-    "_analytic",
-    "_camera_rng",
-    "_feed",
-    "_sensor_faults",
-    "_servo_faults",
-    "_end",
-    "_published",
-)  # attributes of a simulation that change from tick to tick
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +72,6 @@ class Simulation:
         seed: drew the world and every noise.
         listeners: told of every record; may be added to before the run.
         tape: where set-points and hashes go, if anywhere.
-        each_second: called with the simulation before the first tick of every simulated second.
         layout: the world that was drawn.
         model: MuJoCo model of it, with the robot.
         exit_reason: goal, timeout, completed, fall, diverged or interrupted once the run has
@@ -112,7 +98,6 @@ class Simulation:
         self.seed = scenario.with_seed(seed).seed
         self.listeners = list(listeners)
         self.tape: TapeWriter | None = None
-        self.each_second: Callable[[Simulation], None] | None = None
         self.layout = draw_layout(scenario, self.seed)
         self.model = build_model(scenario, self.layout)
         self.exit_reason: str | None = None
@@ -194,18 +179,13 @@ class Simulation:
             for listener in reversed(self.listeners):
                 farewell.callback(listener.close, self.exit_reason)
 
-    def run(self, start: Mapping[str, Any] | None = None) -> RunOutcome:
+    def run(self) -> RunOutcome:
         """Run to the end and close the listeners.
-
-        Args:
-            start: snapshot to go on from; the beginning by default.
 
         Raises:
             SimulationDiverged: the physics blew up; the listeners are closed first.
         """
         with suppress(KeyboardInterrupt), self:
-            if start is not None:
-                self.restore(start)
             while self.exit_reason is None:
                 self.step()
         return self.outcome()
@@ -247,26 +227,6 @@ class Simulation:
         """SHA-256 of the world's state and the robot's belief."""
         return hashlib.sha256(self._body.state_bytes() + self._believed()).hexdigest()
 
-    def snapshot(self) -> dict[str, Any]:
-        """Everything that changes in a run, between two control ticks.
-
-        These are the run's own objects, which change with the next tick: `hsr8.snapshot.encode`
-        keeps them as they are, for a simulation of the same scenario and seed. A planner or a
-        gaze of one's own cannot be read back.
-        """
-        if self._rendered is not None:
-            self._rendered.settle()
-        return {name: getattr(self, name) for name in CHANGING} | {
-            "noise": None if self._rendered is None else self._rendered.noise
-        }
-
-    def restore(self, parts: Mapping[str, Any]) -> None:
-        """Go on where `snapshot` was taken, in a simulation entered by ``with``."""
-        for name in CHANGING:
-            setattr(self, name, parts[name])
-        if self._rendered is not None:
-            self._rendered.noise = parts["noise"]
-
     def _believed(self) -> bytes:
         """All numbers of the pose and the tracks the robot believes in."""
         if self._robot.frame is None:
@@ -285,8 +245,6 @@ class Simulation:
     def _step(self) -> TickRecord | None:
         tick, record = self.tick, None
         if tick % TICKS_A_SECOND == 0:
-            if self.each_second is not None:
-                self.each_second(self)
             self._mark(tick)
         targets = self._robot.step(self._sense(tick))
         if tick % self._record_ticks == 0:

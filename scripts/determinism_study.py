@@ -1,15 +1,14 @@
-"""Does a seed alone decide a run: the same hashes each second, replays, and resumed runs.
+"""Does a seed alone decide a run: the same hashes each second, and replays.
 
-    python scripts/determinism_study.py --light 1000:1004 --full 1000:1001 --kills 10 \
+    python scripts/determinism_study.py --light 1000:1004 --full 1000:1001 \
         --out docs/results/determinism.md
 
-Every seed runs in six ways, each in processes of its own; the hashes of world and belief of every
+Every seed runs in five ways, each in processes of its own; the hashes of world and belief of every
 simulated second must be those of the first way. Then physics, estimator and decisions of every
-run are computed again from its records, and runs killed at random ticks are resumed.
+run are computed again from its records.
 """
 
 import argparse
-import random
 import subprocess
 import sys
 import tempfile
@@ -18,7 +17,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hsr8.evaluation.replay import replay
-from hsr8.evaluation.run_difference import motion, results
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import Run, open_run
@@ -40,19 +38,6 @@ video = ["--camera", "head", "--fps", "5", "--stop", "0.4", "--speed", "1", "--q
 assert entry(["render", str(open_run(Path(out + "/before")).path), *video]) == 0
 entry([*words, "--no-log", "--out", out + "/after"])
 """
-KILLED = """
-import os, sys
-from hsr8.cli.main import entry
-from hsr8.loop import Simulation
-step, tick = Simulation.step, int(sys.argv[1])
-def until(self):
-    if self.tick == tick:
-        os._exit(9)
-    return step(self)
-Simulation.step = until
-entry(sys.argv[2:])
-"""
-KILL = 9
 
 
 @dataclass(frozen=True)
@@ -104,9 +89,6 @@ def swept(case: Case, out: Path, workers: int) -> Run:
 WAYS: dict[str, Callable[[Case, Path], Run]] = {
     "no log": lambda case, out: case.run(out, "--no-log"),
     "log": lambda case, out: case.run(out),
-    "checkpoint each second": lambda case, out: case.run(
-        out, "--no-log", "--checkpoint", "every=1"
-    ),
     "after a run and its video, same process": after_video,
     "sweep, 1 worker": lambda case, out: swept(case, out, 1),
     "sweep, 2 workers": lambda case, out: swept(case, out, 2),
@@ -166,49 +148,12 @@ def compare(cases: list[Case], folder: Path, replays: Replays) -> tuple[list[str
     return lines, runs, equal
 
 
-def resumed(cases: list[Case], kills: int, folder: Path) -> list[str]:
-    """Kill each case at random ticks and compare the ends of the resumed runs."""
-    lines = ["| run | killed at tick | resumed from | same records and results |"]
-    lines.append("|---|---|---|---|")
-    rng = random.Random(0)
-    for number in range(kills):
-        case = cases[number % len(cases)]
-        whole = open_run(folder / f"{case.name}-{case.seed}-0")
-        ticks = hashes(whole)[-1][0]
-        tick = rng.randrange(round(1.0 / CONTROL_PERIOD) + 1, ticks)
-        out = folder / f"killed-{number}"
-        words = ["run", "course", "--seed", str(case.seed), "--quiet", *case.words]
-        words += [
-            "--duration",
-            case.duration,
-            "--no-log",
-            "--checkpoint",
-            "every=1",
-            "--out",
-            str(out),
-        ]
-        command("-c", KILLED, str(tick), *words, codes=(KILL,))
-        run = open_run(out)
-        command("-m", "hsr8", "run", str(run.path), "--resume", "--quiet")
-        run = open_run(run.path)
-        same = not motion(run, whole) and not list(results(run, whole))
-        same = same and hashes(run) == hashes(whole)
-        begin = int(tick * CONTROL_PERIOD)
-        lines.append(
-            f"| {case.name}, seed {case.seed} | {tick} of {ticks} | {begin} s | "
-            f"{'yes' if same else 'NO'} |"
-        )
-        print(lines[-1], flush=True)
-    return lines
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--light", type=seeds_of, default="1000:1004", help="seeds with stand-ins")
     parser.add_argument("--full", type=seeds_of, default="1000", help="with physics and camera")
     parser.add_argument("--duration", default="20", help="of the light runs [s]")
     parser.add_argument("--full-duration", default="20", help="of the full ones [s]")
-    parser.add_argument("--kills", type=int, default=10)
     parser.add_argument("--out", type=Path, required=True, help="Markdown file to write")
     arguments = parser.parse_args()
     light = [Case("light", s, STAND_INS, arguments.duration) for s in arguments.light]
@@ -217,7 +162,6 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         ways, runs, equal = compare([*light, *full], folder, replays)
-        kills = resumed([*light, *full], arguments.kills, folder)
     made_with = Definition.now("course", (), dump(load_scenario("course"))).made_with()
     lines = [
         "# Same seed, same run",
@@ -237,18 +181,10 @@ def main() -> None:
         "",
         "## Computed again from the records",
         "",
-        "Physics from the set-points of each tick, the estimator from the recorded measurements, "
+        "Physics from the setpoints of each tick, the estimator from the recorded measurements, "
         "the decisions from the recorded beliefs: `hsr8 verify`.",
         "",
         *replays.table(),
-        "",
-        "## Killed and resumed",
-        "",
-        "The process ends without a word before a random tick; `--resume` goes on from the last "
-        "checkpoint, one a second. All records, results and hashes are compared with the run "
-        "that was not killed.",
-        "",
-        *kills,
     ]
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     arguments.out.write_text("\n".join(lines) + "\n")

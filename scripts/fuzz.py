@@ -8,10 +8,8 @@ A run and a sweep to damage are made first, short ones with a log.
 import argparse
 import contextlib
 import io
-import os
 import random
 import shutil
-import signal
 import tempfile
 import time as clock
 from collections import Counter
@@ -23,7 +21,6 @@ from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
-from hsr8.recorder.log.log_reader import decode
 from hsr8.recorder.run import run_folder
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load_scenario, loads
 from hsr8.world.model import models
@@ -56,7 +53,7 @@ ON_SWEEPS: tuple[tuple[str, ...], ...] = (
 RARE = {"verify": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
 RARE |= {"check": 0.3, "sweep": 0.02}
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
-KINDS = ("text", "table", "setting", "start", "model", "folder", "log", "sweep", "colours")
+KINDS = ("text", "table", "setting", "start", "model", "folder", "sweep", "colours")
 FILES = (
     run_folder.SCENARIO,
     run_folder.MANIFEST,
@@ -130,7 +127,7 @@ class Folders:
     """Damages copies of a run, a sweep and a colour table, and asks the program about them.
 
     Args:
-        run: a whole run folder with a checkpoint, made for the purpose.
+        run: complete run folder.
         scratch: where the copies go.
         sweep: folder of a sweep, for the cases that need one.
     """
@@ -138,10 +135,9 @@ class Folders:
     def __init__(self, run: Path, scratch: Path, sweep: Path | None = None) -> None:
         self._scratch = scratch
         self._run, self._contents = run, contents_of(run, FILES)
-        self._log = contents_of(run, (run_folder.LOG,))
         self._sweep = sweep
         if sweep is not None:
-            names = (sweep_folder.DEFINITION, sweep_folder.RESULTS, run_folder.SCENARIO)
+            names = (sweep_folder.DEFINITION, sweep_folder.LEDGER, run_folder.SCENARIO)
             self._of_sweep = contents_of(sweep, names)
         save_table(ColorTable(COLOR_CLASSES), scratch / "colours.npz")
         self._colors = contents_of(scratch, ("colours.npz",))
@@ -186,29 +182,6 @@ class Folders:
         words = [str(places.get(word, word)) for word in command]
         ask([*words[0].split(), *words[1:]])
 
-    def log_case(self, rng: random.Random) -> None:
-        """A damaged log, read by another process: Rerun's decoder aborts at some damages.
-
-        Raises:
-            AssertionError: it ended otherwise than `read_log` tells.
-            UsageError: it was refused.
-        """
-        file = self.damaged(rng, self._log) / run_folder.LOG
-        child = os.fork()
-        if not child:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-            try:
-                decode(str(file))
-            except UsageError:
-                os._exit(2)
-            except BaseException:
-                os._exit(3)
-            os._exit(0)
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        assert code in (0, 2, -signal.SIGABRT), f"the reader of a log ended with {code}"
-        if code:
-            raise UsageError("refused")
-
     def colours_case(self, rng: random.Random) -> None:
         """A damaged colour table, read."""
         load_table(self.damaged(rng, self._colors) / "colours.npz")
@@ -249,9 +222,7 @@ def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any
             model_case(rng)
         else:
             assert folders is not None
-            if kind == "log":
-                folders.log_case(rng)
-            elif kind == "colours":
+            if kind == "colours":
                 folders.colours_case(rng)
             else:
                 folders.case(rng, ON_SWEEPS if kind == "sweep" else COMMANDS)

@@ -17,8 +17,6 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
-from hsr8.cli.main import entry
-from hsr8.evaluation import checkpoint
 from hsr8.evaluation.recording import Recording, renderer_of
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.loop import Simulation
@@ -33,7 +31,6 @@ from walking.parameters import CONTROL_PERIOD
 
 from study_page import STAND_INS, command_line
 
-CHECKPOINT = 2  # simulated time between two [s]
 CLOCK = struct.Struct("<d")
 
 
@@ -58,13 +55,11 @@ class Left:
         ends: last simulated time in every record [s]; of a run killed before its first second
             a record may be empty or missing.
         readable: whether every record could be read.
-        resumed: how going on from the checkpoint ended: equal, none, or what went wrong.
     """
 
     killed: float
     ends: dict[str, float]
     readable: bool
-    resumed: str
 
     @property
     def lost(self) -> float:
@@ -73,21 +68,18 @@ class Left:
 
 
 def run(out: str, watch: str, settings: tuple[str, ...], seed: int) -> None:
-    """A run with log and checkpoints, in a process of its own."""
+    """Run with a log, in its own process."""
     scenario = load_scenario("quick", settings, seed=seed)
     simulation = Simulation(scenario, seed)
     recording = Recording(simulation, [Watch(Path(watch))])
     path = RunFolder.create(Path(out), scenario.name, seed)
     manifest = Manifest.now(scenario.name, seed, ("hsr8",), renderer_of(scenario))
-    recording.into(path, manifest, checkpoint=CHECKPOINT)
+    recording.into(path, manifest)
     recording.run()
 
 
-def killed(out: Path, settings: tuple[str, ...], seed: int, after: float, whole: str) -> Left:
-    """Kill a run `after` some simulated time [s], and look at what is left.
-
-    The hash of its `whole` state at the end is what it shall resume to.
-    """
+def killed(out: Path, settings: tuple[str, ...], seed: int, after: float) -> Left:
+    """Kill a run `after` a simulated time [s] and examine its folder."""
     watch = out / "clock"
     watch.write_bytes(CLOCK.pack(-1.0))
     processes = get_context("forkserver")
@@ -100,16 +92,16 @@ def killed(out: Path, settings: tuple[str, ...], seed: int, after: float, whole:
     os.kill(process.pid, signal.SIGKILL)
     process.join()
     (time,) = CLOCK.unpack(watch.read_bytes())
-    return examined(out, max(time, 0.0), whole, seed)
+    return examined(out, max(time, 0.0), seed)
 
 
-def examined(out: Path, time: float, whole: str, seed: int) -> Left:
+def examined(out: Path, time: float, seed: int) -> Left:
     """Read every record."""
     ends: dict[str, float] = {}
     readable = True
     found = open_run(out)
     for name, end in (
-        ("log", lambda: max(map(log_end, found.log_files))),
+        ("log", lambda: log_end(found.path / run_folder.LOG)),
         ("motion", lambda: float(found.trajectory().time[-1])),
         ("walking", lambda: float(found.walking().time[-1])),
         ("tape", lambda: tape_end(found.path)),
@@ -123,12 +115,7 @@ def examined(out: Path, time: float, whole: str, seed: int) -> Left:
             print(f"seed {seed}: {name} at {time:.2f} s: {error}", file=sys.stderr)
             ends[name] = 0.0
     found.frames(), found.events()
-    resumed = "none"
-    if (found.path / checkpoint.FILE).exists():
-        code = entry(["run", str(found.path), "--resume", "--quiet", "--no-log"])
-        ended = open_run(out).metrics().get("state_hash")
-        resumed = "equal" if ended == whole else f"exit {code}"
-    return Left(time, ends, readable, resumed)
+    return Left(time, ends, readable)
 
 
 def log_end(file: Path) -> float:
@@ -167,19 +154,12 @@ def main() -> None:
         length = f"duration={arguments.duration}"
         settings = (length,) if full else (length, *STAND_INS)
         after = draw.uniform(0.0, arguments.duration - 0.5)
-        scenario = load_scenario("quick", settings, seed=seed)
-        whole = Simulation(scenario, seed).run().state_hash
         with tempfile.TemporaryDirectory() as folder:
-            left = killed(Path(folder), settings, seed, after, whole)
+            left = killed(Path(folder), settings, seed, after)
         ends = " | ".join(f"{left.killed - end:.2f}" for end in left.ends.values())
         body = "full, rendered" if full else "kinematic, analytic"
         readable = "yes" if left.readable else "NO"
-        rows.append(
-            (
-                left,
-                f"| {seed} | {body} | {left.killed:.2f} | {readable} | {ends} | {left.resumed} |",
-            )
-        )
+        rows.append((left, f"| {seed} | {body} | {left.killed:.2f} | {readable} | {ends} |"))
         print(rows[-1][1], flush=True)
         write(arguments, made_with, rows)
 
@@ -187,7 +167,6 @@ def main() -> None:
 def write(arguments: argparse.Namespace, made_with: str, rows: list[tuple[Left, str]]) -> None:
     """The page, also of a study that is not over."""
     lefts = [left for left, _ in rows]
-    gone_on = [left for left in lefts if left.resumed != "none"]
     lines = [
         "# Runs killed at random times",
         "",
@@ -195,18 +174,15 @@ def write(arguments: argparse.Namespace, made_with: str, rows: list[tuple[Left, 
         "",
         f"{made_with}.",
         "",
-        "`quick` with log and a checkpoint every "
-        f"{CHECKPOINT} s, ended by SIGKILL at a random simulated time. Lost is what the last row "
-        "of a record lacks to the last record published before the kill.",
+        "`quick` with log, killed by SIGKILL at a random simulated time. The loss of a file is the "
+        "time from its last row to the last record before the kill.",
         "",
         f"{sum(left.readable for left in lefts)} of {len(lefts)} folders readable; at most "
-        f"{max(left.lost for left in lefts):.2f} s lost; "
-        f"{sum(left.resumed == 'equal' for left in gone_on)} of {len(gone_on)} runs with a "
-        "checkpoint resumed to the identical end.",
+        f"{max(left.lost for left in lefts):.2f} s lost.",
         "",
         "| seed | body, camera | killed at [s] | readable | lost of log [s] | of motion [s] "
-        "| of walking [s] | of tape [s] | resumed |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| of walking [s] | of tape [s] |",
+        "|---|---|---|---|---|---|---|---|",
         *(row for _, row in rows),
     ]
     arguments.out.parent.mkdir(parents=True, exist_ok=True)

@@ -97,7 +97,7 @@ def recorded(simulation: Simulation, folder: str) -> str:
     recording = Recording(simulation)
     path = RunFolder.create(Path(folder), scenario.name, scenario.seed)
     manifest = Manifest.now(scenario.name, scenario.seed, ("soak_study",), renderer_of(scenario))
-    recording.into(path, manifest, checkpoint=10)
+    recording.into(path, manifest)
     return recording.run().exit_reason
 
 
@@ -176,7 +176,7 @@ def main() -> None:
             "",
             "Scenario `paper` (an endless tour) for the long runs, the beginning of an hour "
             "each, and `course` for the short "
-            "ones, with every record, the log and a checkpoint every 10 s. Of each row the first "
+            "ones, with every record and the log. Of each row the first "
             f"{WARM:.0%} are the warm-up. Of the short runs, one in ten has full physics "
             "and rendered camera. Memory is resident memory after a collection.",
             "",

@@ -10,7 +10,7 @@ from rich.table import Table
 from hsr8.cli import report
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError
-from hsr8.evaluation.verdict import Check, judge
+from hsr8.evaluation.verdict import Criterion, evaluate_criteria
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import RUNNING, other_versions
 from hsr8.recorder.run.run_reader import Run, open_run
@@ -39,7 +39,7 @@ def facts(run: Run) -> dict[str, Any]:
         "manifest": run.manifest,
         "metrics": run.metrics(),
         "criteria": [
-            {"name": c.name, "wanted": c.wanted, "found": c.found, "passed": c.passed}
+            {"name": c.name, "expected": c.expected, "actual": c.actual, "met": c.met}
             for c in _checks(run)
         ],
         "events": list(run.events()),
@@ -80,13 +80,13 @@ def _state(reason: object) -> str:
     return f"ended: {reason}"
 
 
-def _checks(run: Run) -> tuple[Check, ...]:
+def _checks(run: Run) -> tuple[Criterion, ...]:
     """The criteria, where there are results and this version understands the scenario."""
     results = run.metrics()
     if not results:
         return ()
     try:
-        return judge(run.scenario().criteria, results)
+        return evaluate_criteria(run.scenario().criteria, results)
     except (UsageError, KeyError):  # made by another version
         return ()
 

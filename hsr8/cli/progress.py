@@ -2,8 +2,7 @@
 
 import sys
 import time as clock
-from collections.abc import Iterable, Mapping
-from typing import Any, TextIO
+from typing import TextIO
 
 from rich.console import Console
 from rich.live import Live
@@ -39,12 +38,6 @@ class Progress:
         self._began: float | None = None  # simulated time of the first record [s]
         self._next_line = PLAIN_PERIOD
         self._situation = "starting"
-
-    def recall(self, events: Iterable[Mapping[str, Any]]) -> None:
-        """Count what happened before the run went on; each event has a ``kind``."""
-        for event in events:
-            if event["kind"] in self._counts:
-                self._counts[event["kind"]] += 1
 
     def on_record(self, record: TickRecord) -> None:
         """Show the record, if it is time to."""

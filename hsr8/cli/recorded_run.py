@@ -76,11 +76,11 @@ def _report(options: Run, result: Result, manifest: Manifest) -> int:
         report.show(
             f"{manifest.scenario}, seed {manifest.seed}",
             results=result.metrics,
-            checks=result.checks,
+            checks=result.criteria,
             path=result.folder,
             command=manifest.command,
         )
-    return exit_code(result.exit_reason, result.checks)
+    return exit_code(result.exit_reason, result.criteria)
 
 
 @contextmanager

@@ -50,15 +50,10 @@ def main(options: Render) -> int:
     columns = (TextColumn("drawing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("drawing", total=None)
-        try:
-            with writing("--out", out):
-                made = render_run(
-                    run, video, out, lambda n, total: bar.update(task, completed=n, total=total)
-                )
-        except KeyboardInterrupt:
-            if out.suffix.lower() == ".mp4":
-                console.print("interrupted; the same command goes on where it stopped")
-            raise
+        with writing("--out", out):
+            made = render_run(
+                run, video, out, lambda n, total: bar.update(task, completed=n, total=total)
+            )
     _tell(made, clock.perf_counter() - started, options)
     return 0
 
@@ -80,7 +75,6 @@ def _tell(made: RenderedVideo, wall: float, options: Render) -> None:
             "video": str(made.video),
             "thumbnail": None if made.thumbnail is None else str(made.thumbnail),
             "frames": made.frames,
-            "frames_reused": made.reused,
             "duration_s": made.duration,
             "speed": made.speed,
             "wall_time_s": wall,
@@ -90,8 +84,7 @@ def _tell(made: RenderedVideo, wall: float, options: Render) -> None:
         print(f"{'video' if made.thumbnail else 'picture':<12}{made.video}")
         if made.thumbnail:
             print(f"thumbnail   {made.thumbnail}")
-        again = f", {made.reused} of them drawn before" if made.reused else ""
         print(
-            f"{made.frames} frames{again}, {made.duration:.1f} s at {made.speed:g}x, "
+            f"{made.frames} frames, {made.duration:.1f} s at {made.speed:g}x, "
             f"drawn in {wall:.0f} s"
         )

@@ -20,14 +20,14 @@ def main(options: Replay) -> int:
         UsageError: there is no such run or log, or no display.
     """
     run = open_run(options.run)
-    if not run.log_files:
+    if run.log_file is None:
         raise UsageError(f"{run.path} has no log: it was run with --no-log")
     if options.screenshot is not None:
         require_png("--screenshot", options.screenshot)
         size = parse_size(options.size)
         time = _time(options, run)
         print("drawing in the viewer, which takes some ten seconds", file=sys.stderr, flush=True)
-        picture = viewer.screenshot(run.log_files, time, size)
+        picture = viewer.screenshot(run.log_file, time, size)
         with writing("--screenshot", options.screenshot):
             options.screenshot.write_bytes(picture)
         if options.json:
@@ -37,16 +37,15 @@ def main(options: Replay) -> int:
         return 0
     if not viewer.has_display():
         run_word = shlex.quote(str(run.path))
-        log_word = " ".join(shlex.quote(str(file)) for file in run.log_files)
-        names = " ".join(file.name for file in run.log_files)
+        log_word = shlex.quote(str(run.log_file))
         version = versions()["rerun-sdk"]
         raise UsageError(
             "there is no display to open the viewer on"
             f"\n  a picture of it:     hsr8 replay {run_word} --screenshot log.png"
             f"\n  on another machine:  copy {log_word}, then"
-            f"\n                       pip install rerun-sdk=={version} && rerun {names}"
+            f"\n                       pip install rerun-sdk=={version} && rerun log.rrd"
         )
-    code = viewer.show(run.log_files)
+    code = viewer.show(run.log_file)
     if code != 0:
         raise UsageError(f"the Rerun viewer ended with status {code}; try --screenshot PNG")
     return 0

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from hsr8.evaluation.verdict import Check
+from hsr8.evaluation.verdict import Criterion
 from hsr8.recorder.run import run_folder
 
 ROWS: tuple[tuple[str, str, str], ...] = (
@@ -35,23 +35,23 @@ ROWS: tuple[tuple[str, str, str], ...] = (
         "{0[vx]:.3f} m/s forward, {0[vy]:.3f} left, {0[wz]:.3f} rad/s",
     ),
     (
-        "  from asked",
+        "  from commanded",
         "velocity_error",
-        "{0[asked][vx]:+.3f} m/s, {0[asked][vy]:+.3f} m/s, {0[asked][wz]:+.3f} rad/s",
+        "{0[commanded][vx]:+.3f} m/s, {0[commanded][vy]:+.3f} m/s, {0[commanded][wz]:+.3f} rad/s",
     ),
     (
         "planned ZMP outside",
         "zmp_outside_sole_ticks",
-        "{} of {walk_ticks} ticks; {zmp_least_margin_m:.4f} m inside at least",
+        "{} of {walk_ticks} ticks; {zmp_min_margin_m:.4f} m inside at least",
     ),
-    ("altered commands", "altered_commands", "{0:.1%}{binding}"),
+    ("limited commands", "limited_fraction", "{0:.1%}{binding}"),
     (
         "largest torque",
-        "peak_torque_share",
+        "peak_torque_ratio",
         "{0:.0%} of the limit, {peak_torque_joint}; at it in {torque_saturated_ticks} ticks",
     ),
     ("fastest joint", "peak_joint_speed_radps", "{0:.1f} rad/s, {peak_speed_joint}"),
-    ("set-points beyond range", "clipped_target_ticks", "in {} ticks{clipped}"),
+    ("setpoints beyond range", "clipped_target_ticks", "in {} ticks{clipped}"),
     ("joints at their stops", "joint_stop_ticks", "in {} ticks{stopped}"),
     ("walking tick", "walk_tick_mean_ms", "{0:.2f} ms, 99.9 % below {walk_tick_p999_ms:.2f} ms"),
     ("pushes", "pushes", "{}"),
@@ -67,7 +67,7 @@ def show(
     title: str,
     *,
     results: Mapping[str, Any],
-    checks: Sequence[Check],
+    checks: Sequence[Criterion],
     path: Path,
     command: str,
     console: Console | None = None,
@@ -100,7 +100,7 @@ def show(
 
 def _binding(results: Mapping[str, Any]) -> str:
     """What altered the commands most."""
-    by = results.get("altered_by") or {}
+    by = results.get("limited_by") or {}
     most = [f"{name.replace('_', ' ')} {share:.1%}" for name, share in by.items()][:TOLD_LIMITS]
     return f" of the ticks: {', '.join(most)}" if most else ""
 
@@ -110,11 +110,11 @@ def _joints(ticks: Mapping[str, int] | None) -> str:
     return f": {', '.join(f'{name} {n}' for name, n in ticks.items())}" if ticks else ""
 
 
-def _criteria(checks: Sequence[Check]) -> Table:
-    table = Table("criterion", "wanted", "found", "")
+def _criteria(checks: Sequence[Criterion]) -> Table:
+    table = Table("criterion", "expected", "actual", "")
     for check in checks:
-        verdict = "[green]passed[/]" if check.passed else "[red]failed[/]"
-        table.add_row(check.name, check.wanted, escape(check.found), verdict)
+        verdict = "[green]met[/]" if check.met else "[red]not met[/]"
+        table.add_row(check.name, check.expected, escape(check.actual), verdict)
     return table
 
 

@@ -1,1 +1,1 @@
-"""Evaluation: metrics of a run and whether it passed."""
+"""Evaluation: metrics of a run and its criteria."""

@@ -3,7 +3,6 @@
 import time as clock
 from collections.abc import Sequence
 from math import degrees, hypot, inf, isfinite, sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +46,7 @@ class Metrics(Listener):
         self._r_goal = r_goal
         self._started = clock.perf_counter()
         self._wall: float | None = None
-        self._waiting = RecordBuffer()
+        self._buffer = RecordBuffer()
         self._collisions = CollisionCounter()
         self._via = 0
         self._via_missed = 0
@@ -76,17 +75,9 @@ class Metrics(Listener):
         self._walk = WalkMetrics()
         self._tracks = TrackMetrics(layout.obstacles)
 
-    def __getstate__(self) -> dict[str, Any]:
-        """The wall time so far instead of when it began; no record waits."""
-        self._count_pending()
-        return self.__dict__ | {"_started": clock.perf_counter() - self._started}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__ |= state | {"_started": clock.perf_counter() - state["_started"]}
-
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
-        if self._waiting.add(record):
+        if self._buffer.add(record):
             self._count_pending()
 
     def close(self, exit_reason: str) -> None:
@@ -131,14 +122,14 @@ class Metrics(Listener):
             "exit_reason": exit_reason,
             "collisions_moving": moving,
             "collisions_static": len(collisions) - moving,
-            "collisions_closing": sum(c.closing for c in collisions),
-            "contacts_per_metre": len(collisions) / self._path if self._path > 0.0 else None,
+            "collisions_at_fault": sum(c.closing for c in collisions),
+            "collisions_per_m": len(collisions) / self._path if self._path > 0.0 else None,
             "via_points_missed": self._via_missed,
             "max_tilt_deg": degrees(self._tilt),
             "time_standing_s": self._paused,
             "saccades_per_s": self._saccades / time if time > 0.0 else None,
             "head_travel_radps": self._head_travel / time if time > 0.0 else None,
-            "lost_share": self._lost / n if n else None,
+            "lost_fraction": self._lost / n if n else None,
             "filter_faults": self._faults,
             "camera_frames": n,
             **self._tracks.result(),
@@ -147,7 +138,7 @@ class Metrics(Listener):
 
     def _count_pending(self) -> None:
         """Count the records that wait."""
-        records = self._waiting.take()
+        records = self._buffer.take()
         for record in records:
             self._add(record)
         seen = [(record.frame, record.truth) for record in records if record.frame is not None]

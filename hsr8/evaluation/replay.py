@@ -1,4 +1,4 @@
-"""A recorded run computed again: physics, belief and decisions, bit for bit."""
+"""Replay: physics, belief and decisions of a recorded run computed again, bit for bit."""
 
 import hashlib
 from collections.abc import Iterator
@@ -8,9 +8,8 @@ import numpy as np
 
 from hsr8.body_builder import build_body, build_model
 from hsr8.errors import SimulationDiverged
-from hsr8.recorder.run.exact_records import measurements_of, require_whole, tape_of
 from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
-from hsr8.recorder.run.measurements import Measured
+from hsr8.recorder.run.measurements import Measurement
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import HASH, Block
 from hsr8.robot_builder import build_decisions, build_estimator, build_schedule
@@ -20,20 +19,20 @@ from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
 
-STAND_STILL = np.zeros(len(JOINT_NAMES))
+NO_OFFSET = np.zeros(len(JOINT_NAMES))
 
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """What came of computing one stage again.
+    """Result of the replay of one stage.
 
     Attributes:
         stage: physics, estimator or decisions.
-        unit: what was compared: ticks or frames.
-        count: how many of them.
-        place: of the first difference, None if everything was equal.
+        unit: unit of the comparison: ticks or frames.
+        count: number of compared units.
+        place: number of the first different unit, None if all are equal.
         time: simulated time there [s].
-        channel: what differed there.
+        channel: channel that differs there.
     """
 
     stage: str
@@ -45,23 +44,25 @@ class Replayed:
 
     @property
     def equal(self) -> bool:
-        """Whether nothing differed."""
+        """Whether nothing differs."""
         return self.place is None
 
 
 def replay(run: Run) -> tuple[Replayed, ...]:
-    """Compute a run again from what it recorded.
+    """Compute all stages of a run again from its records.
 
     Raises:
-        UsageError: its records are missing or damaged, or its scenario cannot be read.
+        UsageError: a record is missing or damaged, or the scenario cannot be read.
     """
-    require_whole(run)
-    tape, measured = tape_of(run), measurements_of(run)
-    return replay_physics(run, tape), *replay_mind(run, measured)
+    if run.ended:
+        for read in (run.trajectory, run.walking, run.frames, run.events):
+            read()  # refuses a record that is cut off
+    tape, measurements = run.tape(), run.measurements()
+    return replay_physics(run, tape), *replay_decisions(run, measurements)
 
 
 def replay_physics(run: Run, tape: list[Block]) -> Replayed:
-    """Give a body in the same world the same set-points, and compare the hash each second."""
+    """Apply the recorded setpoints in the same world and compare the hash every second."""
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     body = build_body(scenario, run.seed, layout, build_model(scenario, layout))
@@ -74,7 +75,7 @@ def replay_physics(run: Run, tape: list[Block]) -> Replayed:
             )
         try:
             for setpoints in block.setpoints:
-                body.apply(JointTargets(setpoints, STAND_STILL))
+                body.apply(JointTargets(setpoints, NO_OFFSET))
                 ticks += 1
         except SimulationDiverged:
             time = ticks * CONTROL_PERIOD
@@ -82,41 +83,45 @@ def replay_physics(run: Run, tape: list[Block]) -> Replayed:
     return Replayed("physics", "ticks", ticks)
 
 
-def replay_mind(run: Run, measured: list[Measured]) -> tuple[Replayed, Replayed]:
-    """Give the estimator the same frames, and the decisions what it made of them."""
-    estimator, decisions = Replayed("estimator", "frames", len(measured)), None
-    for stage, index, channel in _differences(run, measured):
-        found = Replayed(stage, "frames", len(measured), index, measured[index].frame.time, channel)
+def replay_decisions(run: Run, measurements: list[Measurement]) -> tuple[Replayed, Replayed]:
+    """Give estimator and decisions the recorded inputs and compare the fingerprints."""
+    count = len(measurements)
+    estimator, decisions = Replayed("estimator", "frames", count), None
+    for stage, index, channel in _differences(run, measurements):
+        time = measurements[index].frame.time
+        different = Replayed(stage, "frames", count, index, time, channel)
         if stage == "estimator":
-            estimator = found
+            estimator = different
             break
-        decisions = decisions or found
-    return estimator, decisions or Replayed("decisions", "frames", len(measured))
+        decisions = decisions or different
+    return estimator, decisions or Replayed("decisions", "frames", count)
 
 
-def _differences(run: Run, measured: list[Measured]) -> Iterator[tuple[str, int, str]]:
-    """Stage, frame and channel of everything that comes out differently."""
+def _differences(run: Run, measurements: list[Measurement]) -> Iterator[tuple[str, int, str]]:
+    """Yield stage, frame and channel of every difference; stop at one of the estimator."""
     scenario = run.scenario()
     layout = draw_layout(scenario, run.seed)
     estimator = build_estimator(scenario, layout, named_rng(run.seed, "belief"))
     schedule = build_schedule(scenario, named_rng(run.seed, "command"))
     decisions = build_decisions(scenario, layout, run.seed, schedule)
-    for index, recorded in enumerate(measured):
+    for index, recorded in enumerate(measurements):
         try:
             estimate = estimator.update(recorded.frame)
-        except ValueError:  # the frames are not in their order
+        except ValueError:  # the frames are not in order
             yield "estimator", index, "order"
             return
-        found = fingerprints(estimate)
-        for channel, a, b in zip(CHANNELS, found, recorded.fingerprints, strict=True):
+        for channel, a, b in zip(
+            CHANNELS, fingerprints(estimate), recorded.fingerprints, strict=True
+        ):
             if a != b:
                 yield "estimator", index, channel
                 return
         if recorded.fresh:
             decisions.forget()
         decided = decisions.make(estimate, recorded.frame, recorded.context)
-        found = decision_fingerprints(decided)
-        for channel, a, b in zip(DECISIONS, found, recorded.decision, strict=True):
+        for channel, a, b in zip(
+            DECISIONS, decision_fingerprints(decided), recorded.decision, strict=True
+        ):
             if a != b:
                 yield "decisions", index, channel
                 break

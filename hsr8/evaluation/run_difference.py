@@ -1,4 +1,4 @@
-"""Where two runs part: the first tick, channel and values that differ."""
+"""Differences between two runs: the first tick, channel and values of every record."""
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.run.exact_records import measurements_of, tape_of
 from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS
-from hsr8.recorder.run.measurements import Measured
+from hsr8.recorder.run.measurements import Measurement
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import Block
 from hsr8.world.model.models import models_dir
@@ -22,10 +21,8 @@ from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
 
-# Files of what happened.
 RECORDS = ("tape", "trajectory", "measurements", "walking", "frames", "events")
-# Results that depend on the machine and its load.
-CLOCKED = ("wall_time_s", "real_time_factor", "walk_tick_")
+CLOCKED = ("wall_time_s", "real_time_factor", "walk_tick_")  # results of the wall clock
 ROOT = ("x", "y", "z", "qw", "qx", "qy", "qz")
 
 
@@ -35,9 +32,9 @@ class RunDifference:
 
     Attributes:
         record: file, or ``settings`` and ``results``.
-        channel: what differs in it.
-        a, b: the two values; None where one run has none.
-        tick: control tick, None where there is no time.
+        channel: quantity that differs.
+        a, b: the two values; None if a run lacks the value.
+        tick: control tick, None without a time.
         time: simulated time [s].
     """
 
@@ -50,36 +47,36 @@ class RunDifference:
 
 
 def settings(a: Run, b: Run) -> Iterator[RunDifference]:
-    """Every key of the scenario that differs."""
+    """Yield every key of the scenario that differs."""
     for key, x, y in _unequal(_flat(_scenario(a)), _flat(_scenario(b))):
         yield RunDifference("settings", key, x, y)
 
 
 def results(a: Run, b: Run) -> Iterator[RunDifference]:
-    """Every result that differs, but those of the clock on the wall."""
+    """Yield every result that differs, except those of the wall clock."""
     for key, x, y in _unequal(_flat(a.metrics()), _flat(b.metrics())):
         if not key.startswith(CLOCKED):
             yield RunDifference("results", key, x, y)
 
 
 def motion(a: Run, b: Run) -> list[RunDifference]:
-    """The first difference of every record of what happened, the earliest first.
+    """Return the first difference of every record, the earliest first.
 
     Raises:
-        UsageError: a record is missing, damaged, or cut off though its run ended.
+        UsageError: a record is missing, damaged or, in a run that ended, cut off.
     """
-    tapes, measured = (tape_of(a), tape_of(b)), (measurements_of(a), measurements_of(b))
-    found = (
+    tapes, measurements = (a.tape(), b.tape()), (a.measurements(), b.measurements())
+    differences = (
         _first_set_point(*tapes),
         _first_hash(*tapes),
         _first_row(a, b),
-        _first_frame(*measured),
+        _first_frame(*measurements),
         _first_walking(a, b),
         _first_summary(a, b),
         _first_event(a, b),
     )
-    told = [difference for difference in found if difference is not None]
-    return sorted(told, key=lambda difference: difference.tick or 0)
+    present = [difference for difference in differences if difference is not None]
+    return sorted(present, key=lambda difference: difference.tick or 0)
 
 
 def _first_set_point(a: list[Block], b: list[Block]) -> RunDifference | None:
@@ -92,7 +89,7 @@ def _first_set_point(a: list[Block], b: list[Block]) -> RunDifference | None:
         tick = int(ticks[0])
         joint = int(np.argmax(differ[tick]))
         x, y = (float(table[tick, joint]) for table in rows)
-        channel = f"set-point of {JOINT_NAMES[joint]} [rad]"
+        channel = f"setpoint of {JOINT_NAMES[joint]} [rad]"
         return RunDifference("tape", channel, x, y, tick, tick * CONTROL_PERIOD)
     if len(rows[0]) != len(rows[1]):
         x, y = map(len, rows)
@@ -134,7 +131,7 @@ def _first_walking(a: Run, b: Run) -> RunDifference | None:
 
 
 def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> RunDifference | None:
-    """Of two tables (n, columns), time in the first column."""
+    """Compare two tables (n, columns) with the time in the first column."""
     n = min(len(a), len(b))
     differ = np.ascontiguousarray(a[:n]).view(np.int64) != np.ascontiguousarray(b[:n]).view(
         np.int64
@@ -149,7 +146,7 @@ def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> RunDi
 
 
 def _longer(record: str, unit: str, a: Sequence[float], b: Sequence[float]) -> RunDifference | None:
-    """Two records equal as far as both go, with the times of what is in them [s]."""
+    """Compare the lengths of two otherwise equal records, given their times [s]."""
     if len(a) == len(b):
         return None
     time = max(a, b, key=len)[min(len(a), len(b))]
@@ -157,13 +154,13 @@ def _longer(record: str, unit: str, a: Sequence[float], b: Sequence[float]) -> R
     return RunDifference(record, f"number of {unit}", len(a), len(b), tick, time)
 
 
-def _first_frame(a: list[Measured], b: list[Measured]) -> RunDifference | None:
+def _first_frame(a: list[Measurement], b: list[Measurement]) -> RunDifference | None:
     for index, (x, y) in enumerate(zip(a, b, strict=False)):
         for channel, u, v in _unequal(_values(x), _values(y)):
             tick = round(x.frame.time / CONTROL_PERIOD)
             name = f"{channel}, frame {index}"
             return RunDifference("measurements", name, u, v, tick, x.frame.time)
-    times = [[measured.frame.time for measured in frames] for frames in (a, b)]
+    times = [[measurement.frame.time for measurement in frames] for frames in (a, b)]
     return _longer("measurements", "frames", *times)
 
 
@@ -180,40 +177,43 @@ def _first_event(a: Run, b: Run) -> RunDifference | None:
     for index, (x, y) in enumerate(zip_longest(a.events(), b.events(), fillvalue=None)):
         for channel, u, v in _unequal(x or {}, y or {}):
             if channel == "time" and None in (x, y):
-                continue  # the text says what one of them lacks
+                continue  # the text names the missing event
             time = min(float(event["time"]) for event in (x, y) if event is not None)
             name = f"{channel} of event {index}"
             return RunDifference("events", name, u, v, round(time / CONTROL_PERIOD), time)
     return None
 
 
-def _values(measured: Measured) -> dict[str, Any]:
-    """Everything of a frame by its name, in the order in which it came about."""
-    frame = measured.frame
+def _values(measurement: Measurement) -> dict[str, Any]:
+    """Return all values of a frame by name, in the order of their computation."""
+    frame = measurement.frame
     values: dict[str, Any] = {"time [s]": frame.time}
     for name, array in (
         ("odometry [m, m, rad]", frame.odometry),
         ("covariance of the odometry", frame.motion_covariance),
-        ("place of the camera [m]", frame.view.position),
+        ("position of the camera [m]", frame.view.position),
         ("attitude of the camera", frame.view.rotation),
     ):
         values |= {f"{name} {k}": value for k, value in enumerate(array.ravel().tolist())}
     values["number of observations"] = len(frame.observations)
-    for k, seen in enumerate(frame.observations):
-        what = f"observation {k}"
-        values |= {f"{what}: kind": seen.kind, f"{what}: label": seen.label}
-        values |= {f"{what}: distance [m]": seen.distance, f"{what}: bearing [rad]": seen.bearing}
-        values[f"{what}: covariance"] = seen.covariance.tolist()
+    for k, observation in enumerate(frame.observations):
+        name = f"observation {k}"
+        values |= {f"{name}: kind": observation.kind, f"{name}: label": observation.label}
+        values |= {
+            f"{name}: distance [m]": observation.distance,
+            f"{name}: bearing [rad]": observation.bearing,
+        }
+        values[f"{name}: covariance"] = observation.covariance.tolist()
     for kind, names, prints in (
-        ("belief", CHANNELS, measured.fingerprints),
-        ("decision", DECISIONS, measured.decision),
+        ("belief", CHANNELS, measurement.fingerprints),
+        ("decision", DECISIONS, measurement.decision),
     ):
         values |= {f"{kind}: {n}": p.hex() for n, p in zip(names, prints, strict=True)}
     return values
 
 
 def _qpos_names(count: int) -> list[str]:
-    """Name of every coordinate of the robot, in MuJoCo's order."""
+    """Return the name of every coordinate of the robot in MuJoCo's order."""
     model = mujoco.MjModel.from_xml_path(str(models_dir() / "hsr8" / "hsr8.xml"))
     names = [f"qpos[{k}]" for k in range(count)]
     for k in range(model.njnt):
@@ -227,13 +227,13 @@ def _qpos_names(count: int) -> list[str]:
 
 def _scenario(run: Run) -> Mapping[str, Any]:
     try:
-        return tomllib.loads(run.scenario_bytes().decode("utf-8"))
+        return tomllib.loads(run.scenario_text())
     except (ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {run.scenario_file}: {error}") from error
 
 
 def _flat(value: Any, key: str = "") -> dict[str, Any]:
-    """Every leaf by its dotted key."""
+    """Return every leaf by its dotted key."""
     if isinstance(value, Mapping):
         inner: Sequence[tuple[str, Any]] = list(value.items())
     elif isinstance(value, list):

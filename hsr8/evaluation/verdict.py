@@ -1,4 +1,8 @@
-"""Passed or not: the criteria of a scenario against the results of a run."""
+"""Verdict: the criteria of a scenario against the results of a run.
+
+A run meets its criteria if it ends by itself and satisfies every `Criterion` of its scenario. The
+metric ``success`` is defined in `hsr8.evaluation.metrics` and is the same for all scenarios.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,49 +12,51 @@ from hsr8.scenario.schema import Criteria
 
 
 @dataclass(frozen=True, slots=True)
-class Check:
-    """One criterion.
+class Criterion:
+    """One criterion and the result of a run.
 
     Attributes:
-        name: what is asked, in words.
-        wanted: the bound.
-        found: the result.
-        passed: whether it is met.
+        name: quantity that is compared.
+        expected: its bound.
+        actual: its value in the run.
+        met: whether the value satisfies the bound.
     """
 
     name: str
-    wanted: str
-    found: str
-    passed: bool
+    expected: str
+    actual: str
+    met: bool
 
 
-def judge(criteria: Criteria, results: Mapping[str, Any]) -> tuple[Check, ...]:
-    """Compare `results` as `Metrics.result` gives them with what the scenario asks."""
-    checks = [_at_most("falls", criteria.max_falls, int(results["falls"]))]
+def evaluate_criteria(criteria: Criteria, results: Mapping[str, Any]) -> tuple[Criterion, ...]:
+    """Compare `results`, as returned by `Metrics.result`, with the criteria of a scenario."""
+    evaluated = [_at_most("falls", criteria.max_falls, int(results["falls"]))]
     if criteria.max_collisions is not None:
-        checks.append(_at_most("collisions", criteria.max_collisions, int(results["collisions"])))
+        count = int(results["collisions"])
+        evaluated.append(_at_most("collisions", criteria.max_collisions, count))
     if criteria.max_zmp_outside_ticks is not None:
-        outside = int(results.get("zmp_outside_sole_ticks", 0))
-        checks.append(
-            _at_most("ticks with the ZMP outside", criteria.max_zmp_outside_ticks, outside)
+        count = int(results.get("zmp_outside_sole_ticks", 0))
+        evaluated.append(
+            _at_most("ticks with the ZMP outside", criteria.max_zmp_outside_ticks, count)
         )
     if criteria.goal_reached:
         reached = bool(results["goal_reached"])
-        checks.append(Check("goal reached", "yes", "yes" if reached else "no", reached))
+        evaluated.append(Criterion("goal reached", "yes", "yes" if reached else "no", reached))
     if criteria.min_via_points:
-        passed = int(results["via_points_passed"])
-        least = criteria.min_via_points
-        checks.append(Check("via points passed", f">= {least}", str(passed), passed >= least))
-    return tuple(checks)
+        passed, wanted = int(results["via_points_passed"]), criteria.min_via_points
+        evaluated.append(
+            Criterion("via points passed", f">= {wanted}", str(passed), passed >= wanted)
+        )
+    return tuple(evaluated)
 
 
-def exit_code(exit_reason: str, checks: Sequence[Check]) -> int:
-    """0 passed, 1 failed its criteria, 3 diverged, 130 interrupted."""
+def exit_code(exit_reason: str, criteria: Sequence[Criterion]) -> int:
+    """Return 0 if all criteria are met, 1 if not, 3 if diverged, 130 if interrupted."""
     special = {"interrupted": 130, "diverged": 3}
     if exit_reason in special:
         return special[exit_reason]
-    return 0 if all(check.passed for check in checks) else 1
+    return 0 if all(criterion.met for criterion in criteria) else 1
 
 
-def _at_most(name: str, most: int, found: int) -> Check:
-    return Check(name, f"<= {most}", str(found), found <= most)
+def _at_most(name: str, bound: int, actual: int) -> Criterion:
+    return Criterion(name, f"<= {bound}", str(actual), actual <= bound)

@@ -1,4 +1,4 @@
-"""Results of walking: velocity against command, ZMP, altered commands, servos, time."""
+"""Results of walking: velocity tracking, ZMP, limited commands, servos, computing time."""
 
 from math import isfinite
 
@@ -19,46 +19,27 @@ Velocity = dict[str, float]
 WARM_UP = 3.0  # velocities count from the first whole stride after this time [s]
 STRIDE = 2  # footsteps after which the gait repeats
 COMPONENTS = ("vx", "vy", "wz")
+REFERENCES = ("commanded", "applied")
 
 
-class Strides:
-    """Sums over strides, each weighted by its duration.
+class StrideMeter:
+    """Mean velocity over whole strides, compared with the commanded and the applied velocity.
+
+    The body sways equally at the same phase of every stride, so that sway cancels. Without
+    footsteps, intervals of one second take the place of strides. Sums are weighted by duration.
 
     Attributes:
-        time: of all of them [s].
+        time: duration of all strides [s].
         achieved: sum of the mean velocities in the robot frame (3,) [m, m, rad].
-        errors: sums of what they were beyond the commanded and the applied velocity (3,).
-        squares: sums of the squares of that (3,).
+        errors: sums of the error with respect to each of `REFERENCES` (3,).
+        squares: sums of the squared errors (3,).
     """
 
     def __init__(self) -> None:
         self.time = 0.0
         self.achieved = np.zeros(3)
-        self.errors = {name: np.zeros(3) for name in ("commanded", "applied")}
-        self.squares = {name: np.zeros(3) for name in ("commanded", "applied")}
-
-    def add(self, took: float, achieved: Array, **wanted: Array) -> None:
-        """Take a stride: its duration [s] and its mean velocity (3,) [m/s, m/s, rad/s].
-
-        ``commanded`` and ``applied`` are mean velocities over the stride, too.
-        """
-        self.time += took
-        self.achieved += took * achieved
-        for name, velocity in wanted.items():
-            error = achieved - velocity
-            self.errors[name] += took * error
-            self.squares[name] += took * error**2
-
-
-class StrideMeter:
-    """Cuts a walk into strides and measures the velocity of each.
-
-    At the same moment of every stride the sway of the body is the same, so that what is
-    measured is the way alone. A robot that does not step is measured by the second.
-    """
-
-    def __init__(self) -> None:
-        self.strides = Strides()
+        self.errors = {name: np.zeros(3) for name in REFERENCES}
+        self.squares = {name: np.zeros(3) for name in REFERENCES}
         self._begin: tuple[float, Array] | None = None
         self._steps = 0
         self._yaw = 0.0
@@ -83,13 +64,13 @@ class StrideMeter:
             if steps != self._steps or record.walking.phase is Phase.STANDING:
                 self._start(time, pose, steps)
             return
-        stands = record.walking.phase is Phase.STANDING and time - self._begin[0] >= 1.0
-        if steps - self._steps >= STRIDE or (stands and steps == self._steps):
+        standing = record.walking.phase is Phase.STANDING and time - self._begin[0] >= 1.0
+        if steps - self._steps >= STRIDE or (standing and steps == self._steps):
             self._finish(time, pose)
             self._start(time, pose, steps)
 
     def interrupt(self) -> None:
-        """What lies between the last record and the next one is no walk."""
+        """Discard the current stride, because the robot is down."""
         self._begin = self._last = None
 
     def _start(self, time: float, pose: Array, steps: int) -> None:
@@ -99,17 +80,18 @@ class StrideMeter:
     def _finish(self, time: float, pose: Array) -> None:
         assert self._begin is not None
         begin, start = self._begin
-        took = time - begin
-        self.strides.add(
-            took,
-            mean_velocity(start, pose, took),
-            commanded=self._commanded / took,
-            applied=self._applied / took,
-        )
+        duration = time - begin
+        achieved = mean_velocity(start, pose, duration)
+        self.time += duration
+        self.achieved += duration * achieved
+        for name, integral in zip(REFERENCES, (self._commanded, self._applied), strict=True):
+            error = achieved - integral / duration
+            self.errors[name] += duration * error
+            self.squares[name] += duration * error**2
 
 
 class WalkMetrics:
-    """Computes the results of walking from the records of a run."""
+    """Results of walking, computed from the records of a run."""
 
     def __init__(self) -> None:
         self._meter = StrideMeter()
@@ -131,32 +113,31 @@ class WalkMetrics:
             self._pushes = max(self._pushes, push.number + 1)
 
     def result(self) -> dict[str, object]:
-        """All results by name.
+        """Return all results by name.
 
-        A body without dynamics has no servos to saturate, and its time is no measure: what is
-        said of both is left out.
+        A kinematic body has no servos and its computing time is not representative: results of
+        both are left out.
         """
         results: dict[str, object] = {"steps": self._steps, "pushes": self._pushes}
         results |= self._velocities()
-        if self._counters is not None and self._counters.ticks:
-            results |= _counted(self._counters)
+        counters = self._counters if self._counters and self._counters.ticks else None
+        if counters is not None:
+            results |= _counts(counters)
         if self._saturation is not None:
-            results |= _saturated(self._saturation.so_far())
-            if self._counters is not None and self._counters.ticks:
-                results |= _timed(self._counters)
+            results |= _saturation(self._saturation.so_far())
+            if counters is not None:
+                results |= _times(counters)
         return results
 
     def _velocities(self) -> dict[str, object]:
-        strides = self._meter.strides
-        if not strides.time:
+        meter = self._meter
+        if not meter.time:
             return {"mean_velocity": None, "velocity_error": None, "velocity_error_rms": None}
-        time = strides.time
+        time = meter.time
         return {
-            "mean_velocity": _named(strides.achieved / time),
-            "velocity_error": {k: _named(e / time) for k, e in strides.errors.items()},
-            "velocity_error_rms": {
-                k: _named(np.sqrt(e / time)) for k, e in strides.squares.items()
-            },
+            "mean_velocity": _named(meter.achieved / time),
+            "velocity_error": {k: _named(e / time) for k, e in meter.errors.items()},
+            "velocity_error_rms": {k: _named(np.sqrt(e / time)) for k, e in meter.squares.items()},
         }
 
 
@@ -164,30 +145,30 @@ def _named(velocity: Array) -> Velocity:
     return dict(zip(COMPONENTS, velocity.tolist(), strict=True))
 
 
-def _counted(counters: WalkCounters) -> dict[str, object]:
-    ticks = counters.ticks
+def _counts(counters: WalkCounters) -> dict[str, object]:
+    ticks, depth = counters.ticks, counters.min_zmp_depth
     return {
         "walk_ticks": ticks,
         "zmp_outside_sole_ticks": counters.zmp_outside,
-        "zmp_least_margin_m": counters.min_zmp_depth if isfinite(counters.min_zmp_depth) else None,
-        "altered_commands": counters.limited / ticks,
-        "altered_by": {
+        "zmp_min_margin_m": depth if isfinite(depth) else None,
+        "limited_fraction": counters.limited / ticks,
+        "limited_by": {
             limit.value.replace(" ", "_"): count / ticks
             for limit, count in counters.by_limit.most_common()
         },
     }
 
 
-def _timed(counters: WalkCounters) -> dict[str, object]:
-    wall = counters.wall_times
+def _times(counters: WalkCounters) -> dict[str, object]:
+    times = counters.wall_times
     return {
-        "walk_tick_mean_ms": 1000.0 * wall.mean,
-        "walk_tick_p999_ms": 1000.0 * wall.quantile(0.999),
-        "walk_tick_max_ms": 1000.0 * wall.max,
+        "walk_tick_mean_ms": 1000.0 * times.mean,
+        "walk_tick_p999_ms": 1000.0 * times.quantile(0.999),
+        "walk_tick_max_ms": 1000.0 * times.max,
     }
 
 
-def _saturated(saturation: Saturation) -> dict[str, object]:
+def _saturation(saturation: Saturation) -> dict[str, object]:
     strongest = int(np.argmax(saturation.peak_torque))
     fastest = int(np.argmax(saturation.peak_speed))
     return {
@@ -197,7 +178,7 @@ def _saturated(saturation: Saturation) -> dict[str, object]:
         "joint_stop_by": _by_joint(saturation.stop_ticks),
         "clipped_target_ticks": saturation.clip_any,
         "clipped_target_by": _by_joint(saturation.clip_ticks),
-        "peak_torque_share": float(saturation.peak_torque[strongest]),
+        "peak_torque_ratio": float(saturation.peak_torque[strongest]),
         "peak_torque_joint": JOINT_NAMES[strongest],
         "peak_joint_speed_radps": float(saturation.peak_speed[fastest]),
         "peak_speed_joint": JOINT_NAMES[fastest],

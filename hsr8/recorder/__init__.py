@@ -2,7 +2,7 @@
 
 import os
 
-# A log that cannot be written is told by us, once; Rerun would tell it too, in its own way.
+# hsr8 reports a log that cannot be written; Rerun would report it a second time.
 os.environ.setdefault("RUST_LOG", "warn,re_log_encoding=off,re_sdk=off")
-# It takes a thread for every processor unless told otherwise, though it has no work for them.
+# By default Rerun starts a thread per processor, which its log does not need.
 os.environ.setdefault("TOKIO_WORKER_THREADS", "2")

@@ -1,4 +1,4 @@
-"""Covariances as ellipses people can see."""
+"""Covariance ellipses."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,13 +7,13 @@ Array = NDArray[np.float64]
 
 
 def axes(covariance: Array) -> tuple[Array, Array]:
-    """Ellipses of one standard deviation.
+    """Return the ellipses of one standard deviation.
 
     Args:
         covariance: (n, 2, 2) [m²].
 
     Returns:
-        Half axes, the longer first (n, 2) [m], and the direction of that (n,) [rad].
+        Half axes, the longer first (n, 2) [m], and the direction of the longer (n,) [rad].
     """
     xx, xy, yy = covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]
     middle, half = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)

@@ -1,4 +1,4 @@
-"""What one camera frame led to; of the true world it knows nothing."""
+"""Record of a camera frame: detections, belief and decisions, without ground truth."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,16 +15,16 @@ Image = NDArray[np.uint8]
 
 @value
 class FrameRecord:
-    """What one camera frame led to.
+    """Detections, belief and decisions of one camera frame.
 
     Attributes:
         index: number of the frame.
         time: when it reached the robot [s].
         image: (height, width, 3) RGB, or None with the analytic camera.
-        detections: what vision found in it.
-        measured: all that reached the belief, at the capture; earlier by the latency.
-        estimate: what is believed of that time.
-        context: state that the decision was made for.
+        detections: of vision in the image.
+        measured: input of the estimator at capture, which is earlier by the latency.
+        estimate: belief at capture.
+        context: input of the decisions.
         decision: belief at `time`, task, motion and gaze.
     """
 

@@ -1,11 +1,11 @@
-"""How much the Rerun log of a run holds."""
+"""Levels of detail of the Rerun log."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 
 class LogLevel(StrEnum):
-    """Amount of a log: poses and curves; what people look at; everything."""
+    """Level of a log: poses and curves; also images and beliefs; every record and frame."""
 
     MINIMAL = "minimal"
     STANDARD = "standard"
@@ -14,12 +14,12 @@ class LogLevel(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class LogRates:
-    """What a level logs, and how often at most.
+    """Minimum intervals of a level.
 
     Attributes:
-        pose: time between two poses and points of curves [s].
-        frame: time between two camera frames [s].
-        map: time between two local maps, clouds of particles and planner's fields [s].
+        pose: between two poses and points of curves [s].
+        frame: between two camera frames [s].
+        map: between two local maps, particle clouds and planner fields [s].
         jpeg: quality of the images, 0 for neither images nor beliefs [%].
     """
 
@@ -29,7 +29,7 @@ class LogRates:
     jpeg: int
 
     @property
-    def pictures(self) -> bool:
+    def images(self) -> bool:
         """Whether there are images, beliefs and plans."""
         return self.jpeg > 0
 

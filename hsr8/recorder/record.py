@@ -1,4 +1,4 @@
-"""What the loop publishes and who may listen."""
+"""Records that the loop publishes, and the interface of listeners."""
 
 from typing import Protocol
 
@@ -12,17 +12,17 @@ from walking.value import value
 
 @value
 class TickRecord:
-    """Published once per record period (20 ms by default).
+    """State of the run, published once per record period (20 ms by default).
 
     Attributes:
         tick: number of the control tick.
         time: simulated time [s].
         truth: state of the world.
-        walking: what the walking engine knows of itself.
-        counters: what was counted in every tick since the start; it counts on.
-        command: velocity or footsteps asked of it.
-        head: gaze asked of it.
-        frame: the camera frame that arrived since the last record, if any.
+        walking: state of the walking engine.
+        counters: counters of all ticks since the start; the object is updated further.
+        command: commanded velocity or footsteps.
+        head: commanded gaze.
+        frame: camera frame that arrived since the last record, if any.
     """
 
     tick: int
@@ -36,19 +36,16 @@ class TickRecord:
 
 
 class Listener(Protocol):
-    """Somebody who watches a run; watching never changes it.
-
-    What a class derived from it leaves out does nothing.
-    """
+    """Observer of a run; it never changes the run. Methods do nothing by default."""
 
     def on_record(self, record: TickRecord) -> None:
-        """Take one record."""
+        """Receive one record."""
         return
 
     def on_event(self, time: float, kind: str, text: str) -> None:
-        """Take one event, for example ``via_point``, ``collision``, ``fall``."""
+        """Receive one event, for example ``via_point``, ``collision``, ``fall``."""
         return
 
     def close(self, exit_reason: str) -> None:
-        """The run has ended, for whatever reason."""
+        """End the observation; called once, also after an error."""
         return

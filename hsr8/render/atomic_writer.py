@@ -1,16 +1,35 @@
-"""Files of pictures that are kept when everything went well, and leave nothing otherwise."""
+"""Files of images that appear when they are complete; an error leaves no file."""
 
+import os
 from abc import ABC, abstractmethod
+from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.uint8]
+
 
 class AtomicWriter(ABC):
-    """A writer used by ``with``: an error inside takes back what it has written."""
+    """Writer of a file, used by ``with``.
+
+    Args:
+        path: of the file; until it is complete, a draft beside it.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._draft = path.with_name(f"{path.name}.{os.getpid()}.part")
 
     @abstractmethod
-    def close(self, *, keep: bool = True) -> None:
-        """Finish the file, or remove it."""
+    def add(self, image: Image) -> None:
+        """Append one image (height, width, 3)."""
+
+    @abstractmethod
+    def _finish(self, *, keep: bool) -> None:
+        """Close the draft, after writing the rest of it if `keep`."""
 
     def __enter__(self) -> Self:
         return self
@@ -21,4 +40,9 @@ class AtomicWriter(ABC):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.close(keep=error is None)
+        try:
+            self._finish(keep=error is None)
+            if error is None:
+                self._draft.replace(self._path)
+        finally:
+            self._draft.unlink(missing_ok=True)

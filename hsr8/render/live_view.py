@@ -1,4 +1,4 @@
-"""A viewer that shows a run while it goes on; nobody but this machine can reach it."""
+"""Viewer that shows a run while it goes on, reachable from this machine only."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -9,17 +9,16 @@ from urllib.parse import quote
 from hsr8.errors import UsageError
 from hsr8.render import viewer
 
-LOOPBACK = "127.0.0.1"
 Kind = Literal["native", "web"]
 
 
 @dataclass(frozen=True, slots=True)
 class LiveView:
-    """A viewer that has been started.
+    """A running viewer.
 
     Attributes:
-        address: to which the log is sent.
-        page: to open in a browser; empty if it has a window of its own.
+        address: destination of the log.
+        page: address to open in a browser; empty for a native window.
         process: the viewer.
     """
 
@@ -35,37 +34,32 @@ class LiveView:
 
 @contextmanager
 def live_view(kind: Kind) -> Iterator[LiveView]:
-    """A viewer for the time of the context.
+    """Start a viewer and end it with the context.
 
     Raises:
-        UsageError: it cannot be started, for example for want of a display.
+        UsageError: it cannot be started, for example without a display.
     """
     require_display(kind)
     port, web_port = viewer.free_port(), viewer.free_port()
-    with viewer.running(command(kind, port, web_port)) as process:
-        viewer.connected(process, port)
-        address = f"rerun+http://{LOOPBACK}:{port}/proxy"
-        page = f"http://{LOOPBACK}:{web_port}?url={quote(address, safe='')}"
+    words = viewer.command(port, "--expect-data-soon")
+    if kind == "web":
+        words += ["--serve-web", "--web-viewer-port", str(web_port)]
+    with viewer.Viewer(words) as process:
+        process.wait_for_port(port)
+        address = f"rerun+http://{viewer.LOOPBACK}:{port}/proxy"
+        page = f"http://{viewer.LOOPBACK}:{web_port}?url={quote(address, safe='')}"
         yield LiveView(address, page if kind == "web" else "", process)
 
 
 def require_display(kind: Kind) -> None:
-    """Make sure that a viewer can be shown.
+    """Require a display for a native window.
 
     Raises:
-        UsageError: it is to have a window, and there is no display.
+        UsageError: there is none.
     """
     if kind == "native" and not viewer.has_display():
         raise UsageError(
-            "--view native: there is no display to open the viewer on"
+            "--view native: no display"
             "\n  in a browser, also through `ssh -L`:  --view web"
-            "\n  afterwards:                           hsr8 replay RUN --screenshot log.png"
+            "\n  after the run:                        hsr8 replay RUN --screenshot log.png"
         )
-
-
-def command(kind: Kind, port: int, web_port: int) -> list[str]:
-    """Command line of a viewer that listens for a log on `port`, and for browsers on another."""
-    words = [viewer.executable(), "--bind", LOOPBACK, "--port", str(port), "--expect-data-soon"]
-    return (
-        words if kind == "native" else [*words, "--serve-web", "--web-viewer-port", str(web_port)]
-    )

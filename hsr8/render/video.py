@@ -1,23 +1,19 @@
-"""H.264 files that every browser plays, with exact timing."""
+"""H.264 videos that every browser plays, with exact timing."""
 
 from concurrent.futures import Future, ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
 
 import av
-import numpy as np
-from numpy.typing import NDArray
 
-from hsr8.render.atomic_writer import AtomicWriter
-
-Image = NDArray[np.uint8]
+from hsr8.render.atomic_writer import AtomicWriter, Image
 
 OPTIONS = {"preset": "veryfast", "crf": "21", "threads": "1"}
-OPTIONS_OF_CONTAINER = {"movflags": "+faststart"}  # a page plays it while it loads
+CONTAINER_OPTIONS = {"movflags": "+faststart"}  # a page plays the video while it loads
 
 
 class VideoWriter(AtomicWriter):
-    """Writes frames; the file appears under its name when it is complete.
+    """Writer of an MP4 file.
 
     Args:
         path: of the file.
@@ -26,20 +22,19 @@ class VideoWriter(AtomicWriter):
     """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: int) -> None:
-        self._path = path
-        self._draft = path.with_name(path.name + ".part")
-        self._container = av.open(str(self._draft), "w", format="mp4", options=OPTIONS_OF_CONTAINER)
+        super().__init__(path)
+        self._container = av.open(str(self._draft), "w", format="mp4", options=CONTAINER_OPTIONS)
         self._stream = self._container.add_stream("libx264", rate=fps, options=OPTIONS)
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
         self._tick = Fraction(1, fps)
         self._count = 0
-        # Encoding leaves the interpreter lock alone: it runs beside the drawing.
+        # Encoding releases the interpreter lock, so it runs in parallel with drawing.
         self._worker = ThreadPoolExecutor(max_workers=1)
         self._pending: Future[None] | None = None
 
     def add(self, image: Image) -> None:
-        """Append one frame (height, width, 3)."""
+        """Append one image (height, width, 3)."""
         self._wait()
         self._pending = self._worker.submit(self._encode, image, self._count)
         self._count += 1
@@ -55,19 +50,11 @@ class VideoWriter(AtomicWriter):
             self._pending.result()
             self._pending = None
 
-    def close(self, *, keep: bool = True) -> None:
-        """Finish the file, or remove it."""
-        complete = False
+    def _finish(self, *, keep: bool) -> None:
         try:
             if keep:
                 self._wait()
                 self._container.mux(self._stream.encode(None))
-                complete = True
         finally:
             self._worker.shutdown()
             self._container.close()
-            try:
-                if complete:
-                    self._draft.replace(self._path)
-            finally:
-                self._draft.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""The Rerun viewer that belongs to the installed library, bound to this machine only."""
+"""The viewer of the installed Rerun library, reachable from this machine only."""
 
 import os
 import re
@@ -7,27 +7,25 @@ import socket
 import subprocess
 import tempfile
 import time as clock
-from collections.abc import Sequence
-from contextlib import AbstractContextManager, closing, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Self
 
 from hsr8.errors import UsageError
 from hsr8.gl import VULKAN_LINE
 from hsr8.parent_watch import with_parent_watch
 
-if TYPE_CHECKING:
-    from rerun.experimental import ViewerClient
-
+LOOPBACK = "127.0.0.1"
 TIMELINE = "sim_time"
-START_LIMIT = 30.0  # the viewer must answer within this wall time [s]
-ENDING = 2.0  # a viewer that went down is gone within this wall time [s]
-SETTLE = 6.0  # notices fade and views load in this wall time [s]
+START_TIMEOUT = 30.0  # wall time until the viewer must answer [s]
+STOP_TIMEOUT = 2.0  # wall time until a viewer must end after a signal [s]
+SETTLING_TIME = 6.0  # wall time in which notices fade and views load [s]
 
 
 def executable() -> str:
-    """Path of the viewer: the program itself, for the script of that name starts another process.
+    """Return the path of the viewer's binary; the script of that name starts another process.
 
     Raises:
         UsageError: it is not installed.
@@ -37,165 +35,159 @@ def executable() -> str:
         program = Path(package.origin).with_name("rerun")
         if program.exists():
             return str(program)
-    raise UsageError("the Rerun viewer is missing; `pip install rerun-sdk` brings it")
+    raise UsageError("the Rerun viewer is missing; `pip install rerun-sdk` installs it")
 
 
 def has_display() -> bool:
-    """Whether a window can be opened."""
+    """Return whether a window can be opened."""
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def show(logs: Sequence[Path]) -> int:
-    """Open the `logs` of a run in a window and wait until it is closed; its exit status."""
-    command = with_parent_watch(_command(logs, free_port()))
-    return subprocess.run(command, check=False).returncode
+def command(port: int, *words: str) -> list[str]:
+    """Return the command line of a viewer that listens on `port` of this machine."""
+    return [executable(), *words, "--bind", LOOPBACK, "--port", str(port)]
 
 
-def screenshot(logs: Sequence[Path], time: float, size: tuple[int, int]) -> bytes:
-    """Picture (PNG) of the viewer with the `logs` of a run at simulated `time` [s].
+def show(log: Path) -> int:
+    """Open a log in a window, wait until it is closed, and return the exit status."""
+    words = with_parent_watch(command(free_port(), str(log)))
+    return subprocess.run(words, check=False).returncode
+
+
+def screenshot(log: Path, time: float, size: tuple[int, int]) -> bytes:
+    """Return an image (PNG) of the viewer.
 
     Args:
-        logs: files of a run.
-        time: [s].
+        log: file to show.
+        time: simulated time to show [s].
         size: width and height of the window [pixel].
 
     Raises:
-        UsageError: the viewer did not start, for example for want of Vulkan, or `logs` hold
-            no recording.
+        UsageError: the viewer did not start, for example because Vulkan is missing, or the log
+            is damaged.
     """
     port = free_port()
-    window = ("--headless", "--window-size", f"{size[0]}x{size[1]}")
-    with running([*_command(logs, port), *window]) as viewer:
+    words = command(port, str(log), "--headless", "--window-size", f"{size[0]}x{size[1]}")
+    with Viewer(words) as viewer:
         try:
-            client = _connect(viewer, port)
-            _wait_for_recording(client, viewer, logs[0])
-            _stop_at(client, viewer, time)
-            clock.sleep(SETTLE)
+            viewer.wait_for_port(port)
+            # Imported late: runs without a viewer do not need it.
+            from rerun.experimental import ViewerClient  # noqa: PLC0415
+
+            client = ViewerClient.connect(f"rerun+http://{LOOPBACK}:{port}/proxy")
+            if not viewer.poll(lambda: bool(client.get_state().recordings)):
+                raise UsageError(f"{log}: no recording in this file")
+            viewer.poll(lambda: _seek(client, time))
+            clock.sleep(SETTLING_TIME)
             return bytes(client.take_screenshot())
-        except ConnectionError:  # it went down while it was talked to
-            raise _failed(viewer) from None
+        except ConnectionError:  # the viewer ended
+            raise viewer.failure() from None
 
 
-def _command(logs: Sequence[Path], port: int) -> list[str]:
-    return [executable(), *map(str, logs), "--bind", "127.0.0.1", "--port", str(port)]
+def _seek(client: object, time: float) -> bool:
+    """Go to a simulated time; a recording that is still loading has no timeline yet."""
+    with suppress(ConnectionError):
+        client.set_time(TIMELINE, duration=time, play_state="paused")  # type: ignore[attr-defined]
+        return True
+    return False
 
 
 def free_port() -> int:
-    """A port of this machine that nobody listens on."""
+    """Return a port of this machine that is not in use."""
     with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
+        probe.bind((LOOPBACK, 0))
         return int(probe.getsockname()[1])
 
 
 class Viewer:
-    """A process of the viewer.
+    """Process of the viewer, ended by leaving its ``with`` block.
 
     Args:
-        command: its command line.
+        words: its command line.
     """
 
-    def __init__(self, command: Sequence[str]) -> None:
-        # Not a pipe: nobody has to read while it writes.
-        self._said = tempfile.TemporaryFile()  # noqa: SIM115  closed by `close`
+    def __init__(self, words: Sequence[str]) -> None:
+        # A file, because a pipe that is not read would block the viewer.
+        self._stderr = tempfile.TemporaryFile()  # noqa: SIM115  closed by `__exit__`
         try:
             self._process = subprocess.Popen(
-                with_parent_watch(command),
+                with_parent_watch(words),
                 stdout=subprocess.DEVNULL,
-                stderr=self._said,
+                stderr=self._stderr,
                 start_new_session=True,
             )
         except BaseException:
-            self._said.close()
+            self._stderr.close()
             raise
 
-    @property
-    def ended(self) -> bool:
-        """Whether it has ended."""
-        return self._process.poll() is not None
+    def __enter__(self) -> Self:
+        return self
 
-    def wait(self, limit: float | None = None) -> None:
-        """Wait for its end, at most `limit` [s]."""
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(limit)
-
-    def complaint(self) -> str:
-        """What went wrong, as it said before it ended; empty if it said nothing of the kind."""
-        self._said.seek(0)
-        return complaint(self._said.read().decode(errors="replace"))
-
-    def close(self) -> None:
-        """End it."""
+    def __exit__(self, *_: object) -> None:
         for number in (signal.SIGTERM, signal.SIGKILL):
             if not self.ended:
                 os.killpg(self._process.pid, number)
-                self.wait(ENDING)
-        self._said.close()
+                self.wait(STOP_TIMEOUT)
+        self._stderr.close()
 
+    @property
+    def ended(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.poll() is not None
 
-def running(command: Sequence[str]) -> AbstractContextManager[Viewer]:
-    """A viewer for the time of the context."""
-    return closing(Viewer(command))
+    def wait(self, timeout: float | None = None) -> None:
+        """Wait for the end of the process, at most `timeout` [s]."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout)
 
+    def poll(self, ready: Callable[[], bool]) -> bool:
+        """Call `ready` until it returns True; return False after `START_TIMEOUT`.
 
-def _connect(viewer: Viewer, port: int) -> "ViewerClient":
-    from rerun.experimental import ViewerClient  # noqa: PLC0415  a run without a viewer has no need
-
-    connected(viewer, port)
-    return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-
-
-def connected(viewer: Viewer, port: int) -> None:
-    """Wait until the viewer listens.
-
-    Raises:
-        UsageError: it ended, or does not answer.
-    """
-    end = clock.monotonic() + START_LIMIT
-    while clock.monotonic() < end and not viewer.ended:
-        try:
-            with socket.create_connection(("127.0.0.1", port), timeout=1.0):
-                return
-        except OSError:
+        Raises:
+            UsageError: the viewer ended.
+        """
+        end = clock.monotonic() + START_TIMEOUT
+        while clock.monotonic() < end:
+            if self.ended:
+                raise self.failure()
+            if ready():
+                return True
             clock.sleep(0.2)
-    raise _failed(viewer)
+        return False
+
+    def wait_for_port(self, port: int) -> None:
+        """Wait until the viewer listens.
+
+        Raises:
+            UsageError: it ended or does not answer.
+        """
+
+        def listens() -> bool:
+            with (
+                suppress(OSError),
+                socket.create_connection((LOOPBACK, port), timeout=1.0),
+            ):
+                return True
+            return False
+
+        if not self.poll(listens):
+            raise self.failure()
+
+    def failure(self) -> UsageError:
+        """Return the error of a viewer that did not start, with its own message."""
+        self.wait(STOP_TIMEOUT)
+        self._stderr.seek(0)
+        message = _message(self._stderr.read().decode(errors="replace")) if self.ended else ""
+        if "Failed to load file" in message:
+            return UsageError(f"the log is damaged: {message}")
+        return UsageError(
+            f"the Rerun viewer did not start{f': {message}' if message else ''}"
+            "\n  without a graphics card it needs a software Vulkan driver; as root:  "
+            f"{VULKAN_LINE}"
+        )
 
 
-def _wait_for_recording(client: "ViewerClient", viewer: Viewer, log: Path) -> None:
-    end = clock.monotonic() + START_LIMIT
-    while clock.monotonic() < end and not viewer.ended:
-        if client.get_state().recordings:
-            return
-        clock.sleep(0.2)
-    if not viewer.ended:
-        raise UsageError(f"the Rerun viewer finds no recording in {log}")
-    raise _failed(viewer)
-
-
-def _stop_at(client: "ViewerClient", viewer: Viewer, time: float) -> None:
-    """Go to a time; a recording that is still being read has none for a while."""
-    end = clock.monotonic() + START_LIMIT
-    while True:
-        try:
-            client.set_time(TIMELINE, duration=time, play_state="paused")
-            return
-        except ConnectionError:
-            if clock.monotonic() >= end or viewer.ended:
-                raise
-            clock.sleep(0.2)
-
-
-def _failed(viewer: Viewer) -> UsageError:
-    viewer.wait(ENDING)
-    said = viewer.complaint() if viewer.ended else ""
-    if "Failed to load file" in said:
-        return UsageError(f"the log is damaged, the Rerun viewer cannot read it: {said}")
-    return UsageError(
-        f"the Rerun viewer did not start{f': {said}' if said else ''}"
-        f"\n  without a graphics card it needs Vulkan in software; as root:  {VULKAN_LINE}"
-    )
-
-
-def complaint(said: str) -> str:
-    """The line of the viewer's messages that says what went wrong, without colours."""
-    lines = re.sub(r"\x1b\[[0-9;]*m", "", said).splitlines()
+def _message(stderr: str) -> str:
+    """Return the line of an output that reports an error, without colours."""
+    lines = re.sub(r"\x1b\[[0-9;]*m", "", stderr).splitlines()
     return next((line.strip() for line in lines if re.search(r"panicked|\berror", line, re.I)), "")

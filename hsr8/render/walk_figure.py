@@ -89,7 +89,7 @@ def draw(table: WalkingTable, what: What, title: str) -> Figure:
     above = _footsteps_height(table) if what in ("walking", "footsteps") else 0.0
     heights = [panel.height for panel in rows]
     if rows:
-        heights.append(0.16 * (1 + len(table.bound())) + 0.12)
+        heights.append(0.16 * (1 + len(table.active_limits())) + 0.12)
     with rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, above + sum(heights) + 0.9), layout="constrained")
         FigureCanvasAgg(figure)

@@ -278,7 +278,7 @@ def lanes(axes: Axes, table: WalkingTable) -> None:
             _runs(table.time, phase == index, end), (0.0, 0.8), color=color, alpha=0.75, lw=0
         )
     names = ["gait phase"]
-    for limit, rows in table.bound().items():
+    for limit, rows in table.active_limits().items():
         axes.broken_barh(_runs(table.time, rows, end), (len(names), 0.8), color=INK, lw=0)
         names.append(str(limit))
     axes.set_yticks([k + 0.4 for k in range(len(names))], names, fontsize="x-small")

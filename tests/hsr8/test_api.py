@@ -27,7 +27,7 @@ def test_nothing_is_written_unless_it_is_told_where(tmp_path, monkeypatch):
     result = hsr8.run("quick", seed=3, settings=STAND_INS)
     assert list(tmp_path.iterdir()) == []
     assert result.folder is None
-    assert (result.exit_reason, result.passed) == ("timeout", False)
+    assert (result.exit_reason, result.criteria_met) == ("timeout", False)
 
 
 def test_the_folder_holds_the_same_results_and_can_be_repeated(tmp_path):
@@ -130,7 +130,7 @@ def test_a_wrong_setting_is_named():
 
 def test_a_run_that_meets_its_criteria_passes():
     settings = STAND_INS | {"criteria.goal_reached": False}
-    assert hsr8.run("quick", settings=settings).passed
+    assert hsr8.run("quick", settings=settings).criteria_met
 
 
 def test_an_unknown_name_is_no_part_of_the_package():

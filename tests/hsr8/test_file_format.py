@@ -21,7 +21,7 @@ def test_another_format_is_told_with_both_numbers_and_what_to_do(number, rest):
     with pytest.raises(UsageError) as told:
         check_magic(MAGIC[:-1] + digit + rest, MAGIC, "a/f", "list")
     assert str(told.value) == (
-        f"a/f is a list of format {number}, hsr8 {VERSION} reads format 4: "
+        f"a/f: list of format {number}, hsr8 {VERSION} reads format 4: "
         "run the scenario again, or use the version of hsr8 that wrote it"
     )
 
@@ -29,5 +29,5 @@ def test_another_format_is_told_with_both_numbers_and_what_to_do(number, rest):
 @given(content=st.binary(max_size=12) | st.integers(0, 7).map(lambda n: MAGIC[:n]))
 def test_anything_else_is_no_such_file(content):
     if content[:7] != MAGIC[:7] or not content[7:8].isalnum():
-        with pytest.raises(UsageError, match="is no list"):
+        with pytest.raises(UsageError, match="not a list"):
             check_magic(content, MAGIC, "f", "list")

@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.loop import Simulation
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.scenario.loader import load_scenario
-from hsr8.snapshot import decode, encode
 
 START, LASTS = 0.7, 0.4  # of the faults that are got over [s]
 WELL = {  # what the robot gets over within a second, walking
@@ -142,25 +139,6 @@ PHYSICAL = [
     fault("low-friction", "magnitude=0.3,place=[0.0,0.0],radius=3.0", start=0.4),
     fault("bump", "magnitude=0.004,place=[0.0,0.0],radius=0.5", start=0.45),
 ]
-
-
-@pytest.mark.parametrize("tick", [70, 130, 170])
-def test_a_run_with_all_faults_goes_on_from_any_tick(tick):
-    faults = f"fault=[{','.join([*ALL, *PHYSICAL])}]"
-    scenario = load_scenario("quick", ['camera.source="analytic"', "duration=1.2", faults])
-    with Simulation(scenario, 2) as first:
-        while first.tick < tick:
-            first.step()
-        content = encode(first.snapshot())
-        while first.exit_reason is None:
-            first.step()
-    with Simulation(scenario, 2) as second:
-        anchors = {"model": second.model}
-        anchors["robot model"] = second._robot._walking._robot
-        second.restore(decode(content, anchors, "x"))
-        while second.exit_reason is None:
-            second.step()
-    assert second.outcome() == first.outcome()
 
 
 def test_a_run_with_all_faults_is_computed_again_bit_for_bit(tmp_path, capsys):

@@ -25,8 +25,8 @@ def test_the_velocity_asked_for_is_walked_and_measured():
     assert results["zmp_outside_sole_ticks"] == 0
     assert results["walk_ticks"] == 1201
     assert 0.0 < results["walk_tick_mean_ms"] <= results["walk_tick_p999_ms"]
-    assert 0.0 < results["peak_torque_share"] < 1.0
-    assert results["altered_by"]["settling"] == pytest.approx(100 / 1201, abs=0.002)
+    assert 0.0 < results["peak_torque_ratio"] < 1.0
+    assert results["limited_by"]["settling"] == pytest.approx(100 / 1201, abs=0.002)
 
 
 def test_wall_time_is_no_part_of_a_kinematic_result():

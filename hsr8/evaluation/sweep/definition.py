@@ -1,4 +1,4 @@
-"""What all runs of a sweep share: scenario, versions and code."""
+"""What all runs of a sweep have in common: scenario, versions, code."""
 
 import hashlib
 import json
@@ -18,28 +18,27 @@ from hsr8.version import VERSION
 from hsr8.world.model.models import models_dir
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
-NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "_models")  # folders and files of hsr8
-MAY_DIFFER = ("seed", "description")  # keys of a scenario, within a sweep
-
-Differences = dict[str, tuple[str, str]]
+# Folders of hsr8 that do not shape a result.
+AROUND = ("cli", "render", "evaluation/sweep")
+IGNORED = ("seed", "description")  # keys of a scenario that may differ within a sweep
 
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """Scenario, versions and code of a sweep.
+    """What a sweep runs.
 
     Attributes:
-        name: name of the scenario.
-        command_words: command line of one run without its seed; of a run folder, with it.
+        name: of the scenario.
+        again: words of the command line of one run, without its seed; of a run folder with it.
         hsr8: version.
-        code: digest of the program's files; empty if unknown.
-        processor: architecture; results are bit-exact on the same architecture only.
+        code: digest of the program's files; empty where that is not known.
+        processor: architecture; results are the same on one only.
         libraries: version by name.
-        scenario: resolved scenario as TOML; its seed is ignored.
+        scenario: the resolved scenario as TOML; its seed means nothing.
     """
 
     name: str
-    command_words: tuple[str, ...]
+    again: tuple[str, ...]
     hsr8: str
     code: str
     processor: str
@@ -47,31 +46,37 @@ class Definition:
     scenario: str
 
     @classmethod
-    def now(cls, name: str, command_words: tuple[str, ...], scenario: str) -> "Definition":
-        """Return a definition with the installed versions."""
+    def now(cls, name: str, again: tuple[str, ...], scenario: str) -> "Definition":
+        """Definition with the versions installed here."""
         return cls(
-            name, command_words, VERSION, code_digest(), platform.machine(), versions(), scenario
+            name=name,
+            again=again,
+            hsr8=VERSION,
+            code=code_digest(),
+            processor=platform.machine(),
+            libraries=versions(),
+            scenario=scenario,
         )
 
     def command(self, seed: int) -> str:
-        """Return the command line that repeats the run of `seed`."""
-        return shlex.join([*self.command_words, "--seed", str(seed)])
+        """Command line that repeats the run of `seed`."""
+        return shlex.join([*self.again, "--seed", str(seed)])
 
     def to_json(self) -> dict[str, Any]:
-        """Return everything except the scenario, which has its own file."""
+        """All but the scenario, which has a file of its own."""
         return {key: value for key, value in asdict(self).items() if key != "scenario"}
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any], scenario: str) -> "Definition":
-        """Read the result of `to_json`.
+        """Read back what `to_json` gave.
 
         Raises:
-            KeyError, TypeError, ValueError: `value` is not such a result.
+            KeyError, TypeError, ValueError: it did not give that.
         """
         tomllib.loads(scenario)
         return cls(
             name=str(value["name"]),
-            command_words=tuple(map(str, value["command_words"])),
+            again=tuple(map(str, value["again"])),
             hsr8=str(value["hsr8"]),
             code=str(value["code"]),
             processor=str(value["processor"]),
@@ -80,33 +85,35 @@ class Definition:
         )
 
     def made_with(self) -> str:
-        """Return the versions as one line."""
+        """Versions, for the foot of a page."""
         names = ("mujoco", "numpy", "scipy", "pin")
-        libraries = ", ".join(f"{name} {self.libraries.get(name, '?')}" for name in names)
-        code = f" (code {self.code})" if self.code else ""
-        arithmetic = self.libraries.get("arithmetic", "native")
-        return f"hsr8 {self.hsr8}{code}, {libraries}; {self.processor}, arithmetic {arithmetic}"
+        told = ", ".join(f"{name} {self.libraries.get(name, '?')}" for name in names)
+        code = f" (code {self.code})" if self.code else ""  # a run folder does not know
+        processor = f"{self.processor}, arithmetic {self.libraries.get('arithmetic', 'native')}"
+        return f"hsr8 {self.hsr8}{code}, {told}; {processor}"
 
 
-def scenario_differences(one: Definition, other: Definition) -> Differences:
-    """Return the scenario keys whose values differ, with both values as JSON; absent is ``-``."""
-    tables = [dict(_flatten(tomllib.loads(_resolved(d.scenario)))) for d in (one, other)]
-    differences = _differences(*tables)
-    return {key: differences[key] for key in sorted(differences.keys() - set(MAY_DIFFER))}
+def differences(one: Definition, other: Definition) -> dict[str, tuple[str, str]]:
+    """Keys of the scenarios whose values differ, with both values as JSON; absent is ``-``."""
+    tables = [dict(_flat(tomllib.loads(_resolved(d.scenario)), "")) for d in (one, other)]
+    keys = [key for key in {**tables[0], **tables[1]} if key not in IGNORED]
+    both = {key: (tables[0].get(key, "-"), tables[1].get(key, "-")) for key in keys}
+    return {key: pair for key, pair in sorted(both.items()) if pair[0] != pair[1]}
 
 
-def version_differences(one: Definition, other: Definition) -> Differences:
-    """Return the versions that differ, with both values."""
-    return _differences(
-        *(
-            {"hsr8": d.hsr8, "code": d.code, "processor": d.processor, **d.libraries}
-            for d in (one, other)
-        )
-    )
+def version_differences(one: Definition, other: Definition) -> dict[str, tuple[str, str]]:
+    """Versions that differ, with both."""
+    tables = [
+        {"hsr8": d.hsr8, "code": d.code, "processor": d.processor, **d.libraries}
+        for d in (one, other)
+    ]
+    keys = tables[0] | tables[1]
+    both = {key: (tables[0].get(key, "-"), tables[1].get(key, "-")) for key in keys}
+    return {key: pair for key, pair in both.items() if pair[0] != pair[1]}
 
 
 def code_digest() -> str:
-    """Return the first digits of the SHA-256 of all files that influence a result."""
+    """First digits of the SHA-256 of all files that shape a result."""
     digest = hashlib.sha256()
     for name, file in _files():
         digest.update(name.encode() + b"\0" + hashlib.sha256(file.read_bytes()).digest())
@@ -116,12 +123,12 @@ def code_digest() -> str:
 def _files() -> Iterator[tuple[str, Path]]:
     for package in PACKAGES:
         spec = find_spec(package)
-        assert spec is not None, package
-        assert spec.origin is not None, package
+        if spec is None or spec.origin is None:
+            continue
         root = Path(spec.origin).parent
         for file in sorted(root.rglob("*.py")):
             name = file.relative_to(root).as_posix()
-            if package != "hsr8" or not name.startswith(NOT_IN_DIGEST):
+            if package != "hsr8" or not name.startswith((*AROUND, "_models")):
                 yield f"{package}/{name}", file
     root = models_dir()
     for file in sorted(root.rglob("*")):
@@ -129,25 +136,20 @@ def _files() -> Iterator[tuple[str, Path]]:
             yield f"models/{file.relative_to(root).as_posix()}", file
 
 
-def _differences(one: Mapping[str, str], other: Mapping[str, str]) -> Differences:
-    pairs = {key: (one.get(key, "-"), other.get(key, "-")) for key in {**one, **other}}
-    return {key: pair for key, pair in pairs.items() if pair[0] != pair[1]}
-
-
 def _resolved(text: str) -> str:
-    """Return a scenario of another version with the keys added since."""
+    """A scenario of another version, with the keys that are new since then."""
     try:
         return dump(loads(text))
     except ScenarioError:
         return text
 
 
-def _flatten(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
+def _flat(value: Any, path: str) -> Iterator[tuple[str, str]]:
     if isinstance(value, dict) and value:
         for key, inner in value.items():
-            yield from _flatten(inner, f"{path}.{key}" if path else key)
+            yield from _flat(inner, f"{path}.{key}" if path else key)
     elif isinstance(value, list) and value and isinstance(value[0], dict):
         for k, inner in enumerate(value):
-            yield from _flatten(inner, f"{path}.{k}")
+            yield from _flat(inner, f"{path}.{k}")
     else:
         yield path, json.dumps(value, default=str)

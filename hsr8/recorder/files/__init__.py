@@ -1,1 +1,1 @@
-"""Files that are whole, or say what they lack."""
+"""Layers below the records of a run: atomic, growing, binary and JSON files."""

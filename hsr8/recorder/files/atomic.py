@@ -1,4 +1,4 @@
-"""Files that are either the old or the new one, whatever happens in between."""
+"""Atomic replacement of small files: after a crash a file is either the old or the new one."""
 
 import json
 import os
@@ -9,15 +9,15 @@ from typing import Any
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replace the contents of `path`; a crash leaves the old or the new file, never a mix.
+    """Replace the contents of `path` atomically.
 
-    A traceback may name a file whose name is no UTF-8; it is escaped.
+    Characters that are not valid UTF-8, as in some file names, are escaped.
     """
     write_bytes(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """As `write_text`."""
+    """Replace the contents of `path` atomically."""
     draft = path.with_name(path.name + ".tmp")
     try:
         with draft.open("wb") as file:
@@ -37,7 +37,7 @@ def write_json(path: Path, value: Mapping[str, Any]) -> None:
 
 
 def overwrite_json(path: Path, value: Mapping[str, Any]) -> None:
-    """As `write_json`, but if the disk is too full for a second copy, overwrite in place."""
+    """Write `value` as `write_json` does; on a full disk overwrite the file in place."""
     text = dumps(value, indent=2) + "\n"
     try:
         write_text(path, text)
@@ -48,9 +48,9 @@ def overwrite_json(path: Path, value: Mapping[str, Any]) -> None:
 
 
 def dumps(value: Any, indent: int | None = None) -> str:
-    """JSON that every reader takes: numbers that are not finite become null.
+    """Return standard JSON: numbers that are not finite become null.
 
-    Of a file's name, bytes that are no UTF-8 become escapes, which are read back as they were.
+    Bytes of a file name that are not valid UTF-8 become escapes, which JSON decodes again.
     """
     text = json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False)
     return text.encode("utf-8", errors="backslashreplace").decode("utf-8")

@@ -1,27 +1,22 @@
-"""Files of a run that can no longer be written: one error, whichever file it was."""
+"""Files of a run folder that grow during a run, and the error when one cannot be written."""
 
 import errno
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from hsr8.errors import RecordingFailed
 
-FAILED = "failed"  # how a run ended whose records could not be written
-PROBE = 65536  # more than a full disk may still have in odd blocks [byte]
+FAILED = "failed"  # exit reason of a run whose records could not be written
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
 
 
 @contextmanager
 def writing(folder: Path) -> Iterator[None]:
-    """Turns what the system says about a write into `RecordingFailed`.
-
-    Args:
-        folder: of the run.
+    """Convert an `OSError` while writing into `folder` into `RecordingFailed`.
 
     Raises:
-        RecordingFailed: a file could not be written; what was written before stays.
+        RecordingFailed: a file could not be written; earlier contents stay.
     """
     try:
         yield
@@ -30,19 +25,38 @@ def writing(folder: Path) -> Iterator[None]:
 
 
 def failure(folder: Path, reason: str) -> RecordingFailed:
-    """The error of a run whose `folder` takes no more."""
+    """Return the error of a run whose `folder` cannot be written."""
     return RecordingFailed(f"cannot write the run folder {folder}: {reason}")
 
 
-def refusal(folder: Path, said: str) -> RecordingFailed:
-    """The error of a library that `said` no reason of the system: the system is asked for it.
+class GrowingFile:
+    """Binary file that records are appended to.
 
-    A little more is written into `folder`, to a file without a name; where that goes well, what
-    the library said must do.
+    Args:
+        path: file to create.
+        head: first bytes of the file.
+
+    Raises:
+        RecordingFailed: here and in every method, the file cannot be written.
     """
-    try:
-        with writing(folder), tempfile.TemporaryFile(dir=folder, buffering=0) as probe:
-            probe.write(bytes(PROBE))
-    except RecordingFailed as error:
-        return error
-    return failure(folder, said)
+
+    def __init__(self, path: Path, head: bytes = b"") -> None:
+        self._folder = path.parent
+        with writing(self._folder):
+            self._file = path.open("wb")
+            self._file.write(head)
+
+    def write(self, content: bytes) -> None:
+        """Append `content`; it is buffered."""
+        with writing(self._folder):
+            self._file.write(content)
+
+    def flush(self) -> None:
+        """Pass all content to the operating system."""
+        with writing(self._folder):
+            self._file.flush()
+
+    def close(self) -> None:
+        """Flush and close the file."""
+        with writing(self._folder):
+            self._file.close()

@@ -8,7 +8,7 @@ import rerun.blueprint as rrb
 import rerun_bindings
 
 APPLICATION = "hsr8"
-ABANDONED: list["BlockStream"] = []  # held, for the library would finish what nobody holds
+ABANDONED: list["BlockStream"] = []  # keeps a reference, because Rerun closes unreferenced streams
 
 
 class BlockStream(rr.RecordingStream):  # type: ignore[misc]  # Rerun is not typed

@@ -25,16 +25,16 @@ OUTLINES = rr.Cylinders3D.from_fields(
 ABOVE = 6.2  # height of the eye over a field of 5 m [m]
 
 
-def blueprint(field_size: float, *, walking: bool, pictures: bool) -> rrb.Blueprint:
+def blueprint(field_size: float, *, walking: bool, images: bool) -> rrb.Blueprint:
     """Two tabs: the whole robot, and its walking in detail.
 
     Args:
         field_size: longer side of the field [m].
         walking: whether walking is shown first.
-        pictures: whether there are images, beliefs and plans to show.
+        images: whether there are images, beliefs and plans to show.
     """
     return rrb.Blueprint(
-        rrb.Tabs(_overview(field_size, pictures), _walking(), active_tab=1 if walking else 0),
+        rrb.Tabs(_overview(field_size, images), _walking(), active_tab=1 if walking else 0),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -90,7 +90,7 @@ def _walking() -> rrb.Container:
     return rrb.Horizontal(left, curves, column_shares=[1, 1], name="Walking")
 
 
-def _overview(field_size: float, pictures: bool) -> rrb.Container:
+def _overview(field_size: float, images: bool) -> rrb.Container:
     """Robot and belief above; camera, gaze, states and curves below."""
     height = ABOVE * field_size / 5.0
     robot = rrb.Spatial3DView(
@@ -126,7 +126,7 @@ def _overview(field_size: float, pictures: bool) -> rrb.Container:
             "+ /world/obstacles/**",
             "+ /world/movers/**",
             "+ /world/beacons/**",
-            "+ /world/way_points/**",
+            "+ /world/waypoints/**",
             "+ /world/path",
         ],
         overrides=dict.fromkeys(TRUTH, OUTLINES),
@@ -156,7 +156,7 @@ def _overview(field_size: float, pictures: bool) -> rrb.Container:
         active_tab=0,
     )
     name = "Robot and belief"
-    if not pictures:
+    if not images:
         below = rrb.Horizontal(states, curves, column_shares=[1, 1])
         return rrb.Vertical(robot, below, row_shares=[3, 2], name=name)
     above = rrb.Horizontal(robot, belief, column_shares=[1.15, 1])

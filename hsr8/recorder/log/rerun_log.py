@@ -1,4 +1,4 @@
-"""The log of a run for the Rerun viewer: a listener that writes ``log.rrd``, also as it happens."""
+"""Listener that writes the log of a run for the Rerun viewer, ``log.rrd``."""
 
 from collections.abc import Sequence
 from math import cos, sin
@@ -11,7 +11,7 @@ import rerun_bindings
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.recorder.files.writing import refusal
+from hsr8.recorder.files.writing import failure
 from hsr8.recorder.log.belief_layer import BeliefLayer
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.blueprint import blueprint
@@ -31,12 +31,13 @@ from navigation.parameters.gaze import GazeParameters
 
 Array = NDArray[np.float64]
 
-APRON = 1.0  # the floor shown is larger than the field by this [m]
-LIVE_BLOCK = 0.5  # rows are sent in shorter blocks while somebody watches [s]
-SOLE_HEIGHT = 0.004  # at which footsteps are drawn [m]
-LABELLED = 12  # more way points than this are shown without their numbers
-PATIENCE = 20.0  # a block must be with the operating system within this wall time [s]
-TRAIL, TRAIL_PERIOD = 60.0, 0.12  # the path shown behind the robot, and of its points [s]
+APRON = 1.0  # margin of the floor around the field, both sides together [m]
+LIVE_PERIOD = 0.5  # interval between two batches while a viewer is connected [s]
+SOLE_HEIGHT = 0.004  # height of drawn footsteps [m]
+MAX_LABELS = 12  # more waypoints than this are shown without numbers
+WRITE_TIMEOUT = 20.0  # wall time until a batch must be written [s]
+TRAIL, TRAIL_PERIOD = 60.0, 0.12  # length of the path shown, interval between its points [s]
+MAX_INDEXED = 600.0  # logs of longer runs have no index, which is held in memory [s]
 LEVELS = {"fall": "ERROR", "diverged": "ERROR"} | dict.fromkeys(
     ("collision", "fault", "lost", "push"), "WARN"
 )
@@ -48,14 +49,17 @@ class RerunLog:
     Args:
         path: file to write.
         model: compiled world.
-        layout: what stands where.
+        layout: of the run's world.
         image_size: width and height of the head camera's image [pixel].
-        name: of the recording, shown by the viewer.
-        gaze: of the run; spans its gaze map.
-        level: how much is logged.
-        live: address of a viewer that is shown everything too; empty for none.
-        index: end the file with a list of its parts, for tools that read some of them only; until
-            then the list is held in memory, some 0.2 MB for each second.
+        name: name of the recording in the viewer.
+        gaze: parameters of the gaze map.
+        level: level of detail.
+        live: address of a viewer that shows the log during the run; empty for none.
+        duration: longest time of the run; the log of a run up to `MAX_INDEXED` ends with an index
+            of its parts, for tools that read single parts [s].
+
+    Raises:
+        RecordingFailed: here and in every method, the file cannot be written.
     """
 
     def __init__(
@@ -69,26 +73,27 @@ class RerunLog:
         gaze: GazeParameters,
         level: LogLevel = LogLevel.STANDARD,
         live: str = "",
-        index: bool = True,
+        duration: float = 0.0,
     ) -> None:
         rates = RATES[level]
         self._pose_throttle, self._frame_throttle = Throttle(rates.pose), Throttle(rates.frame)
         self._trail_throttle = Throttle(TRAIL_PERIOD)
-        # Rerun keeps the threads of a stream that nobody holds any more until it is asked.
+        # Without this call Rerun keeps the threads of streams that are no longer used.
         rerun_bindings.flush_and_cleanup_orphaned_recordings()
         self._stream = BlockStream(path.parent.name)
         self._stream.set_log_time_enabled(False)
-        sinks = [rr.FileSink(str(path), write_footer=index), *([rr.GrpcSink(live)] if live else [])]
+        sinks = [rr.FileSink(str(path), write_footer=duration <= MAX_INDEXED)]
+        sinks += [rr.GrpcSink(live)] if live else []
         self._folder = path.parent
-        self._waits = not live  # for the file; a viewer may leave
-        self._full = False
+        self._waits = not live  # for the file; a viewer may disconnect
+        self._failed = False
         shown = blueprint(
-            max(layout.field_size), walking=len(layout.waypoints) == 0, pictures=rates.pictures
+            max(layout.field_size), walking=len(layout.waypoints) == 0, images=rates.images
         )
         try:
             self._stream.begin(sinks, shown)
         except RuntimeError as error:
-            raise refusal(self._folder, f"the log: {error}") from error
+            raise failure(self._folder, f"the log: {error}") from error
         self._stream.send_recording_name(name)
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._n_movers = len(layout.movers)
@@ -97,7 +102,7 @@ class RerunLog:
         self._soles = tuple(sole_outline(model, side) for side in "lr")
         self._camera: CameraLayer | None = None
         self._minds: tuple[BeliefLayer | PlanLayer, ...] = ()
-        if rates.pictures:
+        if rates.images:
             self._camera = CameraLayer(self._stream, model, image_size, rates.jpeg, gaze)
             self._minds = (
                 BeliefLayer(self._stream, rates.map),
@@ -108,14 +113,14 @@ class RerunLog:
         self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D.columns)
         self._path = Channel(self._stream, "/world/path", rr.LineStrips3D.columns)
         self._trail: list[list[float]] = []
-        self._log_way_points(layout)
-        self._waiting = RecordBuffer(LIVE_BLOCK if live else PERIOD)
+        self._log_waypoints(layout)
+        self._buffer = RecordBuffer(LIVE_PERIOD if live else PERIOD)
         self._time = 0.0
 
     def on_record(self, record: TickRecord) -> None:
         """Log one record."""
-        if self._waiting.add(record):
-            self._write_pending()
+        if self._buffer.add(record):
+            self._write_buffer()
 
     def on_event(self, time: float, kind: str, text: str) -> None:
         """Log one event."""
@@ -123,18 +128,14 @@ class RerunLog:
         level = LEVELS.get(kind, "INFO")
         self._stream.log("/events", rr.TextLog(f"{kind}: {text}", level=level))
 
-    def flush(self) -> None:
-        """Hand everything to the operating system."""
-        self._write_pending()
-        self._wait()
-
     def close(self, exit_reason: str) -> None:
-        """Write what is left and finish the file, unless it takes no more."""
+        """Write the remaining records and close the file."""
         try:
-            self.flush()
+            self._write_buffer()
+            self._wait()
             self.on_event(self._time, "end", exit_reason)
         finally:
-            if self._full:
+            if self._failed:
                 self._stream.abandon()
             else:
                 self._stream.disconnect()
@@ -173,13 +174,13 @@ class RerunLog:
         self._add_footsteps(records, [frame.time for frame in frames])
 
     def _add_footsteps(self, records: Sequence[TickRecord], times: list[float]) -> None:
-        """Planned footholds, known in the odometry frame, as seen from the true pose."""
+        """Log planned footsteps, transformed with the true pose."""
         steps = [step for record in records for step in record.walking.footsteps]
         counts = [len(record.walking.footsteps) for record in records]
-        moments = np.repeat(np.arange(len(records)), counts)
-        there = OdometryToWorld(records)
-        places = there.point(np.reshape([(f.x, f.y) for f in steps], (-1, 2)), moments)
-        yaws = np.array([f.yaw for f in steps]) + there.turn[moments]
+        rows = np.repeat(np.arange(len(records)), counts)
+        transform = OdometryToWorld(records)
+        places = transform.point(np.reshape([(f.x, f.y) for f in steps], (-1, 2)), rows)
+        yaws = np.array([f.yaw for f in steps]) + transform.turn[rows]
         self._footsteps.add_rows(
             times,
             counts,
@@ -194,15 +195,15 @@ class RerunLog:
         )
 
     def _sole(self, left: bool, place: Array, yaw: float) -> Array:
-        """Outline of a foot on the floor (5, 3) [m]."""
+        """Return the outline of a foot on the floor (5, 3) [m]."""
         c, s = cos(yaw), sin(yaw)
         outline = np.full((5, 3), SOLE_HEIGHT)
         outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + place
         return outline
 
-    def _write_pending(self) -> None:
-        """Send the records that wait."""
-        records = self._waiting.take()
+    def _write_buffer(self) -> None:
+        """Send the buffered records; Rerun's threads write them while the run goes on."""
+        records = self._buffer.take()
         if records:
             self._add(records)
         if self._trail:
@@ -219,26 +220,23 @@ class RerunLog:
             part.flush()
         self._footsteps.flush()
         self._path.flush()
-        self._hand_over()
-
-    def _hand_over(self) -> None:
-        """Send everything; Rerun's own threads write it while the run goes on."""
         self._wait()
         self._stream.send()
         if self._waits:
             self._stream.flush(timeout_sec=0.0)
 
     def _wait(self) -> None:
-        """Wait until what was sent is with the operating system."""
+        """Wait until the operating system has all rows sent so far."""
         if not self._waits:
             return
         try:
-            self._stream.flush(timeout_sec=PATIENCE)
+            self._stream.flush(timeout_sec=WRITE_TIMEOUT)
         except RuntimeError as error:
-            self._waits, self._full = False, True  # the library would wait in vain again
-            raise refusal(self._folder, f"the log: {error}") from error
+            self._waits, self._failed = False, True  # a second flush would time out, too
+            reason = f"the log could not be written, is the disk full? ({error})"
+            raise failure(self._folder, reason) from error
 
-    def _log_way_points(self, layout: Layout) -> None:
+    def _log_waypoints(self, layout: Layout) -> None:
         points = np.asarray(layout.waypoints, float).reshape(-1, 2)
         if len(points) == 0:
             return
@@ -247,20 +245,20 @@ class RerunLog:
         if has_goal:
             labels[-1] = "goal"
         self._stream.log(
-            "/world/way_points",
+            "/world/waypoints",
             rr.Points3D(
                 np.column_stack([points, np.full(len(points), 0.01)]),
-                radii=0.03 if len(points) <= LABELLED else 0.012,
+                radii=0.03 if len(points) <= MAX_LABELS else 0.012,
                 colors=[palette.TARGET],
                 labels=labels,
-                show_labels=len(points) <= LABELLED,
+                show_labels=len(points) <= MAX_LABELS,
             ),
             static=True,
         )
         if has_goal and layout.goal_heading is not None:
             direction = [cos(layout.goal_heading), sin(layout.goal_heading), 0.0]
             self._stream.log(
-                "/world/way_points/heading",
+                "/world/waypoints/heading",
                 rr.Arrows3D(
                     origins=[[*points[-1].tolist(), 0.01]],
                     vectors=[0.25 * np.array(direction)],

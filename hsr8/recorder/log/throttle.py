@@ -1,13 +1,13 @@
-"""What is taken of many moments that follow one another: at most one in so much time."""
+"""Throttle: pass at most one sample per interval."""
 
 from math import inf
 
 
 class Throttle:
-    """Tells which moments to take.
+    """Selection of samples by time.
 
     Args:
-        period: between two of them at least [s].
+        period: minimum interval between two samples [s].
     """
 
     __slots__ = ("_last", "_period")
@@ -17,7 +17,7 @@ class Throttle:
         self._last = -inf
 
     def due(self, time: float) -> bool:
-        """Whether to take the moment `time` [s]; the next one must be later by the period."""
+        """Return whether the sample at `time` [s] passes."""
         if time - self._last < self._period - 1e-9:
             return False
         self._last = time

@@ -1,1 +1,1 @@
-"""The run folder: what a run leaves behind, written and read back."""
+"""Writing and reading of run folders."""

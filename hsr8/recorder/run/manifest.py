@@ -1,17 +1,15 @@
-"""What a run was made of: versions, seed, machine, and how it ended."""
+"""Manifest of a run: versions, seed, machine and exit reason."""
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 from hsr8 import arithmetic
-from hsr8.errors import UsageError
 from hsr8.recorder.files import atomic
-from hsr8.recorder.log_level import LogLevel
 from hsr8.version import VERSION
 
 LIBRARIES = (
@@ -25,30 +23,30 @@ LIBRARIES = (
     "pydantic",
     "av",
 )
-FORMAT = 3  # of run folders; those without a number are of format 1
+FORMAT = 4  # of run folders; those without a number are of format 1
 RUNNING = "running"
 OWN = "hsr8.run("  # begins the command of a run with a planner or a gaze of one's own
 
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """Written when a run starts and again when it ends.
+    """Facts of a run, written when it starts and again when it ends.
 
     Attributes:
         scenario: name of the scenario.
         seed: of the run.
-        command: command line that repeats it; the call, from `OWN` on, of a run that none can.
-        exit_reason: how it ended; ``running`` until then, and for ever after a kill; ``failed``
-            where its records could not be written, ``error`` after a mistake of ours.
+        command: command line that repeats the run. A run with a planner or gaze object cannot be
+            repeated by a command; the call, which begins with `OWN`, takes its place.
+        exit_reason: how the run ended. ``running`` until then and after a kill, ``failed`` if the
+            records could not be written, ``error`` after an internal error.
         started: wall-clock time, ISO 8601.
-        renderer: OpenGL renderer of the head camera; ``analytic`` without one.
+        renderer: OpenGL renderer of the head camera, or ``camera.source`` without OpenGL.
         hsr8: version.
         python: version.
         machine: operating system and processor.
-        libraries: version by name, and the arithmetic in force.
-        log: how much the Rerun log holds; empty without one.
-        checkpoint: simulated time between two checkpoints, 0 for none [s].
-        format: number of the run folder's.
+        libraries: version by name, and the arithmetic in use.
+        log: level of the Rerun log; empty without a log.
+        format: format number of the run folder.
     """
 
     scenario: str
@@ -62,12 +60,11 @@ class Manifest:
     machine: str
     libraries: dict[str, str]
     log: str = ""
-    checkpoint: int = 0
     format: int = FORMAT
 
     @classmethod
     def now(cls, scenario: str, seed: int, command: Sequence[str], renderer: str) -> "Manifest":
-        """Manifest of a run that starts now, on this machine."""
+        """Return the manifest of a run that starts now on this machine."""
         return cls(
             scenario=scenario,
             seed=seed,
@@ -81,40 +78,17 @@ class Manifest:
             libraries=versions(),
         )
 
-    @classmethod
-    def read(cls, given: Mapping[str, Any], path: Path) -> "Manifest":
-        """Manifest of the run in `path` that goes on.
-
-        Raises:
-            UsageError: something is missing in `given`, or says nothing about log or checkpoints.
-        """
-        names = [field.name for field in fields(cls)]
-        missing = [name for name in names if name not in given]
-        if missing:
-            raise UsageError(f"the manifest of {path} lacks {', '.join(missing)}")
-        log, checkpoint = given["log"], given["checkpoint"]
-        if log not in ("", *LogLevel):
-            raise UsageError(f"the manifest of {path} names no level of the log: {log!r}")
-        if not isinstance(checkpoint, int) or checkpoint < 0:
-            raise UsageError(f"the manifest of {path} names no time of checkpoints: {checkpoint!r}")
-        return replace(cls(**{name: given[name] for name in names}), exit_reason=RUNNING)
-
-    @property
-    def log_level(self) -> LogLevel | None:
-        """How much the Rerun log holds; None without one."""
-        return LogLevel(self.log) if self.log else None
-
     def ended(self, exit_reason: str) -> "Manifest":
-        """The same run, ended."""
+        """Return the manifest with an exit reason."""
         return replace(self, exit_reason=exit_reason)
 
     def write(self, path: Path) -> None:
-        """Write to `path` at once; on a full disk in place of the one before."""
+        """Write to `path` atomically; on a full disk overwrite the file in place."""
         atomic.overwrite_json(path, asdict(self))
 
 
 def other_versions(manifest: Mapping[str, Any]) -> list[tuple[str, str, str]]:
-    """Name, then, now of every library whose version is another than in `manifest`."""
+    """Return name, recorded and installed version of every library that differs."""
     then, now = manifest.get("libraries"), versions()
     if not isinstance(then, dict):
         return []
@@ -122,11 +96,11 @@ def other_versions(manifest: Mapping[str, Any]) -> list[tuple[str, str, str]]:
 
 
 def versions() -> dict[str, str]:
-    """Installed version of every library that shapes a result, and how they calculate."""
-    found = {"arithmetic": arithmetic.IN_FORCE}
+    """Return the installed version of every library that affects results, and the arithmetic."""
+    installed = {"arithmetic": arithmetic.IN_FORCE}
     for name in LIBRARIES:
         try:
-            found[name] = metadata.version(name)
+            installed[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
-            found[name] = "missing"
-    return found
+            installed[name] = "missing"
+    return installed

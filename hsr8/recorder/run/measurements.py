@@ -1,7 +1,7 @@
-"""All that reached the belief and the decisions, exactly, with fingerprints of what came of it.
+"""Exact inputs of the belief and the decisions, with fingerprints of their outputs.
 
-A guarded file with a payload a frame. Numbers are little-endian doubles as they were computed:
-estimator and planners fed with them again must give the same bits.
+The file holds one guarded payload per camera frame. Numbers are little-endian doubles as they were
+computed: estimator and planners with the same inputs must reproduce the same bits.
 """
 
 import struct
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from hsr8.decisions import DecisionContext
 from hsr8.errors import UsageError
-from hsr8.recorder.files.guarded_file import GuardedWriter, read_payloads
+from hsr8.recorder.files.binary import guarded, read_payloads
+from hsr8.recorder.files.writing import GrowingFile
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.run.fingerprints import (
     DECISIONS,
@@ -28,23 +29,23 @@ Array = NDArray[np.float64]
 MAGIC = b"HSR8MEA3"
 _COUNT = struct.Struct("<H")
 _VIEW = 9 + 3 + 5  # doubles of a camera view
-_FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame apart from its observations
-_NOW = 1 + 3 + _VIEW  # doubles of the moment of a decision
+_FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame without its observations
+_NOW = 1 + 3 + _VIEW  # doubles of the input of a decision
 _STEP = struct.Struct("<q?")
 _SEEN = struct.Struct("<10d")  # an observation
 _KINDS = ("obstacle", "beacon")
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
-    """One recorded frame.
+class Measurement:
+    """Inputs of one camera frame and fingerprints of the outputs.
 
     Attributes:
-        frame: what reached the belief.
-        context: state that the decision was made for.
-        fresh: no decision was in force.
-        fingerprints: of the belief after it, one per channel.
-        decision: of what was decided, one per decision channel.
+        frame: input of the estimator.
+        context: input of the decisions.
+        fresh: whether no earlier decision was in force.
+        fingerprints: of the belief after the frame, one per channel.
+        decision: of the decisions, one per decision channel.
     """
 
     frame: Frame
@@ -55,17 +56,17 @@ class Measured:
 
 
 class MeasurementWriter:
-    """Appends the measurements of every camera frame to a file.
+    """Writer of the measurements of a run.
 
     Args:
-        path: file to create, or to go on with.
+        path: file to create.
 
     Raises:
         RecordingFailed: here and in every method, it cannot be written.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = GuardedWriter(path, MAGIC)
+        self._file = GrowingFile(path, MAGIC)
 
     def add(self, frame: FrameRecord) -> None:
         """Append a camera frame."""
@@ -74,35 +75,35 @@ class MeasurementWriter:
         known = estimate if frame.belief is frame.estimate else None
         payload += b"".join(decision_fingerprints(frame.decision, known))
         payload += b"".join(estimate)
-        self._file.write(payload)
+        self._file.write(guarded(payload))
 
     def flush(self) -> None:
-        """Hand everything to the operating system."""
+        """Pass all content to the operating system."""
         self._file.flush()
 
     def close(self) -> None:
-        """Finish the file."""
+        """Close the file."""
         self._file.close()
 
 
-def read_measurements(path: Path, *, whole: bool) -> list[Measured]:
-    """Read a file of measurements.
+def read_measurements(path: Path, *, whole: bool) -> list[Measurement]:
+    """Read the measurements of a run.
 
     Args:
         path: the file.
-        whole: whether its last frame must be complete; that of a killed run need not be.
+        whole: require a complete last frame, which a killed run may lack.
 
     Raises:
-        UsageError: it is missing, damaged, or no such file.
+        UsageError: the file is missing, damaged or of another kind.
     """
-    frames: list[Measured] = []
+    frames: list[Measurement] = []
     for where, payload in read_payloads(
         path, MAGIC, file="file of measurements", payload="frame", whole=whole
     ):
         try:
             frames.append(_unpacked(payload))
         except (ValueError, IndexError, struct.error) as error:
-            raise UsageError(f"{path} is damaged {where}: {error}") from error
+            raise UsageError(f"{path}: damaged {where}: {error}") from error
     return frames
 
 
@@ -144,7 +145,7 @@ def _view(numbers: Array) -> CameraView:
     return CameraView(rotation.reshape(3, 3), position, *angles.tolist())
 
 
-def _unpacked(payload: bytes) -> Measured:
+def _unpacked(payload: bytes) -> Measurement:
     numbers = np.frombuffer(payload, "<f8", _FIXED).astype(np.float64)
     time, odometry, motion, view = np.split(numbers, [1, 4, 13])
     place = 8 * _FIXED
@@ -186,4 +187,4 @@ def _unpacked(payload: bytes) -> Measured:
     now = DecisionContext(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
     prints = [payload[k : k + FINGERPRINT] for k in range(place, len(payload), FINGERPRINT)]
     decided, believed = prints[: len(DECISIONS)], prints[len(DECISIONS) :]
-    return Measured(frame, now, fresh, tuple(believed), tuple(decided))
+    return Measurement(frame, now, fresh, tuple(believed), tuple(decided))

@@ -1,7 +1,7 @@
-"""Reading a run folder back, also that of a run that was killed."""
+"""Reading of run folders, also of runs that were killed."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.file_format import check_number
 from hsr8.recorder.files.json_lines import read_lines
-from hsr8.recorder.files.reading import LARGEST_JSON, read_bytes
 from hsr8.recorder.files.writing import FAILED
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.frame_summary import FrameSummary, from_line
 from hsr8.recorder.run.manifest import FORMAT, RUNNING
+from hsr8.recorder.run.measurements import Measurement, read_measurements
+from hsr8.recorder.run.tape import Block, read_tape
 from hsr8.recorder.run.trajectory import Trajectory, read_trajectory
 from hsr8.recorder.run.walking_table import WalkingTable, read_walking_table
 from hsr8.scenario.loader import load_scenario
@@ -25,7 +26,7 @@ from hsr8.version import VERSION
 
 T = TypeVar("T")
 
-CUT_SHORT = (RUNNING, FAILED, "interrupted", "error")  # ends after which records may lack theirs
+INCOMPLETE = (RUNNING, FAILED, "interrupted", "error")  # exit reasons of runs without all records
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,30 +48,32 @@ class Run:
 
     @property
     def ended(self) -> bool:
-        """Whether the run came to its end, so that its records are whole."""
-        return self.manifest.get("exit_reason") not in CUT_SHORT
+        """Whether the run ended by itself, so that its records are complete."""
+        return self.manifest.get("exit_reason") not in INCOMPLETE
 
     @property
     def scenario_file(self) -> Path:
-        """The resolved scenario."""
+        """File of the resolved scenario."""
         return self.path / run_folder.SCENARIO
 
-    def scenario_bytes(self) -> bytes:
-        """The resolved scenario as it stands in the folder.
+    def scenario_text(self) -> str:
+        """Return the resolved scenario as TOML.
 
         Raises:
             UsageError: it cannot be read.
         """
         try:
-            return read_bytes(self.scenario_file)
+            return self.scenario_file.read_text(encoding="utf-8")
         except OSError as error:
             raise UsageError(f"cannot read {self.scenario_file}: {error.strerror}") from error
+        except UnicodeDecodeError as error:
+            raise UsageError(f"cannot read {self.scenario_file}: {error}") from error
 
     def scenario(self) -> Scenario:
-        """What was run, with the seed of the run.
+        """Return the scenario with the seed of the run.
 
         Raises:
-            ScenarioError: this version does not understand it.
+            ScenarioError: this version cannot read it.
         """
         try:
             return load_scenario(str(self.scenario_file), seed=self.seed)
@@ -80,159 +83,119 @@ class Run:
             )
             raise ScenarioError(
                 f"{error}\n  the run was made by {made_by}, this is hsr8 {VERSION}: "
-                "run it again, or read it with the version it was made by"
+                "run it again, or read it with the version that made it"
             ) from error
 
     @property
-    def log_files(self) -> list[Path]:
-        """The Rerun log; a run with ``--no-log`` has none, one that was resumed several."""
-        return run_folder.logs(self.path)
+    def log_file(self) -> Path | None:
+        """Rerun log; None after ``--no-log``."""
+        file = self.path / run_folder.LOG
+        return file if file.exists() else None
 
     def metrics(self) -> dict[str, Any]:
-        """Results; empty if the run did not get there."""
+        """Return the results; empty if the run did not get there."""
         file = self.path / run_folder.METRICS
         return _json(file) if file.exists() else {}
 
     def trajectory(self) -> Trajectory:
-        """Motion of robot and movers.
+        """Return the motion of robot and movers.
 
         Raises:
-            UsageError: there is none, or it is cut off though the run ended.
+            UsageError: it is missing, damaged or, in a run that ended, cut off.
         """
         trajectory = read_trajectory(self.path / run_folder.TRAJECTORY)
-        self._must_reach_the_end(run_folder.TRAJECTORY, trajectory.time)
+        self._require_end(run_folder.TRAJECTORY, trajectory.time)
         return trajectory
 
     def walking(self) -> WalkingTable:
-        """How the robot walked.
-
-        Raises:
-            UsageError: there is no table, or it is cut off though the run ended.
-        """
+        """Return the walking table; errors as `trajectory`."""
         table = read_walking_table(self.path / run_folder.WALKING)
-        self._must_reach_the_end(run_folder.WALKING, table.time)
+        self._require_end(run_folder.WALKING, table.time)
         return table
 
     def frames(self) -> tuple[FrameSummary, ...]:
-        """Belief and decisions at every camera frame; empty if there were none.
-
-        Raises:
-            UsageError: a line is damaged, or they are cut off though the run ended.
-        """
-        frames = self._frames()
-        if frames:
-            self.must_hold(run_folder.FRAMES, len(frames), "camera_frames", "frames")
-        return frames
-
-    def events(self) -> tuple[dict[str, Any], ...]:
-        """What happened, each with ``time``, ``kind`` and ``text``.
-
-        Raises:
-            UsageError: a line is damaged, or the last one cut off though the run ended.
-        """
-        return self._events()
-
-    def require_lines(self, sizes: Mapping[str, int]) -> None:
-        """Refuse a run whose frames or events are damaged.
-
-        Args:
-            sizes: how much of each file must be whole, by its name [byte].
-
-        Raises:
-            UsageError: they are.
-        """
-        self._frames(sizes[run_folder.FRAMES])
-        self._events(sizes[run_folder.EVENTS])
-
-    def _frames(self, size: int | None = None) -> tuple[FrameSummary, ...]:
+        """Return belief and decisions of every camera frame; errors as `trajectory`."""
         frames: list[FrameSummary] = []
 
         def parse(line: str) -> FrameSummary:
             return from_line(line, frames[-1] if frames else None)
 
-        for frame in self._lines(run_folder.FRAMES, parse, size):
-            frames.append(frame)  # `parse` needs it there at once
+        for frame in self._lines(run_folder.FRAMES, parse):
+            frames.append(frame)  # one by one: `parse` reads the latest
+        if frames:
+            self._require(run_folder.FRAMES, len(frames), "camera_frames", "frames")
         return tuple(frames)
 
-    def _events(self, size: int | None = None) -> tuple[dict[str, Any], ...]:
-        return tuple(self._lines(run_folder.EVENTS, _event, size))
+    def events(self) -> tuple[dict[str, Any], ...]:
+        """Return the events, each with ``time``, ``kind`` and ``text``; errors as `trajectory`."""
+        return tuple(self._lines(run_folder.EVENTS, _event))
 
-    def _lines(self, name: str, parse: Callable[[str], T], size: int | None) -> Iterator[T]:
-        file, whole = self.path / name, self.ended or size is not None
-        return read_lines(file, parse, whole=whole, size=size) if file.exists() else iter(())
+    def tape(self) -> list[Block]:
+        """Return the setpoints of every tick; errors as `trajectory`."""
+        file = self.path / run_folder.TAPE
+        tape = read_tape(file, whole=self.ended)
+        if self.ended and not (tape and len(tape[-1].setpoints) == 0):
+            raise UsageError(f"{file}: cut off, the end of the run is missing")
+        return tape
 
-    def must_hold(self, name: str, found: float, result: str, unit: str) -> None:
-        """Refuse a record of a run that ended which holds less than the run's results tell.
+    def measurements(self) -> list[Measurement]:
+        """Return the exact inputs of belief and decisions; errors as `trajectory`."""
+        measurements = read_measurements(self.path / run_folder.MEASUREMENTS, whole=self.ended)
+        self._require(run_folder.MEASUREMENTS, len(measurements), "camera_frames", "frames")
+        return measurements
 
-        Args:
-            name: of the record's file.
-            found: what it holds [unit].
-            result: name of the result that tells what there was [unit].
-            unit: of both.
+    def _lines(self, name: str, parse: Callable[[str], T]) -> Iterator[T]:
+        file = self.path / name
+        return read_lines(file, parse, whole=self.ended) if file.exists() else iter(())
 
-        Raises:
-            UsageError: it does.
-        """
-        told = self.metrics().get(result) if self.ended else None
-        if isinstance(told, int | float) and found < told:
-            held = f"it holds {found:g} of {told:g} {unit}"
-            raise UsageError(f"{self.path / name} is cut off: {held}")
+    def _require_end(self, name: str, time: NDArray[np.float64]) -> None:
+        self._require(name, float(time[-1]) if len(time) else 0.0, "sim_time_s", "s")
 
-    def _must_reach_the_end(self, name: str, time: NDArray[np.float64]) -> None:
-        self.must_hold(name, float(time[-1]) if len(time) else 0.0, "sim_time_s", "s")
+    def _require(self, name: str, size: float, result: str, unit: str) -> None:
+        """Refuse a record that holds less than the `result` of a run that ended."""
+        expected = self.metrics().get(result) if self.ended else None
+        if isinstance(expected, int | float) and size < expected:
+            raise UsageError(
+                f"{self.path / name}: cut off, it holds {size:g} of {expected:g} {unit}"
+            )
 
 
 def open_run(path: str | Path) -> Run:
-    """The run at `path`, or the newest run below it.
+    """Return the run at `path`, or the newest run below it.
 
     Raises:
-        UsageError: there is no run there.
+        UsageError: there is no run, or its manifest cannot be read.
     """
     path = Path(path)
     try:
         if (path / run_folder.MANIFEST).is_file():
             return _run(path)
         if not path.exists():
-            raise UsageError(f"there is no run folder {path}{_known(path)}")
+            raise UsageError(f"{path}: no such run folder{_alternatives(path)}")
         if path.is_file():
-            raise UsageError(f"{path} is a file: give the run folder it lies in, {path.parent}")
+            raise UsageError(f"{path}: a file; expected the run folder, here {path.parent}")
         files = [file for file in path.glob(f"**/{run_folder.MANIFEST}") if file.is_file()]
         runs = sorted(files, key=lambda file: file.stat().st_mtime_ns)
     except OSError as error:
         raise UsageError(f"cannot read the run folder {path}: {error.strerror}") from error
     if not runs:
         raise UsageError(
-            f"{path} holds no run: a run folder has a {run_folder.MANIFEST}; "
+            f"{path}: no run in this folder; a run folder has a {run_folder.MANIFEST}, and "
             "`hsr8 run SCENARIO` makes one"
         )
     return _run(runs[-1].parent)
 
 
 def _run(path: Path) -> Run:
-    _must_hold_files_alone(path)
     file = path / run_folder.MANIFEST
     manifest = _json(file)
-    if not isinstance(manifest.get("seed"), int):
-        raise UsageError(f"cannot read {file}: it names no seed")
-    number = manifest.get("format", 1)
+    seed, number = manifest.get("seed"), manifest.get("format", 1)
+    if not isinstance(seed, int):
+        raise UsageError(f"cannot read {file}: seed: expected an integer, got {seed!r}")
     if not isinstance(number, int):
-        raise UsageError(f"cannot read {file}: its format is no number")
+        raise UsageError(f"cannot read {file}: format: expected an integer, got {number!r}")
     check_number(number, FORMAT, path, "run folder")
     return Run(path, manifest)
-
-
-def _must_hold_files_alone(path: Path) -> None:
-    """What is read, written or packed lies in the folder, not where a link in it points to."""
-    try:
-        found = sorted(path.iterdir())
-        links = [file for file in found if file.is_symlink()]
-        others = [file for file in found if not (file.is_file() or file.is_dir())]
-    except OSError as error:
-        raise UsageError(f"cannot read the run folder {path}: {error.strerror}") from error
-    for file in links:
-        raise UsageError(f"{file} is a link; a run folder holds files alone")
-    for file in others:
-        raise UsageError(f"{file} is no file; a run folder holds files alone")
 
 
 def _event(line: str) -> dict[str, Any]:
@@ -240,24 +203,24 @@ def _event(line: str) -> dict[str, Any]:
     return {"time": float(event["time"]), "kind": str(event["kind"]), "text": str(event["text"])}
 
 
-def _known(path: Path) -> str:
-    """Where the run may be instead, or how to make one."""
+def _alternatives(path: Path) -> str:
     for folder in (Path("runs"), Path("sweeps")):
         if (folder / path).is_dir():
             return f"; did you mean {folder / path}?"
     parent = path.parent
     names = sorted(p.name for p in parent.iterdir() if p.is_dir()) if parent.is_dir() else []
-    held = f"{parent} holds {', '.join(names[-8:])}" if names else "`hsr8 run SCENARIO` makes one"
-    return f"; {held}"
+    if not names:
+        return "; `hsr8 run SCENARIO` makes one"
+    return f"; {parent} holds {', '.join(names[-8:])}"
 
 
 def _json(path: Path) -> dict[str, Any]:
     try:
-        value = json.loads(read_bytes(path, LARGEST_JSON).decode("utf-8"))
+        value = json.loads(path.read_bytes().decode("utf-8"))
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from error
     except (ValueError, RecursionError) as error:
         raise UsageError(f"cannot read {path}: {error}") from error
     if not isinstance(value, dict):
-        raise UsageError(f"cannot read {path}: it is no JSON object")
+        raise UsageError(f"cannot read {path}: expected a JSON object")
     return value

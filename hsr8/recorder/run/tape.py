@@ -1,9 +1,9 @@
-"""What every servo was told in every control tick, exactly, and a hash of the world each second.
+"""Tape: the exact setpoints of every control tick and a hash of the world every second.
 
-A guarded file with a payload, a block, a second: number of its first tick, hashes of world and
-robot before it, then the set-points of each tick as little-endian doubles. The last block of a
-finished run has no ticks, only the hashes of its end. Physics fed with the set-points again must
-give the same hashes.
+The file holds one guarded payload, a block, per second: number of the first tick, hashes of world
+and robot before it, and the setpoints of each tick as little-endian doubles. The last block of a
+finished run has no ticks, only the final hashes. Physics driven by the same setpoints must
+reproduce the hashes.
 """
 
 import hashlib
@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.files.guarded_file import GuardedWriter, read_payloads
+from hsr8.recorder.files.binary import guarded, read_payloads
+from hsr8.recorder.files.writing import GrowingFile
 from walking.body.joints import JOINT_NAMES
 
 Array = NDArray[np.float64]
@@ -28,7 +29,7 @@ _ROW = 8 * len(JOINT_NAMES)
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """A second of a run.
+    """One second of a run.
 
     Attributes:
         tick: number of its first control tick.
@@ -44,17 +45,17 @@ class Block:
 
 
 class TapeWriter:
-    """Writes the tape of a run.
+    """Writer of the tape of a run.
 
     Args:
-        path: file to create, or to go on with.
+        path: file to create.
 
     Raises:
         RecordingFailed: here and in every method, it cannot be written.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = GuardedWriter(path, MAGIC)
+        self._file = GrowingFile(path, MAGIC)
         self._payload = b""
         self._rows: list[bytes] = []
 
@@ -63,10 +64,11 @@ class TapeWriter:
 
         Args:
             tick: its number.
-            world: everything that determines the world's future.
-            robot: digest of what the robot believes.
+            world: complete state of the world.
+            robot: belief of the robot.
         """
-        self.flush()
+        if self._rows:
+            self._write()
         state = hashlib.blake2b(world, digest_size=HASH)
         self._payload = _FIRST.pack(tick) + state.digest()
         state.update(robot)
@@ -76,13 +78,8 @@ class TapeWriter:
         """Append one control tick (26,) [rad]."""
         self._rows.append(setpoints.tobytes())
 
-    def flush(self) -> None:
-        """End the block, if it has any ticks, and hand it to the operating system."""
-        if self._rows:
-            self._write()
-
     def close(self) -> None:
-        """Finish the file."""
+        """Write the last block and close the file."""
         try:
             self._write()
         finally:
@@ -91,7 +88,7 @@ class TapeWriter:
     def _write(self) -> None:
         if not self._payload:
             return
-        self._file.write(self._payload + b"".join(self._rows))
+        self._file.write(guarded(self._payload + b"".join(self._rows)))
         self._file.flush()
         self._payload = b""
         self._rows.clear()
@@ -102,16 +99,16 @@ def read_tape(path: Path, *, whole: bool) -> list[Block]:
 
     Args:
         path: the file.
-        whole: whether its last block must be complete; that of a killed run need not be.
+        whole: require a complete last block, which a killed run may lack.
 
     Raises:
-        UsageError: it is missing, damaged, or no tape.
+        UsageError: the file is missing, damaged or not a tape.
     """
     blocks: list[Block] = []
     for where, payload in read_payloads(path, MAGIC, file="tape", payload="block", whole=whole):
         rows = len(payload) - _FIRST.size - 2 * HASH
         if rows < 0 or rows % _ROW:
-            raise UsageError(f"{path} is damaged {where}")
+            raise UsageError(f"{path}: damaged {where}")
         blocks.append(_block(payload))
     return blocks
 

@@ -1,7 +1,7 @@
-"""The motion of a run, exact and small: what videos are drawn from afterwards.
+"""Trajectory: the exact motion of robot and movers, from which videos are drawn.
 
-One file of rows of little-endian doubles: time [s], qpos of the robot, then x, y of every
-mover [m], behind a header with the numbers of each.
+The file holds rows of little-endian doubles: time [s], qpos of the robot, then x, y of every
+mover [m]. Its header gives the number of each.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.files.headed_file import HeadedWriter, read_headed
+from hsr8.recorder.files.binary import head, read_rows
+from hsr8.recorder.files.writing import GrowingFile
 
 Array = NDArray[np.float64]
 
@@ -38,10 +39,10 @@ class Trajectory:
 
 
 class TrajectoryWriter:
-    """Appends rows to a trajectory file.
+    """Writer of a trajectory.
 
     Args:
-        path: file to create, or to go on with.
+        path: file to create.
         nq: length of qpos.
         movers: number of movers.
 
@@ -50,38 +51,38 @@ class TrajectoryWriter:
     """
 
     def __init__(self, path: Path, nq: int, movers: int) -> None:
-        self._file = HeadedWriter(path, MAGIC, {"nq": nq, "movers": movers})
+        self._file = GrowingFile(path, head(MAGIC, {"nq": nq, "movers": movers}))
 
     def extend(
         self, times: Sequence[float], qpos: Sequence[Array], movers: Sequence[Array]
     ) -> None:
-        """Add n rows: times [s], configurations (nq,), places of the movers (movers, 2) [m]."""
+        """Append n rows: times [s], configurations (nq,), mover positions (movers, 2) [m]."""
         n = len(times)
         columns = np.reshape(times, (n, 1)), np.array(qpos), np.reshape(movers, (n, -1))
         self._file.write(np.hstack(columns, dtype="<f8").tobytes())
 
     def flush(self) -> None:
-        """Hand everything to the operating system."""
+        """Pass all content to the operating system."""
         self._file.flush()
 
     def close(self) -> None:
-        """Finish the file."""
+        """Close the file."""
         self._file.close()
 
 
 def read_trajectory(path: Path) -> Trajectory:
-    """Read a trajectory file, also one of a run that was killed.
+    """Read a trajectory, also that of a killed run.
 
     Raises:
-        UsageError: it is missing, or no trajectory file.
+        UsageError: the file is missing, damaged or not a trajectory.
     """
-    header, content = read_headed(path, MAGIC, "trajectory file")
+    header, content = read_rows(path, MAGIC, "trajectory")
     try:
         nq, movers = int(header["nq"]), int(header["movers"])
     except (ValueError, TypeError, KeyError) as error:
-        raise UsageError(f"{path} has no whole header") from error
+        raise UsageError(f"{path}: incomplete header") from error
     if nq < 0 or movers < 0:
-        raise UsageError(f"{path} has no whole header")
+        raise UsageError(f"{path}: incomplete header")
     width = 1 + nq + 2 * movers
     rows = len(content) // (8 * width)
     table = np.frombuffer(content, dtype="<f8", count=rows * width)
@@ -94,6 +95,6 @@ def read_trajectory(path: Path) -> Trajectory:
 
 
 def rows_at(time: Array, wanted: Sequence[float] | Array) -> NDArray[np.intp]:
-    """Index of the last row not after each wanted time (m,); the first row before that."""
+    """Return the index of the last row not after each `wanted` time (m,), at least 0."""
     index: NDArray[np.intp] = np.searchsorted(time, np.asarray(wanted) + 1e-9, side="right") - 1
     return np.maximum(index, 0)

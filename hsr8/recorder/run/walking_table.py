@@ -1,10 +1,10 @@
-"""How a run walked, in columns: what plots are drawn from afterwards.
+"""Walking table: ZMP, CoM, DCM, feet, velocities and torques in columns, for plots.
 
-A file of rows: time [s] as a little-endian double, then every other column as a single. Its
-header names the columns and holds what does not change.
+The file holds rows: time [s] as a little-endian double, then every other column as a single. Its
+header names the columns and holds the constants.
 
-Points are in W. What the robot knows in its odometry frame is put there by its true pose of
-the moment, so that planned and true curves can be compared.
+Points are in the world frame W. Points known in the odometry frame are transformed with the true
+pose of the robot, so that planned and true curves can be compared.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
-from hsr8.recorder.files.headed_file import HeadedWriter, read_headed
+from hsr8.recorder.files.binary import head, read_rows
+from hsr8.recorder.files.writing import GrowingFile
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.record_buffer import RecordBuffer
 from hsr8.world.model.index import ModelIndex
@@ -28,7 +29,7 @@ from walking.state import WalkingState
 
 Array = NDArray[np.float64]
 
-MAGIC = b"HSR8WLK1"
+MAGIC = b"HSR8WLK2"
 LEG_JOINTS = JOINT_NAMES[:12]
 PHASES = tuple(Phase)
 LIMITS = tuple(Limit)
@@ -52,17 +53,17 @@ COLUMNS = (
     *(f"push_{c}" for c in ("x", "y", "z", "fx", "fy", "fz", "begin", "impulse")),
     *(f"torque_{name}" for name in LEG_JOINTS),
 )
-LIGHT = 1.0  # no centre of pressure is told under feet that carry less [N]
+LIGHT = 1.0  # feet that carry less have no centre of pressure [N]
 
 
 @dataclass(frozen=True, slots=True)
 class WalkingTable:
-    """How a run walked.
+    """Walking of a run.
 
     Attributes:
         time: of each row (n,) [s].
         columns: by name (n,); lengths [m], angles [rad], forces [N], torques [N m].
-        sole: middle ahead of the ankle, half length and half width of a sole [m].
+        sole: centre ahead of the ankle, half length and half width of a sole [m].
         torque_limit: of each leg joint [N m].
     """
 
@@ -75,41 +76,41 @@ class WalkingTable:
         return len(self.time)
 
     def __getitem__(self, name: str) -> Array:
-        """One column (n,).
+        """Return one column (n,).
 
         Raises:
-            KeyError: there is no such column.
+            KeyError: unknown column.
         """
         if name not in self.columns:
-            raise KeyError(f"there is no column {name!r}, but {', '.join(self.columns)}")
+            raise KeyError(f"no column {name!r}; expected one of {', '.join(self.columns)}")
         return self.columns[name]
 
     def points(self, name: str) -> Array:
-        """Both coordinates of a point (n, 2) [m], for example of ``zmp`` or ``left``.
+        """Return both coordinates of a point (n, 2) [m], for example ``zmp`` or ``left``.
 
         Raises:
-            KeyError: there is no such point.
+            KeyError: unknown point.
         """
         return np.column_stack([self[f"{name}_x"], self[f"{name}_y"]])
 
     def window(self, start: float, stop: float) -> "WalkingTable":
-        """The rows from `start` to `stop` [s]."""
+        """Return the rows from `start` to `stop` [s]."""
         chosen = (self.time >= start - 1e-9) & (self.time <= stop + 1e-9)
         columns = {name: values[chosen] for name, values in self.columns.items()}
         return WalkingTable(self.time[chosen], columns, self.sole, self.torque_limit)
 
-    def bound(self) -> dict[Limit, NDArray[np.bool_]]:
-        """Where each constraint altered the command (n,); those that never did are left out."""
+    def active_limits(self) -> dict[Limit, NDArray[np.bool_]]:
+        """Return the rows (n,) in which each limit was active, without limits that never were."""
         mask = self["limits"].astype(np.int64)
-        found = {limit: (mask >> k) & 1 == 1 for k, limit in enumerate(LIMITS)}
-        return {limit: rows for limit, rows in found.items() if rows.any()}
+        active = {limit: (mask >> k) & 1 == 1 for k, limit in enumerate(LIMITS)}
+        return {limit: rows for limit, rows in active.items() if rows.any()}
 
 
 class WalkingTableWriter(Listener):
-    """Listener that writes the table of a run.
+    """Listener that writes the walking table of a run.
 
     Args:
-        path: file to create, or to go on with.
+        path: file to create.
         model: compiled world.
         index: addresses in it.
 
@@ -124,29 +125,24 @@ class WalkingTableWriter(Listener):
             "sole": [float(v) for v in (model.geom_pos[sole][0], *model.geom_size[sole][:2])],
             "torque_limit": model.actuator_forcerange[index.actuators[:12], 1].tolist(),
         }
-        self._waiting = RecordBuffer()
-        self._file = HeadedWriter(path, MAGIC, header)
+        self._buffer = RecordBuffer()
+        self._file = GrowingFile(path, head(MAGIC, header))
 
     def on_record(self, record: TickRecord) -> None:
         """Append one row."""
-        if self._waiting.add(record):
-            self.flush()
-
-    def flush(self) -> None:
-        """Hand everything to the operating system."""
-        self._write_pending()
-        self._file.flush()
+        if self._buffer.add(record):
+            self._write_buffer()
+            self._file.flush()
 
     def close(self, exit_reason: str) -> None:
-        """Finish the file."""
+        """Write the remaining rows and close the file."""
         try:
-            self._write_pending()
+            self._write_buffer()
         finally:
             self._file.close()
 
-    def _write_pending(self) -> None:
-        """Write the rows of the records that wait."""
-        records = self._waiting.take()
+    def _write_buffer(self) -> None:
+        records = self._buffer.take()
         table = np.empty(len(records), dtype=_row_type(len(COLUMNS)))
         table["time"] = [record.time for record in records]
         if records:
@@ -155,51 +151,43 @@ class WalkingTableWriter(Listener):
 
 
 def read_walking_table(path: Path) -> WalkingTable:
-    """Read a table, also that of a run that was killed.
+    """Read a walking table, also that of a killed run.
 
     Raises:
-        UsageError: it is missing, or no such table.
+        UsageError: the file is missing, damaged or not a walking table.
     """
-    if not path.exists():
-        raise UsageError(
-            f"{path.parent} does not tell how it walked: it has no {path.name}; run it again"
-        )
-    header, content = read_headed(path, MAGIC, "walking table")
+    header, content = read_rows(path, MAGIC, "walking table")
     try:
-        names = [str(name) for name in header["columns"]]
         centre, half_length, half_width = map(float, header["sole"])
         limits = dict(zip(LEG_JOINTS, map(float, header["torque_limit"]), strict=True))
+        complete = tuple(header["columns"]) == COLUMNS
     except (ValueError, TypeError, KeyError) as error:
-        raise UsageError(f"{path} has no whole header") from error
-    missing = [name for name in COLUMNS if name not in names]
-    if missing:
-        raise UsageError(
-            f"{path} is of another version of hsr8: it has no column {', '.join(missing)}; "
-            "run it again"
-        )
-    row = _row_type(len(names))
+        raise UsageError(f"{path}: incomplete header") from error
+    if not complete:
+        raise UsageError(f"{path}: incomplete header")
+    row = _row_type(len(COLUMNS))
     table = np.frombuffer(content, dtype=row, count=len(content) // row.itemsize)
     time, values = table["time"].astype(np.float64), table["values"].astype(np.float64)
-    known = np.isin(values[:, names.index("phase")], range(len(PHASES)))
+    known = np.isin(values[:, COLUMNS.index("phase")], range(len(PHASES)))
     whole = known & np.isfinite(time) & ~np.isinf(values).any(axis=1)
     if not whole.all():
-        raise UsageError(f"{path} is damaged in row {int(np.argmin(whole))}")
+        raise UsageError(f"{path}: damaged in row {int(np.argmin(whole))}")
     return WalkingTable(
         time=time,
-        columns={name: values[:, k] for k, name in enumerate(names)},
+        columns={name: values[:, k] for k, name in enumerate(COLUMNS)},
         sole=(centre, half_length, half_width),
         torque_limit=limits,
     )
 
 
 class OdometryToWorld:
-    """Puts what the robot knows in its odometry frame where the robot truly is.
+    """Transformation from the odometry frame to W by the true pose of the robot.
 
     Args:
-        records: of n moments.
+        records: n records.
 
     Attributes:
-        turn: from the odometry frame to W at each moment (n,) [rad].
+        turn: rotation from the odometry frame to W at each record (n,) [rad].
     """
 
     def __init__(self, records: Sequence[TickRecord]) -> None:
@@ -211,28 +199,30 @@ class OdometryToWorld:
         self._x = true_x - self._c * x + self._s * y
         self._y = true_y - self._s * x - self._c * y
 
-    def point(self, points: Array, moments: NDArray[np.intp] | slice = slice(None)) -> Array:
-        """Points of the odometry frame (n, ..., 2) in W, of every moment or of `moments` [m]."""
+    def point(self, points: Array, rows: NDArray[np.intp] | slice = slice(None)) -> Array:
+        """Transform points (n, ..., 2), one per record or of the records in `rows` [m]."""
         x, y = points.T
-        c, s = self._c[moments], self._s[moments]
-        there = self._x[moments] + c * x - s * y, self._y[moments] + s * x + c * y
-        return np.array(there).T
+        c, s = self._c[rows], self._s[rows]
+        return np.array((self._x[rows] + c * x - s * y, self._y[rows] + s * x + c * y)).T
 
     def vector(self, vectors: Array) -> Array:
-        """Directions of the odometry frame (n, ..., 2) in W."""
+        """Rotate vectors (n, ..., 2)."""
         x, y = vectors.T
         return np.array([self._c * x - self._s * y, self._s * x + self._c * y]).T
 
 
 def _values(records: Sequence[TickRecord]) -> Array:
-    """All columns but the time (n, columns)."""
+    """Return all columns except the time (n, columns)."""
     truths, walks = [r.truth for r in records], [r.walking for r in records]
     balances = [walking.balance for walking in walks]
-    there = OdometryToWorld(records)
+    transform = OdometryToWorld(records)
     force = np.array([truth.foot_force for truth in truths])
-    pressed = force.sum(axis=1, keepdims=True) > LIGHT
+    loaded = force.sum(axis=1, keepdims=True) > LIGHT
     feet = np.array([balance.feet for balance in balances])
-    feet[..., :2], feet[..., 3] = there.point(feet[..., :2]), feet[..., 3] + there.turn[:, None]
+    feet[..., :2], feet[..., 3] = (
+        transform.point(feet[..., :2]),
+        feet[..., 3] + transform.turn[:, None],
+    )
     points = [(b.com, w.com, w.dcm, b.dcm) for w, b in zip(walks, balances, strict=True)]
     return np.column_stack(
         [
@@ -240,21 +230,21 @@ def _values(records: Sequence[TickRecord]) -> Array:
             [record.command.velocity for record in records],
             [walking.applied_velocity for walking in walks],
             [truth.robot for truth in truths],
-            there.point(np.array([walking.zmp for walking in walks])),
-            np.where(pressed, [truth.zmp for truth in truths], np.nan),
-            there.point(np.array(points)).reshape(len(records), -1),
+            transform.point(np.array([walking.zmp for walking in walks])),
+            np.where(loaded, [truth.zmp for truth in truths], np.nan),
+            transform.point(np.array(points)).reshape(len(records), -1),
             np.dstack([feet, force]).reshape(len(records), -1),
-            there.vector(np.array([balance.capture for balance in balances])),
+            transform.vector(np.array([balance.capture for balance in balances])),
             [(w.balance.zmp_depth, w.roll, w.pitch) for w in walks],
-            [_bound(walking) for walking in walks],
+            [_limit_bits(walking) for walking in walks],
             [_push(truth) for truth in truths],
             np.array([truth.joint_torque for truth in truths])[:, : len(LEG_JOINTS)],
         ]
     )
 
 
-def _bound(walking: WalkingState) -> int:
-    """The constraints that altered the command, a bit each."""
+def _limit_bits(walking: WalkingState) -> int:
+    """Return the active limits of the command, one bit each."""
     limits = walking.command_limits.limits if walking.command_limits is not None else ()
     return sum({1 << LIMITS.index(limit) for limit in limits})
 
@@ -267,5 +257,4 @@ def _push(truth: Truth) -> tuple[float, ...]:
 
 
 def _row_type(columns: int) -> np.dtype[np.void]:
-    """A row of the file."""
     return np.dtype([("time", "<f8"), ("values", "<f4", (columns,))])

@@ -50,7 +50,7 @@ class RenderedCamera:
     ) -> None:
         self._faults = faults or CameraFaults()
         self._settings = settings
-        self.noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
+        self._noise = ImageNoise(settings.noise, (settings.height, settings.width), rng)
         self._offscreen = Offscreen(model, HEAD_CAMERA, settings.width, settings.height)
         self._blur: MotionBlur | None = None
         if settings.shutter_ms > 0.0:
@@ -69,9 +69,9 @@ class RenderedCamera:
 
     def capture(self, body: "Body") -> Exposure:
         """Start an image (height, width, 3) of the present world."""
-        self.settle()
+        self._settle()
         body.update_kinematics()
-        settings, noise, faults, tick = self._settings, self.noise, self._faults, ticks(body.time)
+        settings, noise, faults, tick = self._settings, self._noise, self._faults, ticks(body.time)
         light, missed = noise.light(), noise.missed(len(self._objects), faults.missed(tick))
         blobs = faults.false_detections(tick)
         if faults.black(tick):
@@ -91,7 +91,7 @@ class RenderedCamera:
         self._latest = Exposure(lambda: noise.apply(read(), blobs))
         return self._latest
 
-    def settle(self) -> None:
+    def _settle(self) -> None:
         """Read the latest image, so that noise is drawn in the order of the captures."""
         if self._latest is not None:
             self._latest.image()

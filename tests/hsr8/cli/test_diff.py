@@ -67,7 +67,7 @@ def test_one_bit_of_a_set_point_is_named_with_tick_and_joint(recorded, tmp_path,
     code, told = diff(capsys, recorded[0], copy)
     assert code == 1
     assert told["first"]["tick"] == 77
-    assert re.fullmatch(r"set-point of [lr]_\w+ \[rad\]", told["first"]["channel"])
+    assert re.fullmatch(r"setpoint of [lr]_\w+ \[rad\]", told["first"]["channel"])
     assert told["first"]["a"] != told["first"]["b"]
 
 

@@ -21,7 +21,7 @@ def test_json_holds_what_the_folder_holds(run, capsys):
     assert told["manifest"] == run.manifest
     assert told["metrics"] == run.metrics()
     assert told["files"] == {f.name: f.stat().st_size for f in run.path.iterdir()}
-    assert {c["name"]: c["passed"] for c in told["criteria"]} == {
+    assert {c["name"]: c["met"] for c in told["criteria"]} == {
         "falls": True,
         "goal reached": False,
     }

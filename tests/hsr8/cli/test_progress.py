@@ -52,19 +52,3 @@ def test_a_terminal_gets_a_live_line_that_goes_away(fake, monkeypatch):
     assert "the robot has fallen" in stream.getvalue()
     assert ERASE_LINE in stream.getvalue()[before:]
     assert stream.getvalue().count(HIDE_CURSOR) == stream.getvalue().count(SHOW_CURSOR) == 1
-
-
-def test_a_run_that_goes_on_is_told_from_where_it_goes_on(walk, monkeypatch):
-    stream = io.StringIO()
-    monkeypatch.setattr("time.perf_counter", lambda: 0.0)
-    progress = Progress(60.0, stream)
-    monkeypatch.setattr("time.perf_counter", lambda: 5.0)
-    progress.recall([{"kind": "via_point"}, {"kind": "collision"}, {"kind": "fault"}])
-    assert "via points   1   collisions 1" in progress.line(next(walk(1.0)))
-    for record in walk(45.0):
-        if record.time > 32.0:
-            progress.on_record(record)
-    (line,) = stream.getvalue().splitlines()
-    assert line.split()[0] == "40.0"
-    assert "1.6x real time" in line  # 8 s in 5 s
-    assert "collisions 1" in line

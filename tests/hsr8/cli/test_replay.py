@@ -43,13 +43,13 @@ def test_the_screenshot_is_of_the_middle_unless_asked_for(run, monkeypatch, caps
     assert entry(["replay", str(run), "--screenshot", str(picture)]) == 0
     assert entry(["replay", str(run), "--screenshot", str(picture), "--time", "0.1"]) == 0
     assert picture.read_bytes() == b"PNG"
-    assert asked[0] == ([run / run_folder.LOG], 0.5, (1600, 900))
+    assert asked[0] == (run / run_folder.LOG, 0.5, (1600, 900))
     assert asked[1][1] == 0.1
 
 
 def test_no_such_run(tmp_path, capsys):
     assert entry(["replay", str(tmp_path / "nothing")]) == 2
-    assert "no run folder" in capsys.readouterr().err
+    assert "no such run folder" in capsys.readouterr().err
 
 
 def test_a_picture_that_cannot_be_written_is_one_clear_error(run, monkeypatch, capsys, tmp_path):

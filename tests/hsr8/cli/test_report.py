@@ -5,7 +5,7 @@ from rich.console import Console
 
 from hsr8.cli import report
 from hsr8.evaluation.metrics import Metrics
-from hsr8.evaluation.verdict import Check
+from hsr8.evaluation.verdict import Criterion
 
 
 def test_the_report_shows_results_criteria_and_what_to_do_next(layout, walk, tmp_path):
@@ -16,13 +16,16 @@ def test_the_report_shows_results_criteria_and_what_to_do_next(layout, walk, tmp
     report.show(
         "quick, seed 3",
         results=metrics.result("timeout", "hash"),
-        checks=(Check("falls", "<= 0", "0", True), Check("goal reached", "yes", "no", False)),
+        checks=(
+            Criterion("falls", "<= 0", "0", True),
+            Criterion("goal reached", "yes", "no", False),
+        ),
         path=tmp_path,
         command="hsr8 run quick",
         console=Console(file=stream, width=100),
     )
     text = stream.getvalue()
-    for words in ("quick, seed 3", "0.4 m", "passed", "failed", str(tmp_path), "hsr8 run quick"):
+    for words in ("quick, seed 3", "0.4 m", "met", "not met", str(tmp_path), "hsr8 run quick"):
         assert words in text
     # Without a log there is nothing to replay.
     assert "hsr8 replay" not in text

@@ -138,13 +138,13 @@ def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
         assert printed.out.splitlines() == [f"run         {run}"]
 
     file.write_bytes(content[: places[5] + 100] + b"?" + content[places[5] + 101 :])
-    refused("is damaged in frame 5")
+    refused("damaged in frame 5")
     file.write_bytes(content[: places[9] + 20])
-    refused("is cut off in frame 9")
+    refused("cut off in frame 9")
     file.write_bytes(content[: places[9] + 3])
-    refused("is cut off in frame 9")
+    refused("cut off in frame 9")
     file.write_bytes(content[:8])
-    refused("is cut off: it holds 0 of")
+    refused("cut off, it holds 0 of")
     manifest = run / "manifest.json"
     ended = manifest.read_text()
     manifest.write_text(json.dumps(json.loads(ended) | {"exit_reason": "running"}))
@@ -152,7 +152,7 @@ def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
     manifest.write_text(ended)
     capsys.readouterr()
     file.write_bytes(b"something else")
-    refused("is no file of measurements")
+    refused("not a file of measurements")
     file.unlink()
     refused("cannot read the file of measurements")
 
@@ -166,13 +166,13 @@ def test_a_damaged_cut_or_missing_tape_is_one_clear_error(run, capsys):
         assert text in capsys.readouterr().err
 
     file.write_bytes(content[:1000] + b"?" + content[1001:])
-    refused("is damaged in block 0")
+    refused("damaged in block 0")
     file.write_bytes(content[:-1])
-    refused("is cut off in block")
+    refused("cut off in block")
     file.write_bytes(b"something else")
-    refused("is no tape")
+    refused("not a tape")
     file.write_bytes(b"HSR8TAP9" + content[8:])
-    refused("is a tape of format 9, hsr8")
+    refused("tape of format 9, hsr8")
     file.unlink()
     refused("cannot read the tape")
 

@@ -102,7 +102,7 @@ def test_collisions_by_kind(metrics, fake):
     assert results["collisions"] == 3
     assert results["collisions_moving"] == 2
     assert results["collisions_static"] == 1
-    assert results["collisions_closing"] == 1
+    assert results["collisions_at_fault"] == 1
 
 
 def test_lying_for_long_is_one_fall_and_its_tilt_does_not_count(metrics, fake):

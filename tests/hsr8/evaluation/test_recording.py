@@ -24,7 +24,7 @@ def recorded(path):
     model = weakref.ref(simulation.model)
     recording = Recording(simulation)
     manifest = Manifest.now("quick", 1, ("test",), "analytic")
-    recording.into(path, manifest, checkpoint=1)
+    recording.into(path, manifest)
     recording.run()
     return model
 

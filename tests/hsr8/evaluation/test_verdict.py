@@ -1,17 +1,17 @@
 import pytest
 
-from hsr8.evaluation.verdict import exit_code, judge
+from hsr8.evaluation.verdict import evaluate_criteria, exit_code
 from hsr8.scenario.schema import Criteria
 
 GOOD = {"falls": 0, "collisions": 0, "goal_reached": True, "via_points_passed": 4}
 ALL = Criteria(max_falls=0, max_collisions=0, goal_reached=True, min_via_points=4)
 
 
-def test_a_good_run_passes_everything():
-    checks = judge(ALL, GOOD)
-    assert len(checks) == 4
-    assert all(check.passed for check in checks)
-    assert exit_code("goal", checks) == 0
+def test_a_good_run_meets_every_criterion():
+    criteria = evaluate_criteria(ALL, GOOD)
+    assert len(criteria) == 4
+    assert all(criterion.met for criterion in criteria)
+    assert exit_code("goal", criteria) == 0
 
 
 @pytest.mark.parametrize(
@@ -19,17 +19,19 @@ def test_a_good_run_passes_everything():
     [("falls", 1), ("collisions", 1), ("goal_reached", False), ("via_points_passed", 3)],
 )
 def test_each_criterion_can_fail_alone(key, value):
-    checks = judge(ALL, GOOD | {key: value})
-    assert sum(not check.passed for check in checks) == 1
-    assert exit_code("timeout", checks) == 1
+    criteria = evaluate_criteria(ALL, GOOD | {key: value})
+    assert sum(not criterion.met for criterion in criteria) == 1
+    assert exit_code("timeout", criteria) == 1
 
 
 def test_what_is_not_asked_is_not_judged():
-    checks = judge(Criteria(max_falls=0), GOOD | {"collisions": 9, "goal_reached": False})
-    assert [check.name for check in checks] == ["falls"]
-    assert exit_code("timeout", checks) == 0
+    criteria = evaluate_criteria(
+        Criteria(max_falls=0), GOOD | {"collisions": 9, "goal_reached": False}
+    )
+    assert [criterion.name for criterion in criteria] == ["falls"]
+    assert exit_code("timeout", criteria) == 0
 
 
 @pytest.mark.parametrize(("reason", "code"), [("interrupted", 130), ("diverged", 3)])
-def test_how_it_ended_comes_before_what_was_reached(reason, code):
-    assert exit_code(reason, judge(ALL, GOOD)) == code
+def test_the_exit_reason_takes_precedence_over_the_criteria(reason, code):
+    assert exit_code(reason, evaluate_criteria(ALL, GOOD)) == code

@@ -64,7 +64,7 @@ def test_the_sway_of_the_gait_is_no_velocity(fake, velocity):
     assert results["steps"] == 23
 
 
-def test_errors_are_signed_and_from_what_was_asked_and_given(fake):
+def test_errors_are_signed_and_from_the_commanded_and_the_applied_velocity(fake):
     stream = records(fake, (0.2, 0.0, 0.0), 8.0, applied=(0.15, 0.0, 0.1))
     error = results_of(stream)["velocity_error"]["applied"]
     assert list(error.values()) == pytest.approx([0.05, 0.0, -0.1], abs=0.003)
@@ -107,8 +107,8 @@ def test_counts_are_shares_of_the_ticks(fake):
     for limits in ((), (Limit.ACCELERATION,), (Limit.ACCELERATION, Limit.ZMP_REGION), ()):
         counters.add(SimpleNamespace(limits=limits, zmp_depth=0.01), 0.002)
     results = results_of([replace(fake.record(0.0), counters=counters)])
-    assert results["altered_commands"] == 0.5
-    assert results["altered_by"] == {"acceleration": 0.5, "zmp_region": 0.25}
+    assert results["limited_fraction"] == 0.5
+    assert results["limited_by"] == {"acceleration": 0.5, "zmp_region": 0.25}
     assert results["zmp_outside_sole_ticks"] == 0
     assert "walk_tick_mean_ms" not in results
 

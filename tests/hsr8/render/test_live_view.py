@@ -1,3 +1,5 @@
+import sys
+
 import pytest
 
 from hsr8.cli.main import entry
@@ -6,12 +8,26 @@ from hsr8.render import live_view, viewer
 
 
 @pytest.mark.parametrize("kind", ["native", "web"])
-def test_the_viewer_listens_to_this_machine_alone(kind, monkeypatch):
+def test_the_viewer_listens_to_this_machine_only(kind, monkeypatch):
+    started = []
+
+    class Started(viewer.Viewer):
+        def __init__(self, words):
+            started.append(words)
+            super().__init__([sys.executable, "-c", "import time; time.sleep(60)"])
+
+        def wait_for_port(self, port):
+            pass
+
     monkeypatch.setattr(viewer, "executable", lambda: "rerun")
-    words = live_view.command(kind, 1234, 5678)
-    assert words[words.index("--bind") + 1] == "127.0.0.1"
-    assert words[words.index("--port") + 1] == "1234"
-    assert ("--serve-web" in words) == ("5678" in words) == (kind == "web")
+    monkeypatch.setattr(viewer, "has_display", lambda: True)
+    monkeypatch.setattr(viewer, "Viewer", Started)
+    with live_view.live_view(kind) as view:
+        (words,) = started
+        assert words[words.index("--bind") + 1] == "127.0.0.1"
+        assert f":{words[words.index('--port') + 1]}/" in view.address
+        assert ("--serve-web" in words) == view.page.startswith("http://127.0.0.1:")
+        assert bool(view.page) == (kind == "web")
 
 
 def test_a_window_needs_a_display(monkeypatch):
@@ -23,14 +39,14 @@ def test_a_window_needs_a_display(monkeypatch):
         raise AssertionError
 
 
-@pytest.mark.parametrize("words", [["--view"], ["--view", "native"]])
-def test_without_a_display_nothing_is_run(words, tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("words", [["--view", "native"]])
+def test_without_a_display_nothing_runs(words, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(viewer, "has_display", lambda: False)
-    assert entry(["run", *words, "quick", "--out", str(tmp_path / "runs")]) == 2
+    assert entry(["run", "quick", *words, "--out", str(tmp_path / "runs")]) == 2
     assert "no display" in capsys.readouterr().err
     assert not (tmp_path / "runs").exists()
 
 
-def test_a_view_without_a_log_is_a_contradiction(tmp_path, capsys):
+def test_a_view_without_a_log_is_refused(tmp_path, capsys):
     assert entry(["run", "quick", "--view", "web", "--no-log", "--out", str(tmp_path)]) == 2
     assert "--no-log" in capsys.readouterr().err

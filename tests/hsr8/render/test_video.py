@@ -40,9 +40,7 @@ def test_a_failure_leaves_no_file(tmp_path):
 def test_an_old_video_survives_a_frame_that_cannot_be_encoded(tmp_path):
     file = tmp_path / "v.mp4"
     file.write_text("old")
-    video = VideoWriter(file, (64, 48), 25)
-    video.add(np.zeros((48, 64), np.uint8))
-    with pytest.raises(ValueError, match="ndim"):
-        video.close()
+    with pytest.raises(ValueError, match="ndim"), VideoWriter(file, (64, 48), 25) as video:
+        video.add(np.zeros((48, 64), np.uint8))
     assert file.read_text() == "old"
     assert list(tmp_path.iterdir()) == [file]

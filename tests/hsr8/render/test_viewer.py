@@ -1,4 +1,5 @@
 import os
+import socket
 import sys
 from pathlib import Path
 
@@ -7,50 +8,61 @@ import pytest
 from hsr8.errors import UsageError
 from hsr8.gl import VULKAN_LINE
 from hsr8.render import viewer
+from hsr8.render.viewer import Viewer
 
 
-def test_the_line_that_says_what_went_wrong_is_found():
-    said = (
-        "\x1b[2m2026-01-01\x1b[0m \x1b[32m INFO\x1b[0m loading\n\n"
-        "thread 'main' panicked at 'no \x1b[1mcontext\x1b[0m'\nstack backtrace:\n 24: _start\n"
-    )
-    assert viewer.complaint(said) == "thread 'main' panicked at 'no context'"
-    assert viewer.complaint("INFO loading\nINFO loaded\n") == ""
+def failing(monkeypatch, message):
+    """Let the viewer end at once with a message."""
+    program = f"import sys; sys.exit({message!r})"
+    monkeypatch.setattr(viewer, "command", lambda *words: [sys.executable, "-c", program])
 
 
-def test_a_recording_without_times_yet_is_waited_for(monkeypatch):
-    answers = [ConnectionError("has no timelines yet"), None]
-
-    class Client:
-        def set_time(self, *_, **__):
-            answer = answers.pop(0)
-            if answer:
-                raise answer
-
-    monkeypatch.setattr(viewer.clock, "sleep", lambda _: None)
-    viewer._stop_at(Client(), Running(None), 1.0)
-    assert answers == []
-    answers = [ConnectionError("gone")]
-    with pytest.raises(ConnectionError, match="gone"):
-        viewer._stop_at(Client(), Running(1), 1.0)
-
-
-class Running:
-    """A process that has ended with `code`, or has not."""
-
-    def __init__(self, code):
-        self.ended = code is not None
-
-
-def test_a_viewer_that_goes_down_leads_to_the_cure(monkeypatch):
-    program = "import sys; sys.exit('Error: no graphics')"
-    monkeypatch.setattr(viewer, "_command", lambda log, port: [sys.executable, "-c", program])
-    with pytest.raises(UsageError, match="did not start: Error: no graphics") as caught:
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ("Error: no graphics", "did not start: Error: no graphics"),
+        (
+            "\x1b[32m INFO\x1b[0m loading\nthread 'main' panicked at 'no \x1b[1mcontext\x1b[0m'\n",
+            "did not start: thread 'main' panicked at 'no context'",
+        ),
+        ("INFO loading", "did not start\n"),
+    ],
+)
+def test_the_error_of_a_viewer_contains_its_message_and_the_remedy(monkeypatch, output, message):
+    failing(monkeypatch, output)
+    with pytest.raises(UsageError, match=message) as caught:
         viewer.screenshot(Path("log.rrd"), 0.0, (64, 64))
     assert VULKAN_LINE in str(caught.value)
 
 
-TALKATIVE_AND_DEAF = """
+def test_a_damaged_log_is_not_blamed_on_the_graphics(monkeypatch):
+    failing(monkeypatch, "ERROR Failed to load file: no metadata")
+    with pytest.raises(UsageError, match=r"the log is damaged.*no metadata") as caught:
+        viewer.screenshot(Path("log.rrd"), 0.0, (64, 64))
+    assert VULKAN_LINE not in str(caught.value)
+
+
+def test_a_viewer_is_polled_until_it_is_ready_or_times_out(monkeypatch):
+    answers = iter([False, False, True])
+    with Viewer([sys.executable, "-c", "import time; time.sleep(60)"]) as process:
+        assert process.poll(lambda: next(answers))
+        monkeypatch.setattr(viewer, "START_TIMEOUT", 0.1)
+        assert not process.poll(lambda: False)
+
+
+def test_the_port_of_a_viewer_is_waited_for():
+    port = viewer.free_port()
+    program = (
+        "import socket, sys, time; time.sleep(0.3); "
+        "socket.create_server(('127.0.0.1', int(sys.argv[1]))).accept(); time.sleep(60)"
+    )
+    with Viewer([sys.executable, "-c", program, str(port)]) as process:
+        process.wait_for_port(port)
+        with pytest.raises(OSError, match="in use"):
+            socket.create_server((viewer.LOOPBACK, port))
+
+
+VERBOSE_AND_STUBBORN = """
 import signal, sys
 signal.signal(signal.SIGTERM, signal.SIG_IGN)
 print(100_000 * "x", "Error: still here", sep="\\n", file=sys.stderr, flush=True)
@@ -59,19 +71,11 @@ signal.pause()
 """
 
 
-def test_a_viewer_that_says_much_and_does_not_end_is_ended(tmp_path, monkeypatch):
-    monkeypatch.setattr(viewer, "ENDING", 0.2)
+def test_a_viewer_that_ignores_sigterm_is_killed(tmp_path, monkeypatch):
+    monkeypatch.setattr(viewer, "STOP_TIMEOUT", 0.2)
     done = tmp_path / "done"
     os.mkfifo(done)
-    with viewer.running([sys.executable, "-c", TALKATIVE_AND_DEAF, str(done)]) as talks:
-        done.read_text()  # comes back when all is said
-        assert not talks.ended
-    assert talks.ended
-
-
-def test_a_damaged_log_is_not_laid_to_the_graphics(monkeypatch):
-    program = "import sys; sys.exit('ERROR Failed to load file: no metadata')"
-    monkeypatch.setattr(viewer, "_command", lambda log, port: [sys.executable, "-c", program])
-    with pytest.raises(UsageError, match=r"the log is damaged.*no metadata") as caught:
-        viewer.screenshot(Path("log.rrd"), 0.0, (64, 64))
-    assert VULKAN_LINE not in str(caught.value)
+    with Viewer([sys.executable, "-c", VERBOSE_AND_STUBBORN, str(done)]) as process:
+        done.read_text()  # returns when all output is written
+        assert not process.ended
+    assert process.ended

@@ -29,18 +29,18 @@ def test_columns_are_sent_when_asked_for_and_once(tmp_path, monkeypatch):
     stream.send()
     assert sent == ["/plots/x"] * 3
     stream.disconnect()
-    table = Log([tmp_path / "log.rrd"]).table("/plots/x")
+    table = Log(tmp_path / "log.rrd").table("/plots/x")
     assert table.array()[:, 0].tolist() == [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]
 
 
 def test_the_arrangement_is_in_the_file_as_if_rerun_had_set_the_sinks(tmp_path):
     ours, theirs = BlockStream("test"), BlockStream("test")
     ours.begin(
-        [rr.FileSink(str(tmp_path / "ours.rrd"))], blueprint(5.0, walking=False, pictures=True)
+        [rr.FileSink(str(tmp_path / "ours.rrd"))], blueprint(5.0, walking=False, images=True)
     )
     theirs.set_sinks(
         rr.FileSink(str(tmp_path / "theirs.rrd")),
-        default_blueprint=blueprint(5.0, walking=False, pictures=True),
+        default_blueprint=blueprint(5.0, walking=False, images=True),
     )
     for stream in (ours, theirs):
         stream.disconnect()

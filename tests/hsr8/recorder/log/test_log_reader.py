@@ -1,15 +1,12 @@
-import sys
-from types import SimpleNamespace
-
 import cv2
 import numpy as np
 import pytest
 import rerun as rr
 
 from hsr8.errors import UsageError
-from hsr8.recorder.log import log_reader
 from hsr8.recorder.log.log_reader import Log, read_log
 from hsr8.recorder.log.rerun_log import RerunLog
+from hsr8.recorder.run.manifest import Manifest
 from navigation.parameters.gaze import GazeParameters
 
 
@@ -33,7 +30,7 @@ def file(tmp_path_factory, model, layout, records):
 
 
 def test_what_was_logged_is_read_back(file, records):
-    log = Log([file])
+    log = Log(file)
     frames = [r for r in records if r.frame is not None][::3]
     poses = log.table("/belief/pose", "Arrows3D:origins")
     assert poses.time == pytest.approx([r.time for r in frames], abs=1e-9)
@@ -43,14 +40,14 @@ def test_what_was_logged_is_read_back(file, records):
 
 
 def test_curves_have_names(file):
-    table = Log([file]).table("/plots/partial")
+    table = Log(file).table("/plots/partial")
     assert table["ψ obstacle"] == pytest.approx([0.6] * len(table))
     with pytest.raises(KeyError, match="ψ way"):
         table["ψ"]
 
 
 def test_words_lines_and_images_are_read_too(file):
-    log = Log([file])
+    log = Log(file)
     assert log.table("/events", "TextLog:text").rows[-1].tolist() == ["end: goal"]
     assert {s for row in log.table("/state/gait").rows for s in row} == {"left", "right"}
     (outline, *_) = log.table("/world/footsteps", "LineStrips3D:strips").rows[0]
@@ -62,7 +59,7 @@ def test_words_lines_and_images_are_read_too(file):
 
 
 def test_what_stands_was_logged_once(file, layout):
-    table = Log([file]).table("/world/obstacles/cylinders", "Cylinders3D:centers")
+    table = Log(file).table("/world/obstacles/cylinders", "Cylinders3D:centers")
     assert table.time.tolist() == [-np.inf]
     assert table.rows[0][:, :2] == pytest.approx(np.array([o.position for o in layout.static]))
 
@@ -70,7 +67,7 @@ def test_what_stands_was_logged_once(file, layout):
 def test_rows_of_different_lengths_make_no_array(tmp_path, model, layout, fake):
     frames = [fake.frame(0.0), fake.frame(0.2, tracks=())]
     records = [fake.record(f.time, frame=f) for f in frames]
-    table = Log([_write(tmp_path / "a" / "log.rrd", model, layout, records)]).table(
+    table = Log(_write(tmp_path / "a" / "log.rrd", model, layout, records)).table(
         "/belief/tracks", "Cylinders3D:radii"
     )
     assert [len(row) for row in table.rows] == [3, 0]
@@ -78,29 +75,15 @@ def test_rows_of_different_lengths_make_no_array(tmp_path, model, layout, fake):
         table.array()
 
 
-def test_a_part_gives_way_to_the_one_that_was_made_after_going_back(
-    tmp_path, model, layout, records, walk
-):
-    later = [r for r in walk(3.0) if r.time > 1.1]
-    parts = [
-        _write(tmp_path / name / "log.rrd", model, layout, some)
-        for name, some in (("1", records), ("2", later))
-    ]
-    time = Log(parts).table("/plots/tilt").time
-    assert (np.diff(time) > 0.01).all()
-    assert time[0] == 0.0
-    assert time[-1] == pytest.approx(3.0, abs=0.05)
-
-
 def test_a_log_cut_off_in_a_message_is_told_with_the_cure(file, tmp_path):
     cut = tmp_path / "log.rrd"
     cut.write_bytes(file.read_bytes()[:-3000])
     with pytest.raises(UsageError, match="rerun rrd optimize --continue-on-error"):
-        Log([cut]).table("/plots/tilt")
+        Log(cut).table("/plots/tilt")
 
 
 def test_a_wrong_name_is_answered_with_the_right_one(file):
-    log = Log([file])
+    log = Log(file)
     for entity, component, said in (
         ("/plots/partail", "", "/plots/partial"),
         ("/belief/pose", "", "Arrows3D:origins, Arrows3D:vectors"),
@@ -111,18 +94,19 @@ def test_a_wrong_name_is_answered_with_the_right_one(file):
     assert "Scalars:scalars" in log.entities()["/plots/partial"]
 
 
-def test_no_run_and_no_log_are_told(tmp_path):
-    with pytest.raises(UsageError, match="no run"):
+def test_a_missing_run_and_a_missing_log_are_usage_errors(tmp_path):
+    with pytest.raises(UsageError, match="no such run folder"):
         read_log(tmp_path / "nothing")
+    Manifest.now("quick", 1, (), "analytic").write(tmp_path / "manifest.json")
     with pytest.raises(UsageError, match="--no-log"):
-        Log([])
+        read_log(tmp_path)
 
 
 def test_a_file_that_is_no_log_is_told(tmp_path):
     other = tmp_path / "log.rrd"
     other.write_text("something else")
     with pytest.raises(UsageError, match=r"log\.rrd"):
-        Log([other]).entities()
+        Log(other).entities()
 
 
 def test_rows_without_instances_are_empty(tmp_path):
@@ -132,7 +116,7 @@ def test_rows_without_instances_are_empty(tmp_path):
     times = [rr.TimeColumn("sim_time", duration=np.arange(3.0))]
     stream.send_columns("/points", times, columns)
     stream.disconnect()
-    table = Log([tmp_path / "log.rrd"]).table("/points")
+    table = Log(tmp_path / "log.rrd").table("/points")
     assert [len(row) for row in table.rows] == [0, 2, 0]
 
 
@@ -144,18 +128,4 @@ def test_a_log_that_was_killed_as_it_began_is_refused_by_name(tmp_path, length):
     stream.disconnect()
     file.write_bytes(file.read_bytes()[:length])
     with pytest.raises(UsageError, match=r"cannot read the log .*log\.rrd"):
-        Log([file]).entities()
-
-
-def test_a_log_at_which_the_decoder_aborts_is_refused(tmp_path, monkeypatch):
-    """Some damages end the process that reads them, so another one goes ahead."""
-    file = tmp_path / "log.rrd"
-    file.write_bytes(b"")
-    run = SimpleNamespace(log_files=(file,))
-    monkeypatch.setattr(log_reader, "open_run", lambda path: run)
-    monkeypatch.setattr(sys, "executable", str(tmp_path / "reader"))
-    reader = tmp_path / "reader"
-    reader.write_text('#!/bin/sh\ncase "$*" in *decode*log.rrd) kill -6 $$;; esac\n')
-    reader.chmod(0o755)
-    with pytest.raises(UsageError, match=r"log\.rrd: it cannot be decoded"):
-        read_log(tmp_path)
+        Log(file).entities()

@@ -13,7 +13,7 @@ from rerun.chunk import RrdReader
 from hsr8.errors import RecordingFailed
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.log_reader import Log
-from hsr8.recorder.log.rerun_log import PATIENCE, RerunLog
+from hsr8.recorder.log.rerun_log import MAX_INDEXED, WRITE_TIMEOUT, RerunLog
 from hsr8.recorder.log_level import LogLevel
 from hsr8.world.truth.truth import ActivePush
 from navigation.belief.belief import Particles
@@ -168,9 +168,9 @@ def test_a_viewer_is_shown_what_the_file_holds(folder, model, layout, walk, monk
 @pytest.mark.filterwarnings("ignore:RRD file has no footer")
 def test_without_an_index_the_log_holds_the_same(tmp_path, model, layout, walk):
     logs = []
-    for name, index in (("with", True), ("without", False)):
+    for name, duration in (("with", 1.0), ("without", 2.0 * MAX_INDEXED)):
         (tmp_path / name).mkdir()
-        logs.append(_logged(tmp_path / name, model, layout, walk(0.5), index=index))
+        logs.append(_logged(tmp_path / name, model, layout, walk(0.5), duration=duration))
     with_index, without = logs
     assert _rows(with_index) == _rows(without)
     assert with_index.stat().st_size > without.stat().st_size
@@ -205,7 +205,7 @@ def test_a_log_that_takes_no_more_is_left_and_not_waited_for(log, walk, monkeypa
         listener.close("goal")
     assert [type(entry) for entry in left] == [BlockStream, str]
     listener.close("goal")  # at once, without another wait
-    assert [timeout for timeout in asked if timeout > 0.0] == [PATIENCE]
+    assert [timeout for timeout in asked if timeout > 0.0] == [WRITE_TIMEOUT]
 
 
 def test_nothing_believed_nothing_seen_is_logged_too(log, fake):
@@ -238,7 +238,7 @@ os.kill(os.getpid(), 9)
     done = subprocess.run([sys.executable, "-c", script, str(file)], check=False, timeout=60)
     assert done.returncode == -9
     assert _rows(file)["/plots/x"] == 100
-    assert Log([file]).table("/plots/x").array()[:, 0].tolist() == list(range(100))
+    assert Log(file).table("/plots/x").array()[:, 0].tolist() == list(range(100))
 
 
 def _values(path, entity, component="Scalars:scalars"):

@@ -1,5 +1,4 @@
 import ctypes
-import os
 import shutil
 
 import pytest
@@ -52,16 +51,13 @@ def spoil(file, kind):
     file.unlink(missing_ok=True)
     if kind == "folder":
         file.mkdir()
-    elif kind == "pipe":
-        os.mkfifo(file)
     else:
         file.touch(mode=0o000)
 
 
 @pytest.mark.usefixtures("bound_by_file_modes")
-@pytest.mark.timeout(60)  # who opens a pipe waits for ever
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
-@pytest.mark.parametrize("kind", ["folder", "pipe", "unreadable"])
+@pytest.mark.parametrize("kind", ["folder", "unreadable"])
 def test_what_cannot_be_read_is_one_clear_error(
     recorded, tmp_path, monkeypatch, capsys, command, kind
 ):
@@ -74,9 +70,6 @@ def test_what_cannot_be_read_is_one_clear_error(
         assert "internal error" not in told
         if code == 2:
             assert told.count("hsr8: ") == 1
-        if kind == "pipe":
-            assert code == 2
-            assert f"{name} is no file" in told or "holds no run" in told
         shutil.rmtree(run)
 
 

@@ -62,18 +62,6 @@ def test_a_second_mark_without_ticks_replaces_the_first(tmp_path):
     assert len(read_tape(tmp_path / "t", whole=True)) == 1
 
 
-def test_a_tape_is_gone_on_with(tmp_path):
-    rows = np.arange(52.0).reshape(2, 26)
-    for tick in (0, 1):
-        tape = TapeWriter(tmp_path / "t")
-        tape.mark(tick, b"w", b"r")
-        tape.add(rows[tick])
-        tape.close()
-    back = read_tape(tmp_path / "t", whole=True)
-    assert np.array_equal(np.concatenate([b.setpoints for b in back]), rows)
-    assert [b.tick for b in back] == [0, 1]
-
-
 @given(cut=st.integers(9, 1000), whole=st.booleans())
 def test_a_tape_cut_anywhere_loses_its_last_block_alone(tmp_path_factory, cut, whole):
     file = tmp_path_factory.mktemp("t") / "tape.bin"

@@ -46,7 +46,7 @@ def test_a_cut_file_loses_only_what_was_cut(tmp_path_factory, cut):
 @pytest.mark.parametrize("content", [b"", b"HSR8", b"something else entirely"])
 def test_other_files_are_refused(tmp_path, content):
     (tmp_path / "t").write_bytes(content)
-    with pytest.raises(UsageError, match="no trajectory"):
+    with pytest.raises(UsageError, match="not a trajectory"):
         read_trajectory(tmp_path / "t")
 
 

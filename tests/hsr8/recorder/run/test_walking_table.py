@@ -43,7 +43,7 @@ def test_what_was_recorded_is_read_back(written):
     assert table.torque_limit["l_knee"] == 6.0
 
 
-def test_a_column_that_there_is_not_is_told_with_those_there_are(written):
+def test_an_unknown_column_is_answered_with_the_known_ones(written):
     table = read_walking_table(written[0])
     for ask in (lambda: table["zmp"], lambda: table.points("zpm")):
         with pytest.raises(KeyError, match=r"no column 'z.*zmp_x, zmp_y"):
@@ -60,7 +60,7 @@ def test_a_cut_file_loses_its_last_row(written):
     ("column", "value"),
     [("time", np.nan), ("roll", np.inf), ("phase", np.nan), ("phase", 99.0), ("limits", -np.inf)],
 )
-def test_a_row_that_no_run_writes_is_told(written, column, value):
+def test_an_impossible_row_is_refused(written, column, value):
     path, records = written
     rows = _row_type(len(COLUMNS))
     content = path.read_bytes()
@@ -71,7 +71,7 @@ def test_a_row_that_no_run_writes_is_told(written, column, value):
     else:
         table["values"][7, COLUMNS.index(column)] = value
     path.write_bytes(content[:start] + table.tobytes())
-    with pytest.raises(UsageError, match="is damaged in row 7"):
+    with pytest.raises(UsageError, match="damaged in row 7"):
         read_walking_table(path)
 
 
@@ -94,7 +94,7 @@ def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
         writer.on_record(record)
     writer.close("goal")
     table = read_walking_table(tmp_path / "w.bin")
-    assert {k: v.tolist() for k, v in table.bound().items()} == {
+    assert {k: v.tolist() for k, v in table.active_limits().items()} == {
         Limit.SPEED: [False, True],
         Limit.BALANCE: [False, True],
     }
@@ -102,45 +102,39 @@ def test_constraints_and_pushes_have_columns(tmp_path, model, fake):
     assert table["push_z"] == pytest.approx([0.0, 0.3])
 
 
-def test_the_odometry_frame_is_put_where_the_robot_is(fake):
+def test_odometry_is_transformed_with_the_true_pose(fake):
     record = fake.record(0.0, (1.0, 2.0, pi / 2))
     walking = replace(record.walking, odometry=Odometry(0.5, 0.0, 0.0, np.eye(3)))
-    there = OdometryToWorld([replace(record, walking=walking), fake.record(0.02)])
-    assert there.turn.tolist() == [pi / 2, 0.0]
+    transform = OdometryToWorld([replace(record, walking=walking), fake.record(0.02)])
+    assert transform.turn.tolist() == [pi / 2, 0.0]
     points = np.array([[[0.5, 0.0], [0.6, 0.0]], [[0.5, 0.0], [0.6, 0.0]]])
-    placed = there.point(points)
-    assert placed[0] == pytest.approx(np.array([[1.0, 2.0], [1.0, 2.1]]))
-    assert placed[1] == pytest.approx(points[1])
-    assert there.point(points[0], np.array([0, 0])) == pytest.approx(placed[0])
-    assert there.vector(np.array([[1.0, 0.0]] * 2)) == pytest.approx(np.array([[0, 1], [1, 0]]))
+    transformed = transform.point(points)
+    assert transformed[0] == pytest.approx(np.array([[1.0, 2.0], [1.0, 2.1]]))
+    assert transformed[1] == pytest.approx(points[1])
+    assert transform.point(points[0], np.array([0, 0])) == pytest.approx(transformed[0])
+    assert transform.vector(np.array([[1.0, 0.0]] * 2)) == pytest.approx(np.array([[0, 1], [1, 0]]))
 
 
 @pytest.mark.parametrize(
-    ("content", "wanted"),
+    ("content", "message"),
     [
-        (None, "run it again"),
-        (b"HSR8TRJ1", "no walking table"),
-        (b"HSR8WLK1" + b"x" * 8, "no whole header"),
+        (None, "cannot read the walking table"),
+        (b"HSR8TRJ1", "not a walking table"),
+        (b"HSR8WLK2" + b"x" * 8, "incomplete header"),
     ],
 )
-def test_no_table_is_told(tmp_path, content, wanted):
+def test_a_missing_or_another_file_is_refused(tmp_path, content, message):
     path = tmp_path / "walking.bin"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(UsageError, match=wanted):
+    with pytest.raises(UsageError, match=message):
         read_walking_table(path)
 
 
-def test_a_table_cut_in_its_header_is_refused(tmp_path, model):
-    path = tmp_path / "walking.bin"
-    WalkingTableWriter(path, model, ModelIndex.of(model, 2, 1)).close("killed")
-    path.write_bytes(path.read_bytes()[:-1])
-    with pytest.raises(UsageError, match="no whole header"):
-        read_walking_table(path)
-
-
-def test_a_table_of_other_columns_is_told(written):
+def test_a_damaged_header_is_refused(written):
     path, _ = written
-    path.write_bytes(path.read_bytes().replace(b'"zmp_depth"', b'"zmp_deepn"'))
-    with pytest.raises(UsageError, match="no column zmp_depth"):
-        read_walking_table(path)
+    content = path.read_bytes()
+    for damaged in (content[:200], content.replace(b'"zmp_depth"', b'"zmp_deepn"')):
+        path.write_bytes(damaged)
+        with pytest.raises(UsageError, match="incomplete header"):
+            read_walking_table(path)
