@@ -1,7 +1,4 @@
-"""Wrapping angles, for a scalar and for arrays.
-
-The scalar version stays out of NumPy because it runs in hot scalar paths.
-"""
+"""Wrapping of angles into (-pi, pi], for a scalar and for arrays."""
 
 import math
 
@@ -15,10 +12,7 @@ def wrap(a: float) -> float:
     """Wrap an angle into (-pi, pi].
 
     Args:
-        a: Angle [rad].
-
-    Returns:
-        The same direction in (-pi, pi] [rad].
+        a: angle [rad].
     """
     wrapped = math.remainder(a, TWO_PI)
     return math.pi if wrapped == -math.pi else wrapped
@@ -28,7 +22,7 @@ def wrap_array(a: ArrayLike) -> NDArray[np.float64]:
     """Wrap every angle of an array into (-pi, pi].
 
     Args:
-        a: Angles [rad], any shape.
+        a: angles of any shape [rad].
 
     Returns:
         New array of the same shape [rad].

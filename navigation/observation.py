@@ -1,4 +1,4 @@
-"""What reaches navigation: odometry and what one camera frame showed."""
+"""Inputs of navigation: odometry and the detections of one camera frame."""
 
 from dataclasses import field
 from functools import partial
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 @value
 class Observation:
-    """One cylinder located in the robot frame R at the capture of a frame.
+    """Detection of one cylinder in the robot frame R at the capture of a frame.
 
     Attributes:
         kind: obstacle or beacon.
@@ -24,10 +24,10 @@ class Observation:
         covariance: of (distance, bearing) (2, 2).
         radius: [m].
         radius_sigma: standard deviation of `radius` [m].
-        cut: the blob touches the border of the image or the robot's own body.
-        occluded: something hides part of it.
-        by_radius: by how much distance and bearing would be greater were the radius known to be
-            greater (2,) [1, rad/m].
+        cut: the blob touches the border of the image or the robot's self mask.
+        occluded: the cylinder is partly occluded.
+        by_radius: partial derivatives of (distance, bearing) with respect to the radius (2,)
+            [1, rad/m].
     """
 
     kind: Literal["obstacle", "beacon"]
@@ -44,15 +44,15 @@ class Observation:
 
 @value
 class CameraView:
-    """Where the camera looked in the robot frame R when the frame was taken.
+    """Pose and field of view of the camera in the robot frame R at the capture of a frame.
 
     Attributes:
         rotation: R_RC, columns right, down, forward (3, 3).
         position: p_RC (3,) [m].
         pan, tilt: measured head angles [rad].
         horizontal_fov, vertical_fov: [rad].
-        yaw_sigma: standard deviation of its direction about the vertical, an error that all
-            bearings of the frame have in common and contain in their covariance [rad].
+        yaw_sigma: standard deviation of the camera's yaw [rad]. All bearings of the frame share
+            this error; their covariances include it.
     """
 
     rotation: Array
@@ -66,16 +66,16 @@ class CameraView:
 
 @value
 class Frame:
-    """One camera frame as navigation sees it.
+    """One camera frame as navigation receives it.
 
     Attributes:
         time: capture time [s].
         odometry: pose of R in the odometry frame at capture (x, y, yaw) (3,) [m, m, rad];
             yaw is unwrapped.
-        motion_covariance: of the error of the odometry since the frame before, a displacement
-            in R as it was then and a turn (3, 3).
-        view: where the camera looked.
-        observations: what it recognised.
+        motion_covariance: of the odometry increment since the previous frame, a displacement in
+            R of the previous frame and a turn (3, 3).
+        view: pose and field of view of the camera.
+        observations: detections.
     """
 
     time: float
@@ -85,13 +85,12 @@ class Frame:
     observations: tuple[Observation, ...]
 
     def check_after(self, time: float) -> None:
-        """Make sure that it was captured after `time` [s].
+        """Check that the frame was captured after `time` [s].
 
         Raises:
             ValueError: if it was not.
         """
         if self.time <= time:
             raise ValueError(
-                f"frames must come in the order of their capture: {self.time:.3f} s came after "
-                f"{time:.3f} s"
+                f"frame: not in the order of capture, got {self.time:.3f} s after {time:.3f} s"
             )

@@ -1,4 +1,4 @@
-"""Compiled part of the obstacle set: how uncertain places and velocities are."""
+"""Compiled part of the obstacle set: standard deviations of positions and velocities."""
 
 from math import hypot, sqrt
 
@@ -11,17 +11,21 @@ Array = NDArray[np.float64]
 
 @njit(cache=True)
 def deviation(xx: float, xy: float, yy: float) -> float:
-    """sqrt(lambda_max) of the symmetric matrix of these entries."""
+    """Return the square root of the larger eigenvalue of a symmetric matrix (2, 2)."""
     return sqrt(max(0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy), 0.0))
 
 
 @njit(cache=True)
 def deviations(covariances: Array) -> tuple[Array, Array]:
-    """sqrt(lambda_max) of the blocks of positions and velocities of (n, 4, 4): (n,), (n,)."""
+    """Return the major standard deviations of positions and velocities (n,), (n,) [m, m/s].
+
+    Args:
+        covariances: of (x, y, vx, vy) (n, 4, 4).
+    """
     n = len(covariances)
-    places, velocities = np.empty(n), np.empty(n)
+    positions, velocities = np.empty(n), np.empty(n)
     for i in range(n):
         P = covariances[i]
-        places[i] = deviation(P[0, 0], P[0, 1], P[1, 1])
+        positions[i] = deviation(P[0, 0], P[0, 1], P[1, 1])
         velocities[i] = deviation(P[2, 2], P[2, 3], P[3, 3])
-    return places, velocities
+    return positions, velocities

@@ -306,7 +306,9 @@ def _detected(things: list[Thing], moment: Moment) -> set[int]:
 def _in_clear_view(things: list[Thing], moment: Moment) -> NDArray[np.bool_]:
     viewpoint = Viewpoint.of(moment.frame.view, moment.robot, CLEAR_RANGE)
     radii = np.array([s.radius for s in things])
-    return viewpoint.expects(moment.positions, moment.positions, radii, margin=0.07, slack=0.08)
+    return viewpoint.in_clear_view(
+        moment.positions, moment.positions, radii, margin=0.07, occlusion_margin=0.08
+    )
 
 
 def _mean(values: list[float]) -> float:

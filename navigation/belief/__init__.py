@@ -1,1 +1,1 @@
-"""Belief: detections become the robot's pose, tracks of obstacles and a map of what was seen."""
+"""Belief: robot pose, obstacle tracks and local map from detections."""

@@ -1,8 +1,4 @@
-"""Which detection belongs to which track.
-
-The cost of a pair is -2 log of its likelihood against that of a new obstacle; only negative
-costs are paired (global nearest neighbour).
-"""
+"""Data association: global nearest neighbour."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +9,16 @@ Indices = NDArray[np.int64]
 
 
 def assign(costs: Array) -> tuple[Indices, Indices]:
-    """Pair rows with columns at least total cost, leaving out whatever costs more than 0.
+    """Assign detections to tracks at minimum total cost; costs above 0 stay unassigned.
 
     Args:
-        costs: cost of every pair against leaving both alone (n, m); infinite forbids.
+        costs: of every pair, relative to leaving both unassigned (n, m); infinite outside the
+            gate.
 
     Returns:
         Rows (k,) and columns (k,) of the pairs, by row.
     """
     gain = np.minimum(costs, 0.0)
     rows, columns = linear_sum_assignment(gain)
-    worth = gain[rows, columns] < 0.0
-    return rows[worth], columns[worth]
+    assigned = gain[rows, columns] < 0.0
+    return rows[assigned], columns[assigned]

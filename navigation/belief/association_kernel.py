@@ -1,4 +1,4 @@
-"""Compiled part of the association: which tracks may be one."""
+"""Compiled part of the data association: overlapping tracks."""
 
 import numpy as np
 from numba import njit
@@ -10,7 +10,7 @@ Indices = NDArray[np.int64]
 
 @njit(cache=True)
 def overlapping(centres: Array, radii: Array) -> Indices:
-    """Pairs i < j of discs that overlap (k, 2), by i, then j.
+    """Return the pairs i < j of overlapping discs (k, 2), by i, then j.
 
     Args:
         centres: (n, 2) [m].

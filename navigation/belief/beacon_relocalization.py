@@ -1,8 +1,8 @@
-"""Being lost, and finding back: what the beacons say of the pose as a whole.
+"""Failure detection and relocalization with known beacons.
 
-Whether the pose is wrong shows in the innovations, never in the covariance, which stays
-small when it is wrong. A run of sightings that do not fit tells a lost robot from an
-outlier; one beacon that does not fit while the others do stands in the wrong place.
+A wrong pose shows in the innovations, not in the covariance. A run of rejected detections
+separates a lost robot from an outlier; a beacon that is rejected while others are accepted is
+displaced.
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,127 +13,112 @@ from numpy.typing import NDArray
 
 from navigation.observation import Frame, Observation
 from navigation.parameters.belief import LocalizationParameters
-from navigation.transform import points_from, points_to_world, pose_from_points, to_world
-from navigation.value import value
+from navigation.transform import points_to_robot, points_to_world, pose_from_points, to_world
 
 Array = NDArray[np.float64]
-
-
-@value
-class _Sighting:
-    """A beacon as the odometry frame remembers it."""
-
-    time: float
-    point: tuple[float, float]
+Point = tuple[float, float]
 
 
 class BeaconRelocalization:
-    """Judges the pose by the beacons, and finds it again from them.
+    """Failure detector of the pose and relocalization from recent beacon detections.
 
     Args:
-        parameters: when the robot is lost, and what makes a fit.
+        parameters: thresholds of failure detection and relocalization.
         beacons: position in W by name [m].
     """
 
-    def __init__(
-        self, parameters: LocalizationParameters, beacons: Mapping[str, tuple[float, float]]
-    ) -> None:
+    def __init__(self, parameters: LocalizationParameters, beacons: Mapping[str, Point]) -> None:
         self._parameters = parameters
         self._beacons = beacons
-        self._sightings: dict[str, _Sighting] = {}
-        self._run: list[tuple[float, str]] = []
+        self._detections: dict[str, tuple[float, Point]] = {}  # time, point in the odometry frame
+        self._rejections: list[tuple[float, str]] = []  # since a beacon was last accepted
         self._contradictions: dict[str, int] = {}
         self._displaced: set[str] = set()
 
     @property
     def displaced(self) -> frozenset[str]:
-        """Beacons found to stand elsewhere; their sightings are of no use."""
+        """Beacons that are not at their known positions; their detections are ignored."""
         return frozenset(self._displaced)
 
     def remember(self, observation: Observation, frame: Frame) -> None:
-        """Keep the sighting of a beacon in the odometry frame."""
+        """Store the detection of a beacon in the odometry frame."""
         point = to_world(frame.odometry.tolist(), observation.distance, observation.bearing)
-        self._sightings[observation.label] = _Sighting(frame.time, point)
+        self._detections[observation.label] = frame.time, point
 
-    def judge(self, time: float, accepted: list[str], rejected: list[str]) -> bool:
-        """Whether the pose must be wrong, after the verdicts on the beacons of one frame.
+    def is_lost(self, time: float, accepted: list[str], rejected: list[str]) -> bool:
+        """Return whether the pose must be wrong, after the beacons of one frame.
 
         Args:
             time: of the frame [s].
-            accepted: beacons whose sightings fit the pose.
-            rejected: those whose sightings did not.
+            accepted: beacons inside the gate.
+            rejected: beacons outside the gate.
         """
         p = self._parameters
         if accepted:
-            # The others contradict this one while the pose fits: it has been moved. An
-            # accidental outlier is forgiven by the next sighting that fits.
-            blamed = {name for _, name in self._run} | set(rejected)
-            for name in blamed - set(accepted):
+            # The pose is right, so the rejected beacons are displaced or outliers; the next
+            # accepted detection clears an outlier.
+            suspects = {name for _, name in self._rejections} | set(rejected)
+            for name in suspects - set(accepted):
                 self._contradictions[name] = self._contradictions.get(name, 0) + 1
                 if self._contradictions[name] >= p.displaced_rejections:
                     self._displaced.add(name)
             for name in accepted:
                 self._contradictions.pop(name, None)
-            self._run.clear()
+            self._rejections.clear()
             return False
-        self._run += [(time, name) for name in rejected]
-        if len(self._run) < p.lost_rejections:
+        self._rejections += [(time, name) for name in rejected]
+        if len(self._rejections) < p.lost_rejections:
             return False
-        several = len({name for _, name in self._run}) > 1
-        return several or time - self._run[0][0] > p.lost_time
+        several = len({name for _, name in self._rejections}) > 1
+        return several or time - self._rejections[0][0] > p.lost_time
 
     def begin(self) -> None:
-        """Drop older sightings.
-
-        A robot that was carried is not where its odometry relates them to.
-        """
-        if self._run:
-            start = self._run[0][0]
-            self._sightings = {n: s for n, s in self._sightings.items() if s.time >= start}
-        self._run.clear()
+        """Drop the detections before the failure: their odometry does not relate to the rest."""
+        if self._rejections:
+            start = self._rejections[0][0]
+            self._detections = {n: d for n, d in self._detections.items() if d[0] >= start}
+        self._rejections.clear()
 
     def locate(self, frame: Frame, before: Array) -> Array | None:
-        """Pose that lays the beacons seen of late over the known ones, if one fits.
+        """Return the pose (3,) that aligns the recent detections with the beacons, if one fits.
 
-        Three or more beacons may disagree because one of them stands elsewhere: it is left
-        out if the rest then put the robot where it believed to be.
+        If three or more beacons disagree, one of them may be displaced: it is left out if the
+        others confirm the pose before.
 
         Args:
-            frame: the present one.
-            before: pose believed before, moved on by the odometry (3,) [m, m, rad].
+            frame: the present frame.
+            before: previous estimate of the pose, propagated by odometry (3,) [m, m, rad].
         """
         p = self._parameters
         recent = {
-            name: s.point
-            for name, s in self._sightings.items()
-            if frame.time - s.time <= p.recovery_window and name not in self._displaced
+            name: point
+            for name, (time, point) in self._detections.items()
+            if frame.time - time <= p.recovery_window and name not in self._displaced
         }
         if len(recent) < 2:
             return None
         pose, misfit = self._fit(frame, recent)
         if misfit <= p.recovery_sigma:
             return pose
-        for name, others in _without_one(recent):
+        for name, others in _leave_one_out(recent):
             pose, misfit = self._fit(frame, others)
-            away = hypot(float(pose[0] - before[0]), float(pose[1] - before[1]))
-            if misfit <= p.recovery_sigma and away <= 2.0 * p.recovery_sigma:
+            distance = hypot(float(pose[0] - before[0]), float(pose[1] - before[1]))
+            if misfit <= p.recovery_sigma and distance <= 2.0 * p.recovery_sigma:
                 self._displaced.add(name)
                 return pose
         return None
 
-    def _fit(self, frame: Frame, points: Mapping[str, tuple[float, float]]) -> tuple[Array, float]:
-        """Pose from remembered points, and the largest distance of one from its beacon [m]."""
-        seen = points_from(frame.odometry.tolist(), np.array(list(points.values())))
+    def _fit(self, frame: Frame, points: Mapping[str, Point]) -> tuple[Array, float]:
+        """Return the least-squares pose (3,) and its maximum residual [m]."""
+        observed = points_to_robot(frame.odometry.tolist(), np.array(list(points.values())))
         known = np.array([self._beacons[name] for name in points])
-        pose = pose_from_points(seen, known)
-        fit = points_to_world(pose, seen)
-        return pose, float(np.max(np.linalg.norm(fit - known, axis=1)))
+        pose = pose_from_points(observed, known)
+        aligned = points_to_world(pose, observed)
+        return pose, float(np.max(np.linalg.norm(aligned - known, axis=1)))
 
 
-def _without_one(
-    points: dict[str, tuple[float, float]],
-) -> Iterator[tuple[str, dict[str, tuple[float, float]]]]:
-    """Three or more points, each left out in turn."""
+def _leave_one_out(points: dict[str, Point]) -> Iterator[tuple[str, dict[str, Point]]]:
+    """Yield each name and the points without it, for three or more points."""
     if len(points) > 2:
         for name in points:
             yield name, {n: p for n, p in points.items() if n != name}

@@ -1,4 +1,4 @@
-"""What the robot believes: its pose, the obstacles, and how fresh its map is."""
+"""Belief of the robot: its pose, obstacle tracks and local map."""
 
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 class Motion(StrEnum):
-    """Statistical verdict on whether an obstacle moves."""
+    """Motion class of an obstacle."""
 
     STATIC = "static"
     MOVING = "moving"
@@ -25,12 +25,12 @@ class Motion(StrEnum):
 
 @value
 class Particles:
-    """Hypotheses where an unseen mover may be.
+    """Particle set of a lost mover.
 
     Attributes:
         positions: in W (n, 2) [m].
         velocities: in W (n, 2) [m/s].
-        turn_rates: of the velocities, left positive (n,) [rad/s].
+        turn_rates: left positive (n,) [rad/s].
         weights: sum to one (n,).
     """
 
@@ -42,7 +42,7 @@ class Particles:
 
 @value
 class Track:
-    """One obstacle as the robot believes it to be, in the field frame W.
+    """Estimate of one obstacle in the field frame W.
 
     Attributes:
         id: number, unique in a run.
@@ -52,16 +52,15 @@ class Track:
         covariance: of (x, y, vx, vy) (4, 4).
         radius: [m].
         radius_sigma: [m].
-        motion: static, moving or not yet known.
+        motion: motion class.
         hits: number of detections.
         age: time from its last detection to the capture of the frame [s].
-        last_seen: where it was detected last (2,) [m].
+        last_seen: position of its last detection (2,) [m].
         visible: detected in the latest frame.
-        particles: hypotheses of a lost track that may move, else None.
-        reach: radius of the disc about `last_seen` that its axis cannot have left by the time of
-            the frame: three standard deviations of that sighting and, unless it stands still,
-            the way of the fastest obstacle since [m].
-        turn_rate: of the velocity, left positive; zero for a static track [rad/s].
+        particles: of a lost track that may move, else None.
+        reach: radius of the reachable disc of its axis around `last_seen`: three standard
+            deviations of that detection plus, unless static, max_speed times age [m].
+        turn_rate: left positive; zero for a static track [rad/s].
     """
 
     id: int
@@ -83,19 +82,19 @@ class Track:
 
 @value
 class Belief:
-    """Everything the robot believes after a camera frame.
+    """Pose, tracks and local map after a camera frame.
 
     Attributes:
-        time: of pose and positions [s]: of the capture, or later once it was carried on by
+        time: of pose and positions [s]: of the capture, or later after
             `navigation.belief.prediction`.
         pose: x, y, heading of R in W (3,) [m, m, rad], heading wrapped.
         pose_covariance: (3, 3).
         tracks: obstacles, by id.
         local_map: occupancy, confidence and age per cell around the robot.
-        view: where the camera looked, angles in R.
-        seen_beacons: names of beacons in this frame.
-        lost: whether localization has noticed that it is lost.
-        filter_faults: how often a filter had to be re-initialised so far.
+        view: pose and field of view of the camera in R.
+        seen_beacons: names of the beacons in the frame.
+        lost: whether localization has detected that it is lost.
+        filter_faults: number of re-initializations of the filter.
     """
 
     time: float

@@ -1,4 +1,4 @@
-"""From camera frames to belief: localization, tracks and local map in their order."""
+"""State estimation: localization, tracking and local map, once per camera frame."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
+from navigation.belief.detections import in_world
 from navigation.belief.ekf_slam import EkfSlam
 from navigation.belief.local_map import LocalMap
 from navigation.belief.localization import Localizer
-from navigation.belief.sightings import in_world
 from navigation.belief.tracker import Tracker
 from navigation.belief.visibility import Viewpoint
 from navigation.observation import Frame
@@ -20,14 +20,14 @@ Array = NDArray[np.float64]
 
 
 class Estimator:
-    """Turns frames into beliefs.
+    """Estimator of the belief from camera frames.
 
     Args:
-        parameters: of localization, tracks and map.
-        beacons: position in W by name [m].
+        parameters: of localization, tracking and local map.
+        beacons: position in W by name [m]; empty: EKF SLAM, in which the start pose is exact and
+            defines W.
         start_pose: x, y, heading of R in W (3,) [m, m, rad].
-        start_covariance: of the start pose (3, 3); without beacons that pose is exact, for it
-            defines the frame.
+        start_covariance: of the start pose (3, 3).
         rng: source of the particles of lost tracks.
     """
 
@@ -52,7 +52,7 @@ class Estimator:
         self._recoveries = 0
 
     def update(self, frame: Frame) -> Belief:
-        """Take in one frame; the belief returned is never changed by later ones.
+        """Update by one frame; later frames never change the returned belief.
 
         Raises:
             ValueError: if the frame is not younger than the one before.
@@ -63,22 +63,20 @@ class Estimator:
         pose, covariance = localizer.pose, localizer.covariance
         centre = (float(pose[0]), float(pose[1]))
         if self._map is None or localizer.recoveries != self._recoveries:
-            # What was placed from a wrong pose stands in the wrong place.
+            # The wrong pose has displaced all tracks and cells.
             self._recoveries = localizer.recoveries
             self._map = LocalMap(p.local_map, centre, frame.time)
             self._tracker.clear()
-        seen = in_world(
-            frame.observations,
-            pose,
-            covariance,
-            max_pose_sigma=p.tracking.max_pose_sigma,
+        detections = in_world(
+            frame.observations, pose, covariance, max_pose_sigma=p.tracking.max_pose_sigma
         )
-        sure = Viewpoint.of(frame.view, pose, p.tracking.detection_range)
-        tracks = self._tracker.update(frame.time, seen, sure, self._map.free_at(seen.positions))
+        viewpoint = Viewpoint.of(frame.view, pose, p.tracking.detection_range)
+        free = self._map.free_at(detections.positions)
+        tracks = self._tracker.update(frame.time, detections, viewpoint, free)
         if isinstance(localizer, EkfSlam):
-            localizer.learn(frame, tracks)
-        searched = replace(sure, range=p.local_map.range)
-        self._map.update(frame.time, searched, centre, seen.positions, seen.radii)
+            localizer.map_landmarks(frame, tracks)
+        searched = replace(viewpoint, range=p.local_map.range)
+        self._map.update(frame.time, searched, centre, detections.positions, detections.radii)
         return Belief(
             time=frame.time,
             pose=pose,

@@ -1,33 +1,28 @@
-"""How an obstacle may move: three Kalman filters that interact (Blom & Bar-Shalom).
+"""Interacting multiple model (IMM) filters of obstacles (Blom & Bar-Shalom).
 
-An obstacle stands still, goes on, or has turned back; what moves may walk a bend. Every mode
-has a filter of (x, y, vx, vy, turn rate) and a probability. Before a prediction the modes mix
-as an obstacle may change its mode: what turns back walks its path again, with its velocity and
-turn rate reversed. ON and BACK are each other's reversal, so after one the other takes over
-without any switch. All tracks are stacked: n obstacles, 3 modes.
+An obstacle is static, moves with constant speed and turn rate, or has reversed. Every mode has
+an extended Kalman filter of (x, y, vx, vy, turn rate) and a probability. Reversing negates
+velocity and turn rate, so that the obstacle returns on its path. FORWARD and REVERSED are each
+other's reversal; after a reversal the other mode takes over without a mode switch. All tracks
+are stacked: n obstacles, 3 modes.
 """
 
 from collections.abc import Sequence
-from math import exp, hypot
+from math import exp
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief import imm_kernel
-from navigation.belief.imm_kernel import BACK, ON, SIZE, STILL, Mask, Rows
+from navigation.belief.imm_kernel import FLOOR, FORWARD, SIZE, STATIC, Mask
 from navigation.parameters.belief import TrackingParameters
 
 Array = NDArray[np.float64]
 
-__all__ = ["BACK", "ON", "STILL", "Modes"]
-
-FLOOR = 1e-6
-"""Least probability of a mode."""
-
 
 class Modes(NamedTuple):
-    """Filters of obstacles, one per mode; the first axis may be missing for one obstacle.
+    """Filters of obstacles, one per mode; of a single obstacle without the first axis.
 
     Attributes:
         weights: probabilities of the modes (n, 3).
@@ -42,144 +37,66 @@ class Modes(NamedTuple):
     @property
     def moving(self) -> float | Array:
         """Probability that the obstacle moves ()."""
-        probability: Array = 1.0 - self.weights[..., STILL]
+        probability: Array = 1.0 - self.weights[..., STATIC]
         return probability
 
     def at(self, rows: int | Mask) -> "Modes":
-        """Filters of one obstacle, or of those for which a mask (n,) holds."""
+        """Return the filters of one obstacle, or of those selected by a mask (n,)."""
         return Modes(self.weights[rows], self.states[rows], self.covariances[rows])
 
-    def followed_by(self, others: "Sequence[Modes]") -> "Modes":
-        """These filters of n obstacles, then those of single ones."""
+    def append(self, others: "Sequence[Modes]") -> "Modes":
+        """Return these filters of n obstacles followed by those of single ones."""
         parts = zip(self, zip(*others, strict=True), strict=True)
         return Modes(*(np.concatenate([these, np.array(part)]) for these, part in parts))
 
 
-def none() -> Modes:
-    """Filters of no obstacle at all."""
+def empty() -> Modes:
+    """Return the filters of zero obstacles."""
     return Modes(np.zeros((0, 3)), np.zeros((0, 3, SIZE)), np.zeros((0, 3, SIZE, SIZE)))
 
 
-def begun(z: Array, R: Array, moving: float, p: TrackingParameters) -> Modes:
-    """One obstacle seen for the first time, or again where nothing explains it.
+def initial(z: Array, R: Array, moving: float, p: TrackingParameters) -> Modes:
+    """Return the filters of one obstacle after its first detection.
 
     Args:
         z: position (2,) [m].
         R: its covariance (2, 2) [m²].
         moving: probability that it moves.
-        p: how it moves if it does.
+        p: motion models.
     """
     states = np.zeros((3, SIZE))
     states[:, :2] = z
     covariances = np.zeros((3, SIZE, SIZE))
     covariances[:, :2, :2] = R
-    covariances[ON:, 2, 2] = covariances[ON:, 3, 3] = p.velocity_sigma**2
-    covariances[ON:, 4, 4] = p.turn_rate_sigma**2
+    covariances[FORWARD:, 2, 2] = covariances[FORWARD:, 3, 3] = p.velocity_sigma**2
+    covariances[FORWARD:, 4, 4] = p.turn_rate_sigma**2
     weights = np.array([1.0 - moving, moving - FLOOR, FLOOR])
     return Modes(weights, states, covariances)
 
 
 def predict(modes: Modes, dt: float, p: TrackingParameters) -> Modes:
-    """Let the modes interact, then move on for `dt` [s]."""
-    # Turning back twice is going on.
-    turns = 0.5 * (1.0 - exp(-2.0 * p.reversal_rate * dt))
-    stops, starts = 1.0 - exp(-p.stop_rate * dt), 1.0 - exp(-p.start_rate * dt)
-    stops = min(stops, 1.0 - FLOOR)  # else BACK has no probability left to divide by
-    turns *= 1.0 - stops
-    change = np.array(
+    """Mix the modes, then predict every filter by `dt` [s]."""
+    # An even number of reversals cancels.
+    reversal = 0.5 * (1.0 - exp(-2.0 * p.reversal_rate * dt))
+    stop, start = 1.0 - exp(-p.stop_rate * dt), 1.0 - exp(-p.start_rate * dt)
+    stop = min(stop, 1.0 - FLOOR)  # REVERSED must keep a probability to divide by
+    reversal *= 1.0 - stop
+    transition = np.array(
         [
-            [1.0 - starts, starts, 0.0],
-            [stops, 1.0 - stops - turns, turns],
-            [stops, turns, 1.0 - stops - turns],
+            [1.0 - start, start, 0.0],
+            [stop, 1.0 - stop - reversal, reversal],
+            [stop, reversal, 1.0 - stop - reversal],
         ]
     )
-    turning = p.turn_rate_sigma**2
-    mixed = Modes(*imm_kernel.interact(*modes, change, dt, p.velocity_sigma**2, turning))
-    imm_kernel.move_on(
+    turn_variance = p.turn_rate_sigma**2
+    mixed = Modes(*imm_kernel.mix(*modes, transition, dt, p.velocity_sigma**2, turn_variance))
+    imm_kernel.predict(
         mixed.states,
         mixed.covariances,
         dt,
         p.acceleration_noise,
         p.static_diffusion,
         exp(-dt / p.turn_rate_time),
-        turning,
+        turn_variance,
     )
     return mixed
-
-
-def nis(modes: Modes, rows: Rows, z: Array, R: Array) -> Array:
-    """Normalised innovation squared of some obstacles' positions by their nearest modes (m,).
-
-    Args:
-        modes: predicted.
-        rows: which obstacles (m,).
-        z: position of each (m, 2) [m].
-        R: its covariance (m, 2, 2) [m²].
-    """
-    return imm_kernel.nis(modes.states, modes.covariances, rows, z, R)
-
-
-def costs(modes: Modes, z: Array, R: Array, gate: float) -> Array:
-    """Minus twice the log likelihood of every position, infinite beyond the gate (n, m).
-
-    Args:
-        modes: predicted.
-        z: positions (m, 2) [m].
-        R: their covariances (m, 2, 2) [m²].
-        gate: squared Mahalanobis distance above which no mode explains a position [1].
-    """
-    return imm_kernel.costs(*modes, z, R, gate)
-
-
-def update(modes: Modes, rows: Rows, z: Array, R: Array, limit: float) -> None:
-    """Correct the filters of some obstacles, and weigh their modes by the likelihoods, in place.
-
-    Args:
-        modes: predicted, changed.
-        rows: which obstacles (m,).
-        z: position of each (m, 2) [m].
-        R: its covariance (m, 2, 2) [m²].
-        limit: largest ratio of the modes' likelihoods, logarithm [1].
-    """
-    imm_kernel.update(*modes, rows, z, R, limit, FLOOR)
-
-
-def places(modes: Modes, standing: Mask) -> Array:
-    """Where obstacles are (n, 2) [m]; `standing` says which of them stand still (n,)."""
-    return imm_kernel.places(modes.weights, modes.states, standing)
-
-
-def estimates(
-    modes: Modes, standing: Mask, best: Array, p: TrackingParameters
-) -> tuple[Array, Array, Array, list[float]]:
-    """What is believed of obstacles.
-
-    Args:
-        modes: their filters.
-        standing: which of them stand still (n,).
-        best: covariance of the most precise detection of each (n, 2, 2) [m²].
-        p: doubt about what stands.
-
-    Returns:
-        Positions (n, 2) [m], velocities (n, 2) [m/s], covariances of both (n, 4, 4) and turn
-        rates (n,) [rad/s].
-    """
-    *moments, turn_rates = imm_kernel.estimates(
-        *modes, standing, best, p.bias_fraction**2, p.static_velocity_sigma**2
-    )
-    return *moments, turn_rates.tolist()
-
-
-def mean(modes: Modes) -> Array:
-    """Mean (5,) of one obstacle, given that it moves."""
-    return imm_kernel.mean(modes.weights, modes.states)
-
-
-def speed(modes: Modes) -> float:
-    """Speed of one obstacle, given that it moves [m/s]."""
-    return hypot(*mean(modes)[2:4].tolist())
-
-
-def moments(modes: Modes) -> tuple[Array, Array]:
-    """Mean (5,) and covariance (5, 5) of one obstacle, given that it moves."""
-    return imm_kernel.moments(*modes)

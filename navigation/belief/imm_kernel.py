@@ -1,6 +1,6 @@
-"""Compiled part of the filters of obstacles: all obstacles and all modes in one pass.
+"""Compiled part of the IMM filters: all obstacles and modes in one pass.
 
-Modes are STILL, ON, BACK, see `imm`; states are (x, y, vx, vy, turn rate).
+Modes are STATIC, FORWARD, REVERSED, see `imm`; states are (x, y, vx, vy, turn rate).
 """
 
 from math import cos, exp, inf, log, sin
@@ -14,38 +14,38 @@ Rows = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Parts = tuple[Array, Array, Array]
 
-STILL, ON, BACK = 0, 1, 2
-SIZE = 5
-"""Of a state."""
+STATIC, FORWARD, REVERSED = 0, 1, 2
+SIZE = 5  # of a state
+FLOOR = 1e-6  # minimum probability of a mode
 
 
 @njit(cache=True)
 def _reversal(i: int, j: int) -> float:
-    """What a change from mode i to mode j does to the velocity and its turn rate."""
-    if min(i, j) == STILL:
+    """Return the factor of velocity and turn rate at a switch from mode i to mode j."""
+    if min(i, j) == STATIC:
         return 0.0
     return 1.0 if i == j else -1.0
 
 
 @njit(cache=True)
-def interact(
+def mix(
     weights: Array,
     states: Array,
     covariances: Array,
-    change: Array,
+    transition: Array,
     dt: float,
     start_variance: float,
     turn_variance: float,
 ) -> Parts:
-    """Mix the modes as an obstacle may have changed its mode (Blom & Bar-Shalom).
+    """Mix the modes by their transition probabilities (Blom & Bar-Shalom).
 
     Args:
         weights: probabilities (n, 3).
         states: (n, 3, 5).
         covariances: (n, 3, 5, 5).
-        change: probability of mode j after mode i (3, 3).
-        dt: time for which it may have done so [s].
-        start_variance: of the velocity of what begins to move [m²/s²].
+        transition: probability of mode j after mode i (3, 3).
+        dt: time since the last mixing [s].
+        start_variance: of the velocity of an obstacle that starts to move [m²/s²].
         turn_variance: of its turn rate [rad²/s²].
 
     Returns:
@@ -54,23 +54,23 @@ def interact(
     n = len(weights)
     mixed_weights, mixed = np.zeros((n, 3)), np.zeros((n, 3, SIZE))
     spread, parts = np.zeros((n, 3, SIZE, SIZE)), np.empty((3, SIZE))
-    factor, share = np.ones(SIZE), np.empty(3)
+    factor, fraction = np.ones(SIZE), np.empty(3)
     for k in range(n):
         for j in range(3):
             for i in range(3):
-                mixed_weights[k, j] += weights[k, i] * change[i, j]
+                mixed_weights[k, j] += weights[k, i] * transition[i, j]
             for i in range(3):
-                share[i] = weights[k, i] * change[i, j] / mixed_weights[k, j]
+                fraction[i] = weights[k, i] * transition[i, j] / mixed_weights[k, j]
                 velocity = _reversal(i, j)
-                # It turned at any time since: on average half way, so that it now is where
-                # it was.
+                # The time of the reversal is uniform: on average half way, so that the obstacle
+                # is back at its previous position.
                 forth = dt if velocity < 0.0 else 0.0
                 for a in range(2):
                     parts[i, a] = states[k, i, a] + forth * states[k, i, 2 + a]
                     parts[i, 2 + a] = velocity * states[k, i, 2 + a]
                 parts[i, 4] = velocity * states[k, i, 4]
                 for a in range(SIZE):
-                    mixed[k, j, a] += share[i] * parts[i, a]
+                    mixed[k, j, a] += fraction[i] * parts[i, a]
             for i in range(3):
                 velocity = _reversal(i, j)
                 factor[2] = factor[3] = factor[4] = velocity
@@ -81,38 +81,38 @@ def interact(
                         part = covariances[k, i, a, b] * factor[a] * factor[b]
                         part += off * (parts[i, b] - mixed[k, j, b])
                         if a < 2 and b < 2:
-                            way = forth * states[k, i, 2 + a] * forth * states[k, i, 2 + b]
-                            part += way / 3.0
-                        if a == b and a > 1 and i == STILL and j == ON:
+                            square = forth * states[k, i, 2 + a] * forth * states[k, i, 2 + b]
+                            part += square / 3.0
+                        if a == b and a > 1 and i == STATIC and j == FORWARD:
                             part += start_variance if a < 4 else turn_variance
-                        spread[k, j, a, b] += share[i] * part
+                        spread[k, j, a, b] += fraction[i] * part
     return mixed_weights, mixed, spread
 
 
 @njit(cache=True)
 def arc(turn: float, dt: float) -> tuple[float, float, float, float]:
-    """How a velocity that turns carries on.
+    """Return the mean rotation of a turning velocity.
 
     Args:
-        turn: its turn rate [rad/s].
+        turn: turn rate [rad/s].
         dt: time [s].
 
     Returns:
-        Its mean over that time is (a -b; b a) times what it was; the derivatives of a and b by
-        the turn rate follow [s].
+        a, b of the mean velocity (a -b; b a) v over `dt` [1], and their derivatives with respect
+        to the turn rate [s].
     """
     half = 0.5 * turn * dt
     c, s = cos(half), sin(half)
-    # sin(h)/h and its slope, which near zero are differences of almost equal numbers.
+    # sin(h)/h and its derivative, which cancel catastrophically near zero.
     near = abs(half) < 1e-3
-    share = 1.0 - half * half / 6.0 if near else s / half
-    slope = -half / 3.0 if near else (c - share) / half
+    sinc = 1.0 - half * half / 6.0 if near else s / half
+    slope = -half / 3.0 if near else (c - sinc) / half
     by = 0.5 * dt
-    return share * c, share * s, by * (slope * c - share * s), by * (slope * s + share * c)
+    return sinc * c, sinc * s, by * (slope * c - sinc * s), by * (slope * s + sinc * c)
 
 
 @njit(cache=True)
-def move_on(
+def predict(
     states: Array,
     covariances: Array,
     dt: float,
@@ -121,24 +121,24 @@ def move_on(
     keep: float,
     turn_variance: float,
 ) -> None:
-    """Constant speed and turn rate for ON and BACK, a random walk for STILL, in place.
+    """Predict all filters in place: constant speed and turn rate, or a random walk if static.
 
     Args:
         states: (n, 3, 5).
         covariances: (n, 3, 5, 5).
         dt: [s].
         q: square root of the density of the white acceleration [m/s^1.5].
-        diffusion: of what stands still [m²/s].
-        keep: share of the turn rate that is left after dt [1].
-        turn_variance: of the turn rates of all movers [rad²/s²].
+        diffusion: of a static obstacle [m²/s].
+        keep: autocorrelation of the turn rate after dt [1].
+        turn_variance: stationary variance of the turn rate [rad²/s²].
     """
     F = np.eye(SIZE)
     moved = np.empty((SIZE, SIZE))
     for k in range(len(states)):
-        P = covariances[k, STILL]
+        P = covariances[k, STATIC]
         P[0, 0] += diffusion * dt
         P[1, 1] += diffusion * dt
-        for mode in range(ON, BACK + 1):
+        for mode in range(FORWARD, REVERSED + 1):
             x, P = states[k, mode], covariances[k, mode]
             u, v, turn = x[2], x[3], x[4]
             along, across, along_slope, across_slope = arc(turn, dt)
@@ -177,18 +177,18 @@ def move_on(
 
 
 @njit(cache=True)
-def fit(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, float]:
-    """How an innovation fits its covariance.
+def mahalanobis(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, float]:
+    """Return the squared Mahalanobis distance and log likelihood of an innovation.
 
     Args:
         u: innovation along x [m].
-        v: the same along y [m].
-        xx: its variance along x [m²].
-        xy: covariance [m²].
-        yy: variance along y [m²].
+        v: innovation along y [m].
+        xx: innovation variance along x [m²].
+        xy: innovation covariance [m²].
+        yy: innovation variance along y [m²].
 
     Returns:
-        Squared Mahalanobis distance, and log likelihood up to a constant.
+        Squared Mahalanobis distance [1], and log likelihood up to a constant [1].
     """
     det = xx * yy - xy * xy
     distance = (yy * u * u - 2.0 * xy * u * v + xx * v * v) / det
@@ -197,37 +197,37 @@ def fit(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[float, flo
 
 @njit(cache=True)
 def nis(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) -> Array:
-    """Normalised innovation squared of some obstacles' positions by their nearest modes (m,).
+    """Return the normalized innovation squared of detections under their nearest modes (m,).
 
     Args:
         states: (n, 3, 5).
         covariances: (n, 3, 5, 5).
-        rows: which obstacles (m,).
-        z: position of each (m, 2) [m].
-        R: its covariance (m, 2, 2) [m²].
+        rows: of the detected obstacles (m,).
+        z: detected positions (m, 2) [m].
+        R: their covariances (m, 2, 2) [m²].
     """
-    least_nis = np.empty(len(rows))
+    min_nis = np.empty(len(rows))
     for k in range(len(rows)):
         x, P = states[rows[k]], covariances[rows[k]]
-        least = inf
+        nearest = inf
         for mode in range(3):
-            distance, _ = fit(
+            distance, _ = mahalanobis(
                 z[k, 0] - x[mode, 0],
                 z[k, 1] - x[mode, 1],
                 P[mode, 0, 0] + R[k, 0, 0],
                 P[mode, 0, 1] + R[k, 0, 1],
                 P[mode, 1, 1] + R[k, 1, 1],
             )
-            least = min(least, distance)
-        least_nis[k] = least
-    return least_nis
+            nearest = min(nearest, distance)
+        min_nis[k] = nearest
+    return min_nis
 
 
 @njit(cache=True)
 def costs(
     weights: Array, states: Array, covariances: Array, z: Array, R: Array, gate: float
 ) -> Array:
-    """Minus twice the log likelihood of every position with every obstacle (n, m).
+    """Return the association costs: -2 log likelihood of every detection (n, m).
 
     Args:
         weights: (n, 3).
@@ -235,43 +235,43 @@ def costs(
         covariances: (n, 3, 5, 5).
         z: positions (m, 2) [m].
         R: their covariances (m, 2, 2) [m²].
-        gate: squared Mahalanobis distance to the nearest mode from which the cost is infinite.
+        gate: squared Mahalanobis distance to the nearest mode above which the cost is infinite.
     """
     cost = np.empty((len(weights), len(z)))
     for k in range(len(weights)):
         for m in range(len(z)):
-            least, likelihood = inf, 1e-30
+            nearest, likelihood = inf, 1e-30
             for mode in range(3):
-                distance, logarithm = fit(
+                distance, logarithm = mahalanobis(
                     z[m, 0] - states[k, mode, 0],
                     z[m, 1] - states[k, mode, 1],
                     covariances[k, mode, 0, 0] + R[m, 0, 0],
                     covariances[k, mode, 0, 1] + R[m, 0, 1],
                     covariances[k, mode, 1, 1] + R[m, 1, 1],
                 )
-                least = min(least, distance)
+                nearest = min(nearest, distance)
                 likelihood += weights[k, mode] * exp(logarithm)
-            cost[k, m] = -2.0 * log(likelihood) if least < gate else inf
+            cost[k, m] = -2.0 * log(likelihood) if nearest < gate else inf
     return cost
 
 
 @njit(cache=True)
 def correct(x: Array, P: Array, z: Array, R: Array) -> float:
-    """Correct one filter by a position, in Joseph's form, in place.
+    """Correct one filter by a detection in place (Joseph form).
 
     Args:
         x: predicted state (5,).
         P: its covariance (5, 5).
-        z: position measured (2,) [m].
+        z: detected position (2,) [m].
         R: its covariance (2, 2) [m²].
 
     Returns:
-        Log likelihood of the position, up to a constant.
+        Log likelihood of the detection, up to a constant.
     """
     a, b, d = P[0, 0] + R[0, 0], P[0, 1] + R[0, 1], P[1, 1] + R[1, 1]
     det = a * d - b * b
     u, v = z[0] - x[0], z[1] - x[1]
-    _, likelihood = fit(u, v, a, b, d)
+    _, likelihood = mahalanobis(u, v, a, b, d)
     K, left = np.empty((SIZE, 2)), np.empty((SIZE, SIZE))
     for i in range(SIZE):
         K[i, 0] = (P[i, 0] * d - P[i, 1] * b) / det
@@ -300,86 +300,90 @@ def update(
     z: Array,
     R: Array,
     limit: float,
-    floor: float,
 ) -> None:
-    """Correct the filters of some obstacles and weigh their modes by the likelihoods, in place.
+    """Correct the filters and mode probabilities of detected obstacles in place.
 
     Args:
         weights: (n, 3).
         states: predicted (n, 3, 5).
         covariances: (n, 3, 5, 5).
-        rows: which obstacles (m,).
-        z: position of each (m, 2) [m].
-        R: its covariance (m, 2, 2) [m²].
-        limit: largest ratio of the modes' likelihoods, logarithm [1].
-        floor: least probability of a mode [1].
+        rows: of the detected obstacles (m,).
+        z: detected positions (m, 2) [m].
+        R: their covariances (m, 2, 2) [m²].
+        limit: maximum log likelihood ratio of two modes [1].
     """
     gain = np.empty(3)
     for k in range(len(rows)):
-        share = weights[rows[k]]
+        probability = weights[rows[k]]
         for mode in range(3):
             x, P = states[rows[k], mode], covariances[rows[k], mode]
             gain[mode] = correct(x, P, z[k], R[k])
         best = max(gain[0], gain[1], gain[2])
         for mode in range(3):
-            share[mode] *= exp(max(gain[mode] - best, -limit))
-        for least in (0.0, floor):
+            probability[mode] *= exp(max(gain[mode] - best, -limit))
+        for minimum in (0.0, FLOOR):
             total = 0.0
             for mode in range(3):
-                share[mode] = max(share[mode], least)
-                total += share[mode]
+                probability[mode] = max(probability[mode], minimum)
+                total += probability[mode]
             for mode in range(3):
-                share[mode] /= total
+                probability[mode] /= total
 
 
 @njit(cache=True)
-def places(weights: Array, states: Array, standing: Mask) -> Array:
-    """Where obstacles are under their verdicts (n, 2) [m].
+def positions(weights: Array, states: Array, static: Mask) -> Array:
+    """Return the positions of obstacles, given their motion class (n, 2) [m].
 
     Args:
         weights: (n, 3).
         states: (n, 3, 5).
-        standing: which of them stand still (n,).
+        static: whether each obstacle is static (n,).
     """
-    where = np.empty((len(weights), 2))
+    position = np.empty((len(weights), 2))
     for k in range(len(weights)):
-        on, back = weights[k, ON], weights[k, BACK]
+        on, back = weights[k, FORWARD], weights[k, REVERSED]
         for a in range(2):
-            if standing[k]:
-                where[k, a] = states[k, STILL, a]
+            if static[k]:
+                position[k, a] = states[k, STATIC, a]
             else:
-                where[k, a] = (on * states[k, ON, a] + back * states[k, BACK, a]) / (on + back)
-    return where
+                position[k, a] = (on * states[k, FORWARD, a] + back * states[k, REVERSED, a]) / (
+                    on + back
+                )
+    return position
 
 
 @njit(cache=True)
 def mean(weights: Array, states: Array) -> Array:
-    """Mean (5,) of one obstacle, given that it moves; weights (3,), states (3, 5)."""
-    moving = weights[ON] + weights[BACK]
+    """Return the mean (5,) of one obstacle, given that it moves; weights (3,), states (3, 5)."""
+    moving = weights[FORWARD] + weights[REVERSED]
     average = np.empty(SIZE)
     for a in range(SIZE):
-        average[a] = (weights[ON] * states[ON, a] + weights[BACK] * states[BACK, a]) / moving
+        average[a] = (
+            weights[FORWARD] * states[FORWARD, a] + weights[REVERSED] * states[REVERSED, a]
+        ) / moving
     return average
 
 
 @njit(cache=True)
 def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, Array]:
-    """Mean (5,) and covariance (5, 5) of one obstacle, given that it moves.
+    """Return mean (5,) and covariance (5, 5) of one obstacle, given that it moves.
 
     Args:
         weights: (3,).
         states: (3, 5).
         covariances: (3, 5, 5).
     """
-    on = weights[ON] / (weights[ON] + weights[BACK])
-    back = weights[BACK] / (weights[ON] + weights[BACK])
+    on = weights[FORWARD] / (weights[FORWARD] + weights[REVERSED])
+    back = weights[REVERSED] / (weights[FORWARD] + weights[REVERSED])
     average, covariance = np.empty(SIZE), np.empty((SIZE, SIZE))
     for a in range(SIZE):
-        average[a] = on * states[ON, a] + back * states[BACK, a]
+        average[a] = on * states[FORWARD, a] + back * states[REVERSED, a]
     for a in range(SIZE):
         for b in range(SIZE):
-            apart = (states[ON, a] - states[BACK, a]) * (states[ON, b] - states[BACK, b])
-            within = on * covariances[ON, a, b] + back * covariances[BACK, a, b]
+            apart = (states[FORWARD, a] - states[REVERSED, a]) * (
+                states[FORWARD, b] - states[REVERSED, b]
+            )
+            within = on * covariances[FORWARD, a, b] + back * covariances[REVERSED, a, b]
             covariance[a, b] = within + (on * back) * apart
     return average, covariance
 
@@ -389,41 +393,41 @@ def estimates(
     weights: Array,
     states: Array,
     covariances: Array,
-    standing: Mask,
+    static: Mask,
     best: Array,
-    lasting: float,
+    bias: float,
     speed_variance: float,
 ) -> tuple[Array, Array, Array, Array]:
-    """What is believed of obstacles under their verdicts.
+    """Return the estimates of obstacles, given their motion class.
 
     Args:
         weights: (n, 3).
         states: (n, 3, 5).
         covariances: (n, 3, 5, 5).
-        standing: which of them stand still (n,).
+        static: whether each obstacle is static (n,).
         best: covariance of the most precise detection of each (n, 2, 2) [m²].
-        lasting: share of that variance which no number of detections brings down [1].
-        speed_variance: of each component of the velocity of what stands [m²/s²].
+        bias: variance of the detections' common bias relative to `best` [1].
+        speed_variance: of each component of the velocity of a static obstacle [m²/s²].
 
     Returns:
         Positions (n, 2), velocities (n, 2), covariances of both (n, 4, 4) and turn rates (n,).
     """
     n = len(weights)
-    place, velocity, turn = np.empty((n, 2)), np.empty((n, 2)), np.empty(n)
+    position, velocity, turn = np.empty((n, 2)), np.empty((n, 2)), np.empty(n)
     covariance = np.empty((n, 4, 4))
     for k in range(n):
-        if standing[k]:
-            average, spread = states[k, STILL], covariances[k, STILL].copy()
+        if static[k]:
+            average, spread = states[k, STATIC], covariances[k, STATIC].copy()
             for a in range(2):
                 for b in range(2):
-                    spread[a, b] += lasting * best[k, a, b]
+                    spread[a, b] += bias * best[k, a, b]
                 spread[2 + a, 2 + a] = speed_variance
         else:
             average, spread = moments(weights[k], states[k], covariances[k])
         for a in range(2):
-            place[k, a], velocity[k, a] = average[a], average[2 + a]
+            position[k, a], velocity[k, a] = average[a], average[2 + a]
         for a in range(4):
             for b in range(4):
                 covariance[k, a, b] = spread[a, b]
         turn[k] = average[4]
-    return place, velocity, covariance, turn
+    return position, velocity, covariance, turn

@@ -1,8 +1,8 @@
-"""Local map: which places around the robot were seen, how long ago, and what is there.
+"""Local map: confidence and occupancy grid around the robot.
 
-The confidence of a cell is 1 while it is in view and then decays at xi_lm (Yoo & Kim,
-eq. (1)). It is a function of the time since the cell was last seen, so the map stores
-that time: no frame rate enters.
+The confidence of a cell is 1 while it is in view and decays at xi_lm out of view (Yoo & Kim,
+eq. (1)). It depends only on the time since the cell was last seen, which the map stores, so
+it does not depend on the frame rate.
 """
 
 from math import floor
@@ -12,18 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from navigation.belief import local_map_kernel
 from navigation.belief.visibility import Mask, Viewpoint
-from navigation.belief.visibility_kernel import take_in
+from navigation.belief.visibility_kernel import update_grid
 from navigation.parameters.belief import LocalMapParameters
 
 Array = NDArray[np.float64]
 
 
 class LocalMap:
-    """Confidence C of eq. (1): a square grid fixed to W that rolls along with the robot.
+    """Square grid aligned with W that scrolls with the robot.
 
     Args:
         parameters: size, cell, rates.
-        centre: where the map is centred at first in W [m].
+        centre: initial centre in W [m].
         time: [s].
     """
 
@@ -49,7 +49,7 @@ class LocalMap:
 
     @property
     def origin(self) -> tuple[float, float]:
-        """Corner of least x and y in W [m]."""
+        """Corner of minimum x and y in W [m]."""
         return self._corner[0] * self.cell, self._corner[1] * self.cell
 
     @property
@@ -60,27 +60,29 @@ class LocalMap:
 
     @property
     def confidence(self) -> Array:
-        """Confidence C of each cell, shaped like `age` [1]."""
+        """Confidence C of each cell, eq. (1), shaped like `age` [1]."""
         return self._confidence_of(self.age)
 
     def confidence_at(self, points: ArrayLike) -> Array:
-        """Confidence of the cells under points in W (n, 2); 1 outside the map (n,) [1]."""
+        """Return the confidence at points in W (n, 2); 1 outside the map (n,) [1]."""
         return self._confidence_of(self.age_at(points))
 
     def age_at(self, points: ArrayLike) -> Array:
-        """Time since the cells under points in W (n, 2) were seen (n,) [s].
+        """Return the time since the cells at points in W (n, 2) were last seen (n,) [s].
 
         Infinite where never seen, 0 outside the map.
         """
-        places = np.ascontiguousarray(points, np.float64)
-        seen_at = local_map_kernel.under(places, self._corner, self.cell, self._seen_at, self._time)
+        points = np.ascontiguousarray(points, np.float64)
+        seen_at = local_map_kernel.lookup(
+            points, self._corner, self.cell, self._seen_at, self._time
+        )
         age: Array = self._time - seen_at
         return age
 
     def free_at(self, points: ArrayLike) -> Mask:
-        """Whether all the floor around points in W (n, 2) was once seen empty (n,)."""
-        places = np.ascontiguousarray(points, np.float64)
-        return local_map_kernel.free(places, self._corner, self.cell, self._log_odds)
+        """Return whether the floor around points in W (n, 2) was seen empty (n,)."""
+        points = np.ascontiguousarray(points, np.float64)
+        return local_map_kernel.free(points, self._corner, self.cell, self._log_odds)
 
     def update(
         self,
@@ -90,29 +92,29 @@ class LocalMap:
         obstacles: Array,
         radii: Array,
     ) -> None:
-        """Take in what one frame showed.
+        """Update by one frame.
 
         Args:
             time: of the frame [s].
             viewpoint: its camera in W.
             centre: position of the robot in W [m].
-            obstacles: centres of the obstacles in the frame, in W (n, 2) [m].
+            obstacles: centres of the detected obstacles in W (n, 2) [m].
             radii: their radii (n,) [m].
         """
         p = self._parameters
         dt = min(time - self._time, p.max_look_time)
         self._time = time
-        self._roll(centre)
-        marks = viewpoint.searched(self._corner, p.cell, self._count, obstacles, radii)
+        self._scroll(centre)
+        marks = viewpoint.observed_cells(self._corner, p.cell, self._count, obstacles, radii)
         evidence = (dt * p.free_rate, dt * p.occupied_rate, p.max_log_odds)
-        take_in(marks, self._seen_at, self._log_odds, time, evidence)
+        update_grid(marks, self._seen_at, self._log_odds, time, evidence)
 
     def contents(self) -> tuple[Array, Array, Array]:
-        """All that the map holds, to compare it bit by bit; do not write into it."""
+        """Return the whole state for comparison, read-only."""
         return np.array([*self._corner, self._time]), self._seen_at, self._log_odds
 
     def snapshot(self) -> "LocalMap":
-        """Copy that later updates of this map leave as it is."""
+        """Return a copy that later updates leave unchanged."""
         copy = object.__new__(LocalMap)
         copy._parameters = self._parameters
         copy._count = self._count
@@ -130,29 +132,29 @@ class LocalMap:
         half = self._count // 2
         return floor(centre[0] / self.cell) - half, floor(centre[1] / self.cell) - half
 
-    def _roll(self, centre: tuple[float, float]) -> None:
-        """Move the map by whole cells so that the robot stays near its middle."""
+    def _scroll(self, centre: tuple[float, float]) -> None:
+        """Shift the grid by whole cells so that the robot stays near its centre."""
         corner = self._corner_for(centre)
-        shift_x, shift_y = corner[0] - self._corner[0], corner[1] - self._corner[1]
-        if shift_x == 0 and shift_y == 0:
+        columns, rows = corner[0] - self._corner[0], corner[1] - self._corner[1]
+        if columns == 0 and rows == 0:
             return
         self._corner = corner
-        self._seen_at = _shifted(self._seen_at, shift_y, shift_x, -np.inf)
-        self._log_odds = _shifted(self._log_odds, shift_y, shift_x, 0.0)
+        self._seen_at = _shifted(self._seen_at, rows, columns, -np.inf)
+        self._log_odds = _shifted(self._log_odds, rows, columns, 0.0)
 
 
 def _shifted(cells: Array, rows: int, columns: int, empty: float) -> Array:
-    """Cells of a window moved by (rows, columns); what was outside is `empty`."""
-    n, m = cells.shape
-    moved = np.full((n, m), empty)
-    if abs(rows) < n and abs(columns) < m:
+    """Return the cells of a window moved by (rows, columns); new cells are `empty`."""
+    n = len(cells)
+    moved = np.full((n, n), empty)
+    if abs(rows) < n and abs(columns) < n:
         target = (
             slice(max(0, -rows), n - max(0, rows)),
-            slice(max(0, -columns), m - max(0, columns)),
+            slice(max(0, -columns), n - max(0, columns)),
         )
         source = (
             slice(max(0, rows), n + min(0, rows)),
-            slice(max(0, columns), m + min(0, columns)),
+            slice(max(0, columns), n + min(0, columns)),
         )
         moved[target] = cells[source]
     return moved

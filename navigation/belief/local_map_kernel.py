@@ -1,4 +1,4 @@
-"""Compiled part of the local map: what its cells hold under points."""
+"""Compiled part of the local map: look-up of cells at points."""
 
 import numpy as np
 from numba import njit
@@ -10,37 +10,34 @@ Corner = tuple[int, int]
 
 
 @njit(cache=True)
-def under(points: Array, corner: Corner, cell: float, cells: Array, outside: float) -> Array:
-    """What a square grid holds under points.
+def lookup(points: Array, corner: Corner, cell: float, cells: Array, outside: float) -> Array:
+    """Return the values of a square grid at points (m,).
 
     Args:
         points: in W (m, 2) [m].
-        corner: number of the first column and row from the origin of W.
+        corner: index of the first column and row, counted from the origin of W.
         cell: side of a cell [m].
         cells: rows along y, columns along x (n, n).
-        outside: what holds outside the grid.
-
-    Returns:
-        (m,).
+        outside: value outside the grid.
     """
     n = len(cells)
-    held = np.empty(len(points))
+    values = np.empty(len(points))
     for k in range(len(points)):
-        # Numbers of cells stay floats until they are known to be inside: any may come.
+        # Indices stay floats until they are known to be inside: points may be anywhere.
         column = np.floor(points[k, 0] / cell) - corner[0]
         row = np.floor(points[k, 1] / cell) - corner[1]
         inside = 0.0 <= row < n and 0.0 <= column < n
-        held[k] = cells[int(row), int(column)] if inside else outside
-    return held
+        values[k] = cells[int(row), int(column)] if inside else outside
+    return values
 
 
 @njit(cache=True)
 def free(points: Array, corner: Corner, cell: float, log_odds: Array) -> Mask:
-    """Whether all the floor around points was seen empty: five cells in a cross (m,).
+    """Return whether the five cells in a cross around each point are free (m,).
 
     Args:
         points: in W (m, 2) [m].
-        corner: number of the first column and row from the origin of W.
+        corner: index of the first column and row, counted from the origin of W.
         cell: side of a cell [m].
         log_odds: of occupancy, rows along y, columns along x (n, n).
     """

@@ -1,4 +1,4 @@
-"""Compiled part of the clouds of lost movers."""
+"""Compiled part of the particle filter of lost movers."""
 
 from math import cos, exp, log, sin
 
@@ -14,22 +14,22 @@ def advance(
     positions: Array,
     velocities: Array,
     turn_rates: Array,
-    bends: Array,
+    noise: Array,
     draws: Array,
     wander: tuple[float, float],
     probability: float,
     dt: float,
 ) -> tuple[Array, Array, Array]:
-    """Move on for `dt` [s]; particles whose draw is below the probability turn back.
+    """Predict particles; those whose draw is below the probability reverse.
 
     Args:
         positions: (n, 2) [m].
         velocities: (n, 2) [m/s].
-        turn_rates: of the velocities (n,) [rad/s].
-        bends: standard normal (n,).
+        turn_rates: (n,) [rad/s].
+        noise: standard normal (n,).
         draws: uniform in [0, 1) (n,).
-        wander: share of a turn rate that is left after dt [1], and what a bend adds [rad/s].
-        probability: of turning back on its path [1].
+        wander: autocorrelation of the turn rate after dt [1], and its noise [rad/s].
+        probability: of reversing [1].
         dt: [s].
 
     Returns:
@@ -40,9 +40,9 @@ def advance(
     for i in range(len(draws)):
         sign = -1.0 if draws[i] < probability else 1.0
         u, v = sign * velocities[i, 0], sign * velocities[i, 1]
-        rate = sign * (wander[0] * turn_rates[i] + wander[1] * bends[i])
+        rate = sign * (wander[0] * turn_rates[i] + wander[1] * noise[i])
         angle = rate * dt
-        # Over a time so short the mean velocity is that of its middle.
+        # Midpoint rule.
         c, s = cos(0.5 * angle), sin(0.5 * angle)
         moved[i, 0] = positions[i, 0] + dt * (c * u - s * v)
         moved[i, 1] = positions[i, 1] + dt * (s * u + c * v)
@@ -53,7 +53,7 @@ def advance(
 
 @njit(cache=True)
 def moments(positions: Array, velocities: Array, weights: Array) -> tuple[Array, Array]:
-    """Mean (4,) and covariance (4, 4) of x, y, vx, vy.
+    """Return mean (4,) and covariance (4, 4) of x, y, vx, vy.
 
     Args:
         positions: (n, 2) [m].
@@ -80,27 +80,27 @@ def moments(positions: Array, velocities: Array, weights: Array) -> tuple[Array,
 def log_density(
     positions: Array, weights: Array, z: Array, variance: Array, jitter: float
 ) -> Array:
-    """Log density of a smoothed cloud at points (m,), up to log(2 pi).
+    """Return the log kernel density of particles at points (m,), up to log(2 pi).
 
-    Each particle is as wide as Scott's rule for the cloud's spread says, so that the gaps
-    between a few particles far apart are no holes.
+    The kernel width follows Scott's rule, so that the density is positive between a few distant
+    particles.
 
     Args:
         positions: (n, 2) [m].
         weights: sum to one (n,).
         z: points (m, 2) [m].
-        variance: widening for each point (m,) [m²].
-        jitter: least width of a particle [m].
+        variance: added to the kernel for each point (m,) [m²].
+        jitter: minimum kernel width [m].
     """
-    x = y = square = share = 0.0
+    x = y = square = scatter = 0.0
     for i in range(len(weights)):
         x += weights[i] * positions[i, 0]
         y += weights[i] * positions[i, 1]
         square += weights[i] * weights[i]
     for i in range(len(weights)):
         dx, dy = positions[i, 0] - x, positions[i, 1] - y
-        share += weights[i] * (dx * dx + dy * dy)
-    spread = 0.5 * share * square ** (1.0 / 3.0) + jitter * jitter
+        scatter += weights[i] * (dx * dx + dy * dy)
+    spread = 0.5 * scatter * square ** (1.0 / 3.0) + jitter * jitter
     logarithm = np.empty(len(z))
     for k in range(len(z)):
         wide, density = variance[k] + spread, 0.0
@@ -120,25 +120,25 @@ def costs(
     jitter: float,
     centre: Array,
     reach: float,
-    anywhere: float,
+    uniform: float,
 ) -> Array:
-    """Minus twice the log likelihood of points, up to log(2 pi) (m,).
+    """Return the association costs of detections: -2 log likelihood, up to log(2 pi) (m,).
 
     Args:
-        positions: as for `log_density`, like all up to `jitter`.
+        positions: as for `log_density`, like all arguments up to `jitter`.
         weights: of the particles.
-        z: points.
-        variance: widening for each point.
-        jitter: least width of a particle.
-        centre: where the mover was seen last (2,) [m].
-        reach: how far it may have got [m].
-        anywhere: probability that it is anywhere in reach, not where the cloud is [1].
+        z: detected positions.
+        variance: of each detection.
+        jitter: minimum kernel width.
+        centre: position of the mover's last detection (2,) [m].
+        reach: radius of the disc that it can have reached [m].
+        uniform: probability of a uniform density in that disc instead of the particles [1].
     """
     logarithm = log_density(positions, weights, z, variance, jitter)
     cost = np.empty(len(z))
     for k in range(len(z)):
         dx, dy = z[k, 0] - centre[0], z[k, 1] - centre[1]
         within = dx * dx + dy * dy < reach * reach
-        spread = anywhere * 2.0 / (reach * reach) if within else 0.0
-        cost[k] = -2.0 * log((1.0 - anywhere) * exp(logarithm[k]) + spread + 1e-30)
+        spread = uniform * 2.0 / (reach * reach) if within else 0.0
+        cost[k] = -2.0 * log((1.0 - uniform) * exp(logarithm[k]) + spread + 1e-30)
     return cost

@@ -4,14 +4,13 @@ It is the distribution-approximation filter of Yoo & Kim. The filter is filterpy
 over the sigma points, in Python there, are compiled here.
 """
 
-from math import cos, sin
-
 import numpy as np
 from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
 from navigation.belief import pose_kernel
+from navigation.transform import yaw_rotation
 
 Array = NDArray[np.float64]
 
@@ -99,10 +98,8 @@ class PoseFilter(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has n
         Raises:
             numpy.linalg.LinAlgError: the covariance is not positive definite.
         """
-        heading = float(self.x[2])
-        c, s = cos(heading), sin(heading)
-        to_world = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        self.Q = to_world @ covariance @ to_world.T + drift * ONE
+        rotation = yaw_rotation(float(self.x[2]))
+        self.Q = rotation @ covariance @ rotation.T + drift * ONE
         self.predict(UT=_state, increment=increment)
         self._tidy()
 

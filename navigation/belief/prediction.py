@@ -1,4 +1,4 @@
-"""The belief now, from a camera frame that arrived late."""
+"""Prediction of the belief over the latency of the camera."""
 
 from dataclasses import replace
 
@@ -8,26 +8,26 @@ from numpy.typing import NDArray
 from navigation.angles import wrap
 from navigation.belief.belief import Belief
 from navigation.observation import CameraView
-from navigation.transform import moved_on
+from navigation.transform import propagate
 
 Array = NDArray[np.float64]
 
 
 def predict(belief: Belief, then: Array, now: Array, time: float, view: CameraView) -> Belief:
-    """Carry a belief on from the capture of its frame.
+    """Predict a belief from the capture of its frame to the present.
 
-    Odometry over so short a time is far better known than the pose, so the covariance
-    follows the motion and does not grow. Tracks move on straight along their velocities. All
-    else of them stays as of the frame, age, particles and turn rate too, and so does the map.
+    Over the latency the odometry is much more precise than the pose, so the covariance follows
+    the motion and does not grow. Tracks move with constant velocity. Age, particles, turn rate
+    and the local map remain those of the frame.
 
     Args:
         belief: at the capture.
         then: pose of R in the odometry frame at the capture (3,) [m, m, rad].
-        now: the same now (3,).
+        now: pose of R in the odometry frame now (3,) [m, m, rad].
         time: now [s].
-        view: where the camera looks now.
+        view: pose and field of view of the camera now.
     """
-    pose, J = moved_on(belief.pose, then, now)
+    pose, J = propagate(belief.pose, then, now)
     pose[2] = wrap(float(pose[2]))
     dt = time - belief.time
     return replace(

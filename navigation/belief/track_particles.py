@@ -1,9 +1,8 @@
-"""Particles of a lost mover: where it may be while nobody looks.
+"""Particle filter of a lost mover.
 
-A mover out of sight goes on, or turns back, so its whereabouts have several modes that
-no Gaussian holds. A few particles walk on in bends, reverse at a constant rate, lose weight
-where the camera looks and finds nothing, and are redistributed over what it could have
-reached when all of them are refuted.
+The position of a mover out of view is multimodal because it may reverse. The particles move
+with random turn rates, reverse at a constant rate and lose weight where the camera sees empty
+floor. When all are refuted, they are redistributed over the reachable area.
 """
 
 from math import exp
@@ -25,7 +24,7 @@ def spawn(modes: Modes, count: int, rng: np.random.Generator) -> Particles:
     """Draw particles from the filters of one track.
 
     Args:
-        modes: filters of standing still, going on and having turned back.
+        modes: filters of the track.
         count: number of particles.
         rng: source of all draws.
     """
@@ -33,14 +32,14 @@ def spawn(modes: Modes, count: int, rng: np.random.Generator) -> Particles:
     roots = np.linalg.cholesky(modes.covariances + 1e-12 * np.eye(SIZE))
     drawn = modes.states[mode]
     drawn = drawn + (roots[mode] @ rng.standard_normal((count, SIZE, 1)))[:, :, 0]
-    place, velocity, turn = drawn[:, :2].copy(), drawn[:, 2:4].copy(), drawn[:, 4].copy()
-    return Particles(place, velocity, turn, np.full(count, 1.0 / count))
+    position, velocity, turn = drawn[:, :2].copy(), drawn[:, 2:4].copy(), drawn[:, 4].copy()
+    return Particles(position, velocity, turn, np.full(count, 1.0 / count))
 
 
 def advance(
     cloud: Particles, dt: float, p: TrackingParameters, rng: np.random.Generator
 ) -> Particles:
-    """Move on for `dt` [s], bending and turning back as movers do."""
+    """Predict by `dt` [s], with random turn rates and reversals."""
     count, keep = len(cloud.weights), exp(-dt / p.turn_rate_time)
     parts = particle_kernel.advance(
         cloud.positions,
@@ -56,16 +55,15 @@ def advance(
 
 
 def refute(cloud: Particles, expected: Mask, survival: float) -> tuple[Particles, float]:
-    """Weaken the particles that should have been detected but were not.
+    """Update the weights by a missed detection.
 
     Args:
         cloud: its weights sum to one.
-        expected: whether each particle should have been detected (n,).
-        survival: probability of missing one that should be.
+        expected: whether each particle is in clear view (n,).
+        survival: probability of missing a particle in clear view.
 
     Returns:
-        The particles with weights that sum to one, and the sum before: how well the
-        whole cloud agrees with having seen nothing.
+        The particles with normalized weights, and the likelihood of the missed detection.
     """
     weights = np.where(expected, cloud.weights * survival, cloud.weights)
     total = float(weights.sum())
@@ -75,29 +73,29 @@ def refute(cloud: Particles, expected: Mask, survival: float) -> tuple[Particles
 
 
 def resample(cloud: Particles, p: TrackingParameters, rng: np.random.Generator) -> Particles:
-    """Systematic resampling with jitter once too few particles carry the weight."""
+    """Resample (systematic, with roughening) if the effective sample size is too small."""
     count = len(cloud.weights)
     if float(cloud.weights @ cloud.weights) * p.min_effective_fraction * count < 1.0:
         return cloud
-    chosen = _systematic(cloud.weights, count, rng)
+    drawn = _systematic(cloud.weights, count, rng)
     return Particles(
-        cloud.positions[chosen] + p.position_jitter * rng.standard_normal((count, 2)),
-        cloud.velocities[chosen] + p.velocity_jitter * rng.standard_normal((count, 2)),
-        cloud.turn_rates[chosen],
+        cloud.positions[drawn] + p.position_jitter * rng.standard_normal((count, 2)),
+        cloud.velocities[drawn] + p.velocity_jitter * rng.standard_normal((count, 2)),
+        cloud.turn_rates[drawn],
         np.full(count, 1.0 / count),
     )
 
 
-def scatter(
+def redistribute(
     centre: Array, radius: float, velocity: Array, p: TrackingParameters, rng: np.random.Generator
 ) -> Particles:
-    """Particles wherever a mover could have got to: half on its old line, half anywhere.
+    """Draw candidates over the reachable disc: half along the last path, half uniformly.
 
     Args:
-        centre: where it was last seen (2,) [m].
-        radius: reach [m].
-        velocity: with which it was last seen (2,) [m/s].
-        p: how many places are tried for how many particles, and the width of the line.
+        centre: position of the last detection (2,) [m].
+        radius: of the reachable disc [m].
+        velocity: at the last detection (2,) [m/s].
+        p: numbers of particles and of candidates per particle, width of the path.
         rng: source of all draws.
     """
     count = p.candidates_per_particle * p.particles
@@ -105,20 +103,20 @@ def scatter(
     speed = float(np.hypot(velocity[0], velocity[1]))
     ahead = velocity / speed if speed > 0.0 else np.array([1.0, 0.0])
     distance = radius * np.sqrt(rng.random(count))
-    place = rng.uniform(-np.pi, np.pi, count)
-    way = rng.uniform(-np.pi, np.pi, count)
-    offsets = distance[:, None] * np.stack([np.cos(place), np.sin(place)], axis=1)
-    velocities = speed * np.stack([np.cos(way), np.sin(way)], axis=1)
+    azimuth = rng.uniform(-np.pi, np.pi, count)
+    course = rng.uniform(-np.pi, np.pi, count)
+    offsets = distance[:, None] * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
+    velocities = speed * np.stack([np.cos(course), np.sin(course)], axis=1)
     along = rng.uniform(-radius, radius, half)
     offsets[:half] = along[:, None] * ahead + p.position_jitter * rng.standard_normal((half, 2))
     velocities[:half] = np.where(rng.random(half) < 0.5, 1.0, -1.0)[:, None] * velocity
     mixed = rng.permutation(count)
-    places, even = centre + offsets[mixed], np.full(count, 1.0 / count)
-    return Particles(places, velocities[mixed], np.zeros(count), even)
+    weights = np.full(count, 1.0 / count)
+    return Particles(centre + offsets[mixed], velocities[mixed], np.zeros(count), weights)
 
 
-def chosen(cloud: Particles, indices: NDArray[np.intp]) -> Particles:
-    """The particles at `indices`, equally weighted."""
+def select(cloud: Particles, indices: NDArray[np.intp]) -> Particles:
+    """Return the particles at `indices`, equally weighted."""
     count = len(indices)
     return Particles(
         cloud.positions[indices],
@@ -129,7 +127,7 @@ def chosen(cloud: Particles, indices: NDArray[np.intp]) -> Particles:
 
 
 def moments(cloud: Particles) -> tuple[Array, Array]:
-    """Mean (4,) and covariance (4, 4) of x, y, vx, vy over the particles."""
+    """Return mean (4,) and covariance (4, 4) of x, y, vx, vy."""
     return particle_kernel.moments(cloud.positions, cloud.velocities, cloud.weights)
 
 
@@ -140,14 +138,14 @@ def costs(
     lost: tuple[Array, float],
     p: TrackingParameters,
 ) -> Array:
-    """Minus twice the log likelihood of sightings, up to log(2 pi) (m,).
+    """Return the association costs of detections: -2 log likelihood, up to log(2 pi) (m,).
 
     Args:
         cloud: n particles.
-        z: sightings (m, 2) [m].
-        variance: of each (m,) [m²].
-        lost: where it was seen last (2,) [m], and how far it may have got [m].
-        p: how probable it is that it is anywhere so far, not where the particles are.
+        z: detected positions (m, 2) [m].
+        variance: of each detection (m,) [m²].
+        lost: position of the last detection (2,) [m] and radius of the reachable disc [m].
+        p: probability of a uniform density in that disc, kernel width.
     """
     return particle_kernel.costs(
         cloud.positions, cloud.weights, z, variance, p.position_jitter, *lost, p.uniform_probability
@@ -155,6 +153,6 @@ def costs(
 
 
 def _systematic(weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.intp]:
-    """Indices (count,) drawn by `weights` (n,) from one draw: as many of each as its share."""
+    """Return indices (count,) drawn by `weights` (n,) (systematic resampling)."""
     ticks = (np.arange(count) + rng.random()) / count
     return np.minimum(np.searchsorted(np.cumsum(weights), ticks), len(weights) - 1)

@@ -1,4 +1,4 @@
-"""One obstacle as the tracker keeps it between frames, and the verdict whether it moves."""
+"""One tracked obstacle: detection history and motion class."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -6,7 +6,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import imm, track_particles
+from navigation.belief import imm_kernel, track_particles
 from navigation.belief.belief import Motion, Particles, Track
 from navigation.belief.imm import Modes
 from navigation.parameters.belief import TrackingParameters
@@ -18,21 +18,21 @@ Estimate = tuple[Array, Array, Array, float]
 
 @dataclass(slots=True)
 class TrackedObject:
-    """History of one obstacle; its filters are a row of the tracker's.
+    """State of one obstacle between frames; its filters are a row of the tracker's.
 
     Attributes:
         id: number, unique in a run.
         label: colour class.
         radius, radius_sigma: [m].
         first_time, last_time: first and latest detection [s].
-        last_seen: where the latest detection put it (2,) [m].
-        known_reach: radius of the disc about it that surely contained its axis then [m].
-        motion: verdict.
+        last_seen: position of the latest detection (2,) [m].
+        reach_at_detection: radius of the confidence disc of that detection [m].
+        motion: motion class.
         hits: number of detections.
-        misses: detections that failed in a row although expected.
-        expected_for: time in clear view since the last detection or miss [s].
-        particles: hypotheses while lost, else None.
-        presence: probability of what was not seen since, given the particles.
+        misses: successive misses.
+        unseen_time: time in clear view since the last detection or miss [s].
+        particles: while lost, else None.
+        existence: likelihood of the missed detections, given the particles.
     """
 
     id: int
@@ -42,26 +42,25 @@ class TrackedObject:
     first_time: float
     last_time: float
     last_seen: Array
-    known_reach: float
+    reach_at_detection: float
     motion: Motion = Motion.UNKNOWN
     hits: int = 1
     misses: int = 0
-    expected_for: float = 0.0
+    unseen_time: float = 0.0
     particles: Particles | None = None
-    presence: float = 1.0
+    existence: float = 1.0
 
     def reach(self, time: float, p: TrackingParameters) -> float:
-        """Radius of the disc about its last sighting that it cannot have left [m]."""
+        """Return the radius of the reachable disc around its last detection [m]."""
         moving = self.motion is not Motion.STATIC
-        return self.known_reach + moving * p.max_speed * (time - self.last_time)
+        return self.reach_at_detection + moving * p.max_speed * (time - self.last_time)
 
-    def lost_reach(self, time: float, modes: Modes, p: TrackingParameters) -> float:
-        """How far from its last sighting it is looked for while lost, by its filters [m]."""
-        speed = imm.speed(modes)
-        return p.path_width + p.reach_factor * speed * (time - self.last_time)
+    def search_radius(self, time: float, modes: Modes, p: TrackingParameters) -> float:
+        """Return the radius around its last detection in which it is searched while lost [m]."""
+        return p.path_width + p.reach_factor * speed(modes) * (time - self.last_time)
 
     def classify(self, modes: Modes, p: TrackingParameters) -> None:
-        """Revise the verdict after a detection, by its filters."""
+        """Update the motion class after a detection."""
         moving = float(modes.moving)
         if self.motion is Motion.STATIC:
             if moving > p.static_exit_probability:
@@ -72,7 +71,7 @@ class TrackedObject:
         elif (
             moving > p.moving_probability
             and self.hits >= p.min_moving_hits
-            and imm.speed(modes) > p.min_moving_speed
+            and speed(modes) > p.min_moving_speed
         ):
             self.motion = Motion.MOVING
         elif (
@@ -83,7 +82,7 @@ class TrackedObject:
             self.motion = Motion.STATIC
 
     def track(self, time: float, p: TrackingParameters, estimate: Estimate) -> Track:
-        """Publish it as of `time` [s]: `estimate`, or what its particles say if it is lost."""
+        """Return the track as of `time` [s], from `estimate` or, while lost, from the particles."""
         position, velocity, covariance, turn_rate = estimate
         if self.particles is not None:
             mean, covariance = track_particles.moments(self.particles)
@@ -108,10 +107,14 @@ class TrackedObject:
         )
 
 
+def speed(modes: Modes) -> float:
+    """Return the speed of one obstacle, given that it moves [m/s]."""
+    return hypot(*imm_kernel.mean(modes.weights, modes.states)[2:4].tolist())
+
+
 def reach_of(covariance: Array, p: TrackingParameters) -> float:
-    """Radius of the disc about a sighting of `covariance` (2, 2) that surely contains its axis."""
+    """Return the radius of the confidence disc of a detection of `covariance` (2, 2) [m]."""
     (xx, xy), (_, yy) = covariance.tolist()
-    # The larger half axis of the sighting's ellipse.
-    largest = 0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
-    reach: float = p.reach_sigmas * largest**0.5
+    eigenvalue = 0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy)
+    reach: float = p.reach_sigmas * eigenvalue**0.5
     return reach

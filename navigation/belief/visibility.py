@@ -1,12 +1,13 @@
-"""What the camera could see: the pinhole view, its range, and what hides what."""
+"""Visibility: field of view, range and occlusion of the camera."""
 
-from math import cos, pi, sin, tan
+from math import pi, tan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief import visibility_kernel
 from navigation.observation import CameraView
+from navigation.transform import yaw_rotation
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -15,14 +16,14 @@ Mask = NDArray[np.bool_]
 
 @value
 class Viewpoint:
-    """The camera of one frame, placed in the field frame W.
+    """Camera of one frame in the field frame W.
 
     Attributes:
         rotation: R_WC, columns right, down, forward (3, 3).
         position: p_WC (3,) [m].
-        horizontal_half, vertical_half: half the fields of view [rad]; with a horizontal one of
-            a quarter turn or more the camera is no pinhole but sees all around, up and down.
-        range: distance along the floor beyond which nothing is recognised [m].
+        horizontal_half, vertical_half: half the fields of view [rad]. A horizontal half of pi/2
+            or more means an omnidirectional camera, which also sees up and down.
+        range: maximum distance of a detection along the floor [m].
     """
 
     rotation: Array
@@ -33,7 +34,7 @@ class Viewpoint:
 
     @classmethod
     def of(cls, view: CameraView, pose: Array, reach: float) -> "Viewpoint":
-        """Place the view of a frame in W.
+        """Transform the camera of a frame to W.
 
         Args:
             view: camera in R.
@@ -41,60 +42,58 @@ class Viewpoint:
             reach: range [m].
         """
         x, y, heading = pose.tolist()
-        c, s = cos(heading), sin(heading)
-        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        position = turn @ view.position
+        rotation = yaw_rotation(heading)
+        position = rotation @ view.position
         position[0] += x
         position[1] += y
         return cls(
-            turn @ view.rotation,
+            rotation @ view.rotation,
             position,
             0.5 * view.horizontal_fov,
             0.5 * view.vertical_fov,
             reach,
         )
 
-    def expects(
-        self, points: Array, centres: Array, radii: Array, *, margin: float, slack: float
+    def in_clear_view(
+        self, points: Array, centres: Array, radii: Array, *, margin: float, occlusion_margin: float
     ) -> Mask:
-        """Whether the foot of an obstacle at each point would be seen clearly.
+        """Return whether the foot of an obstacle at each point is in clear view (n,).
 
         Args:
             points: in W (n, 2) [m].
-            centres: of the discs that may hide them (m, 2) [m].
+            centres: of the occluding discs (m, 2) [m].
             radii: of these discs (m,) [m].
-            margin: kept from the border of the image [rad].
-            slack: widening of every disc [m].
-
-        Returns:
-            One truth value per point (n,).
+            margin: distance from the border of the image [rad].
+            occlusion_margin: enlargement of every disc [m].
         """
-        camera = self._camera(margin)
-        return visibility_kernel.expects(points, self.position, camera, centres, radii, slack)
+        return visibility_kernel.in_clear_view(
+            points, self.position, self._camera(margin), centres, radii, occlusion_margin
+        )
 
-    def searched(
+    def observed_cells(
         self, corner: tuple[int, int], cell: float, count: int, centres: Array, radii: Array
     ) -> visibility_kernel.Marks:
-        """What a look shows of the cells of a grid: UNSEEN, FREE or COVERED (count, count).
+        """Return which cells of a grid a frame shows: UNSEEN, FREE or OCCUPIED (count, count).
 
         Args:
-            corner: number of the first column and row from the origin of W.
+            corner: index of the first column and row, counted from the origin of W.
             cell: side of a cell [m].
             count: cells along a side.
-            centres: of the discs in the frame, in W (m, 2) [m].
+            centres: of the detected discs in W (m, 2) [m].
             radii: (m,) [m].
         """
-        camera = self._camera(0.0)
         first = np.array(corner, np.float64)
-        return visibility_kernel.searched(first, cell, count, self.position, camera, centres, radii)
+        return visibility_kernel.observed_cells(
+            first, cell, count, self.position, self._camera(0.0), centres, radii
+        )
 
     def _camera(self, margin: float) -> visibility_kernel.Camera:
-        """Camera as `visibility_kernel.contained` wants it, for the floor (13)."""
-        wide = self.horizontal_half >= 0.5 * pi
+        """Camera in the format of `visibility_kernel.in_view`, for points of the floor (13)."""
+        omnidirectional = self.horizontal_half >= 0.5 * pi
         return (
             *self.rotation.ravel().tolist(),
             -float(self.position[2]),
-            -1.0 if wide else tan(max(self.horizontal_half - margin, 0.0)),
+            -1.0 if omnidirectional else tan(max(self.horizontal_half - margin, 0.0)),
             tan(max(self.vertical_half - margin, 0.0)),
             float(self.range),
         )

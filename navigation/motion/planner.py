@@ -31,7 +31,7 @@ from navigation.motion.waypoint_search import search_waypoint
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
-from navigation.transform import velocity_in_world
+from navigation.transform import rotate, velocity_in_world
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -246,14 +246,12 @@ class Planner:
         radii = scene.s_oe
         if p.moving_obstacles.radius == "physical":
             radii = physical_radius(scene.obstacles, p.univector) + p.moving_obstacles.margin
-        c, s = cos(direction), sin(direction)
         encounters = {}
         for index in np.nonzero(scene.obstacles.speed >= p.moving_obstacles.min_speed)[0].tolist():
             x, y = (scene.obstacles.position[index] - pose[:2]).tolist()
             u, w = scene.obstacles.velocity[index].tolist()
-            encounters[index] = Encounter(
-                c * x + s * y, c * y - s * x, c * u + s * w, c * w - s * u, float(radii[index])
-            )
+            position, velocity = rotate(-direction, (x, y)), rotate(-direction, (u, w))
+            encounters[index] = Encounter(*position, *velocity, float(radii[index]))
         return encounters
 
     def _modified(

@@ -1,13 +1,13 @@
 """Ground ahead that must have been seen before the robot walks there fast."""
 
 from functools import cache
-from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navigation.belief.belief import Belief
 from navigation.parameters.motion import UnseenGroundParameters
+from navigation.transform import SE2
 
 Array = NDArray[np.float64]
 
@@ -22,9 +22,8 @@ def ground_points(pose: Array, direction: float, parameters: UnseenGroundParamet
     """
     p = parameters
     along, across = _ground(p.near, p.far, p.half_width, p.rows)
-    c, s = cos(direction), sin(direction)
-    points: Array = pose[:2] + np.stack([c * along - s * across, s * along + c * across], axis=1)
-    return points
+    x, y, _ = pose.tolist()
+    return np.stack(SE2(x, y, direction) @ (along, across), axis=1)
 
 
 def ground_seen(belief: Belief, direction: float, parameters: UnseenGroundParameters) -> bool:

@@ -8,7 +8,7 @@ import pytest
 from navigation.belief.belief import Belief, Motion, Particles, Track
 from navigation.decision import SpeedLimits, Task
 from navigation.observation import CameraView, Frame, Observation
-from navigation.transform import sighting
+from navigation.transform import range_bearing
 
 HEIGHT = 0.47
 
@@ -36,7 +36,7 @@ def _observe(
     occluded=False,
     by_radius=(0.0, 0.0),
 ):
-    distance, bearing = sighting(pose, place)
+    distance, bearing = range_bearing(pose, place)
     return Observation(
         kind=kind,
         label=label,

@@ -1,17 +1,16 @@
 from math import hypot
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from navigation.angles import wrap
 from navigation.transform import (
-    moved_on,
-    points_from,
+    points_to_robot,
     points_to_world,
     pose_from_points,
-    sighting,
+    propagate,
+    range_bearing,
     to_world,
     velocity_in_world,
 )
@@ -22,15 +21,15 @@ headings = st.floats(-3.14, 3.14)
 
 @given(metres, metres, headings, metres, metres)
 def test_a_sighting_leads_back_to_the_landmark(x, y, heading, a, b):
-    distance, bearing = sighting((x, y, heading), (a, b))
+    distance, bearing = range_bearing((x, y, heading), (a, b))
     back = to_world((x, y, heading), distance, bearing)
     assert hypot(back[0] - a, back[1] - b) < 1e-9
 
 
 @given(metres, metres, headings, metres, metres)
 def test_points_are_seen_where_sightings_are(x, y, heading, a, b):
-    distance, bearing = sighting((x, y, heading), (a, b))
-    seen = points_from((x, y, heading), np.array([[a, b]]))
+    distance, bearing = range_bearing((x, y, heading), (a, b))
+    seen = points_to_robot((x, y, heading), np.array([[a, b]]))
     assert np.allclose(seen, [[distance * np.cos(bearing), distance * np.sin(bearing)]], atol=1e-9)
     assert np.allclose(points_to_world(np.array([x, y, heading]), seen), [[a, b]], atol=1e-9)
 
@@ -40,7 +39,7 @@ def test_pose_from_points_inverts_the_sightings(x, y, heading):
     landmarks = np.array([[2.0, 1.0], [-1.0, 3.0], [0.5, -2.0]])
     seen = []
     for landmark in landmarks:
-        distance, bearing = sighting((x, y, heading), tuple(landmark.tolist()))
+        distance, bearing = range_bearing((x, y, heading), tuple(landmark.tolist()))
         seen.append((distance * np.cos(bearing), distance * np.sin(bearing)))
     for count in (2, 3):
         pose = pose_from_points(np.array(seen[:count]), landmarks[:count])
@@ -61,18 +60,13 @@ def test_odometry_moves_a_pose_as_it_moved_itself_and_in_two_steps_as_in_one(x, 
     pose, before = np.array([x, y, a]), np.array([u, v, b])
     steps = np.array([[0.3, -0.2, 0.7], [0.1, 0.4, -0.5]])
     middle, after = before + steps
-    assert np.allclose(moved_on(before, before, after)[0], after)
-    halfway, first = moved_on(pose, before, middle)
-    end, second = moved_on(halfway, middle, after)
-    whole, derivative = moved_on(pose, before, after)
+    assert np.allclose(propagate(before, before, after)[0], after)
+    halfway, first = propagate(pose, before, middle)
+    end, second = propagate(halfway, middle, after)
+    whole, derivative = propagate(pose, before, after)
     assert np.allclose(end, whole, atol=1e-9)
     assert np.allclose(second @ first, derivative, atol=1e-9)
     for k in range(3):
         step = 1e-6 * np.eye(3)[k]
-        moved = moved_on(pose + step, before, after)[0] - whole
+        moved = propagate(pose + step, before, after)[0] - whole
         assert np.allclose(moved / 1e-6, derivative[:, k], atol=1e-5)
-
-
-def test_one_point_is_not_enough():
-    with pytest.raises(ValueError, match="at least 2"):
-        pose_from_points(np.zeros((1, 2)), np.zeros((1, 2)))

@@ -68,46 +68,46 @@ def test_the_one_that_was_moved_is_left_out_if_the_rest_agree_with_the_belief(fr
 
 
 def test_a_run_of_rejections_of_several_beacons_means_lost():
-    judged = made()
-    verdicts = [judged.judge(0.06 * k, [], ["ab"[k % 2]]) for k in range(P.lost_rejections)]
+    detector = made()
+    verdicts = [detector.is_lost(0.06 * k, [], ["ab"[k % 2]]) for k in range(P.lost_rejections)]
     assert verdicts == [False] * (P.lost_rejections - 1) + [True]
 
 
 def test_rejections_of_a_single_beacon_mean_lost_after_a_while_alone():
-    judged, step = made(), 0.06
-    verdicts = [judged.judge(step * k, [], ["a"]) for k in range(100)]
+    detector, step = made(), 0.06
+    verdicts = [detector.is_lost(step * k, [], ["a"]) for k in range(100)]
     assert verdicts.index(True) * step == pytest.approx(P.lost_time, abs=2 * step)
 
 
 def test_one_sighting_that_fits_ends_the_run():
-    judged = made()
+    detector = made()
     for k in range(P.lost_rejections - 1):
-        judged.judge(0.06 * k, [], ["a", "b"][k % 2 : k % 2 + 1])
-    assert not judged.judge(1.0, ["c"], [])
-    assert not judged.judge(1.1, [], ["a"])
+        detector.is_lost(0.06 * k, [], ["a", "b"][k % 2 : k % 2 + 1])
+    assert not detector.is_lost(1.0, ["c"], [])
+    assert not detector.is_lost(1.1, [], ["a"])
 
 
 def test_a_beacon_contradicted_by_others_again_and_again_was_moved():
-    judged = made()
+    detector = made()
     for k in range(P.displaced_rejections - 1):
-        judged.judge(0.06 * k, ["a"], ["b"])
-    assert not judged.displaced
-    judged.judge(1.0, ["a"], ["b"])
-    assert judged.displaced == {"b"}
+        detector.is_lost(0.06 * k, ["a"], ["b"])
+    assert not detector.displaced
+    detector.is_lost(1.0, ["a"], ["b"])
+    assert detector.displaced == {"b"}
 
 
 def test_an_outlier_is_forgiven_by_the_next_sighting_that_fits():
-    judged = made()
+    detector = made()
     for k in range(3 * P.displaced_rejections):
         accepted, rejected = (["a", "b"], []) if k % 3 == 2 else (["a"], ["b"])
-        judged.judge(0.06 * k, accepted, rejected)
-    assert not judged.displaced
+        detector.is_lost(0.06 * k, accepted, rejected)
+    assert not detector.displaced
 
 
 def test_what_was_seen_before_the_pose_went_wrong_is_forgotten(frame, observe):
     lost = made()
     saw(lost, frame, observe, (0, 0, 0), (0, 0, 0), "a", time=0.0)
-    lost.judge(1.0, [], ["b"])
+    lost.is_lost(1.0, [], ["b"])
     taken = saw(lost, frame, observe, (1, 0, 0), (0, 0, 0), "b", time=1.0)
     lost.begin()
     assert lost.locate(taken, np.zeros(3)) is None

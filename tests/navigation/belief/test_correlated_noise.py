@@ -24,8 +24,3 @@ def test_is_the_variance_of_a_mean_of_autocorrelated_noise():
     lags = np.arange(1, n)
     variance_of_mean = (1 + 2 * np.sum((1 - lags / n) * a**lags)) / n
     assert variance_inflation(dt, tau) / n == pytest.approx(variance_of_mean, rel=2e-3)
-
-
-def test_measurements_at_one_time_are_refused():
-    with pytest.raises(ValueError, match="apart in time"):
-        variance_inflation(0.0, 0.1)

@@ -8,7 +8,7 @@ from navigation.angles import wrap
 from navigation.belief.belief import Motion
 from navigation.belief.ekf_slam import EkfSlam
 from navigation.parameters.belief import BeliefParameters
-from navigation.transform import sighting
+from navigation.transform import range_bearing
 
 DT = 0.1
 MOTION = (4e-6, 4e-6, 4e-7)  # variances per frame, forward, left and turn
@@ -41,7 +41,7 @@ def tour(observe, frame, track, rng, seconds, fov=1.5):
             q += [c * u[0] - s * u[1], s * u[0] + c * u[1], u[2]]
         seen, numbers = [], []
         for i, (x, y, label) in enumerate(POSTS):
-            _, bearing = sighting(pose.tolist(), (x, y))
+            _, bearing = range_bearing(pose.tolist(), (x, y))
             if abs(bearing) < fov / 2:
                 seen.append(
                     observe(
@@ -51,7 +51,7 @@ def tour(observe, frame, track, rng, seconds, fov=1.5):
                 numbers.append(i)
         f = replace(frame(k * DT, odometry, seen), motion_covariance=np.diag(MOTION))
         slam.update(f)
-        slam.learn(
+        slam.map_landmarks(
             f,
             tracks(track, range(8), visible=False)
             if k < 3
@@ -101,7 +101,7 @@ def test_a_landmark_shares_the_error_of_the_pose_that_mapped_it(observe, frame, 
     slam.update(wander)
     first = frame(0.2, (0, 0, 0), [observe((0, 0, 0), POSTS[0][:2], sigma=SIGMA)])
     slam.update(first)
-    slam.learn(first, tracks(track, [0]))
+    slam.map_landmarks(first, tracks(track, [0]))
     before = np.linalg.det(slam.covariance)
     for k in range(3, 40):
         still = replace(
@@ -115,7 +115,7 @@ def test_a_landmark_shares_the_error_of_the_pose_that_mapped_it(observe, frame, 
 def test_what_no_longer_stands_still_is_forgotten(observe, frame, track):
     slam, _ = last(tour(observe, frame, track, np.random.default_rng(2), 20.0))
     pose, covariance = slam.pose, slam.covariance
-    slam.learn(
+    slam.map_landmarks(
         frame(99.0, (0, 0, 0), []),
         tracks(track, [1, 2], visible=False) + tracks(track, [3], Motion.MOVING),
     )
@@ -144,7 +144,7 @@ def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0
         pose = (x, y, heading + turn)
         seen, numbers = [], []
         for i, (px, py, label) in enumerate(PLACES):
-            distance, bearing = sighting(pose, (px, py))
+            distance, bearing = range_bearing(pose, (px, py))
             if abs(bearing) < 0.7 and distance < 2.5 and i not in hidden:
                 seen.append(
                     observe(pose, (px, py), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA)
@@ -152,7 +152,7 @@ def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0
                 numbers.append(i)
         f = frame(DT * k, (0.0, 0.0, turn), seen)
         slam.update(f)
-        slam.learn(f, tuple(
+        slam.map_landmarks(f, tuple(
             replace(track(PLACES[i][:2], id=i), label=PLACES[i][2]) for i in range(len(PLACES))
             if i in numbers or i in slam._ids
         ))  # fmt: skip
@@ -223,12 +223,12 @@ def test_only_what_was_detected_near_its_track_is_mapped(observe, frame, track, 
     off = share * parameters.mapping.match_distance
     seen = frame(0.0, (0, 0, 0), [observe((0, 0, 0), (x + off, y))])
     slam.update(seen)
-    slam.learn(seen, tracks(track, [0]))
+    slam.map_landmarks(seen, tracks(track, [0]))
     assert len(slam._ids) == landmarks
 
 
 def test_an_old_frame_is_refused(frame):
     slam = EkfSlam(BeliefParameters(), np.zeros(3))
     slam.update(frame(1.0, (0, 0, 0), []))
-    with pytest.raises(ValueError, match="order of their capture"):
+    with pytest.raises(ValueError, match="order of capture"):
         slam.update(frame(1.0, (0, 0, 0), []))

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from navigation.belief import imm
-from navigation.belief.imm import BACK, ON, STILL, Modes
+from navigation.belief import imm, imm_kernel
+from navigation.belief.imm import Modes
+from navigation.belief.imm_kernel import FORWARD, REVERSED, STATIC
 from navigation.parameters.belief import TrackingParameters
 
 P = TrackingParameters()
@@ -12,7 +13,7 @@ R = np.diag([1e-4, 2e-4])
 
 
 def one(moving=0.5, z=(1.0, 0.0), R=R):
-    modes = imm.begun(np.array(z), R, moving, P)
+    modes = imm.initial(np.array(z), R, moving, P)
     return Modes(*(a[None] for a in modes))
 
 
@@ -21,7 +22,7 @@ def watch(modes, places, R=R, rng=None):
     for place in places:
         modes = imm.predict(modes, DT, P)
         z = np.array([place]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
-        imm.update(modes, np.array([0]), z, R[None], P.max_log_ratio)
+        imm_kernel.update(*modes, np.array([0]), z, R[None], P.max_log_ratio)
     return modes
 
 
@@ -36,10 +37,10 @@ def test_without_change_of_mode_it_is_a_plain_filter():
     predicted = imm.predict(modes, 0.5, p)
     F, q = np.eye(4) + 0.5 * np.eye(4, k=2), p.acceleration_noise
     block = np.array([[0.5**3 / 3, 0.5**2 / 2], [0.5**2 / 2, 0.5]]) * q * q
-    covariance = F @ modes.covariances[0, ON, :4, :4] @ F.T + np.kron(block, np.eye(2))
-    assert np.allclose(predicted.states[0, ON, :4], F @ modes.states[0, ON, :4])
-    assert np.allclose(predicted.covariances[0, ON, :4, :4], covariance)
-    assert np.allclose(predicted.states[:, STILL], modes.states[:, STILL])
+    covariance = F @ modes.covariances[0, FORWARD, :4, :4] @ F.T + np.kron(block, np.eye(2))
+    assert np.allclose(predicted.states[0, FORWARD, :4], F @ modes.states[0, FORWARD, :4])
+    assert np.allclose(predicted.covariances[0, FORWARD, :4, :4], covariance)
+    assert np.allclose(predicted.states[:, STATIC], modes.states[:, STATIC])
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -53,39 +54,39 @@ def test_tells_what_stands_from_what_moves(seed):
 
 def test_a_reversal_shows_within_three_frames():
     before = watch(one(), line(2.0, (0.1, 0.0)))
-    mean, _ = imm.moments(Modes(*(a[0] for a in before)))
+    mean, _ = imm_kernel.moments(*(a[0] for a in before))
     assert mean[2] == pytest.approx(0.1, abs=0.01)
     after = watch(before, line(3 * DT, (-0.1, 0.0), mean[:2]))
-    mean, _ = imm.moments(Modes(*(a[0] for a in after)))
+    mean, _ = imm_kernel.moments(*(a[0] for a in after))
     assert mean[2] < 0.0
 
 
 def test_what_turned_between_two_frames_may_have_turned_at_any_time():
     """Turned at once it is as far behind as, turned just now, it is ahead."""
-    modes = imm.begun(np.array([1.0, 0.0]), R, 0.9, P)
-    modes.states[ON, 2] = 0.1
-    modes.weights[BACK] = 0.0
-    modes.covariances[ON] = 1e-12 * np.eye(5)
+    modes = imm.initial(np.array([1.0, 0.0]), R, 0.9, P)
+    modes.states[FORWARD, 2] = 0.1
+    modes.weights[REVERSED] = 0.0
+    modes.covariances[FORWARD] = 1e-12 * np.eye(5)
     dt = 0.5
     p = TrackingParameters(reversal_rate=0.01, acceleration_noise=1e-9)
     after = imm.predict(Modes(*(a[None] for a in modes)), dt, p)
-    assert after.states[0, BACK] == pytest.approx([1.0, 0.0, -0.1, 0.0, 0.0], abs=1e-6)
-    assert after.covariances[0, BACK, 0, 0] == pytest.approx((0.1 * dt) ** 2 / 3, rel=1e-3)
-    assert after.covariances[0, BACK, 1, 1] < 1e-9
+    assert after.states[0, REVERSED] == pytest.approx([1.0, 0.0, -0.1, 0.0, 0.0], abs=1e-6)
+    assert after.covariances[0, REVERSED, 0, 0] == pytest.approx((0.1 * dt) ** 2 / 3, rel=1e-3)
+    assert after.covariances[0, REVERSED, 1, 1] < 1e-9
 
 
 def test_a_reversal_out_of_sight_is_weighed_against_going_on():
     modes = watch(one(), line(2.0, (0.1, 0.0)))
     for _ in range(50):
         modes = imm.predict(modes, DT, P)
-    on, back = (modes.states[0, m, 0] for m in (ON, BACK))
+    on, back = (modes.states[0, m, 0] for m in (FORWARD, REVERSED))
     assert back < 1.2 < on
-    assert modes.weights[0, BACK] == pytest.approx(0.5 - 0.5 * np.exp(-2 * 3 / 12), abs=0.03)
-    assert modes.covariances[0, BACK, 0, 0] > 4 * modes.covariances[0, ON, 1, 1]
+    assert modes.weights[0, REVERSED] == pytest.approx(0.5 - 0.5 * np.exp(-2 * 3 / 12), abs=0.03)
+    assert modes.covariances[0, REVERSED, 0, 0] > 4 * modes.covariances[0, FORWARD, 1, 1]
     seen = watch(modes, [(1.15, 0.0)])
-    assert seen.weights[0, BACK] > 0.7
+    assert seen.weights[0, REVERSED] > 0.7
     later = watch(seen, line(0.5, (-0.1, 0.0), (1.15, 0.0)))
-    assert later.weights[0, BACK] > 0.95
+    assert later.weights[0, REVERSED] > 0.95
 
 
 def test_mirrored_worlds_have_mirrored_filters():
@@ -103,7 +104,7 @@ def test_covariances_stay_positive_definite_over_100000_updates():
     rng = np.random.default_rng(4)
     n = 400
     z = rng.uniform(-2, 2, (n, 2))
-    start = [imm.begun(p, R, 0.4, P) for p in z]
+    start = [imm.initial(p, R, 0.4, P) for p in z]
     modes = Modes(*(np.stack(parts) for parts in zip(*start, strict=True)))
     for _ in range(250):
         modes = imm.predict(modes, float(rng.choice([DT, DT, 0.5, 20.0])), P)
@@ -113,11 +114,11 @@ def test_covariances_stay_positive_definite_over_100000_updates():
         Q = np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
         noise = Q @ (sigma[:, :, None] ** 2 * np.eye(2)) @ np.swapaxes(Q, 1, 2)
         z = z + rng.normal(0, 0.03, (n, 2))
-        imm.update(modes, np.arange(n), z, noise, P.max_log_ratio)
+        imm_kernel.update(*modes, np.arange(n), z, noise, P.max_log_ratio)
         C = modes.covariances
         assert np.array_equal(C, np.swapaxes(C, 2, 3))
-        assert np.linalg.eigvalsh(C[:, ON:]).min() > 0.0
-        assert np.linalg.eigvalsh(C[:, STILL, :2, :2]).min() > 0.0
+        assert np.linalg.eigvalsh(C[:, FORWARD:]).min() > 0.0
+        assert np.linalg.eigvalsh(C[:, STATIC, :2, :2]).min() > 0.0
         assert np.allclose(modes.weights.sum(axis=1), 1.0)
 
 
@@ -139,9 +140,9 @@ def test_modes_change_at_their_rates():
     turns = 0.5 * (1.0 - np.exp(-2 * 0.2 * dt)) * (1.0 - stops)
     goes_on = 1.0 - stops - turns
     for mode, wanted in (
-        (STILL, [1.0 - starts, starts, 0.0]),
-        (ON, [stops, goes_on, turns]),
-        (BACK, [stops, turns, goes_on]),
+        (STATIC, [1.0 - starts, starts, 0.0]),
+        (FORWARD, [stops, goes_on, turns]),
+        (REVERSED, [stops, turns, goes_on]),
     ):
         changed = imm.predict(only(mode), dt, p).weights[0]
         assert changed == pytest.approx(wanted, abs=1e-9)
@@ -150,37 +151,37 @@ def test_modes_change_at_their_rates():
 
 def test_what_sets_out_may_go_anywhere_and_what_stops_stands_where_it_was():
     p = TrackingParameters(acceleration_noise=1e-9, reversal_rate=0.0, static_diffusion=1e-3)
-    out = imm.predict(only(STILL), DT, p)
-    assert out.states[0, ON] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
+    out = imm.predict(only(STATIC), DT, p)
+    assert out.states[0, FORWARD] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
     doubt = [*(2 * [p.velocity_sigma**2]), p.turn_rate_sigma**2]
-    assert np.diag(out.covariances[0, ON])[2:] == pytest.approx(doubt)
-    still = imm.predict(only(ON, (0.1, 0.0)), 0.5, p)
-    assert still.states[0, STILL] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
-    grown = np.diag(still.covariances[0, STILL])
+    assert np.diag(out.covariances[0, FORWARD])[2:] == pytest.approx(doubt)
+    still = imm.predict(only(FORWARD, (0.1, 0.0)), 0.5, p)
+    assert still.states[0, STATIC] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
+    grown = np.diag(still.covariances[0, STATIC])
     assert grown == pytest.approx([1e-4 + 0.5e-3, 2e-4 + 0.5e-3, 0.0, 0.0, 0.0], abs=1e-9)
 
 
 def test_the_moments_are_those_of_the_mixture_of_both_ways():
     modes = of_one(watch(one(), line(0.6, (0.1, 0.05))))
-    modes.states[BACK, 2:4] = (-0.08, 0.02)
+    modes.states[REVERSED, 2:4] = (-0.08, 0.02)
     modes.weights[:] = 0.2, 0.5, 0.3
-    share, moving = np.array([0.625, 0.375]), modes.states[ON:]
+    share, moving = np.array([0.625, 0.375]), modes.states[FORWARD:]
     mean = share @ moving
-    second = np.einsum("m,mij->ij", share, modes.covariances[ON:])
+    second = np.einsum("m,mij->ij", share, modes.covariances[FORWARD:])
     second += np.einsum("m,mi,mj->ij", share, moving, moving)
-    found, covariance = imm.moments(modes)
+    found, covariance = imm_kernel.moments(*modes)
     assert found == pytest.approx(mean)
-    assert imm.mean(modes) == pytest.approx(mean)
+    assert imm_kernel.mean(modes.weights, modes.states) == pytest.approx(mean)
     assert covariance == pytest.approx(second - np.outer(mean, mean))
 
 
 def test_a_new_obstacle_has_no_velocity_and_as_much_doubt_about_it_as_is_given():
     p = TrackingParameters(velocity_sigma=0.15, turn_rate_sigma=0.25)
-    modes = imm.begun(np.array([1.0, 2.0]), R, 0.3, p)
+    modes = imm.initial(np.array([1.0, 2.0]), R, 0.3, p)
     assert modes.weights == pytest.approx([0.7, 0.3, 0.0], abs=1e-5)
     assert modes.weights.sum() == pytest.approx(1.0)
     assert modes.weights.min() > 0.0
-    for mode, moves in ((STILL, 0.0), (ON, 1.0), (BACK, 1.0)):
+    for mode, moves in ((STATIC, 0.0), (FORWARD, 1.0), (REVERSED, 1.0)):
         assert modes.states[mode] == pytest.approx([1.0, 2.0, 0.0, 0.0, 0.0])
         doubt = np.array([0.15, 0.15, 0.25]) ** 2 * moves
         assert modes.covariances[mode] == pytest.approx(np.diag([1e-4, 2e-4, *doubt]))
@@ -188,20 +189,20 @@ def test_a_new_obstacle_has_no_velocity_and_as_much_doubt_about_it_as_is_given()
 
 def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit():
     modes = one()
-    modes.states[0, ON, 0] += 0.02
+    modes.states[0, FORWARD, 0] += 0.02
     modes.weights[0] = 0.5, 0.5 - 1e-6, 1e-6
     z = np.array([[1.0, 0.0]])
     still, on = (
         multivariate_normal(modes.states[0, m, :2], modes.covariances[0, m, :2, :2] + R)
-        for m in (STILL, ON)
+        for m in (STATIC, FORWARD)
     )
     ratio = still.logpdf(z[0]) - on.logpdf(z[0])
     assert 0.1 < ratio < 2.0
     for limit in (10.0, 0.5 * ratio):
         corrected = Modes(*(a.copy() for a in modes))
-        imm.update(corrected, np.array([0]), z, R[None], limit)
+        imm_kernel.update(*corrected, np.array([0]), z, R[None], limit)
         after = corrected.weights[0]
-        assert np.log(after[STILL] / after[ON]) == pytest.approx(min(ratio, limit), abs=1e-4)
+        assert np.log(after[STATIC] / after[FORWARD]) == pytest.approx(min(ratio, limit), abs=1e-4)
         assert after.sum() == pytest.approx(1.0)
 
 
@@ -212,28 +213,28 @@ def test_a_bend_is_found_and_followed(turn):
     way = 0.1 * DT * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     places = np.array([1.0, 0.0]) + np.cumsum(way, axis=0)
     modes = watch(one(), places, R=1e-5 * np.eye(2))
-    assert modes.states[0, ON, 4] == pytest.approx(turn, abs=0.05)
+    assert modes.states[0, FORWARD, 4] == pytest.approx(turn, abs=0.05)
     later = modes
     for _ in range(round(1.0 / DT)):
         later = imm.predict(later, DT, P)
     ahead = angle[-1] + turn * DT * np.arange(1, round(1.0 / DT) + 1)
     met = places[-1] + 0.1 * DT * np.array([np.cos(ahead).sum(), np.sin(ahead).sum()])
-    assert later.states[0, ON, :2] == pytest.approx(met, abs=0.01)
+    assert later.states[0, FORWARD, :2] == pytest.approx(met, abs=0.01)
 
 
 def test_only_what_was_seen_is_corrected():
     both = Modes(*(np.repeat(a, 2, axis=0) for a in one()))
     z = np.array([[1.01, 0.0]])
-    imm.update(both, np.array([1]), z, R[None], P.max_log_ratio)
+    imm_kernel.update(*both, np.array([1]), z, R[None], P.max_log_ratio)
     seen = one()
-    imm.update(seen, np.array([0]), z, R[None], P.max_log_ratio)
+    imm_kernel.update(*seen, np.array([0]), z, R[None], P.max_log_ratio)
     for parts, before, after in zip(both, one(), seen, strict=True):
         assert np.array_equal(parts, np.concatenate([before, after]))
 
 
 def test_obstacles_join_the_rows_and_leave_them():
-    first, second = (imm.begun(np.array([x, 0.0]), R, 0.4, P) for x in (1.0, 2.0))
-    both = imm.none().followed_by([first]).followed_by([second])
+    first, second = (imm.initial(np.array([x, 0.0]), R, 0.4, P) for x in (1.0, 2.0))
+    both = imm.empty().append([first]).append([second])
     for row, one_ in enumerate((first, second)):
         for found, wanted in zip(both.at(row), one_, strict=True):
             assert np.array_equal(found, wanted)

@@ -9,7 +9,7 @@ from navigation.belief import imm_kernel as kernel
 
 STOP, KEEP, TURN = [1.0, 1.0, 0.0, 0.0, 0.0], 5 * [1.0], [1.0, 1.0, -1.0, -1.0, -1.0]
 CHANGES = np.array([[STOP, STOP, STOP], [STOP, KEEP, TURN], [STOP, TURN, KEEP]])
-ON, BACK = kernel.ON, kernel.BACK
+FORWARD, REVERSED = kernel.FORWARD, kernel.REVERSED
 
 
 def random_covariances(rng, *shape):
@@ -43,15 +43,15 @@ def test_compiled_and_plain_agree():
     one, rows = (weights[0], states[0], covariances[0]), np.array([2, 0])
     standing = np.array([True, False, False, True])
     for function, arguments, changed in (
-        (kernel.interact, (weights, states, covariances, change(1), 0.3, 5e-3, 0.04), ()),
-        (kernel.move_on, (states, covariances, 0.3, 0.02, 1e-4, 0.9, 0.04), (0, 1)),
+        (kernel.mix, (weights, states, covariances, change(1), 0.3, 5e-3, 0.04), ()),
+        (kernel.predict, (states, covariances, 0.3, 0.02, 1e-4, 0.9, 0.04), (0, 1)),
         (kernel.nis, (states, covariances, rows, z, R), ()),
         (kernel.costs, (weights, states, covariances, z, R, 13.8), ()),
         (kernel.correct, (states[0, 1], covariances[0, 1], z[0], R[0]), (0, 1)),
-        (kernel.update, (weights, states, covariances, rows, z, R, 6.0, 1e-6), (0, 1, 2)),
+        (kernel.update, (weights, states, covariances, rows, z, R, 6.0), (0, 1, 2)),
         (kernel.mean, one[:2], ()),
         (kernel.moments, one, ()),
-        (kernel.places, (weights, states, standing), ()),
+        (kernel.positions, (weights, states, standing), ()),
         (kernel.estimates, (weights, states, covariances, standing, R, 0.04, 1e-5), ()),
     ):
         compiled = after(function, arguments, changed)
@@ -69,15 +69,17 @@ def test_mixing_is_the_mixture_of_all_that_may_have_happened(seed):
     joint = weights[:, :, None] * rates
     share = joint / joint.sum(axis=1)[:, None]
     parts = states[:, :, None] * CHANGES
-    forth = dt * states[:, ON:, 2:4]
-    parts[:, (ON, BACK), (BACK, ON), :2] += forth
+    forth = dt * states[:, FORWARD:, 2:4]
+    parts[:, (FORWARD, REVERSED), (REVERSED, FORWARD), :2] += forth
     mean = np.einsum("nij,nija->nja", share, parts)
     spread = parts - mean[:, None]
     inner = covariances[:, :, None] * CHANGES[..., None] * CHANGES[..., None, :]
     inner = inner + spread[..., None] * spread[..., None, :]
-    inner[:, (ON, BACK), (BACK, ON), :2, :2] += forth[..., None] * forth[..., None, :] / 3.0
-    inner[:, kernel.STILL, ON, (2, 3, 4), (2, 3, 4)] += (variance, variance, turning)
-    found = kernel.interact(weights, states, covariances, rates, dt, variance, turning)
+    inner[:, (FORWARD, REVERSED), (REVERSED, FORWARD), :2, :2] += (
+        forth[..., None] * forth[..., None, :] / 3.0
+    )
+    inner[:, kernel.STATIC, FORWARD, (2, 3, 4), (2, 3, 4)] += (variance, variance, turning)
+    found = kernel.mix(weights, states, covariances, rates, dt, variance, turning)
     assert found[0] == pytest.approx(joint.sum(axis=1))
     assert found[1] == pytest.approx(mean)
     assert found[2] == pytest.approx(np.einsum("nij,nijab->njab", share, inner))
@@ -89,20 +91,20 @@ def test_what_goes_straight_is_filterpys_kalman_filter():
     x, P = rng.standard_normal((1, 3, 5)), random_covariances(rng, 1, 3, 5)
     x[..., 4] = P[..., 4, :] = P[..., 4] = 0.0
     kf = KalmanFilter(dim_x=4, dim_z=2)
-    kf.x, kf.P = x[0, ON, :4].copy(), P[0, ON, :4, :4].copy()
+    kf.x, kf.P = x[0, FORWARD, :4].copy(), P[0, FORWARD, :4, :4].copy()
     kf.F = np.eye(4) + dt * np.eye(4, k=2)
     kf.H = np.eye(2, 4)
     block = np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]]) * q * q
     kf.Q = np.kron(block, np.eye(2))
     for _ in range(30):
         z, R = rng.standard_normal(2), random_covariances(rng, 2)
-        kernel.move_on(x, P, dt, q, 1e-6, 1.0, 0.0)
-        likelihood = kernel.correct(x[0, ON], P[0, ON], z, R)
+        kernel.predict(x, P, dt, q, 1e-6, 1.0, 0.0)
+        likelihood = kernel.correct(x[0, FORWARD], P[0, FORWARD], z, R)
         kf.predict()
         kf.update(z, R=R)
-        assert np.allclose(x[0, ON], [*kf.x, 0.0], atol=1e-12)
-        assert np.allclose(P[0, ON, :4, :4], kf.P, atol=1e-12)
-        assert not P[0, ON, 4].any()
+        assert np.allclose(x[0, FORWARD], [*kf.x, 0.0], atol=1e-12)
+        assert np.allclose(P[0, FORWARD, :4, :4], kf.P, atol=1e-12)
+        assert not P[0, FORWARD, 4].any()
         assert likelihood - np.log(2 * np.pi) == pytest.approx(kf.log_likelihood)
         assert np.array_equal(P, np.swapaxes(P, 2, 3))
 
@@ -110,7 +112,7 @@ def test_what_goes_straight_is_filterpys_kalman_filter():
 def test_what_stands_spreads_by_its_random_walk_alone():
     _, states, covariances, *_ = drawn(5)
     moved, spread = states.copy(), covariances.copy()
-    kernel.move_on(moved, spread, 0.5, 0.03, 2e-3, 0.9, 0.04)
+    kernel.predict(moved, spread, 0.5, 0.03, 2e-3, 0.9, 0.04)
     assert np.array_equal(moved[:, 0], states[:, 0])
     grown = np.broadcast_to(np.diag([1e-3, 1e-3, 0.0, 0.0, 0.0]), (4, 5, 5))
     assert spread[:, 0] - covariances[:, 0] == pytest.approx(grown)
@@ -119,8 +121,8 @@ def test_what_stands_spreads_by_its_random_walk_alone():
 def moved(x, dt, keep=1.0):
     """One state, carried on."""
     states = np.tile(np.array(x, float), (1, 3, 1))
-    kernel.move_on(states, np.zeros((1, 3, 5, 5)), dt, 0.0, 0.0, keep, 0.0)
-    return states[0, ON]
+    kernel.predict(states, np.zeros((1, 3, 5, 5)), dt, 0.0, 0.0, keep, 0.0)
+    return states[0, FORWARD]
 
 
 @pytest.mark.parametrize("turn", [0.0, 1e-4, 1.7e-3, -0.3, 2.0])
@@ -131,10 +133,10 @@ def test_doubt_follows_the_slope_of_the_motion(turn):
         covariances = np.zeros((1, 3, 5, 5))
         covariances[..., j, j] = 1.0
         states = np.tile(x, (1, 3, 1))
-        kernel.move_on(states, covariances, dt, 0.0, 0.0, keep, 0.0)
+        kernel.predict(states, covariances, dt, 0.0, 0.0, keep, 0.0)
         off = step * np.eye(5)[j]
         slope = (moved(x + off, dt, keep) - moved(x - off, dt, keep)) / (2.0 * step)
-        assert covariances[0, ON] == pytest.approx(np.outer(slope, slope), abs=1e-9)
+        assert covariances[0, FORWARD] == pytest.approx(np.outer(slope, slope), abs=1e-9)
 
 
 @pytest.mark.parametrize("turn", [-0.4, 1e-6, 0.25])
@@ -153,9 +155,9 @@ def test_what_turns_walks_a_circle(turn):
 def test_predictions_add_up():
     _, states, covariances, *_ = drawn(2)
     once, twice = (states.copy(), covariances.copy()), (states.copy(), covariances.copy())
-    kernel.move_on(*once, 1.0, 0.0, 1e-4, 1.0, 0.0)
-    kernel.move_on(*twice, 0.4, 0.0, 1e-4, 1.0, 0.0)
-    kernel.move_on(*twice, 0.6, 0.0, 1e-4, 1.0, 0.0)
+    kernel.predict(*once, 1.0, 0.0, 1e-4, 1.0, 0.0)
+    kernel.predict(*twice, 0.4, 0.0, 1e-4, 1.0, 0.0)
+    kernel.predict(*twice, 0.6, 0.0, 1e-4, 1.0, 0.0)
     assert np.allclose(once[0], twice[0])
     assert np.allclose(once[1], twice[1])
 
@@ -164,9 +166,9 @@ def test_turn_rates_of_movers_keep_their_spread():
     """What is forgotten comes in anew: the variance of all movers stays."""
     states, covariances = np.zeros((1, 3, 5)), np.zeros((1, 3, 5, 5))
     states[..., 4], covariances[..., 4, 4] = 0.3, 0.04
-    kernel.move_on(states, covariances, 2.0, 0.0, 0.0, 0.7, 0.04)
-    assert states[0, ON, 4] == pytest.approx(0.21)
-    assert covariances[0, ON, 4, 4] == pytest.approx(0.04)
+    kernel.predict(states, covariances, 2.0, 0.0, 0.0, 0.7, 0.04)
+    assert states[0, FORWARD, 4] == pytest.approx(0.21)
+    assert covariances[0, FORWARD, 4, 4] == pytest.approx(0.04)
 
 
 def test_costs_are_those_of_the_gaussian_mixture_up_to_their_constant():
@@ -203,12 +205,12 @@ def test_estimates_are_those_of_the_verdicts(seed):
             spread[:2, :2] += 0.04 * best[k]
             spread[(2, 3), (2, 3)] = 1e-5
         else:
-            share = weights[k, ON:] / weights[k, ON:].sum()
-            mean, off = share @ states[k, ON:], np.diff(states[k, ON:], axis=0)[0, :4]
-            spread = np.einsum("m,mab->ab", share, covariances[k, ON:, :4, :4])
+            share = weights[k, FORWARD:] / weights[k, FORWARD:].sum()
+            mean, off = share @ states[k, FORWARD:], np.diff(states[k, FORWARD:], axis=0)[0, :4]
+            spread = np.einsum("m,mab->ab", share, covariances[k, FORWARD:, :4, :4])
             spread += share[0] * share[1] * np.outer(off, off)
         assert place[k] == pytest.approx(mean[:2])
         assert velocity[k] == pytest.approx(mean[2:4])
         assert covariance[k] == pytest.approx(spread)
         assert turn[k] == pytest.approx(mean[4])
-    assert kernel.places(weights, states, standing) == pytest.approx(place)
+    assert kernel.positions(weights, states, standing) == pytest.approx(place)

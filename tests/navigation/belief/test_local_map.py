@@ -80,7 +80,7 @@ def test_only_the_footprint_of_the_camera_is_seen(view):
     n = len(grid.age)
     centres = grid.origin + (np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1) + 0.5) * P.cell
     viewpoint = Viewpoint.of(camera, np.zeros(3), P.range)
-    seen = viewpoint.expects(centres.reshape(-1, 2), *NONE, margin=0.0, slack=0.0)
+    seen = viewpoint.in_clear_view(centres.reshape(-1, 2), *NONE, margin=0.0, occlusion_margin=0.0)
     assert np.array_equal(grid.confidence.ravel() == 1.0, seen)
     assert np.array_equal(grid.confidence_at(centres.reshape(-1, 2)), grid.confidence.ravel())
 

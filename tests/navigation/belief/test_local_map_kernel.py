@@ -21,14 +21,14 @@ def grid():
 
 def test_compiled_and_plain_agree(grid):
     points, cells = grid
-    for function, arguments in ((kernel.under, (cells, 7.0)), (kernel.free, (cells,))):
+    for function, arguments in ((kernel.lookup, (cells, 7.0)), (kernel.free, (cells,))):
         found = function(points, CORNER, CELL, *arguments)
         assert np.array_equal(found, function.py_func(points, CORNER, CELL, *arguments))
 
 
 def test_what_holds_is_the_cell_whose_square_a_point_is_in(grid):
     points, cells = grid
-    found = kernel.under(points, CORNER, CELL, cells, 7.0)
+    found = kernel.lookup(points, CORNER, CELL, cells, 7.0)
     padded = np.pad(cells, SIDE, constant_values=7.0)
     column, row = (np.floor(points[:-3] / CELL).astype(int) - CORNER + SIDE).T
     assert np.array_equal(found[:-3], padded[row, column])
@@ -39,7 +39,7 @@ def test_what_holds_is_the_cell_whose_square_a_point_is_in(grid):
 def test_free_is_what_is_empty_with_its_four_neighbours(grid):
     points, cells = grid
     cross = CELL * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
-    around = [kernel.under(points + step, CORNER, CELL, cells, 7.0) < 0.0 for step in cross]
+    around = [kernel.lookup(points + step, CORNER, CELL, cells, 7.0) < 0.0 for step in cross]
     free = kernel.free(points, CORNER, CELL, cells)
     assert np.array_equal(free, np.all(around, axis=0))
     assert 0 < free.sum() < len(points)

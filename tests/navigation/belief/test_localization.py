@@ -9,7 +9,7 @@ from navigation.angles import wrap
 from navigation.belief.localization import Localizer
 from navigation.observation import CameraView, Frame, Observation
 from navigation.parameters.belief import LocalizationParameters
-from navigation.transform import sighting
+from navigation.transform import range_bearing
 
 BEACONS = {f"b{i}": (3.0 * cos(i * pi / 4), 3.0 * sin(i * pi / 4)) for i in range(8)}
 P0 = np.eye(3) * 4e-4
@@ -28,7 +28,7 @@ def frame(time, odometry, observations, motion=(4e-6, 4e-6, 1e-6), yaw_sigma=0.0
 
 
 def beacon(pose, name, noise=(0.0, 0.0), place=None):
-    distance, bearing = sighting(pose, place or BEACONS[name])
+    distance, bearing = range_bearing(pose, place or BEACONS[name])
     covariance = np.diag([0.05**2, 0.02**2])
     return Observation(
         "beacon", name, distance + noise[0], bearing + noise[1], covariance, 0.05, 0.01
@@ -232,7 +232,7 @@ def test_a_broken_filter_is_counted_and_started_again():
 def test_an_old_frame_is_refused():
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
     localizer.update(frame(1.0, (0, 0, 0), []))
-    with pytest.raises(ValueError, match="order of their capture"):
+    with pytest.raises(ValueError, match="order of capture"):
         localizer.update(frame(1.0, (0, 0, 0), []))
 
 

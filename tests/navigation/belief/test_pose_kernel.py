@@ -6,7 +6,7 @@ from filterpy.kalman import JulierSigmaPoints, unscented_transform
 
 from navigation.angles import wrap, wrap_array
 from navigation.belief import pose_kernel as kernel
-from navigation.transform import sighting
+from navigation.transform import range_bearing
 
 
 @pytest.fixture
@@ -17,7 +17,7 @@ def drawn():
     P, pose = A @ A.T + 1e-3 * np.eye(3), np.array([0.4, -1.0, 3.1])
     julier = JulierSigmaPoints(3, kappa=0.0)
     landmarks = rng.uniform(-3, 3, (3, 2))
-    z = np.array([sighting(pose + 0.02, tuple(p)) for p in landmarks.tolist()])
+    z = np.array([range_bearing(pose + 0.02, tuple(p)) for p in landmarks.tolist()])
     noise = np.array([np.diag([1e-3, 1e-4])] * 3)
     return pose, P, julier.sigma_points(pose, P), julier.Wm, julier.Wc, landmarks, z, noise
 
@@ -77,7 +77,7 @@ def test_the_transform_is_filterpys_with_angles(drawn):
 
 def test_a_landmark_is_seen_as_from_everywhere_else(drawn):
     pose, _, _, _, _, landmarks, *_ = drawn
-    wanted = [v for p in landmarks.tolist() for v in sighting(pose.tolist(), tuple(p))]
+    wanted = [v for p in landmarks.tolist() for v in range_bearing(pose.tolist(), tuple(p))]
     assert kernel.sighted(pose, landmarks) == pytest.approx(wanted)
 
 

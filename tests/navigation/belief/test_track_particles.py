@@ -116,7 +116,7 @@ def test_copies_of_one_particle_spread_by_the_jitter(rng):
 def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
     centre, velocity = np.array([1.0, -1.0]), np.array([0.0, 0.1])
     p = TrackingParameters(particles=2000, candidates_per_particle=4)
-    cloud = track_particles.scatter(centre, 0.5, velocity, p, rng)
+    cloud = track_particles.redistribute(centre, 0.5, velocity, p, rng)
     offsets = cloud.positions - centre
     assert np.hypot(*offsets.T).max() < 0.5 + 5 * P.position_jitter
     assert np.allclose(np.hypot(*cloud.velocities.T), 0.1)
@@ -142,14 +142,14 @@ def test_log_density_of_one_particle_is_a_gaussian():
 
 
 def test_log_density_has_no_holes_between_few_particles(rng):
-    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
+    cloud = track_particles.redistribute(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
     z = rng.uniform(-0.5, 0.5, (50, 2))
     density = np.exp(log_density(cloud, z, np.full(50, 1e-4))) / (2 * np.pi)
     assert density.min() > 0.02
 
 
 def test_chosen_particles_weigh_the_same(rng):
-    cloud = track_particles.scatter(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
-    few = track_particles.chosen(cloud, np.array([1, 5]))
+    cloud = track_particles.redistribute(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
+    few = track_particles.select(cloud, np.array([1, 5]))
     assert np.array_equal(few.positions, cloud.positions[[1, 5]])
     assert few.weights.tolist() == [0.5, 0.5]

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion, Particles
-from navigation.belief.imm import Modes, estimates
+from navigation.belief.imm import Modes
+from navigation.belief.imm_kernel import estimates
 from navigation.belief.tracked_object import TrackedObject, reach_of
 from navigation.parameters.belief import TrackingParameters
 
@@ -27,7 +28,7 @@ def make(**changes):
         "first_time": 0.0,
         "last_time": 5.0,
         "last_seen": np.array([1.0, 2.0]),
-        "known_reach": reach_of(np.eye(2) * 1e-4, P),
+        "reach_at_detection": reach_of(np.eye(2) * 1e-4, P),
         "hits": 50,
     }
     return TrackedObject(**(values | changes))
@@ -36,8 +37,10 @@ def make(**changes):
 def published(o, time, modes=None, best=SHARP):
     """The track that becomes of it and of what its filters say."""
     rows = Modes(*(part[None] for part in modes or filters()))
-    standing = np.array([o.motion is Motion.STATIC])
-    return o.track(time, P, tuple(part[0] for part in estimates(rows, standing, best[None], P)))
+    static = np.array([o.motion is Motion.STATIC])
+    bias, speed = P.bias_fraction**2, P.static_velocity_sigma**2
+    moments = estimates(*rows, static, best[None], bias, speed)
+    return o.track(time, P, tuple(part[0] for part in moments))
 
 
 @pytest.mark.parametrize(
@@ -110,9 +113,9 @@ def test_the_worst_case_does_not_depend_on_the_axes_of_the_world():
 def test_the_faster_it_was_the_farther_off_it_is_looked_for():
     for speed in (0.0, 0.03, 0.2):
         o, modes = make(), filters(1.0, (speed, 0.0))
-        assert o.lost_reach(5.0, modes, P) == P.path_width
+        assert o.search_radius(5.0, modes, P) == P.path_width
         farther = P.path_width + 4.0 * P.reach_factor * speed
-        assert o.lost_reach(9.0, modes, P) == pytest.approx(farther)
+        assert o.search_radius(9.0, modes, P) == pytest.approx(farther)
 
 
 def test_no_number_of_detections_brings_the_lasting_error_down():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from navigation.belief.belief import Motion
-from navigation.belief.sightings import in_world
+from navigation.belief.detections import in_world
 from navigation.belief.tracker import Tracker
 from navigation.belief.visibility import Viewpoint
 from navigation.parameters.belief import TrackingParameters
@@ -197,12 +197,12 @@ def test_particles_where_the_camera_looks_in_vain_are_given_up(view, observe):
         stage.show()
     viewpoint = Viewpoint.of(view(pan=0.0), np.zeros(3), 2.5)
     for t in stage.tracks:
-        in_view = viewpoint.expects(
+        in_view = viewpoint.in_clear_view(
             t.particles.positions,
             np.zeros((0, 2)),
             np.zeros(0),
             margin=stage.parameters.view_margin,
-            slack=0.0,
+            occlusion_margin=0.0,
         )
         assert t.particles.weights[in_view].sum() < 0.2
     assert before.particles.weights.sum() == pytest.approx(1.0)

@@ -20,11 +20,11 @@ def around(view):
 
 
 def contains(viewpoint, points, margin=0.0):
-    return viewpoint.expects(points, *NOTHING, margin=margin, slack=0.0)
+    return viewpoint.in_clear_view(points, *NOTHING, margin=margin, occlusion_margin=0.0)
 
 
 def hidden(viewpoint, points, centres, radii):
-    return ~viewpoint.expects(points, centres, radii, margin=0.0, slack=0.0)
+    return ~viewpoint.in_clear_view(points, centres, radii, margin=0.0, occlusion_margin=0.0)
 
 
 def test_contains_agrees_with_projection(view):
@@ -77,8 +77,8 @@ def test_visibility_moves_with_the_robot(view):
         c, s = cos(turn), sin(turn)
         R = np.array([[c, -s], [s, c]])
         viewpoint = Viewpoint.of(view(pan=0.4), np.array([x, y, turn]), 2.5)
-        return viewpoint.expects(
-            points @ R.T + (x, y), discs @ R.T + (x, y), radii, margin=0.05, slack=0.05
+        return viewpoint.in_clear_view(
+            points @ R.T + (x, y), discs @ R.T + (x, y), radii, margin=0.05, occlusion_margin=0.05
         )
 
     plain = expected(0.0, 0.0, 0.0)

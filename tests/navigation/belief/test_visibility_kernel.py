@@ -45,8 +45,11 @@ def hidden(points, v, centres, radii, slack):
 def test_compiled_and_plain_agree(scene, wide):
     points, v, camera, centres, radii = scene(0, wide=wide)
     for function, arguments in (
-        (kernel.expects, (points, v.position, camera, centres, radii, 0.05)),
-        (kernel.searched, (np.array([-9.0, -8.0]), 0.15, 16, v.position, camera, centres, radii)),
+        (kernel.in_clear_view, (points, v.position, camera, centres, radii, 0.05)),
+        (
+            kernel.observed_cells,
+            (np.array([-9.0, -8.0]), 0.15, 16, v.position, camera, centres, radii),
+        ),
     ):
         assert np.array_equal(function(*arguments), function.py_func(*arguments))
 
@@ -55,7 +58,7 @@ def test_compiled_and_plain_agree(scene, wide):
 def test_points_agree_with_the_formulas_over_arrays(scene, seed):
     points, v, camera, centres, radii = scene(seed)
     inside, blocked = contained(points, v, 0.05), hidden(points, v, centres, radii, 0.03)
-    clear = kernel.expects(points, v.position, camera, centres, radii, 0.03)
+    clear = kernel.in_clear_view(points, v.position, camera, centres, radii, 0.03)
     assert np.array_equal(clear, inside & ~blocked)
     assert 0 < clear.sum() < inside.sum()
 
@@ -64,22 +67,22 @@ def test_points_agree_with_the_formulas_over_arrays(scene, seed):
 def test_cells_agree_with_the_formulas_over_arrays(scene, seed):
     _, v, _, centres, radii = scene(seed)
     corner, cell, count = (-20, -17), 0.1, 40
-    marks = v.searched(corner, cell, count, centres, radii)
+    marks = v.observed_cells(corner, cell, count, centres, radii)
     x, y = (cell * (first + np.arange(count) + 0.5) for first in corner)
     points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     apart = np.hypot(*(points[:, None] - centres).transpose(2, 0, 1))
     on = (apart < radii + 0.5 * cell).any(axis=1)
     seen = np.where(hidden(points, v, centres, radii, 0.0), kernel.UNSEEN, kernel.FREE)
-    wanted = contained(points, v, 0.0) * np.where(on, kernel.COVERED, seen)
+    wanted = contained(points, v, 0.0) * np.where(on, kernel.OCCUPIED, seen)
     assert np.array_equal(marks.ravel(), wanted)
-    assert set(wanted.tolist()) == {kernel.UNSEEN, kernel.FREE, kernel.COVERED}
+    assert set(wanted.tolist()) == {kernel.UNSEEN, kernel.FREE, kernel.OCCUPIED}
 
 
 def test_a_look_is_written_alike_by_compiled_and_plain_code():
     rng = np.random.default_rng(6)
     marks = rng.integers(0, 3, (20, 20)).astype(np.uint8)
     maps = []
-    for write in (kernel.take_in, kernel.take_in.py_func):
+    for write in (kernel.update_grid, kernel.update_grid.py_func):
         seen_at, log_odds = np.zeros((20, 20)), np.linspace(-4, 4, 400).reshape(20, 20)
         write(marks, seen_at, log_odds, 3.0, (-0.4, 1.0, 4.0))
         maps.append((seen_at, log_odds))

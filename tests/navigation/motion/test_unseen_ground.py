@@ -29,7 +29,9 @@ def test_a_look_20_deg_down_shows_all_the_ground_asked_for(view):
     eye = Viewpoint.of(view(tilt=-np.radians(20.0)), pose, 3.0)
     for near, shown in ((P.near, True), (0.25, False)):
         points = ground_points(pose, pose[2], replace(P, near=near))
-        seen = eye.expects(points, np.zeros((0, 2)), np.zeros(0), margin=0.0, slack=0.0)
+        seen = eye.in_clear_view(
+            points, np.zeros((0, 2)), np.zeros(0), margin=0.0, occlusion_margin=0.0
+        )
         assert seen.all() == shown
 
 

@@ -4,7 +4,7 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from navigation.belief.sightings import in_world
+from navigation.belief.detections import in_world
 from navigation.transform import to_world
 
 
@@ -48,10 +48,10 @@ def test_a_radius_known_otherwise_is_conditioning_on_it(observe):
     drawn = rng.multivariate_normal([o.distance, o.bearing, o.radius], joint, 400_000)
     chosen = drawn[np.abs(drawn[:, 2] - 0.06) < 5e-4]
     points = np.array([to_world(np.array(pose), d, b) for d, b, _ in chosen])
-    moved, covariance = seen.of_radius(0, 0.06, 0.0)
+    moved, covariance = seen.given_radius(0, 0.06, 0.0)
     assert moved == pytest.approx(points.mean(axis=0), abs=2e-3)
     assert covariance == pytest.approx(np.cov(points.T), abs=5e-5)
-    same, whole = seen.of_radius(0, o.radius, o.radius_sigma)
+    same, whole = seen.given_radius(0, o.radius, o.radius_sigma)
     assert np.array_equal(same, seen.positions[0])
     assert whole == pytest.approx(seen.covariances[0])
 

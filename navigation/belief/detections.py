@@ -1,4 +1,4 @@
-"""Detections of obstacles, converted from the robot frame to W with their covariance."""
+"""Obstacle detections of one frame, transformed from R to W with their covariance."""
 
 from collections.abc import Sequence
 from math import cos, sin
@@ -13,16 +13,16 @@ Array = NDArray[np.float64]
 
 
 @value
-class Sightings:
-    """The obstacles of one frame in W.
+class Detections:
+    """Obstacle detections of one frame in W.
 
     Attributes:
-        observations: what was seen in R (m).
+        observations: in R (m).
         positions: in W (m, 2) [m].
-        covariances: of the positions, with the pose's uncertainty (m, 2, 2) [m²].
+        covariances: of the positions, including the pose uncertainty (m, 2, 2) [m²].
         radii: (m,) [m].
         radius_sigmas: standard deviations of the radii (m,) [m].
-        by_radius: displacement were the radius known to be greater (m, 2) [1].
+        by_radius: partial derivatives of the positions with respect to the radius (m, 2) [1].
     """
 
     observations: tuple[Observation, ...]
@@ -32,18 +32,18 @@ class Sightings:
     radius_sigmas: Array
     by_radius: Array
 
-    def of_radius(self, index: int, radius: float, sigma: float) -> tuple[Array, Array]:
-        """Position (2,) [m] and covariance (2, 2) [m²] of one whose radius is known otherwise.
+    def given_radius(self, index: int, radius: float, sigma: float) -> tuple[Array, Array]:
+        """Return position (2,) [m] and covariance (2, 2) [m²] of a detection, given its radius.
 
         Args:
-            index: of the sighting.
-            radius: what it is known to be [m].
-            sigma: standard deviation of that [m].
+            index: of the detection.
+            radius: [m].
+            sigma: standard deviation of `radius` [m].
         """
         slope = self.by_radius[index]
-        surplus = sigma * sigma - float(self.radius_sigmas[index]) ** 2
-        moved = self.positions[index] + (radius - float(self.radii[index])) * slope
-        return moved, self.covariances[index] + surplus * (slope[:, None] * slope)
+        added = sigma * sigma - float(self.radius_sigmas[index]) ** 2
+        position = self.positions[index] + (radius - float(self.radii[index])) * slope
+        return position, self.covariances[index] + added * (slope[:, None] * slope)
 
 
 def in_world(
@@ -52,8 +52,8 @@ def in_world(
     pose_covariance: Array,
     *,
     max_pose_sigma: float,
-) -> Sightings:
-    """Convert the obstacles among `observations` to W.
+) -> Detections:
+    """Transform the obstacles among `observations` to W.
 
     R = J R_polar J' + H P_pose H' with H = [1 0 -d sin a; 0 1 d cos a], a the direction in W.
 
@@ -63,12 +63,12 @@ def in_world(
         pose_covariance: (3, 3); scaled down as a whole to `max_pose_sigma`.
         max_pose_sigma: [m].
     """
-    seen = tuple(o for o in observations if o.kind == "obstacle")
+    obstacles = tuple(o for o in observations if o.kind == "obstacle")
     x, y, heading = pose.tolist()
-    largest = max(float(pose_covariance[0, 0]), float(pose_covariance[1, 1]), 1e-12)
-    P = (pose_covariance * min(1.0, max_pose_sigma**2 / largest)).tolist()
+    variance = max(float(pose_covariance[0, 0]), float(pose_covariance[1, 1]), 1e-12)
+    P = (pose_covariance * min(1.0, max_pose_sigma**2 / variance)).tolist()
     positions, covariances, by_radius = [], [], []
-    for o in seen:
+    for o in obstacles:
         direction = heading + o.bearing
         c, s, d = cos(direction), sin(direction), o.distance
         (rr, rb), (_, bb) = o.covariance.tolist()
@@ -82,14 +82,14 @@ def in_world(
         xy += P[0][1] + hy * P[0][2] + hx * P[1][2] + hx * hy * P[2][2]
         positions.append((x + d * c, y + d * s))
         covariances.append(((xx, xy), (xy, yy)))
-        outwards, sideways = o.by_radius.tolist()
-        by_radius.append((c * outwards - s * d * sideways, s * outwards + c * d * sideways))
-    count = len(seen)
-    return Sightings(
-        seen,
+        radial, angular = o.by_radius.tolist()
+        by_radius.append((c * radial - s * d * angular, s * radial + c * d * angular))
+    count = len(obstacles)
+    return Detections(
+        obstacles,
         np.array(positions, float).reshape(count, 2),
         np.array(covariances, float).reshape(count, 2, 2),
-        np.array([o.radius for o in seen], float),
-        np.array([o.radius_sigma for o in seen], float),
+        np.array([o.radius for o in obstacles], float),
+        np.array([o.radius_sigma for o in obstacles], float),
         np.array(by_radius, float).reshape(count, 2),
     )
