@@ -16,7 +16,7 @@ from pathlib import Path
 from time import perf_counter, process_time
 from typing import Annotated, Literal
 
-from hsr8.evaluation.wilson import wilson
+from hsr8.evaluation.proportion import Proportion
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.world.field.generator import draw_layout
@@ -274,14 +274,14 @@ def main(
                 file.write(json.dumps(vars(episode), default=str) + "\n")
     n = len(episodes)
     good = [e for e in episodes if e.success]
-    low, high = wilson(len(good), n)
+    interval = Proportion.counted(len(good), n)
     count = {r: sum(e.reason == r for e in episodes) for r in ("contact", "timeout", "goal")}
     hit = sum(bool(e.cause.get("moving")) for e in episodes)
     times = [e.time for e in good] or [0.0]
     print(
         f"{scenario} {sensing} seeds {first}-{first + n - 1} {settings}\n"
-        f"  success {len(good)}/{n} = {100 * len(good) / n:.1f} % [{100 * low:.0f}, "
-        f"{100 * high:.0f}]  contacts {count['contact']} (movers {hit})  "
+        f"  success {len(good)}/{n} = {100 * len(good) / n:.1f} % [{100 * interval.low:.0f}, "
+        f"{100 * interval.high:.0f}]  contacts {count['contact']} (movers {hit})  "
         f"time-outs {count['timeout']}  "
         f"missed arrival {count['goal'] - len(good)}\n"
         f"  time median {np.median(times):.0f} s, 90 % {np.percentile(times, 90):.0f} s; "

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import degrees, hypot, pi
 from pathlib import Path
 
-from hsr8.evaluation.wilson import wilson
+from hsr8.evaluation.proportion import Proportion
 from hsr8.loop import Simulation
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import Listener, TickRecord
@@ -191,14 +191,15 @@ def run(scenario: str, settings: list[str], seed: int, picture: Path) -> Failure
 
 def page(failures: list[Failure], runs: int, pictures: dict[str, str], command: str) -> str:
     """Markdown of the catalogue."""
-    low, high = wilson(runs - len(failures), runs)
+    interval = Proportion.counted(runs - len(failures), runs)
     lines = [
         "# Failures by cause",
         "",
         f"    {command}",
         "",
         f"{runs - len(failures)} of {runs} runs touched nothing and did not fall "
-        f"(95 % interval {low:.0%} to {high:.0%}). Every other one ended at its first contact.",
+        f"(95 % interval {interval.low:.0%} to {interval.high:.0%}). "
+        "Every other one ended at its first contact.",
         "",
         "| cause | rule | runs |",
         "|---|---|---|",

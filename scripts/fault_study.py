@@ -22,7 +22,7 @@ from math import hypot
 from pathlib import Path
 
 from hsr8.errors import SimulationDiverged
-from hsr8.evaluation.wilson import wilson
+from hsr8.evaluation.proportion import Proportion
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.scenario.loader import load_scenario
@@ -253,7 +253,7 @@ def page(known: list[dict], command: str) -> str:
             lines.append(f"| {name}, {ladder.unit} | {_limit(good, bad)} | {'; '.join(cells)} |")
     n = len(known)
     named = sum(row["outcome"] != "NaN" for row in known)
-    least, _ = wilson(named, n)
+    least = Proportion.counted(named, n).low
     lines += [
         "",
         f"{named} of {n} runs recovered or failed by name (at least {least:.1%} of all, 95 % "

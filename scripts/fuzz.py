@@ -137,7 +137,7 @@ class Folders:
         self._run, self._contents = run, contents_of(run, FILES)
         self._sweep = sweep
         if sweep is not None:
-            names = (sweep_folder.DEFINITION, sweep_folder.LEDGER, run_folder.SCENARIO)
+            names = (sweep_folder.DEFINITION, sweep_folder.RESULTS, run_folder.SCENARIO)
             self._of_sweep = contents_of(sweep, names)
         save_table(ColorTable(COLOR_CLASSES), scratch / "colours.npz")
         self._colors = contents_of(scratch, ("colours.npz",))

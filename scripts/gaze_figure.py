@@ -99,7 +99,7 @@ def draw(out: Path) -> None:
     samples = SamplePoints.polar(parameters.evaluation, parameters.gaze.max_pan)
     beacons = np.array([BEACONS[name] for name in sorted(BEACONS)])
     scene = gaze_scene(belief, None, samples, beacons, parameters)
-    votes = deadline_votes(scene, belief, 0.0, LIMITS.forward, parameters)
+    votes = deadline_votes(scene, 0.0, LIMITS.vx, parameters)
     figure = Figure(figsize=(10.5, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.25))

@@ -12,7 +12,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from hsr8.evaluation.wilson import wilson
+from hsr8.evaluation.proportion import Proportion
 from hsr8.scenario.loader import load_scenario
 
 import numpy as np
@@ -61,7 +61,7 @@ def table(rows: list[dict], arms: Sequence[str]) -> list[str]:
         if not mine:
             continue
         n, k = len(mine), sum(good[arm].values())
-        low, high = wilson(k, n)
+        interval = Proportion.counted(k, n)
         hit = [bool(r["cause"].get("moving")) for r in mine if r["reason"] == "contact"]
         total = sum(r["time"] for r in mine)
         both = good[arm].keys() & good[arms[0]].keys()
@@ -70,7 +70,8 @@ def table(rows: list[dict], arms: Sequence[str]) -> list[str]:
         p = binomtest(ours, ours + theirs).pvalue if ours + theirs else 1.0
         done = [r["time"] for r in mine if r["success"]]
         lines.append(
-            f"| {arm} | {n} | {100 * k / n:.0f} % [{100 * low:.0f}, {100 * high:.0f}] "
+            f"| {arm} | {n} | {100 * k / n:.0f} % "
+            f"[{100 * interval.low:.0f}, {100 * interval.high:.0f}] "
             f"| {sum(hit)}, {len(hit) - sum(hit)} | {sum(r['reason'] == 'timeout' for r in mine)} "
             f"| {np.median(done) if done else float('nan'):.0f} "
             f"| {100 * sum(r['close'] for r in mine) / total:.1f} "

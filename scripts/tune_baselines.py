@@ -18,7 +18,7 @@ from pathlib import Path
 from time import process_time
 from typing import Any
 
-from hsr8.evaluation.wilson import wilson
+from hsr8.evaluation.proportion import Proportion
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from navigation.angles import wrap
@@ -299,12 +299,13 @@ def compare(
 def summary(scenario: str, method: str, rows: list[Row]) -> str:
     """Line of the table of a planner in a scenario."""
     n, good = len(rows), sum(r["success"] for r in rows)
-    low, high = wilson(good, n)
+    interval = Proportion.counted(good, n)
     times = [r["time"] for r in rows if r["success"]] or [0.0]
     count = {r: sum(row["reason"] == r for row in rows) for r in ("contact", "timeout")}
     return (
         f"| {scenario} | {method} | {good}/{n} | {100 * good / n:.0f} "
-        f"[{100 * low:.0f}, {100 * high:.0f}] | {count['contact']} | {count['timeout']} | "
+        f"[{100 * interval.low:.0f}, {100 * interval.high:.0f}] | "
+        f"{count['contact']} | {count['timeout']} | "
         f"{np.median(times):.0f} | "
         f"{100 * float(np.median([r['clearance'] for r in rows])):.1f} | "
         f"{float(np.mean([r['plan_ms'] for r in rows])):.2f} |"

@@ -129,7 +129,7 @@ class Sweep:
     body: Body = None
     camera: Camera = None
     executor: str = "local"
-    """Executor: local, dask, dask://HOST:PORT, ray or ray://HOST:PORT."""
+    """Executor: local, or dask://HOST:PORT for a Dask cluster."""
     shard: Annotated[
         str | None,
         _arg("I/N", "run part I of N; afterwards the same line without --shard writes the report"),

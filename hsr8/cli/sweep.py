@@ -1,7 +1,8 @@
-"""``hsr8 sweep``: one scenario over many seeds, and over values of a setting."""
+"""``hsr8 sweep``: one scenario over many seeds, and over values of its keys."""
 
 import hashlib
 import itertools
+import math
 import os
 import re
 import shlex
@@ -16,15 +17,17 @@ from rich.table import Table
 
 from hsr8.cli import termination
 from hsr8.cli.command_line import flat, option_tables, run_words, settings
+from hsr8.cli.main import entry
 from hsr8.cli.options import Sweep
 from hsr8.errors import Hsr8Error, UsageError
+from hsr8.evaluation.sweep.dask_executor import DaskExecutor
 from hsr8.evaluation.sweep.definition import Definition, code_digest
-from hsr8.evaluation.sweep.driver import drive, pending
-from hsr8.evaluation.sweep.executor import open_executor, parse_executor
+from hsr8.evaluation.sweep.executor import Executor, parse_executor, pending, run_jobs
 from hsr8.evaluation.sweep.folder import REPORT, SweepFolder
-from hsr8.evaluation.sweep.job import Job, Row
+from hsr8.evaluation.sweep.job import Job, RunResult
+from hsr8.evaluation.sweep.local_executor import LocalExecutor
 from hsr8.evaluation.sweep.progress import SweepProgress
-from hsr8.evaluation.sweep.report import headline, write_comparison_of_values, write_report
+from hsr8.evaluation.sweep.report import headline, report, report_of_values
 from hsr8.evaluation.sweep.seeds import parse_seeds, parse_shard, parse_values
 from hsr8.evaluation.sweep.summary import Summary, summarize
 from hsr8.gl import require_gl
@@ -33,76 +36,87 @@ from hsr8.recorder.files import atomic
 from hsr8.scenario.loader import dump, load_scenario
 from hsr8.scenario.schema import Scenario
 
-START = 60.0  # a process may need so long to begin [s]
-SLOWEST = 20.0  # and so long for a simulated second [s]
-LONGEST_TIMEOUT = 1e7  # some four months; threads cannot wait for much longer [s]
-MOST_WORKERS = 1024
-MOST_VARIANTS = 1000
-LONGEST_NAME = 120  # of a folder [characters]
+PRELOAD = "hsr8.cli.sweep_preload"
+START_TIME = 60.0  # default limits: for the start of a process [s]
+MAX_SLOWNESS = 20.0  # and wall time per simulated second [1]
+MAX_TIMEOUT = 1e7  # [s]
+MAX_WORKERS = 1024
+MAX_COMBINATIONS = 1000
+MAX_NAME = 120  # of a folder [characters]
 INTERRUPTED = 130
-CHANGED = "hsr8: the program's files changed during the sweep: its runs are not of one version"
+CHANGED = "hsr8: the program changed during the sweep: its runs are of different versions"
 
 
 def main(options: Sweep) -> int:
-    """Run what has no result yet, write the results, and tell them.
+    """Run the seeds without a result, write the results and report them.
 
     Raises:
-        UsageError: the scenario, a planner or a gaze that it names, the seeds, the folder or the
-            executor will not do.
+        UsageError: the scenario, a plugin, an option or the folder is invalid.
         RenderingUnavailable: the camera needs OpenGL and there is none.
     """
     seeds = parse_seeds(options.seeds)
     shard = None if options.shard is None else parse_shard(options.shard)
-    workers = _workers(options)
-    kind, _ = parse_executor(options.executor)
-    if options.timeout is not None and not 0.0 < options.timeout <= LONGEST_TIMEOUT:
+    workers = len(os.sched_getaffinity(0)) if options.workers is None else options.workers
+    if not 1 <= workers <= MAX_WORKERS:
+        raise UsageError(f"--workers: out of range, got {workers}; expected 1 to {MAX_WORKERS}")
+    if options.timeout is not None and not 0.0 < options.timeout <= MAX_TIMEOUT:
         raise UsageError(
-            f"--timeout {options.timeout:g}: give a time above 0, at most {LONGEST_TIMEOUT:g} s"
+            f"--timeout: out of range, got {options.timeout:g}; expected more than 0 and at most "
+            f"{MAX_TIMEOUT:g} s"
         )
-    variants = _variants(options)
-    scenarios = {name: _scenario(options, more) for name, more in variants.items()}
-    if kind == "local" and any(s.camera.source == "rendered" for s in scenarios.values()):
+    address = parse_executor(options.executor)
+    combinations = _combinations(options)
+    scenarios = {name: _scenario(options, more) for name, more in combinations.items()}
+    if not address and any(s.camera.source == "rendered" for s in scenarios.values()):
         require_gl()
     for scenario in scenarios.values():
         require_plugins(scenario.plugin)
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
-    definitions = _definitions(options, scenarios, variants)
-    sweeps: dict[str, SweepFolder] = {}
+    definitions = _definitions(scenarios, options, combinations)
+    command = _command(options)
+    folders: dict[str, SweepFolder] = {}
     jobs: list[Job] = []
     with ExitStack() as stack:
         for name, scenario in scenarios.items():
             folder = SweepFolder.open(out / name, definitions[name])
             folder.lock(shard)
             stack.callback(folder.close)
-            sweeps[str(folder.path.resolve())] = folder
-            jobs += _jobs(options, folder, scenario, pending(seeds, folder.rows(), shard))
-        mine = len(pending(seeds, (), shard)) * len(sweeps)
-        interrupted = _run(options, jobs, sweeps, workers, mine)
-        made = next(iter(definitions.values()))
-        if jobs and code_digest() != made.code:
+            folders[str(folder.path.resolve())] = folder
+            job = _job(options, folder, scenario)
+            jobs += [replace(job, seed=s) for s in pending(seeds, folder.results(), shard)]
+        total = len(pending(seeds, (), shard)) * len(folders)
+        interrupted = bool(jobs) and _run(options, jobs, folders, workers, total)
+        first = next(iter(definitions.values()))
+        if jobs and code_digest() != first.code:
             print(CHANGED, file=sys.stderr)
-        command = _command(options)
         summaries = {}
-        for name, folder in zip(scenarios, sweeps.values(), strict=True):
-            rows = folder.rows()
-            folder.write_results(write_report(folder.definition, rows, command))
-            summaries[name] = summarize(rows)
+        for name, folder in zip(scenarios, folders.values(), strict=True):
+            results = folder.results()
+            folder.write_report(report(folder.definition, results, command))
+            summaries[name] = summarize(results)
         if options.vary:
-            _write_values(options, out, summaries, made.made_with(), command)
-    _tell(options, out, summaries, command if interrupted else "")
-    return INTERRUPTED if interrupted else _exit_code(list(summaries.values()))
+            keys = ", ".join(parse_values(text)[0] for text in flat(options.vary))
+            page = report_of_values(keys, summaries, command, first.made_with())
+            try:
+                atomic.write_text(out / REPORT, page)
+            except OSError as error:
+                raise Hsr8Error(f"{out / REPORT}: cannot write: {error.strerror}") from error
+    _print(options, out, summaries, interrupted=interrupted)
+    if interrupted:
+        print(f"hsr8: interrupted; continue with: {command}", file=sys.stderr)
+        return INTERRUPTED
+    return _exit_code(list(summaries.values()))
 
 
 def _definitions(
-    options: Sweep, scenarios: dict[str, Scenario], variants: dict[str, tuple[str, ...]]
+    scenarios: dict[str, Scenario], options: Sweep, combinations: dict[str, tuple[str, ...]]
 ) -> dict[str, Definition]:
-    """What the runs of each variant have in common."""
     common = Definition.now("", (), "")
     return {
         name: replace(
             common,
             name=scenario.name,
-            again=run_words(options, variants[name]),
+            command_words=run_words(options, combinations[name]),
             libraries=common.libraries | digests(scenario.plugin),
             scenario=dump(scenario),
         )
@@ -110,38 +124,32 @@ def _definitions(
     }
 
 
-def _jobs(
-    options: Sweep, folder: SweepFolder, scenario: Scenario, seeds: Sequence[int]
-) -> list[Job]:
-    """One for each of the seeds."""
-    common = Job(
+def _job(options: Sweep, folder: SweepFolder, scenario: Scenario) -> Job:
+    return Job(
         seed=0,
         folder=str(folder.path.resolve()),
         scenario=folder.definition.scenario,
-        timeout=options.timeout or START + SLOWEST * scenario.duration,
+        timeout=options.timeout or START_TIME + MAX_SLOWNESS * scenario.duration,
         log=options.log,
         keep=options.keep,
     )
-    return [replace(common, seed=seed) for seed in seeds]
 
 
 def _run(
     options: Sweep,
     jobs: Sequence[Job],
-    sweeps: dict[str, SweepFolder],
+    folders: dict[str, SweepFolder],
     workers: int,
-    mine: int,
+    total: int,
 ) -> bool:
-    """Run the jobs; whether they were interrupted."""
-    if not jobs:
-        return False
-    progress = None if options.quiet else SweepProgress(mine, mine - len(jobs))
+    """Run the jobs; return whether they were interrupted."""
+    progress = None if options.quiet else SweepProgress(total, total - len(jobs))
 
-    def record(job: Job, row: Row) -> None:
-        folder = sweeps[job.folder]
-        folder.append([row | {"command": folder.definition.command(job.seed)}])
+    def on_result(job: Job, result: RunResult) -> None:
+        folder = folders[job.folder]
+        folder.append(result | {"command": folder.definition.command(job.seed)})
         if progress is not None:
-            progress.on_row(row)
+            progress.on_result(result)
 
     with ExitStack() as stack:
         if progress is not None:
@@ -149,50 +157,50 @@ def _run(
         stack.enter_context(termination.like_ctrl_c())
         try:
             executor = stack.enter_context(closing(open_executor(options.executor, workers)))
-            drive(jobs, executor, record, progress.tick if progress else lambda: None)
+            run_jobs(jobs, executor, on_result, progress.refresh if progress else lambda: None)
         except KeyboardInterrupt:
             return True
     return False
 
 
-def _workers(options: Sweep) -> int:
-    if options.workers is None:
-        return len(os.sched_getaffinity(0))
-    if not 1 <= options.workers <= MOST_WORKERS:
-        raise UsageError(f"--workers {options.workers}: give 1 to {MOST_WORKERS}")
-    return options.workers
+def open_executor(name: str, workers: int) -> Executor:
+    """Return the executor called `name`; `workers` is for this machine only."""
+    address = parse_executor(name)
+    return DaskExecutor(address) if address else LocalExecutor(workers, entry, PRELOAD)
 
 
-def _variants(options: Sweep) -> dict[str, tuple[str, ...]]:
-    """Settings of every combination of varied values, by the name of its folder."""
+def _combinations(options: Sweep) -> dict[str, tuple[str, ...]]:
+    """Return the settings of every combination of varied values by the name of its folder."""
     varied = [parse_values(text) for text in flat(options.vary)]
     keys = [key for key, _ in varied]
     if len(set(keys)) < len(keys):
-        raise UsageError("--vary names a key twice: give all its values in one")
+        raise UsageError("--vary: a key is repeated; expected all its values in one --vary")
+    count = math.prod(len(values) for _, values in varied)
+    if count > MAX_COMBINATIONS:
+        raise UsageError(
+            f"--vary: too many combinations, got {count}; expected at most {MAX_COMBINATIONS}"
+        )
     grid = itertools.product(*([f"{key}={value}" for value in values] for key, values in varied))
-    variants = {_folder_name(combination): combination for combination in grid}
-    if not 1 <= len(variants) <= MOST_VARIANTS:
-        raise UsageError(f"--vary: at most {MOST_VARIANTS} combinations of values")
-    return variants
+    return {_folder_name(combination): combination for combination in grid}
 
 
 def _folder_name(combination: Sequence[str]) -> str:
-    """The settings as a file system takes them; a digest tells apart what this makes the same."""
+    """Return the settings as a file name, with a digest if characters are replaced or cut."""
     text = ",".join(combination)
     name = re.sub(r"[^A-Za-z0-9._=+,-]+", "_", text)
-    if name == text and len(name) <= LONGEST_NAME:
+    if name == text and len(name) <= MAX_NAME:
         return name
     digest = hashlib.sha256(text.encode("utf-8", errors="surrogateescape")).hexdigest()[:8]
-    return f"{name[: LONGEST_NAME - 9]}-{digest}"
+    return f"{name[: MAX_NAME - 9]}-{digest}"
 
 
-def _scenario(options: Sweep, more: tuple[str, ...]) -> Scenario:
-    for flag, words in (("--set", settings(options)), ("--vary", more)):
+def _scenario(options: Sweep, varied: tuple[str, ...]) -> Scenario:
+    for option, words in (("--set", settings(options)), ("--vary", varied)):
         for word in words:
             if word.partition("=")[0].strip() == "seed":
-                raise UsageError(f"{flag} {word}: the seeds of a sweep are given by --seeds")
+                raise UsageError(f"{option}: the seed is not a setting, got {word}; use --seeds")
     return load_scenario(
-        options.scenario, settings(options), options=option_tables(options), varied=more
+        options.scenario, settings(options), options=option_tables(options), varied=varied
     )
 
 
@@ -210,36 +218,14 @@ def _command(options: Sweep) -> str:
     ):
         if value != default:
             words += [flag, str(value)]
-    if options.log:
-        words.append("--log")
-    return shlex.join(words)
+    return shlex.join([*words, "--log"] if options.log else words)
 
 
-def _write_values(
-    options: Sweep,
-    out: Path,
-    summaries: dict[str, Summary],
-    made_with: str,
-    command: str,
-) -> None:
-    keys = ", ".join(parse_values(text)[0] for text in flat(options.vary))
-    try:
-        atomic.write_text(
-            out / REPORT, write_comparison_of_values(keys, summaries, command, made_with)
-        )
-    except OSError as error:
-        raise Hsr8Error(f"cannot write {out / REPORT}: {error.strerror}") from error
-
-
-def _tell(options: Sweep, out: Path, summaries: dict[str, Summary], go_on: str) -> None:
+def _print(options: Sweep, out: Path, summaries: dict[str, Summary], *, interrupted: bool) -> None:
     if options.json:
-        (first, *_) = summaries.values()
-        results = (
-            {"values": {name: s.to_json() for name, s in summaries.items()}}
-            if options.vary
-            else first.to_json()
-        )
-        print(atomic.dumps({"folder": str(out), "interrupted": bool(go_on), **results}))
+        values = {name: summary.to_json() for name, summary in summaries.items()}
+        results = {"values": values} if options.vary else next(iter(values.values()))
+        print(atomic.dumps({"folder": str(out), "interrupted": interrupted, **results}))
     elif not options.quiet:
         console = Console(highlight=False)
         for name, summary in summaries.items():
@@ -248,25 +234,20 @@ def _tell(options: Sweep, out: Path, summaries: dict[str, Summary], go_on: str) 
                 table.add_row(label, text)
             console.print(table)
         console.print(f"report      {out / REPORT}", soft_wrap=True, markup=False)
-    if told := _not_run(list(summaries.values())):
-        print(f"hsr8: {told}; why: {out / REPORT}", file=sys.stderr)
-    if go_on:
-        print(f"hsr8: interrupted; go on with: {go_on}", file=sys.stderr)
-
-
-def _not_run(summaries: Sequence[Summary]) -> str:
-    """How many runs came to no end that counts, in words; nothing if there are none."""
-    kinds = ("crashed", "diverged", "refused")
-    counts = [(sum(getattr(s, kind) for s in summaries), kind) for kind in kinds]
-    found = [f"{count} {kind}" for count, kind in counts if count]
-    runs = sum(s.runs + s.refused for s in summaries)
-    return f"of {runs} runs {', '.join(found)}" if found else ""
+    counts = {
+        kind: sum(getattr(s, kind) for s in summaries.values())
+        for kind in ("crashed", "diverged", "refused")
+    }
+    if any(counts.values()):
+        runs = sum(s.runs + s.refused for s in summaries.values())
+        text = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
+        print(f"hsr8: of {runs} runs {text}; reasons: {out / REPORT}", file=sys.stderr)
 
 
 def _exit_code(summaries: Sequence[Summary]) -> int:
-    """3 if a run crashed or diverged, 2 if none could be made, 1 if one failed, else 0."""
+    """Return 3 if a run crashed or diverged, 2 if all were refused, 1 if one failed, else 0."""
     if any(s.crashed or s.diverged for s in summaries):
         return 3
     if any(s.refused and not s.runs for s in summaries):
         return 2
-    return 0 if all(s.passed.count == s.runs for s in summaries) else 1
+    return 0 if all(s.criteria_met.count == s.runs for s in summaries) else 1

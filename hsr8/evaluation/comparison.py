@@ -1,4 +1,4 @@
-"""Two sweeps, or two runs, on the seeds that they have in common."""
+"""Comparison of two sweeps, or two runs, on their common seeds."""
 
 import tomllib
 from collections.abc import Sequence
@@ -10,12 +10,17 @@ from typing import Any
 import numpy as np
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.mcnemar import PairedShares
+from hsr8.evaluation.mcnemar import PairedOutcomes
 from hsr8.evaluation.paired import compare_paired
-from hsr8.evaluation.sweep.definition import Definition, differences, version_differences
+from hsr8.evaluation.sweep.definition import (
+    Definition,
+    Differences,
+    scenario_differences,
+    version_differences,
+)
 from hsr8.evaluation.sweep.folder import DEFINITION, SweepFolder
-from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Row
-from hsr8.evaluation.sweep.table import flat
+from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
+from hsr8.evaluation.sweep.table import flatten
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.manifest import OWN
 from hsr8.recorder.run.run_reader import open_run
@@ -35,38 +40,38 @@ METRICS = (
     "head_travel_radps",
 )
 ON_ARRIVAL = ("time_to_goal_s", "arrival_error_deg", "path_length_m")  # where both succeeded
-SAME_WORLD = ("world.", "mission.")  # seeds pair only if these sections agree
-LOOKS = ("world.brightness", "world.beacons", "world.beacon_displacement")  # but for these keys
+SAME_WORLD = ("world.", "mission.")  # sections that must agree for seeds to pair
+APPEARANCE = ("world.brightness", "world.beacons", "world.beacon_displacement")  # except these keys
 
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """One of the two.
+    """One side of the comparison.
 
     Attributes:
-        path: of its folder.
-        definition: what its runs have in common.
-        rows: results by seed; seeds that could not be run are left out.
+        path: folder of the sweep or the run.
+        definition: scenario and versions.
+        runs: results by seed, without refused runs.
     """
 
     path: Path
     definition: Definition
-    rows: dict[int, Row]
+    runs: dict[int, RunResult]
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
-    """One result, B against A.
+class MetricDifference:
+    """Difference of one metric, B against A.
 
     Attributes:
-        metric: its name.
-        test: "McNemar" for shares, else "Wilcoxon".
-        n: seeds on which both have it.
-        a, b: share or mean.
-        difference: of b from a.
+        metric: name.
+        test: "McNemar" for proportions, else "Wilcoxon".
+        n: number of seeds with the metric on both sides.
+        a, b: proportion or mean.
+        difference: b - a.
         low, high: its 95 % interval.
         p_value: two-sided.
-        only_a, only_b: of a share, seeds at which only one of them succeeded.
+        only_a, only_b: for a proportion, seeds on which only one side succeeded.
     """
 
     metric: str
@@ -84,50 +89,50 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Everything that differs.
+    """Differences between two sides.
 
     Attributes:
-        a, b: the two.
-        seeds: that both have.
+        a, b: the sides.
+        seeds: common seeds.
         settings: keys of the scenario that differ, with both values as JSON.
-        versions: that differ, and decisions of one's own.
-        results: one per metric that both have.
+        versions: versions and plugins that differ.
+        metrics: one difference per metric that both sides have.
     """
 
     a: Side
     b: Side
     seeds: tuple[int, ...]
-    settings: dict[str, tuple[str, str]]
-    versions: dict[str, tuple[str, str]]
-    results: tuple[Difference, ...]
+    settings: Differences
+    versions: Differences
+    metrics: tuple[MetricDifference, ...]
 
 
 def open_side(path: Path) -> Side:
-    """The sweep or the run at `path`, or the newest run below it.
+    """Return the sweep or the run at `path`, or the newest run below it.
 
     Raises:
-        UsageError: there is neither.
+        UsageError: `path` is neither, or a run without results.
     """
     if _is_sweep(path):
         folder = SweepFolder.read(path)
-        rows = {row["seed"]: flat(row) for row in folder.rows() if row["outcome"] != REFUSED}
-        return Side(path, folder.definition, rows)
+        runs = {r["seed"]: flatten(r) for r in folder.results() if r["outcome"] != REFUSED}
+        return Side(path, folder.definition, runs)
     parts = sorted(file.parent.name for file in path.glob(f"*/{DEFINITION}"))
     if parts or not any(path.glob(f"**/{run_folder.MANIFEST}")):
-        hint = f": give one of its parts, {', '.join(parts)}" if parts else ""
+        hint = f"; expected one of its parts: {', '.join(parts)}" if parts else ""
         if not path.is_absolute() and (Path("sweeps") / path).is_dir():
             hint = f"; did you mean {Path('sweeps') / path}?"
-        raise UsageError(f"{path} is neither a sweep's folder nor a run folder{hint}")
+        raise UsageError(f"{path}: not a folder of a sweep or a run{hint}")
     run = open_run(path)
     metrics = run.metrics()
     if not metrics:
-        raise UsageError(f"{path} has no results: the run did not end")
+        raise UsageError(f"{path}: no results, the run did not end")
     try:
         scenario = run.scenario_text()
         tomllib.loads(scenario)
         definition = Definition(
             name=str(run.manifest["scenario"]),
-            again=(str(run.manifest["command"]),),
+            command_words=(str(run.manifest["command"]),),
             hsr8=str(run.manifest["hsr8"]),
             code="",
             processor=str(run.manifest["machine"]).split(" ")[-1],
@@ -135,112 +140,109 @@ def open_side(path: Path) -> Side:
             scenario=scenario,
         )
     except (KeyError, TypeError, ValueError) as error:
-        raise UsageError(f"cannot read the run folder {path}: {error}") from error
-    return Side(run.path, definition, {run.seed: {"seed": run.seed, **flat(metrics)}})
+        raise UsageError(f"{path}: cannot read the run folder: {error}") from error
+    return Side(run.path, definition, {run.seed: {"seed": run.seed, **flatten(metrics)}})
 
 
 def _is_sweep(path: Path) -> bool:
     try:
         return (path / DEFINITION).exists()
     except OSError as error:
-        raise UsageError(f"cannot read {path}: {error.strerror}") from error
+        raise UsageError(f"{path}: cannot read: {error.strerror}") from error
 
 
 def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
     """Compare B with A.
 
     Args:
-        a: what is there.
-        b: what it is compared with.
-        metrics: names of results; the usual ones by default.
+        a: reference.
+        b: side compared with it.
+        metrics: names of metrics; `METRICS` by default.
 
     Raises:
-        UsageError: no seed is common, the same seed is not the same world, or a metric is
-            unknown.
+        UsageError: no seed is common, the worlds of a seed differ, or a metric is unknown.
     """
-    settings = differences(a.definition, b.definition)
-    worlds = {
-        key: pair
-        for key, pair in settings.items()
-        if key.startswith(SAME_WORLD) and key not in LOOKS
-    }
+    settings = scenario_differences(a.definition, b.definition)
+    worlds = [
+        f"\n  {key}: {x} in A, {y} in B"
+        for key, (x, y) in settings.items()
+        if key.startswith(SAME_WORLD) and key not in APPEARANCE
+    ]
     if worlds:
-        raise UsageError(
-            "the same seed is not the same world in both:"
-            + "".join(f"\n  {key}: {x} in A, {y} in B" for key, (x, y) in worlds.items())
-        )
-    seeds = tuple(sorted(a.rows.keys() & b.rows.keys()))
+        raise UsageError("A and B have different worlds for the same seed:" + "".join(worlds))
+    seeds = tuple(sorted(a.runs.keys() & b.runs.keys()))
     if not seeds:
-        raise UsageError(f"no seed is in both: A has {_range(a.rows)}, B has {_range(b.rows)}")
+        raise UsageError(f"no common seed: A has {_range(a.runs)}, B has {_range(b.runs)}")
     for metric in metrics:
-        _must_know(metric, [a.rows[seed] for seed in seeds] + [b.rows[seed] for seed in seeds])
-    found = (_compared(metric, a, b, seeds) for metric in metrics or METRICS)
+        _require_metric(metric, [side.runs[seed] for side in (a, b) for seed in seeds])
+    differences = (_difference(metric, a, b, seeds) for metric in metrics or METRICS)
     versions = version_differences(a.definition, b.definition)
-    if not (a.definition.code and b.definition.code):  # a run folder does not know
+    if not (a.definition.code and b.definition.code):  # unknown for a run folder
         versions.pop("code", None)
-    own = _own(a), _own(b)
-    if own[0] != own[1]:
-        versions["decisions"] = own
-    return Comparison(a, b, seeds, settings, versions, tuple(d for d in found if d is not None))
+    plugins = _plugin(a), _plugin(b)
+    if plugins[0] != plugins[1]:
+        versions["decisions"] = plugins
+    return Comparison(
+        a, b, seeds, settings, versions, tuple(d for d in differences if d is not None)
+    )
 
 
-def _own(side: Side) -> str:
-    """The call that names a planner or a gaze of one's own; ``-`` for the scenario's."""
-    command = " ".join(side.definition.again)
+def _plugin(side: Side) -> str:
+    """Return the call that ran a custom planner or gaze; ``-`` for the scenario's."""
+    command = " ".join(side.definition.command_words)
     return command if command.startswith(OWN) else "-"
 
 
-def _compared(metric: str, a: Side, b: Side, seeds: Sequence[int]) -> Difference | None:
-    """None if no seed has it in both."""
+def _difference(metric: str, a: Side, b: Side, seeds: Sequence[int]) -> MetricDifference | None:
+    """Return None if no seed has the metric on both sides."""
     if metric in ON_ARRIVAL:
-        seeds = [s for s in seeds if a.rows[s].get("success") and b.rows[s].get("success")]
-    pairs = {s: (_value(a.rows[s], metric), _value(b.rows[s], metric)) for s in seeds}
-    both = {s: pair for s, pair in pairs.items() if None not in pair}
-    if not both:
+        seeds = [s for s in seeds if a.runs[s].get("success") and b.runs[s].get("success")]
+    pairs = {s: (_value(a.runs[s], metric), _value(b.runs[s], metric)) for s in seeds}
+    pairs = {s: pair for s, pair in pairs.items() if None not in pair}
+    if not pairs:
         return None
-    if all(isinstance(value, bool) for pair in both.values() for value in pair):
-        return _shares(metric, both)
-    x, y = np.array(list(both.values()), float).T
-    d = compare_paired(x, y)
-    return Difference(metric, "Wilcoxon", d.n, d.mean_a, d.mean_b, d.mean, d.low, d.high, d.p_value)
+    if all(isinstance(value, bool) for pair in pairs.values() for value in pair):
+        return _proportion_difference(metric, pairs)
+    d = compare_paired(*np.array(list(pairs.values()), float).T)
+    return MetricDifference(
+        metric, "Wilcoxon", d.n, d.mean_a, d.mean_b, d.mean, d.low, d.high, d.p_value
+    )
 
 
-def _shares(metric: str, pairs: dict[int, tuple[bool, bool]]) -> Difference:
-    counts = PairedShares.count([x for x, _ in pairs.values()], [y for _, y in pairs.values()])
-    low, high = counts.interval()
-    return Difference(
+def _proportion_difference(metric: str, pairs: dict[int, tuple[bool, bool]]) -> MetricDifference:
+    counts = PairedOutcomes.count([x for x, _ in pairs.values()], [y for _, y in pairs.values()])
+    return MetricDifference(
         metric,
         "McNemar",
         counts.n,
         (counts.both + counts.only_a) / counts.n,
         (counts.both + counts.only_b) / counts.n,
         counts.difference,
-        low,
-        high,
+        *counts.interval(),
         counts.p_value(),
         tuple(seed for seed, (x, y) in pairs.items() if x and not y),
         tuple(seed for seed, (x, y) in pairs.items() if y and not x),
     )
 
 
-def _value(row: Row, metric: str) -> Any:
-    """A crashed run has not succeeded; what else it would have come to is unknown."""
-    if metric == "success" and row.get("outcome") == CRASHED:
+def _value(run: RunResult, metric: str) -> Any:
+    """Return a number or None; a crashed run is a failure, and its other metrics are unknown."""
+    if metric == "success" and run.get("outcome") == CRASHED:
         return False
-    value = row.get(metric)
+    value = run.get(metric)
     return value if isinstance(value, bool | int | float) and isfinite(value) else None
 
 
-def _must_know(metric: str, rows: Sequence[Row]) -> None:
+def _require_metric(metric: str, runs: Sequence[RunResult]) -> None:
     known = sorted(
-        {key for row in rows for key in row if key != "seed" and _value(row, key) is not None}
+        {key for run in runs for key in run if key != "seed" and _value(run, key) is not None}
     )
     if metric not in known:
         raise UsageError(
-            f"--metric {metric}: no run has such a number{suggestion(metric, known)} "
-            f"(there are: {', '.join(known)})"
+            f"--metric: unknown metric, got {metric}{suggestion(metric, known)}; expected one of "
+            f"{', '.join(known)}"
         )
 
 
-def _range(rows: dict[int, Row]) -> str:
-    return f"{min(rows)} to {max(rows)}" if rows else "no runs"
+def _range(runs: dict[int, RunResult]) -> str:
+    return f"{min(runs)} to {max(runs)}" if runs else "no runs"

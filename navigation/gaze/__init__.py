@@ -1,1 +1,1 @@
-"""Gaze: the belief becomes the direction in which the camera looks."""
+"""Gaze control: chooses pan and tilt of the head from the belief."""

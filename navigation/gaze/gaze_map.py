@@ -4,17 +4,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from navigation.parameters.gaze import GazeParameters
 from navigation.value import value
 
 Array = NDArray[np.float64]
 
 _FLAT = 1e-9
-"""Cells this close to the maximum belong to the top plateau."""
+"""Relative difference from the maximum within which cells belong to the top plateau."""
 
 
 @value
 class Votes:
-    """Weighted directions that ask for a look.
+    """Weighted directions of requested looks.
 
     Attributes:
         pan, tilt: candidate directions (n,) [rad].
@@ -27,12 +28,12 @@ class Votes:
 
     @classmethod
     def one(cls, pan: float, tilt: float, value: float) -> "Votes":
-        """A single vote."""
+        """Return a single vote."""
         return cls(np.array([pan]), np.array([tilt]), np.array([value]))
 
     @classmethod
     def join(cls, parts: list["Votes"]) -> "Votes":
-        """All votes of `parts` together."""
+        """Concatenate votes."""
         if not parts:
             return cls(np.zeros(0), np.zeros(0), np.zeros(0))
         return cls(
@@ -45,58 +46,52 @@ class Votes:
 class GazeGrid:
     """Cells of gaze angles and the boxes in which a vote counts.
 
-    Boxes in pan and tilt only approximate what a pinhole camera shows; they serve for
-    votes, never to decide what was seen.
+    Boxes in pan and tilt approximate the view of a pinhole camera. They serve for votes only;
+    visibility is computed by projection.
+
+    Attributes:
+        pan, tilt: centres of the columns and rows [rad].
     """
 
     def __init__(
-        self,
-        *,
-        max_pan: float,
-        min_tilt: float,
-        max_tilt: float,
-        step: float,
-        half_pan: float,
-        half_tilt: float,
+        self, parameters: GazeParameters, horizontal_fov: float, vertical_fov: float
     ) -> None:
         """Build the grid.
 
         Args:
-            max_pan: largest pan to either side [rad].
-            min_tilt: lowest tilt [rad].
-            max_tilt: highest tilt [rad].
-            step: distance of cells [rad].
-            half_pan: half width of a box [rad].
-            half_tilt: half height of a box [rad].
+            parameters: limits of the gaze, resolution and size of the boxes.
+            horizontal_fov: of the camera [rad].
+            vertical_fov: of the camera [rad].
         """
-        self._step = step
-        columns = int(max_pan / step + _FLAT)
-        self.pan: Array = step * np.arange(-columns, columns + 1, dtype=np.float64)
-        rows = int((max_tilt - min_tilt) / step + _FLAT) + 1
-        self.tilt: Array = min_tilt + step * np.arange(rows, dtype=np.float64)
-        self.half_pan = half_pan
-        self.half_tilt = half_tilt
+        p = parameters
+        self._step = p.step
+        columns = int(p.max_pan / p.step + _FLAT)
+        self.pan: Array = p.step * np.arange(-columns, columns + 1, dtype=np.float64)
+        rows = int((p.max_tilt - p.min_tilt) / p.step + _FLAT) + 1
+        self.tilt: Array = p.min_tilt + p.step * np.arange(rows, dtype=np.float64)
+        self._half_pan = p.box_fraction * horizontal_fov
+        self._half_tilt = p.box_fraction * vertical_fov
 
     def gaze_map(self, votes: Votes) -> Array:
-        """GM (tilts, pans): the sum of the regions R(theta_k) of all votes.
+        """Return GM (tilts, pans), the sum of the regions R(theta_k) of all votes.
 
         Sources: Yoo & Kim, eqs. (5) and (6); the weights of (6) are in the values of the votes.
         """
-        pans = np.abs(self.pan - votes.pan[:, None]) <= self.half_pan + _FLAT
-        tilts = np.abs(self.tilt - votes.tilt[:, None]) <= self.half_tilt + _FLAT
+        pans = np.abs(self.pan - votes.pan[:, None]) <= self._half_pan + _FLAT
+        tilts = np.abs(self.tilt - votes.tilt[:, None]) <= self._half_tilt + _FLAT
         total: Array = (tilts * votes.value[:, None]).T @ pans.astype(np.float64)
         return total
 
     def value_at(self, gaze_map: Array, pan: float, tilt: float) -> float:
-        """GM of the cell nearest to the gaze (pan, tilt) [rad]."""
+        """Return GM of the cell nearest to the gaze (pan, tilt) [rad]."""
         row, column = self._cell(pan, tilt)
         return float(gaze_map[row, column])
 
     def highest_centre(self, gaze_map: Array, pan: float, tilt: float) -> tuple[float, float]:
-        """theta*, the centre of the largest plateau of greatest GM.
+        """Return theta*, the centre of the largest plateau of maximum GM.
 
-        Of plateaus of equal size the one nearest the present gaze wins, then the smaller
-        pan; a centroid outside its plateau gives way to the nearest member.
+        Of plateaus of equal size the one nearest to the present gaze wins, then the smaller pan.
+        If the centroid is outside its plateau, the nearest member replaces it.
 
         Args:
             gaze_map: GM (tilts, pans).

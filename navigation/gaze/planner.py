@@ -1,4 +1,4 @@
-"""Where to look, decided again after every saccade by the policy the parameters name."""
+"""Gaze planner: applies the policy of the parameters after every saccade and dwell."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,11 @@ Array = NDArray[np.float64]
 
 
 class GazePlanner:
-    """Gaze control of Yoo & Kim, section II, and its comparisons."""
+    """Gaze control of Yoo & Kim, section II, and alternatives.
+
+    Attributes:
+        grid: cells of the gaze map.
+    """
 
     def __init__(
         self,
@@ -28,12 +32,12 @@ class GazePlanner:
         horizontal_fov: float,
         vertical_fov: float,
     ) -> None:
-        """Start with the gaze ahead.
+        """Initialize with the gaze straight ahead.
 
         Args:
             parameters: profile.
-            limits: envelope of the walking layer.
-            beacons: places in W by name [m].
+            limits: of the walking layer.
+            beacons: positions in W by name [m].
             horizontal_fov: of the camera [rad].
             vertical_fov: of the camera [rad].
         """
@@ -41,18 +45,11 @@ class GazePlanner:
         self._parameters = parameters
         self._beacons = np.array([beacons[name] for name in sorted(beacons)]).reshape(-1, 2)
         self._samples = SamplePoints.polar(parameters.evaluation, p.max_pan)
-        self._grid = GazeGrid(
-            max_pan=p.max_pan,
-            min_tilt=p.min_tilt,
-            max_tilt=p.max_tilt,
-            step=p.step,
-            half_pan=p.box_fraction * horizontal_fov,
-            half_tilt=p.box_fraction * vertical_fov,
-        )
-        self._policy = gaze_policy(parameters, limits, self._grid)
-        # A lost robot does not know where its beacons are.
+        self.grid = GazeGrid(p, horizontal_fov, vertical_fov)
+        self._policy = gaze_policy(parameters, limits, self.grid)
+        # The map of a lost robot does not show where the beacons are.
         self._search = self._policy if p.mode == "fixed" else SweepGaze(parameters)
-        self._timing = GazeTiming(p.dwell, p.arrival_tolerance, p.max_saccade_time)
+        self._timing = GazeTiming(p)
         self._pan, self._tilt = 0.0, p.fixed_tilt
         self._last: GazeDecision | None = None
 
@@ -60,20 +57,20 @@ class GazePlanner:
         """Choose the gaze; call at every frame.
 
         Args:
-            belief: what the robot believes.
-            task: where it goes.
-            motion: how it moves, None before the first plan.
+            belief: of the robot.
+            task: of the mission.
+            motion: decision of the planner, None before the first.
 
         Returns:
-            The decision in force, a new one once the head has arrived and rested.
+            The decision in force; a new one after the arrival of the head and the dwell.
         """
         policy = self._search if belief.lost else self._policy
-        due = not policy.steady or self._timing.due(belief.time, belief.view)
-        if self._last is not None and not due:
+        ready = not policy.steady or self._timing.ready(belief.time, belief.view)
+        if self._last is not None and not ready:
             return self._last
         scene = gaze_scene(belief, motion, self._samples, self._beacons, self._parameters)
-        context = GazeContext(belief, task, motion, scene)
-        gaze_map = self._grid.gaze_map(policy.votes(context))
+        context = GazeContext(task, motion, scene)
+        gaze_map = self.grid.gaze_map(policy.votes(context))
         self._pan, self._tilt = policy.aim(context, gaze_map, (self._pan, self._tilt))
         self._timing.decided(belief.time, self._pan, self._tilt)
         self._last = GazeDecision(
@@ -86,8 +83,3 @@ class GazePlanner:
             gaze_map=gaze_map,
         )
         return self._last
-
-    @property
-    def grid(self) -> GazeGrid:
-        """Cells of the gaze map."""
-        return self._grid

@@ -1,8 +1,7 @@
-"""The ways to choose a gaze, one name each, behind one protocol."""
+"""Gaze policies behind one protocol."""
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from math import atan2, hypot, pi, sin
 from typing import Protocol
 
@@ -10,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.gaze.deadline import deadline_votes
 from navigation.gaze.gaze_map import GazeGrid, Votes
@@ -29,150 +27,144 @@ Gaze = tuple[float, float]
 
 @value
 class GazeContext:
-    """Everything a gaze may depend on.
+    """Inputs of a gaze decision.
 
     Attributes:
-        belief: what the robot believes.
-        task: where it goes.
-        motion: how it moves, None before the first plan.
-        scene: partial evaluations.
+        task: of the mission.
+        motion: decision of the planner, None before the first.
+        scene: belief and partial evaluations.
     """
 
-    belief: Belief
     task: Task
     motion: MotionDecision | None
     scene: GazeScene
 
+    @property
+    def path(self) -> float:
+        """Bearing of the planned velocity in R, of the destination if that is zero [rad]."""
+        if self.motion is not None:
+            vx, vy, _ = self.motion.velocity.tolist()
+            if hypot(vx, vy) > 1e-3:
+                return atan2(vy, vx)
+        pose = self.scene.belief.pose
+        dx, dy = (self.task.target - pose[:2]).tolist()
+        return wrap(atan2(dy, dx) - float(pose[2]))
+
 
 class GazePolicy(Protocol):
-    """One way to choose the gaze.
+    """Choice of the gaze.
 
     Attributes:
-        steady: lets the head arrive and rest before it decides again.
+        steady: whether the head arrives and dwells before the next decision.
     """
 
     steady: bool
 
     def votes(self, context: GazeContext) -> Votes:
-        """What fills the gaze map."""
+        """Return the votes of the gaze map."""
 
     def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
-        """Where to look next, `now` being the gaze in force."""
+        """Return the next gaze; `now` is the present one."""
 
 
-class VotingGaze:
-    """Looks at the highest centre of the gaze map, if that is worth the move."""
+class VotingGaze(GazePolicy):
+    """Gaze at the highest centre of the gaze map.
+
+    The gaze stays if the highest centre does not exceed it by the switch ratio. With a ratio of 1
+    it always moves to the highest centre, as printed.
+    """
 
     steady = True
 
     def __init__(
         self, votes: Callable[[GazeContext], Votes], grid: GazeGrid, switch_ratio: float
     ) -> None:
-        """Store how votes are cast.
+        """Initialize.
 
         Args:
-            votes: cast in a context.
+            votes: voting rule.
             grid: cells of the gaze map.
             switch_ratio: gain in the gaze map that moves the gaze, at least 1.
         """
-        self.votes = votes
+        self._votes = votes
         self._grid = grid
         self._ratio = switch_ratio
 
-    def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
-        """The highest centre, or `now` if that sees about as much.
+    def votes(self, context: GazeContext) -> Votes:
+        return self._votes(context)
 
-        At a ratio of 1 it is always the highest centre, as printed.
-        """
+    def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
         if float(gaze_map.max()) >= self._ratio * self._grid.value_at(gaze_map, *now):
             return self._grid.highest_centre(gaze_map, *now)
         return now
 
 
-class FixedGaze:
-    """Looks ahead and never moves. The map of (6) is still computed, for the log only."""
+class FixedGaze(GazePolicy):
+    """Gaze straight ahead. The map of (6) is computed for the log only."""
 
     steady = True
 
     def __init__(self, parameters: NavigationParameters) -> None:
-        """Store the tilt and what the map is made of."""
         self._parameters = parameters
 
     def votes(self, context: GazeContext) -> Votes:
-        """The paper's, to see what the gaze misses."""
-        return integrated_votes(context.scene, context.belief, context.task, self._parameters)
+        return integrated_votes(context.scene, context.task, self._parameters)
 
     def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
-        """Straight ahead."""
         return 0.0, self._parameters.gaze.fixed_tilt
 
 
 class SweepGaze(FixedGaze):
-    """Swings from side to side by the clock. The map of (6) is computed for the log only."""
+    """Sinusoidal pan over time. The map of (6) is computed for the log only."""
 
     steady = False
 
     def aim(self, context: GazeContext, gaze_map: Array, now: Gaze) -> Gaze:
-        """A sine of the time."""
         p = self._parameters.gaze
-        phase = 2.0 * pi * context.belief.time / p.sweep_period
+        phase = 2.0 * pi * context.scene.belief.time / p.sweep_period
         return p.sweep_amplitude * sin(phase), p.fixed_tilt
 
 
 def gaze_policy(
     parameters: NavigationParameters, limits: SpeedLimits, grid: GazeGrid
 ) -> GazePolicy:
-    """The policy that `parameters.gaze.mode` names.
+    """Return the policy of `parameters.gaze.mode`.
 
     Args:
         parameters: profile.
-        limits: envelope of the walking layer.
+        limits: of the walking layer.
         grid: cells of the gaze map.
     """
-    p = parameters.gaze
+    p, speed = parameters.gaze, limits.vx
     if p.mode == "fixed":
         return FixedGaze(parameters)
     if p.mode == "sweep":
         return SweepGaze(parameters)
-    if p.mode == "deadline":
-        votes = partial(_deadline, parameters, limits.vx)
-        return VotingGaze(votes, grid, p.deadline.switch_ratio)
-    if p.mode == "urgency":
-        votes = partial(_urgency, parameters, limits.vx)
-    elif p.mode == "info":
-        votes = partial(_information, parameters)
-    else:
-        votes = partial(_integrated, replace(parameters, gaze=single_weight(p)))
-    return VotingGaze(votes, grid, p.switch_ratio)
-
-
-# Functions with names, so that a gaze can be saved in the middle of a run.
-def _deadline(parameters: NavigationParameters, speed: float, m: GazeContext) -> Votes:
-    way = path_bearing(m)
-    if m.motion is None:
-        return deadline_votes(m.scene, m.belief, way, speed, parameters)
-    turn, look_request = float(m.motion.velocity[2]), m.motion.look_request
-    return deadline_votes(
-        m.scene, m.belief, way, speed, parameters, look_request=look_request, turn=turn
+    weighted = replace(parameters, gaze=single_weight(p))
+    votes: dict[str, Callable[[GazeContext], Votes]] = {
+        "deadline": lambda c: _deadline_votes(c, speed, parameters),
+        "urgency": lambda c: urgency_votes(c.scene, c.task, c.path, speed, parameters),
+        "info": lambda c: information_votes(c.scene, parameters),
+    }
+    return VotingGaze(
+        votes.get(p.mode, lambda c: integrated_votes(c.scene, c.task, weighted)),
+        grid,
+        p.deadline.switch_ratio if p.mode == "deadline" else p.switch_ratio,
     )
 
 
-def _urgency(parameters: NavigationParameters, speed: float, m: GazeContext) -> Votes:
-    way = path_bearing(m)
-    return urgency_votes(m.scene, m.belief, m.task, way=way, speed=speed, parameters=parameters)
-
-
-def _information(parameters: NavigationParameters, m: GazeContext) -> Votes:
-    return information_votes(m.scene, m.belief, parameters)
-
-
-def _integrated(parameters: NavigationParameters, m: GazeContext) -> Votes:
-    return integrated_votes(m.scene, m.belief, m.task, parameters)
+def _deadline_votes(c: GazeContext, speed: float, parameters: NavigationParameters) -> Votes:
+    turn_rate, request = 0.0, None
+    if c.motion is not None:
+        turn_rate, request = float(c.motion.velocity[2]), c.motion.look_request
+    return deadline_votes(
+        c.scene, c.path, speed, parameters, look_request=request, turn_rate=turn_rate
+    )
 
 
 def single_weight(p: GazeParameters) -> GazeParameters:
-    """The weights of (6) for `p.mode`: all of `p`, or one for the evaluation it names alone."""
-    if p.mode == "integrated":
+    """Return the weights of (6) for `p.mode`: one for a single evaluation, else all of `p`."""
+    if not p.mode.startswith("psi-"):
         return p
     return replace(
         p,
@@ -181,14 +173,3 @@ def single_weight(p: GazeParameters) -> GazeParameters:
         w_ob=float(p.mode == "psi-ob"),
         w_way=float(p.mode == "psi-way"),
     )
-
-
-def path_bearing(context: GazeContext) -> float:
-    """Bearing of the planned velocity in R, of the destination while standing [rad]."""
-    if context.motion is not None:
-        forward, left, _ = context.motion.velocity.tolist()
-        if hypot(forward, left) > 1e-3:
-            return atan2(left, forward)
-    pose = context.belief.pose
-    dx, dy = (context.task.target - pose[:2]).tolist()
-    return wrap(atan2(dy, dx) - float(pose[2]))

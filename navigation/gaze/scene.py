@@ -1,4 +1,4 @@
-"""Everything the gaze weighs in one moment: obstacles, beacons, partial evaluations."""
+"""Scene of one gaze decision: obstacles, beacons and partial evaluations."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +28,10 @@ Mask = NDArray[np.bool_]
 
 @value
 class GazeScene:
-    """One moment as the gaze sees it.
+    """Scene of one gaze decision.
 
     Attributes:
+        belief: of the robot.
         obstacles: all tracks (n).
         bearing: of the obstacles in R (n,) [rad].
         distance: of the obstacles (n,) [m].
@@ -41,11 +42,12 @@ class GazeScene:
         psi_way: eq. (4).
         map: eq. (1).
         samples: its sample points.
-        beacon_bearing: of the beacons worth a look, in R (m,) [rad].
-        beacon_distance: of them (m,) [m].
+        beacon_bearing: of the beacons within reach and range, in R (m,) [rad].
+        beacon_distance: of these beacons (m,) [m].
         camera_height: above the floor [m].
     """
 
+    belief: Belief
     obstacles: ObstacleSet
     bearing: Array
     distance: Array
@@ -62,19 +64,19 @@ class GazeScene:
 
     @property
     def psi_ob_max(self) -> float:
-        """Largest psi_ob over the set O."""
+        """Maximum psi_ob over the set O."""
         return float(self.psi_ob[self.attended].max(initial=0.0))
 
     def aims(self, parameters: NavigationParameters) -> tuple[Mask, Array, Array]:
-        """Which obstacles of O are within reach (n,), and pan and tilt to each (k,), (k,) [rad]."""
+        """Return the obstacles of O within reach (n,), pan and tilt to each (k,), (k,) [rad]."""
         limit, height = parameters.gaze.max_pan, parameters.evaluation.aim_height
-        seen = self.attended & self.reachable
-        pan = np.clip(self.bearing[seen], -limit, limit)
-        return seen, pan, np.arctan2(height - self.camera_height, self.distance[seen])
+        members = self.attended & self.reachable
+        pan = np.clip(self.bearing[members], -limit, limit)
+        return members, pan, np.arctan2(height - self.camera_height, self.distance[members])
 
 
 def relative(points: Array, pose: Array) -> tuple[Array, Array]:
-    """Bearing in R (n,) [rad] and distance (n,) [m] of points in W (n, 2) [m]."""
+    """Return bearing in R (n,) [rad] and distance (n,) [m] of points in W (n, 2) [m]."""
     offset = points - pose[:2]
     bearing = wrap_array(np.arctan2(offset[:, 1], offset[:, 0]) - pose[2])
     return bearing, np.hypot(offset[:, 0], offset[:, 1])
@@ -90,10 +92,10 @@ def gaze_scene(
     """Evaluate (1)-(4) in the present belief.
 
     Args:
-        belief: what the robot believes.
-        motion: what it does, None before the first decision.
+        belief: of the robot.
+        motion: latest decision of the planner, None before the first.
         samples: sample points of (1).
-        beacons: known places of beacons in W (m, 2) [m].
+        beacons: known positions of beacons in W (m, 2) [m].
         parameters: of the decisions.
     """
     e, g = parameters.evaluation, parameters.gaze
@@ -119,8 +121,9 @@ def gaze_scene(
         radii = np.concatenate([radii, [v.radius for v in motion.virtual_obstacles]])
     free = obstacle_free_distance(pose[:2], centres, radii, e.d_n_thres)
     beacon_bearing, beacon_distance = relative(beacons, pose)
-    worth = (beacon_distance <= e.beacon_range) & (np.abs(beacon_bearing) <= reach)
+    near = (beacon_distance <= e.beacon_range) & (np.abs(beacon_bearing) <= reach)
     return GazeScene(
+        belief=belief,
         obstacles=obstacles,
         bearing=bearing,
         distance=distance,
@@ -131,7 +134,7 @@ def gaze_scene(
         psi_way=psi_way(free, e),
         map=psi_local_map(confidence, in_gaze, e),
         samples=samples,
-        beacon_bearing=beacon_bearing[worth],
-        beacon_distance=beacon_distance[worth],
+        beacon_bearing=beacon_bearing[near],
+        beacon_distance=beacon_distance[near],
         camera_height=height,
     )

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from hsr8.cli.main import entry
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.evaluation.sweep.definition import Definition
-from hsr8.evaluation.sweep.folder import LEDGER, SweepFolder
+from hsr8.evaluation.sweep.folder import RESULTS, SweepFolder
 from hsr8.evaluation.sweep.seeds import parse_seeds
 from hsr8.loop import Simulation
 from hsr8.render import viewer
@@ -79,8 +79,8 @@ def test_any_sweep_is_read_or_refused(run, tmp_path, monkeypatch):
     sweep = tmp_path / "sweep"
     row = {"seed": 0, "outcome": "passed", "time_to_goal_s": 3.5}
     folder = SweepFolder.open(sweep, Definition.now("quick", (), dump(load_scenario("quick"))))
-    (sweep / LEDGER).write_text(f"{json.dumps(row)}\n{json.dumps(row | {'seed': 1})}\n")
-    assert len(folder.rows()) == 2
+    (sweep / RESULTS).write_text(f"{json.dumps(row)}\n{json.dumps(row | {'seed': 1})}\n")
+    assert len(folder.results()) == 2
     monkeypatch.setattr(fuzz, "ON_SWEEPS", fuzz.ON_SWEEPS[:2])
     folders = fuzz.Folders(run, tmp_path, sweep)
     assert {fuzz.one(random.Random(k), "sweep", folders, SCHEMA) for k in range(60)} == {"valid"}

@@ -1,150 +1,130 @@
-"""Runs on the workers of a Dask cluster; needs the extra ``hsr8[dask]``."""
+"""Runs on the workers of a Dask cluster; requires the extra ``hsr8[dask]``."""
 
-import logging
-from collections import deque
-from contextlib import ExitStack
+import signal
+import socket
+import subprocess
+import sys
 from queue import Empty, SimpleQueue
 from typing import Any
 
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep.definition import code_digest
-from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
-from hsr8.evaluation.sweep.launcher import of_this_process
+from hsr8.evaluation.sweep.job import Job, RunResult, StartedJob, lost
+from hsr8.parent_watch import with_parent_watch
 
-PATIENCE = 30.0  # a scheduler answers within this time [s]
+TIMEOUT = 30.0  # for connecting to the scheduler [s]
 
 
-def work(job: Job) -> Row:
-    """Run `job` on the worker that this is called on."""
+def work(job: Job) -> RunResult:
+    """Run `job` in a new process on the Dask worker that calls this."""
     from distributed import get_worker  # noqa: PLC0415  an extra
 
-    return run_job(job, of_this_process().start, worker=str(get_worker().address))
+    started = StartedJob(job, str(get_worker().address))
+    command = with_parent_watch([sys.executable, "-P", "-m", "hsr8", *started.arguments])
+    with started.messages.open("wb") as messages:
+        try:
+            done = subprocess.run(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=messages,
+                stderr=messages,
+                timeout=job.timeout,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return started.result(-signal.SIGKILL, timed_out=True)
+    return started.result(done.returncode)
 
 
 def require_dask() -> None:
-    """Make sure that the extra is there.
+    """Check that Dask is installed.
 
     Raises:
-        UsageError: it is not.
+        UsageError: a package is missing.
     """
     try:
-        import dask  # noqa: F401, PLC0415  an extra
-        import distributed  # noqa: F401, PLC0415
+        import distributed  # noqa: F401, PLC0415  an extra
     except ImportError as error:
         raise UsageError(
-            f"--executor dask needs a package that is missing ({error.name}): "
-            'pip install "hsr8[dask]", or pip install distributed'
+            f'--executor dask: package {error.name} is missing; pip install "hsr8[dask]"'
         ) from None
 
 
 class DaskExecutor:
-    """Jobs as Dask futures.
+    """Jobs as Dask futures; Dask repeats the jobs of a worker that dies on another worker.
 
     Args:
-        address: ``HOST:PORT`` of a scheduler; empty for a cluster on this machine, reachable
-            from this machine only.
-        workers: of the cluster on this machine.
+        address: ``HOST:PORT`` of the scheduler.
 
     Raises:
-        UsageError: the extra is missing, nobody answers, or the cluster runs other code.
+        UsageError: Dask is missing, the scheduler does not answer, or the workers run other code.
     """
 
-    def __init__(self, address: str, workers: int) -> None:
+    def __init__(self, address: str) -> None:
         require_dask()
-        import dask  # noqa: PLC0415  an extra
-        from distributed import Client, LocalCluster  # noqa: PLC0415
+        from distributed import Client  # noqa: PLC0415  an extra
 
-        # A run whose worker died is ours to retry, and to mark.
-        dask.config.set({"distributed.scheduler.allowed-failures": 0})
-        with ExitStack() as undo:
-            self._cluster: Any = None
-            if not address:
-                self._cluster = LocalCluster(
-                    n_workers=workers,
-                    threads_per_worker=1,
-                    host="127.0.0.1",
-                    dashboard_address=None,
-                    memory_limit=None,
-                    silence_logs=logging.CRITICAL,
-                )
-                undo.callback(self._cluster.close)
-            try:
-                self._client: Any = Client(
-                    self._cluster or f"tcp://{address}",
-                    timeout=PATIENCE,
-                    set_as_default=False,
-                )
-                undo.callback(self._client.close)
-            except (OSError, ValueError) as error:
-                raise UsageError(f"--executor dask://{address}: nobody answers ({error})") from None
-            self._ended: SimpleQueue[tuple[Job, Any]] = SimpleQueue()
-            self._futures: set[Any] = set()
-            self._waiting: deque[Job] = deque()
-            self.workers = len(self._check_workers(address))
-            undo.pop_all()
+        self._name = f"--executor dask://{address}"
+        host, _, port = address.rpartition(":")
+        try:
+            socket.create_connection((host.strip("[]"), int(port)), TIMEOUT).close()
+            self._client: Any = Client(f"tcp://{address}", timeout=TIMEOUT, set_as_default=False)
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise UsageError(
+                f"{self._name}: no scheduler at {address}: {reason[:1].lower()}{reason[1:]}"
+            ) from None
+        self._ended: SimpleQueue[tuple[Job, Any]] = SimpleQueue()
+        self._futures: set[Any] = set()
+        try:
+            self._check_workers()
+        except UsageError:
+            self._client.close()
+            raise
 
     def submit(self, job: Job) -> None:
-        """Take a job."""
-        self._waiting.append(job)
+        """Add a job."""
+        future = self._client.submit(work, job, pure=False)
+        self._futures.add(future)
+        future.add_done_callback(lambda done: self._ended.put((job, done)))
 
-    def wait(self, seconds: float) -> list[tuple[Job, Row]]:
-        """What has ended."""
-        self._hand_out()
+    def wait(self, seconds: float) -> list[tuple[Job, RunResult]]:
+        """Return the jobs that ended."""
         ended = []
         try:
             ended.append(self._ended.get(timeout=seconds))
             while True:
                 ended.append(self._ended.get_nowait())
         except Empty:
-            return [(job, self._row(job, future)) for job, future in ended]
+            return [(job, self._result(job, future)) for job, future in ended]
 
     def close(self) -> None:
-        """Take back what has not begun; a cluster on this machine ends with its runs."""
+        """Stop the jobs that still run."""
         self._client.cancel(list(self._futures), force=True)
         self._client.close()
-        if self._cluster is not None:
-            self._cluster.close()
 
-    def _hand_out(self) -> None:
-        """Give every free thread of the cluster a job; a retry goes to another worker.
-
-        No job waits on a worker, so that the death of one loses nothing that has not begun.
-        """
-        workers = self._client.scheduler_info(n_workers=-1)["workers"]
-        free = sum(worker["nthreads"] for worker in workers.values()) - len(self._futures)
-        for _ in range(min(free, len(self._waiting))):
-            job = self._waiting.popleft()
-            others = [name for name in workers if name != job.avoid] if job.avoid else []
-            elsewhere = {"workers": others, "allow_other_workers": True} if others else {}
-            future = self._client.submit(work, job, pure=False, **elsewhere)
-            self._futures.add(future)
-            future.add_done_callback(lambda done, job=job: self._ended.put((job, done)))
-
-    def _row(self, job: Job, future: Any) -> Row:
+    def _result(self, job: Job, future: Any) -> RunResult:
         self._futures.discard(future)
         if future.status == "finished":
-            row: Row = future.result()
-            return row
+            result: RunResult = future.result()
+            return result
         error = future.exception() if future.status == "error" else future.status
-        return lost(job, f"the worker went away: {error}")
+        return lost(job, f"the worker died: {error}")
 
-    def _check_workers(self, address: str) -> list[str]:
-        """Addresses of the workers; all must run the code that is here."""
-        if not address:
-            return list(self._client.scheduler_info(n_workers=-1)["workers"])
+    def _check_workers(self) -> None:
+        """Check that there are workers and that all run the code of this machine."""
         try:
             digests: dict[str, str] = self._client.run(code_digest)
-        except Exception as error:  # whatever a worker raises comes through
+        except Exception as error:  # anything that a worker raises arrives here
             raise UsageError(
-                f"--executor dask://{address}: hsr8 must be installed on every worker ({error})"
+                f"{self._name}: hsr8 must be installed on every worker ({error})"
             ) from error
         if not digests:
-            raise UsageError(f"--executor dask://{address}: the cluster has no worker")
-        here = code_digest()
-        wrong = [worker for worker, digest in digests.items() if digest != here]
-        if wrong:
+            raise UsageError(f"{self._name}: the cluster has no worker")
+        local = code_digest()
+        different = [worker for worker, digest in digests.items() if digest != local]
+        if different:
             raise UsageError(
-                f"--executor dask://{address}: {len(wrong)} of {len(digests)} workers run other "
-                f"code than here ({wrong[0]}): install the same version there"
+                f"{self._name}: {len(different)} of {len(digests)} workers run other code than "
+                f"this machine ({different[0]}); install the same version on every worker"
             )
-        return list(digests)

@@ -1,4 +1,4 @@
-"""What all runs of a sweep have in common: scenario, versions, code."""
+"""What all runs of a sweep share: scenario, versions and code."""
 
 import hashlib
 import json
@@ -18,27 +18,28 @@ from hsr8.version import VERSION
 from hsr8.world.model.models import models_dir
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
-# Folders of hsr8 that do not shape a result.
-AROUND = ("cli", "render", "evaluation/sweep")
-IGNORED = ("seed", "description")  # keys of a scenario that may differ within a sweep
+NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "_models")  # folders and files of hsr8
+MAY_DIFFER = ("seed", "description")  # keys of a scenario, within a sweep
+
+Differences = dict[str, tuple[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """What a sweep runs.
+    """Scenario, versions and code of a sweep.
 
     Attributes:
-        name: of the scenario.
-        again: words of the command line of one run, without its seed; of a run folder with it.
+        name: name of the scenario.
+        command_words: command line of one run without its seed; of a run folder, with it.
         hsr8: version.
-        code: digest of the program's files; empty where that is not known.
-        processor: architecture; results are the same on one only.
+        code: digest of the program's files; empty if unknown.
+        processor: architecture; results are bit-exact on the same architecture only.
         libraries: version by name.
-        scenario: the resolved scenario as TOML; its seed means nothing.
+        scenario: resolved scenario as TOML; its seed is ignored.
     """
 
     name: str
-    again: tuple[str, ...]
+    command_words: tuple[str, ...]
     hsr8: str
     code: str
     processor: str
@@ -46,37 +47,31 @@ class Definition:
     scenario: str
 
     @classmethod
-    def now(cls, name: str, again: tuple[str, ...], scenario: str) -> "Definition":
-        """Definition with the versions installed here."""
+    def now(cls, name: str, command_words: tuple[str, ...], scenario: str) -> "Definition":
+        """Return a definition with the installed versions."""
         return cls(
-            name=name,
-            again=again,
-            hsr8=VERSION,
-            code=code_digest(),
-            processor=platform.machine(),
-            libraries=versions(),
-            scenario=scenario,
+            name, command_words, VERSION, code_digest(), platform.machine(), versions(), scenario
         )
 
     def command(self, seed: int) -> str:
-        """Command line that repeats the run of `seed`."""
-        return shlex.join([*self.again, "--seed", str(seed)])
+        """Return the command line that repeats the run of `seed`."""
+        return shlex.join([*self.command_words, "--seed", str(seed)])
 
     def to_json(self) -> dict[str, Any]:
-        """All but the scenario, which has a file of its own."""
+        """Return everything except the scenario, which has its own file."""
         return {key: value for key, value in asdict(self).items() if key != "scenario"}
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any], scenario: str) -> "Definition":
-        """Read back what `to_json` gave.
+        """Read the result of `to_json`.
 
         Raises:
-            KeyError, TypeError, ValueError: it did not give that.
+            KeyError, TypeError, ValueError: `value` is not such a result.
         """
         tomllib.loads(scenario)
         return cls(
             name=str(value["name"]),
-            again=tuple(map(str, value["again"])),
+            command_words=tuple(map(str, value["command_words"])),
             hsr8=str(value["hsr8"]),
             code=str(value["code"]),
             processor=str(value["processor"]),
@@ -85,35 +80,33 @@ class Definition:
         )
 
     def made_with(self) -> str:
-        """Versions, for the foot of a page."""
+        """Return the versions as one line."""
         names = ("mujoco", "numpy", "scipy", "pin")
-        told = ", ".join(f"{name} {self.libraries.get(name, '?')}" for name in names)
-        code = f" (code {self.code})" if self.code else ""  # a run folder does not know
-        processor = f"{self.processor}, arithmetic {self.libraries.get('arithmetic', 'native')}"
-        return f"hsr8 {self.hsr8}{code}, {told}; {processor}"
+        libraries = ", ".join(f"{name} {self.libraries.get(name, '?')}" for name in names)
+        code = f" (code {self.code})" if self.code else ""
+        arithmetic = self.libraries.get("arithmetic", "native")
+        return f"hsr8 {self.hsr8}{code}, {libraries}; {self.processor}, arithmetic {arithmetic}"
 
 
-def differences(one: Definition, other: Definition) -> dict[str, tuple[str, str]]:
-    """Keys of the scenarios whose values differ, with both values as JSON; absent is ``-``."""
-    tables = [dict(_flat(tomllib.loads(_resolved(d.scenario)), "")) for d in (one, other)]
-    keys = [key for key in {**tables[0], **tables[1]} if key not in IGNORED]
-    both = {key: (tables[0].get(key, "-"), tables[1].get(key, "-")) for key in keys}
-    return {key: pair for key, pair in sorted(both.items()) if pair[0] != pair[1]}
+def scenario_differences(one: Definition, other: Definition) -> Differences:
+    """Return the scenario keys whose values differ, with both values as JSON; absent is ``-``."""
+    tables = [dict(_flatten(tomllib.loads(_resolved(d.scenario)))) for d in (one, other)]
+    differences = _differences(*tables)
+    return {key: differences[key] for key in sorted(differences.keys() - set(MAY_DIFFER))}
 
 
-def version_differences(one: Definition, other: Definition) -> dict[str, tuple[str, str]]:
-    """Versions that differ, with both."""
-    tables = [
-        {"hsr8": d.hsr8, "code": d.code, "processor": d.processor, **d.libraries}
-        for d in (one, other)
-    ]
-    keys = tables[0] | tables[1]
-    both = {key: (tables[0].get(key, "-"), tables[1].get(key, "-")) for key in keys}
-    return {key: pair for key, pair in both.items() if pair[0] != pair[1]}
+def version_differences(one: Definition, other: Definition) -> Differences:
+    """Return the versions that differ, with both values."""
+    return _differences(
+        *(
+            {"hsr8": d.hsr8, "code": d.code, "processor": d.processor, **d.libraries}
+            for d in (one, other)
+        )
+    )
 
 
 def code_digest() -> str:
-    """First digits of the SHA-256 of all files that shape a result."""
+    """Return the first digits of the SHA-256 of all files that influence a result."""
     digest = hashlib.sha256()
     for name, file in _files():
         digest.update(name.encode() + b"\0" + hashlib.sha256(file.read_bytes()).digest())
@@ -123,12 +116,12 @@ def code_digest() -> str:
 def _files() -> Iterator[tuple[str, Path]]:
     for package in PACKAGES:
         spec = find_spec(package)
-        if spec is None or spec.origin is None:
-            continue
+        assert spec is not None, package
+        assert spec.origin is not None, package
         root = Path(spec.origin).parent
         for file in sorted(root.rglob("*.py")):
             name = file.relative_to(root).as_posix()
-            if package != "hsr8" or not name.startswith((*AROUND, "_models")):
+            if package != "hsr8" or not name.startswith(NOT_IN_DIGEST):
                 yield f"{package}/{name}", file
     root = models_dir()
     for file in sorted(root.rglob("*")):
@@ -136,20 +129,25 @@ def _files() -> Iterator[tuple[str, Path]]:
             yield f"models/{file.relative_to(root).as_posix()}", file
 
 
+def _differences(one: Mapping[str, str], other: Mapping[str, str]) -> Differences:
+    pairs = {key: (one.get(key, "-"), other.get(key, "-")) for key in {**one, **other}}
+    return {key: pair for key, pair in pairs.items() if pair[0] != pair[1]}
+
+
 def _resolved(text: str) -> str:
-    """A scenario of another version, with the keys that are new since then."""
+    """Return a scenario of another version with the keys added since."""
     try:
         return dump(loads(text))
     except ScenarioError:
         return text
 
 
-def _flat(value: Any, path: str) -> Iterator[tuple[str, str]]:
+def _flatten(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
     if isinstance(value, dict) and value:
         for key, inner in value.items():
-            yield from _flat(inner, f"{path}.{key}" if path else key)
+            yield from _flatten(inner, f"{path}.{key}" if path else key)
     elif isinstance(value, list) and value and isinstance(value[0], dict):
         for k, inner in enumerate(value):
-            yield from _flat(inner, f"{path}.{k}")
+            yield from _flatten(inner, f"{path}.{k}")
     else:
         yield path, json.dumps(value, default=str)

@@ -1,154 +1,86 @@
-"""Who runs the jobs of a sweep: processes of this machine, or a cluster's workers."""
+"""Executors of the jobs of a sweep, and the loop that drives them."""
 
 import re
-import time as clock
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from queue import Empty, SimpleQueue
-from threading import Lock
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Protocol
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.job import Job, Row, lost, run_job
-from hsr8.evaluation.sweep.launcher import Launcher
-from hsr8.evaluation.sweep.process import Process
+from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Job, RunResult
 
-GRACE = 5.0  # an interrupted run has so long to close its files [s]
-NAMES = "local, dask, dask://HOST:PORT, ray or ray://HOST:PORT"
+ATTEMPTS = 2  # a crashed run is repeated once
+POLL = 0.5  # interval of the progress display [s]
 
 
 class Executor(Protocol):
     """Runs jobs, as many at a time as it has workers."""
 
-    workers: int
-
     def submit(self, job: Job) -> None:
-        """Take a job; it begins when a worker is free."""
+        """Add a job; it starts when a worker is free."""
 
-    def wait(self, seconds: float) -> list[tuple[Job, Row]]:
-        """What has ended since the last call; waits so long for the first of it."""
+    def wait(self, seconds: float) -> list[tuple[Job, RunResult]]:
+        """Return the jobs that ended; wait up to `seconds` for the first."""
 
     def close(self) -> None:
-        """Stop what still runs."""
+        """Stop the jobs that still run."""
 
 
-def open_executor(name: str, workers: int) -> Executor:
-    """The executor called `name`.
+def parse_executor(name: str) -> str:
+    """Return the ``HOST:PORT`` of a Dask scheduler, empty for this machine.
+
+    Raises:
+        UsageError: `name` is neither "local" nor "dask://HOST:PORT".
+    """
+    match = re.fullmatch(r"local|dask://((?:[\w.-]+|\[[\da-f:]+\]):(\d{1,5}))", name)
+    if match is None or int(match[2] or 0) > 65535:
+        raise UsageError(
+            f"--executor: unknown executor, got {name}; expected local or dask://HOST:PORT"
+        )
+    return match[1] or ""
+
+
+def run_jobs(
+    jobs: Sequence[Job],
+    executor: Executor,
+    on_result: Callable[[Job, RunResult], None],
+    on_poll: Callable[[], None],
+) -> None:
+    """Run all jobs; repeat a crashed one once.
 
     Args:
-        name: see `NAMES`; with an address, a cluster that is there already.
-        workers: runs at a time; a cluster with an address has its own number.
-
-    Raises:
-        UsageError: there is none of that name, its package is missing, or nobody answers.
+        jobs: the jobs.
+        executor: runs the jobs; it stays open.
+        on_result: called with every result.
+        on_poll: called at least every half second.
     """
-    kind, address = parse_executor(name)
-    if kind == "dask":
-        from hsr8.evaluation.sweep.dask_executor import DaskExecutor  # noqa: PLC0415  an extra
-
-        return DaskExecutor(address, workers)
-    if kind == "ray":
-        from hsr8.evaluation.sweep.ray_executor import RayExecutor  # noqa: PLC0415  an extra
-
-        return RayExecutor(address, workers)
-    return LocalExecutor(workers)
-
-
-def require_executor(name: str) -> None:
-    """Make sure that the packages of the executor called `name` are there; nobody is asked.
-
-    Raises:
-        UsageError: there is no executor of that name, or its package is missing.
-    """
-    kind, _ = parse_executor(name)
-    if kind == "dask":
-        from hsr8.evaluation.sweep.dask_executor import require_dask  # noqa: PLC0415  an extra
-
-        require_dask()
-    if kind == "ray":
-        from hsr8.evaluation.sweep.ray_executor import require_ray  # noqa: PLC0415  an extra
-
-        require_ray()
+    for job in jobs:
+        executor.submit(job)
+    remaining = len(jobs)
+    first_errors: dict[tuple[str, int], str] = {}
+    while remaining:
+        for job, result in executor.wait(POLL):
+            key = (job.folder, job.seed)
+            if result["outcome"] == CRASHED and job.attempt < ATTEMPTS:
+                first_errors[key] = str(result.get("error"))
+                executor.submit(replace(job, attempt=job.attempt + 1))
+                continue
+            if key in first_errors:
+                result["first_error"] = first_errors[key]
+            on_result(job, result)
+            remaining -= 1
+        on_poll()
 
 
-def parse_executor(name: str) -> tuple[str, str]:
-    """Kind and address of an executor; the address is empty for one of this machine.
-
-    Raises:
-        UsageError: there is none of that name.
-    """
-    match = re.fullmatch(
-        r"(local|dask|ray)|(dask|ray)://([\w.-]+:\d{1,5}|\[[\da-f:]+\]:\d{1,5})", name
-    )
-    if match is None:
-        raise UsageError(f"--executor {name}: choose {NAMES}")
-    return match[1] or match[2], match[3] or ""
-
-
-class LocalExecutor:
-    """A process per run on this machine, forked from one that has loaded everything.
+def pending(
+    seeds: Sequence[int], results: Sequence[RunResult], shard: tuple[int, int] | None
+) -> tuple[int, ...]:
+    """Return the seeds of the shard that have no result, or that crashed or were refused.
 
     Args:
-        workers: runs at a time.
+        seeds: seeds of the whole sweep.
+        results: results so far.
+        shard: number, from 1, and count of shards; every seed belongs to one of them.
     """
-
-    def __init__(self, workers: int) -> None:
-        self.workers = workers
-        self._pool = ThreadPoolExecutor(workers)
-        self._ended: SimpleQueue[tuple[Job, Row]] = SimpleQueue()
-        self._running: set[Process] = set()
-        self._launcher = Launcher()
-        self._lock = Lock()
-        self._closed = False
-
-    def submit(self, job: Job) -> None:
-        """Take a job."""
-        self._pool.submit(self._run, job)
-
-    def wait(self, seconds: float) -> list[tuple[Job, Row]]:
-        """What has ended."""
-        ended: list[tuple[Job, Row]] = []
-        try:
-            ended.append(self._ended.get(timeout=seconds))
-            while True:
-                ended.append(self._ended.get_nowait())
-        except Empty:
-            return ended
-
-    def close(self) -> None:
-        """Interrupt what still runs, and kill what does not end soon."""
-        with self._lock:
-            self._closed = True
-            running = list(self._running)
-        self._pool.shutdown(wait=False, cancel_futures=True)
-        for process in running:
-            process.terminate()
-        until = clock.monotonic() + GRACE
-        while any(process.returncode is None for process in running) and clock.monotonic() < until:
-            clock.sleep(0.05)
-        for process in running:
-            if process.returncode is None:
-                process.kill()
-        self._pool.shutdown()
-        self._launcher.close()
-
-    def _run(self, job: Job) -> None:
-        mine: list[Process] = []
-
-        def begin(words: Sequence[str]) -> Process:
-            with self._lock:
-                process = self._launcher.start(words)
-                mine.append(process)
-                self._running.add(process)
-                if self._closed:
-                    process.terminate()
-            return process
-
-        try:
-            row = run_job(job, begin)
-        except Exception as error:  # no process, no disk; without a row the sweep would wait for it
-            row = lost(job, f"{type(error).__name__}: {error}")
-        finally:
-            with self._lock:
-                self._running.difference_update(mine)
-        self._ended.put((job, row))
+    done = {r["seed"] for r in results if r["outcome"] not in (CRASHED, REFUSED)}
+    mine = seeds if shard is None else seeds[shard[0] - 1 :: shard[1]]
+    return tuple(seed for seed in mine if seed not in done)

@@ -1,57 +1,57 @@
 """The folder of a sweep.
 
-sweep.json       scenario's name, versions, the command of one run
-scenario.toml    what was run, fully resolved; `hsr8 run` takes it
-runs.jsonl       results, a run a line, written as the runs end
-shard-I-of-N.jsonl   the same of a shard
-runs.parquet     results of all ledgers as a table
-report.md        what they come to
-runs/            run folders
+sweep.json           name of the scenario, versions, command of one run
+scenario.toml        resolved scenario, which `hsr8 run` accepts
+runs.jsonl           one result per line, written when the run ends
+shard-I-of-N.jsonl   the results of one shard
+runs.parquet         all results as a table
+report.md            summary
+runs/                run folders
 """
 
 import fcntl
 import json
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Self, TextIO
 
 from hsr8.errors import Hsr8Error, UsageError
-from hsr8.evaluation.sweep.definition import Definition, differences, version_differences
-from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, Row
+from hsr8.evaluation.sweep.definition import Definition, scenario_differences, version_differences
+from hsr8.evaluation.sweep.job import CRASHED, OUTCOMES, REFUSED, RunResult
 from hsr8.evaluation.sweep.summary import NUMBERS
 from hsr8.evaluation.sweep.table import write_table
 from hsr8.recorder.files import atomic
 from hsr8.recorder.files.json_lines import read_lines
-from hsr8.recorder.files.new_folder import require_new_folder
 from hsr8.recorder.run.run_folder import SCENARIO
 
 DEFINITION = "sweep.json"
-LEDGER = "runs.jsonl"
+RESULTS = "runs.jsonl"
 TABLE = "runs.parquet"
 REPORT = "report.md"
+MAX_SHOWN = 12  # differences named in an error message
 
 
 class SweepFolder:
-    """A sweep's folder, open for reading, and for writing after `lock`.
+    """Folder of a sweep, open for reading, and for writing after `lock`.
 
     Args:
         path: of the folder.
-        definition: what its runs have in common.
+        definition: scenario and versions of its runs.
     """
 
     def __init__(self, path: Path, definition: Definition) -> None:
         self.path = path
         self.definition = definition
-        self._ledger: TextIO | None = None
+        self._file: TextIO | None = None
 
     @classmethod
     def read(cls, path: Path) -> Self:
-        """The sweep at `path`.
+        """Return the sweep at `path`.
 
         Raises:
-            UsageError: there is none, or it is damaged.
+            UsageError: the folder is not a sweep's, or is damaged.
         """
         file = path / DEFINITION
         try:
@@ -59,119 +59,124 @@ class SweepFolder:
             scenario = (path / SCENARIO).read_text(encoding="utf-8")
             return cls(path, Definition.from_json(value, scenario))
         except FileNotFoundError as error:
-            raise UsageError(f"{path} holds no sweep: {error.filename} is missing") from None
+            raise UsageError(f"{path}: not a sweep, {error.filename} is missing") from None
         except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-            raise UsageError(
-                f"cannot read the sweep {path}: {file} or its {SCENARIO}: {error}"
-            ) from error
+            raise UsageError(f"{path}: cannot read {file} or {SCENARIO}: {error}") from error
 
     @classmethod
     def open(cls, path: Path, definition: Definition) -> Self:
-        """The sweep at `path`, made if it is not there.
+        """Return the sweep at `path`; create it if it does not exist.
 
         Raises:
-            UsageError: it holds runs of something else, or cannot be written.
+            UsageError: the folder holds other runs, or cannot be written.
         """
         try:
             path.mkdir(parents=True, exist_ok=True)
-            with _alone(path):
-                if (path / DEFINITION).exists():
-                    there = cls.read(path)
-                    _must_agree(path, there.definition, definition)
-                    return there
-                _must_hold_no_results(path)
+            with _locked(path):
+                if cls.check(path, definition):
+                    return cls.read(path)
                 atomic.write_text(path / SCENARIO, definition.scenario)
                 atomic.write_json(path / DEFINITION, definition.to_json())
         except OSError as error:
             raise UsageError(
-                f"cannot write the sweep {path}: {error.strerror}; choose another with --out"
+                f"{path}: cannot write the sweep: {error.strerror}; choose another with --out"
             ) from error
         return cls(path, definition)
 
     @classmethod
-    def require(cls, path: Path, definition: Definition) -> None:
-        """Make sure that `open` will do, and make nothing.
+    def check(cls, path: Path, definition: Definition) -> bool:
+        """Return whether `path` holds this sweep already.
 
         Raises:
-            UsageError: as `open`.
+            UsageError: it holds other runs.
         """
-        require_new_folder(path, "sweep")
-        if (path / DEFINITION).exists():
-            _must_agree(path, cls.read(path).definition, definition)
-        else:
-            _must_hold_no_results(path)
+        if not (path / DEFINITION).exists():
+            if any(path.glob("*.jsonl")):
+                raise UsageError(
+                    f"{path}: has results but no {DEFINITION}; choose another with --out"
+                )
+            return False
+        old = cls.read(path).definition
+        changed = scenario_differences(old, definition) | version_differences(old, definition)
+        if changed:
+            lines = [f"{key}: {there} there, {now} now" for key, (there, now) in changed.items()]
+            more = len(lines) - MAX_SHOWN
+            lines = lines[:MAX_SHOWN] + [f"and {more} more"] * (more > 0)
+            lines.append("choose another folder with --out, or remove that one")
+            raise UsageError("\n  ".join([f"{path}: holds runs of another sweep", *lines]))
+        return True
 
     def lock(self, shard: tuple[int, int] | None = None) -> None:
-        """Open the ledger for writing; nobody else may write it until `close`.
+        """Open the file of results for writing, exclusively until `close`.
 
         Raises:
-            UsageError: somebody does, or it cannot be written.
+            UsageError: another process writes it, or it cannot be written.
         """
-        name = LEDGER if shard is None else f"shard-{shard[0]}-of-{shard[1]}.jsonl"
-        file = self.path / name
+        name = RESULTS if shard is None else f"shard-{shard[0]}-of-{shard[1]}.jsonl"
+        path = self.path / name
         try:
             with ExitStack() as undo:
-                ledger = undo.enter_context(file.open("a+", encoding="utf-8"))
-                fcntl.flock(ledger, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                _cut_torn_line(ledger)
+                file = undo.enter_context(path.open("a+", encoding="utf-8"))
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                file.truncate(path.read_bytes().rfind(b"\n") + 1)  # a kill may cut the last line
                 undo.pop_all()
         except BlockingIOError:
-            raise UsageError(f"another sweep is writing {file}; wait, or stop it") from None
+            raise UsageError(f"{path}: another sweep writes this file; wait or stop it") from None
         except OSError as error:
-            raise UsageError(f"cannot write {file}: {error.strerror}") from error
-        self._ledger = ledger
+            raise UsageError(f"{path}: cannot write: {error.strerror}") from error
+        self._file = file
 
-    def rows(self) -> list[Row]:
-        """The last word on every seed, over all ledgers, by seed.
+    def results(self) -> list[RunResult]:
+        """Return the last result of every seed over all files, by seed; crashes count least.
 
         Raises:
             UsageError: a line is damaged.
         """
-        found: dict[int, Row] = {}
-        for file in sorted(self.path.glob("*.jsonl"), key=lambda file: file.name == LEDGER):
-            for row in read_lines(file, _row):
-                known = found.get(row["seed"])
-                if known is None or known["outcome"] == CRASHED or row["outcome"] != CRASHED:
-                    found[row["seed"]] = row
-        return [found[seed] for seed in sorted(found)]
+        latest: dict[int, RunResult] = {}
+        for file in sorted(self.path.glob("*.jsonl"), key=lambda file: file.name == RESULTS):
+            for result in read_lines(file, _parse):
+                known = latest.get(result["seed"])
+                if known is None or known["outcome"] == CRASHED or result["outcome"] != CRASHED:
+                    latest[result["seed"]] = result
+        return [latest[seed] for seed in sorted(latest)]
 
-    def append(self, rows: Iterable[Row]) -> None:
-        """Write the results of runs that ended.
+    def append(self, *results: RunResult) -> None:
+        """Write results of runs that ended.
 
         Raises:
-            Hsr8Error: the disk takes no more.
+            Hsr8Error: the disk is full.
         """
-        assert self._ledger is not None, "lock comes first"
+        assert self._file is not None, "lock comes first"
         try:
-            self._ledger.write("".join(f"{atomic.dumps(row)}\n" for row in rows))
-            self._ledger.flush()
-            os.fsync(self._ledger.fileno())
+            self._file.writelines(f"{atomic.dumps(result)}\n" for result in results)
+            self._file.flush()
+            os.fsync(self._file.fileno())
         except OSError as error:
-            raise Hsr8Error(f"cannot write {self._ledger.name}: {error.strerror}") from error
+            raise Hsr8Error(f"{self._file.name}: cannot write: {error.strerror}") from error
 
-    def write_results(self, text: str) -> None:
-        """Write the table of all rows, and `text` as the report.
+    def write_report(self, text: str) -> None:
+        """Write the table of all results, and `text` as the report.
 
         Raises:
             Hsr8Error: they cannot be written.
         """
         try:
-            with _alone(self.path):
-                write_table(self.path / TABLE, self.rows())
+            with _locked(self.path):
+                write_table(self.path / TABLE, self.results())
                 atomic.write_text(self.path / REPORT, text)
         except OSError as error:
-            raise Hsr8Error(f"cannot write in {self.path}: {error.strerror}") from error
+            raise Hsr8Error(f"{self.path}: cannot write the report: {error.strerror}") from error
 
     def close(self) -> None:
-        """Let others write."""
-        if self._ledger is not None:
-            self._ledger.close()
-            self._ledger = None
+        """Release the lock."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
 
 @contextmanager
-def _alone(path: Path) -> Iterator[None]:
-    """Shards that begin or end at the same moment wait for each other."""
+def _locked(path: Path) -> Iterator[None]:
+    """Lock a folder against shards that start or end at the same time."""
     handle = os.open(path, os.O_RDONLY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX)
@@ -180,41 +185,16 @@ def _alone(path: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def _must_agree(path: Path, there: Definition, now: Definition) -> None:
-    """A folder holds the runs of one scenario and one program."""
-    changed = {**differences(there, now), **version_differences(there, now)}
-    if not changed:
-        return
-    shown = [f"  {key}: {old} there, {new} now" for key, (old, new) in list(changed.items())[:12]]
-    more = [f"  and {len(changed) - 12} more"] if len(changed) > 12 else []
-    lines = [f"{path} holds runs of something else", *shown, *more]
-    raise UsageError("\n".join([*lines, "  choose another folder with --out, or remove that one"]))
-
-
-def _must_hold_no_results(path: Path) -> None:
-    """Of a sweep that nobody knows any more."""
-    if any(path.glob("*.jsonl")):
-        raise UsageError(f"{path} holds results but no {DEFINITION}; choose another with --out")
-
-
-def _cut_torn_line(ledger: TextIO) -> None:
-    """Remove what a kill left of a line."""
-    raw = Path(ledger.name).read_bytes()
-    whole = raw.rfind(b"\n") + 1
-    if whole < len(raw):
-        ledger.truncate(whole)
-
-
-def _row(line: str) -> Row:
+def _parse(line: str) -> RunResult:
     try:
-        row = json.loads(line)
+        result = json.loads(line)
     except RecursionError as error:
         raise ValueError("nested too deeply") from error
-    if not isinstance(row, dict) or type(row["seed"]) is not int:
-        raise ValueError("no result of a run")
-    if row["outcome"] not in (*OUTCOMES.values(), CRASHED, REFUSED):
-        raise ValueError(f"no outcome: {row['outcome']!r}")
+    if not isinstance(result, dict) or type(result["seed"]) is not int:
+        raise ValueError("not a result of a run")
+    if result["outcome"] not in (*OUTCOMES.values(), CRASHED, REFUSED):
+        raise ValueError(f"unknown outcome: {result['outcome']!r}")
     for key in NUMBERS:
-        if not isinstance(row.get(key), int | float | None):
-            raise ValueError(f"{key} is no number: {row[key]!r}")
-    return row
+        if not isinstance(result.get(key), int | float | None):
+            raise ValueError(f"{key}: not a number: {result[key]!r}")
+    return result

@@ -1,45 +1,40 @@
-"""One run of a sweep: what a worker is given, does, and hands back."""
+"""One run of a sweep: its command line and its result."""
 
 import json
 import os
 import shutil
 import signal
 import socket
-import subprocess
 import time as clock
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from hsr8.evaluation.sweep.process import Process
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run import run_folder
 
-Row = dict[str, Any]
+RunResult = dict[str, Any]
 Keep = Literal["all", "failed", "none"]
-Start = Callable[[Sequence[str]], Process]
 
 CRASHED = "crashed"
 REFUSED = "refused"
-OUTCOMES = {0: "passed", 1: "failed", 3: "diverged"}
+OUTCOMES = {0: "passed", 1: "failed", 3: "diverged"}  # by exit code
 RUNS = "runs"  # run folders within a sweep's folder
-SAID = 2000  # characters kept of what a crashed run said
+MAX_ERROR = 2000  # characters kept of the messages of a run
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One run.
+    """One run to do.
 
     Attributes:
-        seed: of the run.
+        seed: seed of the run.
         folder: absolute path of the sweep's folder.
-        scenario: the resolved scenario as TOML.
-        timeout: wall time after which the run hangs [s].
-        log: whether it writes a Rerun log.
-        keep: which run folders stay.
-        attempt: 1, or 2 for one that crashed before.
-        avoid: worker it crashed on.
+        scenario: resolved scenario as TOML.
+        timeout: wall-clock limit [s].
+        log: whether the run writes a Rerun log.
+        keep: which run folders are kept.
+        attempt: 1, or 2 after a crash.
     """
 
     seed: int
@@ -49,96 +44,107 @@ class Job:
     log: bool = False
     keep: Keep = "all"
     attempt: int = 1
-    avoid: str = ""
 
 
-def run_job(job: Job, start: Start, worker: str = "") -> Row:
-    """Run `job` in a process of its own and wait for it.
+class StartedJob:
+    """Job whose process is being started.
 
     Args:
-        job: what to run.
-        start: makes the process of a command line.
-        worker: name that a retry avoids; host and process by default.
+        job: the job.
+        worker: name of the worker; host and process id by default.
 
-    Returns:
-        The row of the results: ``seed``, ``outcome`` (passed, failed, diverged, crashed,
-        refused), ``attempts``, ``worker``, ``run`` (folder within the sweep's), ``error``, and
-        all metrics of the run.
+    Attributes:
+        arguments: command line of the run, without the program.
+        messages: file for standard output and error of the run.
+
+    Raises:
+        OSError: the sweep's folder cannot be written.
     """
-    folder = Path(job.folder)
-    file = folder / run_folder.SCENARIO
-    if not file.exists():  # a worker that does not share the disk
-        folder.mkdir(parents=True, exist_ok=True)
-        atomic.write_text(file, job.scenario)
-    before = set(_folders(job))
-    began = clock.perf_counter()
-    process = start(_words(job, file))
-    hung = False
-    try:
-        printed, said = process.communicate(timeout=job.timeout)
-    except subprocess.TimeoutExpired:
-        hung = True
-        process.kill()
-        printed, said = process.communicate()
-    made = next((path for path in _folders(job) if path not in before), None)
-    row: Row = {
-        "seed": job.seed,
-        "outcome": CRASHED,
-        "attempts": job.attempt,
-        "worker": worker or f"{socket.gethostname()}:{os.getpid()}",
-        "run": None if made is None else str(made.relative_to(folder)),
-        "process_s": clock.perf_counter() - began,
-    }
-    assert process.returncode is not None, "it has ended"
-    row |= _result(process.returncode, printed, said, job.timeout if hung else None)
-    if row["outcome"] == REFUSED and made is not None:
-        row["outcome"] = CRASHED  # it began to walk, and a planner or a gaze of one's own erred
-    if made is not None and not _kept(job.keep, row["outcome"]):
-        shutil.rmtree(made, ignore_errors=True)
-        row["run"] = None
-    return row
+
+    def __init__(self, job: Job, worker: str = "") -> None:
+        self.job = job
+        self._folder = Path(job.folder)
+        self._worker = worker or f"{socket.gethostname()}:{os.getpid()}"
+        self._started = clock.perf_counter()
+        runs, scenario = self._folder / RUNS, self._folder / run_folder.SCENARIO
+        runs.mkdir(parents=True, exist_ok=True)
+        if not scenario.exists():  # on a worker that does not share the disk
+            atomic.write_text(scenario, job.scenario)
+        self.messages = runs / f"{job.seed}.messages"
+        self.arguments = ["run", str(scenario), "--seed", str(job.seed), "--out", str(runs)]
+        self.arguments += ["--quiet"] if job.log else ["--quiet", "--no-log"]
+        self._old_folders = set(self._run_folders())
+
+    def result(self, exit_code: int, *, timed_out: bool = False) -> RunResult:
+        """Return the result of the run, and remove the files that are not kept.
+
+        Args:
+            exit_code: of the process, negative for a signal.
+            timed_out: whether the process was killed at its wall-clock limit.
+
+        Returns:
+            ``seed``, ``outcome`` (passed, failed, diverged, crashed, refused), ``attempts``,
+            ``worker``, ``run`` (folder relative to the sweep's), ``process_s``, ``error`` and all
+            metrics of the run.
+        """
+        job = self.job
+        new = next((path for path in self._run_folders() if path not in self._old_folders), None)
+        result: RunResult = {
+            "seed": job.seed,
+            "outcome": CRASHED,
+            "attempts": job.attempt,
+            "worker": self._worker,
+            "run": None if new is None else str(new.relative_to(self._folder)),
+            "process_s": clock.perf_counter() - self._started,
+        }
+        message = self._message()
+        metrics = _metrics(new)
+        if timed_out:
+            result["error"] = f"stopped at the wall-clock limit of {job.timeout:g} s"
+        elif exit_code == 2 and new is None:
+            result |= {"outcome": REFUSED, "error": message}
+        elif exit_code in OUTCOMES and metrics is not None:
+            result |= {"outcome": OUTCOMES[exit_code], **metrics}
+            result |= {"error": message} if exit_code == 3 else {}
+        else:
+            result["error"] = ": ".join(filter(None, (_ending(exit_code), message)))
+        kept = job.keep == "all" or (job.keep == "failed" and result["outcome"] != OUTCOMES[0])
+        if new is not None and not kept:
+            shutil.rmtree(new, ignore_errors=True)
+            result["run"] = None
+        return result
+
+    def _run_folders(self) -> list[Path]:
+        return sorted((self._folder / RUNS).glob(f"*/{self.job.seed}-*"))
+
+    def _message(self) -> str:
+        try:
+            text = self.messages.read_bytes().decode(errors="replace")
+            self.messages.unlink()
+        except OSError:
+            return ""
+        return text.strip()[-MAX_ERROR:]
 
 
-def lost(job: Job, reason: str) -> Row:
-    """Row of a run whose worker went away with it."""
+def lost(job: Job, reason: str) -> RunResult:
+    """Return the result of a run whose process did not start, or whose worker died."""
     return {
         "seed": job.seed,
         "outcome": CRASHED,
         "attempts": job.attempt,
-        "worker": job.avoid,
+        "worker": "",
         "run": None,
-        "error": reason[-SAID:],
+        "error": reason[-MAX_ERROR:],
     }
 
 
-def _words(job: Job, file: Path) -> list[str]:
-    words = ["run", str(file), "--seed", str(job.seed), "--out", str(Path(job.folder) / RUNS)]
-    words += ["--json", "--quiet"]
-    return words if job.log else [*words, "--no-log"]
-
-
-def _folders(job: Job) -> list[Path]:
-    return sorted((Path(job.folder) / RUNS).glob(f"*/{job.seed}-*"))
-
-
-def _kept(keep: Keep, outcome: str) -> bool:
-    return keep == "all" or (keep == "failed" and outcome != OUTCOMES[0])
-
-
-def _result(code: int, printed: str, said: str, limit: float | None) -> Row:
-    """What the run's exit code and output come to."""
-    said = said.strip()[-SAID:]
-    if limit is not None:
-        return {"error": f"no end after {limit:.0f} s of wall time"}
-    if code == 2:
-        return {"outcome": REFUSED, "error": said}
+def _metrics(folder: Path | None) -> RunResult | None:
+    """Return the metrics in a run folder, None for a run that did not end."""
     try:
-        metrics = json.loads(printed)
-    except ValueError:
-        metrics = None
-    if not isinstance(metrics, dict) or code not in OUTCOMES:
-        return {"error": f"{_ending(code)}{': ' if said else ''}{said}"}
-    return {"outcome": OUTCOMES[code], **metrics} | ({"error": said} if code == 3 else {})
+        metrics = None if folder is None else json.loads((folder / run_folder.METRICS).read_bytes())
+    except (OSError, ValueError):
+        return None
+    return metrics if isinstance(metrics, dict) else None
 
 
 def _ending(code: int) -> str:

@@ -1,77 +1,66 @@
-"""How a sweep gets on, on standard error, with the time that is left."""
+"""Progress of a sweep on standard error, with the remaining time."""
 
 import sys
 import time as clock
+from datetime import timedelta
 
 from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from hsr8.evaluation.sweep.job import CRASHED, Row
-from hsr8.evaluation.sweep.report import fault
+from hsr8.evaluation.sweep.job import CRASHED, RunResult
+from hsr8.evaluation.sweep.report import problem
 
 
 class SweepProgress:
-    """One live line on a terminal; elsewhere a line for every run that ends.
+    """One live line on a terminal; elsewhere one line per run that ends.
 
     Args:
-        total: runs of the whole sweep.
-        done: of them, those that were there before.
+        total: number of runs of the whole sweep.
+        done: number of runs that have results already.
     """
 
     def __init__(self, total: int, done: int) -> None:
-        self._total, self._before, self._done = total, done, done
+        self._total, self._done_before, self._done = total, done, done
         self._succeeded = self._failed = self._crashed = 0
-        self._began = clock.monotonic()
+        self._started = clock.monotonic()
         console = Console(stderr=True)
         self._live: Live | None = None
         if console.is_terminal:
             self._live = Live(console=console, auto_refresh=False, transient=True)
             self._live.start()
 
-    def on_row(self, row: Row) -> None:
+    def on_result(self, result: RunResult) -> None:
         """Count a run that ended."""
         self._done += 1
-        self._succeeded += bool(row.get("success"))
-        self._crashed += row["outcome"] == CRASHED
-        self._failed += not row.get("success") and row["outcome"] != CRASHED
-        what = fault(row)
-        text = f"seed {row['seed']}: {what or 'good'}"
+        crashed, success = result["outcome"] == CRASHED, bool(result.get("success"))
+        self._crashed += crashed
+        self._succeeded += success
+        self._failed += not (success or crashed)
+        text = f"seed {result['seed']}: {problem(result) or 'success'}"
         if self._live is None:
-            print(f"{self.line()}   {text}", file=sys.stderr, flush=True)
-        elif what:
+            print(f"{self._line()}   {text}", file=sys.stderr, flush=True)
+        elif problem(result):
             self._live.console.print(Text(text, style="yellow"))
 
-    def tick(self) -> None:
-        """Bring the live line up to date."""
+    def refresh(self) -> None:
+        """Update the live line."""
         if self._live is not None:
-            self._live.update(Text(self.line(), style="cyan"), refresh=True)
+            self._live.update(Text(self._line(), style="cyan"), refresh=True)
 
     def close(self) -> None:
         """Remove the live line."""
         if self._live is not None:
             self._live.stop()
-            self._live = None
 
-    def line(self) -> str:
-        """How far it is."""
+    def _line(self) -> str:
         crashed = f", {self._crashed} crashed" if self._crashed else ""
-        return (
-            f"{self._done}/{self._total} runs   {self._succeeded} succeeded, {self._failed} not"
-            f"{crashed}   {self._left()}"
-        )
+        counts = f"{self._succeeded} succeeded, {self._failed} failed{crashed}"
+        return f"{self._done}/{self._total} runs   {counts}   {self._remaining()}"
 
-    def _left(self) -> str:
-        ended = self._done - self._before
+    def _remaining(self) -> str:
+        ended = self._done - self._done_before
         if ended == 0:
-            return "time left unknown"
-        seconds = (clock.monotonic() - self._began) / ended * (self._total - self._done)
-        return f"about {spell(seconds)} left"
-
-
-def spell(seconds: float) -> str:
-    """A time as people say it."""
-    minutes = round(seconds / 60)
-    if seconds < 100:
-        return f"{seconds:.0f} s"
-    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
+            return "remaining time unknown"
+        seconds = (clock.monotonic() - self._started) / ended * (self._total - self._done)
+        return f"about {timedelta(seconds=round(seconds))} left"

@@ -1,36 +1,35 @@
-"""What the runs of a sweep come to."""
+"""Summary of the results of a sweep."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from math import fsum
+from math import fsum, inf
 from typing import Any
 
 import numpy as np
 
-from hsr8.evaluation.sweep.job import CRASHED, REFUSED, Row
-from hsr8.evaluation.wilson import wilson
+from hsr8.evaluation.proportion import Proportion
+from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 
-ARRIVED = 15.0  # heading error of a good arrival at most [deg]
-SEVERITY = ("failed", "diverged", CRASHED)
+MAX_ARRIVAL_ERROR = 15.0  # heading error of an arrival [deg]
 
-# Result, and whether only runs that succeeded count: a time to the goal needs a goal.
-QUANTITIES: tuple[tuple[str, bool], ...] = (
-    ("min_clearance_m", False),
-    ("time_to_goal_s", True),
-    ("arrival_error_deg", True),
-    ("path_length_m", True),
-    ("localization_rmse_m", False),
-    ("heading_rmse_deg", False),
-    ("nees_mean", False),
-    ("obstacle_speed_rmse_mps", False),
-    ("lost_fraction", False),
-    ("time_standing_s", False),
-    ("max_tilt_deg", False),
-    ("saccades_per_s", False),
-    ("head_travel_radps", False),
-    ("real_time_factor", False),
-)
+# Quantities, and whether only successful runs count.
+QUANTITIES: dict[str, bool] = {
+    "min_clearance_m": False,
+    "time_to_goal_s": True,
+    "arrival_error_deg": True,
+    "path_length_m": True,
+    "localization_rmse_m": False,
+    "heading_rmse_deg": False,
+    "nees_mean": False,
+    "obstacle_speed_rmse_mps": False,
+    "lost_fraction": False,
+    "time_standing_s": False,
+    "max_tilt_deg": False,
+    "saccades_per_s": False,
+    "head_travel_radps": False,
+    "real_time_factor": False,
+}
 COUNTS = (
     "collisions",
     "collisions_moving",
@@ -40,40 +39,24 @@ COUNTS = (
     "attempts",
     "via_points_missed",
 )
-NUMBERS = (*COUNTS, *(key for key, _ in QUANTITIES))  # what is reckoned with
+NUMBERS = (*COUNTS, *QUANTITIES)
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
-    """A share that was counted, with its 95 % Wilson interval."""
-
-    count: int
-    of: int
-    share: float
-    low: float
-    high: float
-
-    @classmethod
-    def counted(cls, count: int, of: int) -> "Share":
-        """So many of so many."""
-        return cls(count, of, count / of if of else 0.0, *wilson(count, of))
-
-
-@dataclass(frozen=True, slots=True)
-class Spread:
-    """A quantity over the runs that have it, in its own unit."""
+class Distribution:
+    """Distribution of a quantity over runs, in its own unit."""
 
     n: int
     mean: float
     median: float
     p10: float
     p90: float
-    least: float
-    most: float
+    min: float
+    max: float
 
     @classmethod
-    def of(cls, values: Sequence[float]) -> "Spread":
-        """Of one or more values."""
+    def of(cls, values: Sequence[float]) -> "Distribution":
+        """Describe one or more values."""
         p10, median, p90 = np.quantile(values, (0.1, 0.5, 0.9)).tolist()
         mean = fsum(values) / len(values)
         return cls(len(values), mean, median, p10, p90, min(values), max(values))
@@ -81,113 +64,111 @@ class Spread:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Results of a sweep.
+    """Summary of a sweep.
 
     Attributes:
-        runs: runs that count; a crashed or diverged one is a failure.
-        refused: seeds that could not be run, because no world was found for them for
-            example; they do not count.
-        crashed, diverged, retried: number of runs.
-        success: no contact, no fall, all points passed, the goal reached.
-        passed: met the scenario's criteria.
+        runs: number of runs; crashed and diverged ones count as failures.
+        refused: number of seeds without a run, for example without a valid world.
+        crashed, diverged, repeated: number of runs.
+        success: no collision, no fall, all via points passed, goal reached.
+        criteria_met: the scenario's criteria hold.
         without_collision, without_fall: of the runs that did not crash.
-        arrived: of the successes that have an arrival heading, within 15 deg of it.
-        collisions: in all; with movers, with standing obstacles, closed by the robot.
-        collisions_per_run, collisions_per_metre: of the runs that did not crash.
-        falls: in all.
-        ended: runs by what ended them.
-        quantities: by the name of the result.
+        arrived: successes within 15 deg of the arrival heading, where there is one.
+        collisions: all, with moving obstacles, with static obstacles, at the robot's fault.
+        collisions_per_run, collisions_per_m: of the runs that did not crash [1], [1/m].
+        falls: number of falls.
+        exit_reasons: number of runs by exit reason.
+        quantities: distribution by name.
     """
 
     runs: int
     refused: int
     crashed: int
     diverged: int
-    retried: int
-    success: Share
-    passed: Share
-    without_collision: Share
-    without_fall: Share
-    arrived: Share
+    repeated: int
+    success: Proportion
+    criteria_met: Proportion
+    without_collision: Proportion
+    without_fall: Proportion
+    arrived: Proportion
     collisions: dict[str, int]
     collisions_per_run: float
-    collisions_per_metre: float
+    collisions_per_m: float
     falls: int
-    ended: dict[str, int]
-    quantities: dict[str, Spread]
+    exit_reasons: dict[str, int]
+    quantities: dict[str, Distribution]
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values by name."""
+        """Return plain values by name."""
         return asdict(self)
 
 
-def summarize(rows: Sequence[Row]) -> Summary:
-    """Sum up the rows of a sweep."""
-    counted = [row for row in rows if row["outcome"] != REFUSED]
-    whole = [row for row in counted if row["outcome"] != CRASHED]
-    good = [row for row in whole if row.get("success")]
-    arrivals = [
-        row["arrival_error_deg"] for row in good if row.get("arrival_error_deg") is not None
-    ]
-    collisions = sum(int(row.get("collisions", 0)) for row in whole)
-    metres = fsum(float(row.get("path_length_m") or 0.0) for row in whole)
+def summarize(results: Sequence[RunResult]) -> Summary:
+    """Summarize the results of a sweep."""
+    counted = [r for r in results if r["outcome"] != REFUSED]
+    complete = [r for r in counted if r["outcome"] != CRASHED]
+    successes = [r for r in complete if r.get("success")]
+    arrival_errors = _values(successes, "arrival_error_deg")
+    metres = fsum(_values(complete, "path_length_m"))
 
-    def share(of: Sequence[Row], test: Callable[[Row], bool]) -> Share:
-        return Share.counted(sum(map(test, of)), len(of))
+    def proportion(runs: Sequence[RunResult], test: Callable[[RunResult], bool]) -> Proportion:
+        return Proportion.counted(sum(map(test, runs)), len(runs))
 
     def total(key: str) -> int:
-        return sum(int(row.get(key) or 0) for row in whole)
+        return sum(int(r.get(key) or 0) for r in complete)
 
+    collisions = total("collisions")
     return Summary(
         runs=len(counted),
-        refused=len(rows) - len(counted),
-        crashed=len(counted) - len(whole),
-        diverged=sum(row["outcome"] == "diverged" for row in whole),
-        retried=sum(int(row.get("attempts", 1)) > 1 for row in counted),
-        success=share(counted, lambda row: bool(row.get("success"))),
-        passed=share(counted, lambda row: row["outcome"] == "passed"),
-        without_collision=share(whole, lambda row: row.get("collisions") == 0),
-        without_fall=share(whole, lambda row: row.get("falls") == 0),
-        arrived=Share.counted(sum(error <= ARRIVED for error in arrivals), len(arrivals)),
+        refused=len(results) - len(counted),
+        crashed=len(counted) - len(complete),
+        diverged=sum(r["outcome"] == "diverged" for r in complete),
+        repeated=sum(int(r.get("attempts", 1)) > 1 for r in counted),
+        success=proportion(counted, lambda r: bool(r.get("success"))),
+        criteria_met=proportion(counted, lambda r: r["outcome"] == "passed"),
+        without_collision=proportion(complete, lambda r: r.get("collisions") == 0),
+        without_fall=proportion(complete, lambda r: r.get("falls") == 0),
+        arrived=Proportion.counted(
+            sum(error <= MAX_ARRIVAL_ERROR for error in arrival_errors), len(arrival_errors)
+        ),
         collisions={
             "all": collisions,
             "moving": total("collisions_moving"),
             "static": total("collisions_static"),
-            "closing": total("collisions_at_fault"),
+            "at_fault": total("collisions_at_fault"),
         },
-        collisions_per_run=collisions / len(whole) if whole else 0.0,
-        collisions_per_metre=collisions / metres if metres else 0.0,
+        collisions_per_run=collisions / len(complete) if complete else 0.0,
+        collisions_per_m=collisions / metres if metres else 0.0,
         falls=total("falls"),
-        ended=dict(
-            Counter(str(row.get("exit_reason", row["outcome"])) for row in counted).most_common()
+        exit_reasons=dict(
+            Counter(str(r.get("exit_reason", r["outcome"])) for r in counted).most_common()
         ),
         quantities={
-            key: Spread.of(values)
-            for key, needs_success in QUANTITIES
-            if (values := _values(good if needs_success else whole, key))
+            key: Distribution.of(values)
+            for key, needs_success in QUANTITIES.items()
+            if (values := _values(successes if needs_success else complete, key))
         },
     )
 
 
-def worst_first(rows: Sequence[Row]) -> list[Row]:
-    """Crashed and diverged runs, falls, most collisions, other failures, closest shaves."""
+def worst_first(results: Sequence[RunResult]) -> list[RunResult]:
+    """Sort: crashed, diverged, falls, most collisions, other failures, smallest clearance."""
 
-    def badness(row: Row) -> tuple[float, ...]:
-        outcome = row["outcome"]
-        clearance, time = row.get("min_clearance_m"), row.get("time_to_goal_s")
+    def badness(r: RunResult) -> tuple[float, ...]:
+        clearance, time = r.get("min_clearance_m"), r.get("time_to_goal_s")
         return (
-            -SEVERITY.index(outcome) if outcome in SEVERITY[1:] else 0,
-            -int(row.get("falls") or 0),
-            -int(row.get("collisions") or 0),
-            bool(row.get("success")),
-            outcome == "passed",
-            clearance if clearance is not None else float("inf"),
-            -time if time is not None else 0.0,
-            row["seed"],
+            {CRASHED: -2, "diverged": -1}.get(r["outcome"], 0),
+            -int(r.get("falls") or 0),
+            -int(r.get("collisions") or 0),
+            bool(r.get("success")),
+            r["outcome"] == "passed",
+            inf if clearance is None else clearance,
+            0.0 if time is None else -time,
+            r["seed"],
         )
 
-    return sorted((row for row in rows if row["outcome"] != REFUSED), key=badness)
+    return sorted((r for r in results if r["outcome"] != REFUSED), key=badness)
 
 
-def _values(rows: Sequence[Row], key: str) -> list[float]:
-    return [float(row[key]) for row in rows if row.get(key) is not None]
+def _values(results: Sequence[RunResult], key: str) -> list[float]:
+    return [float(r[key]) for r in results if r.get(key) is not None]

@@ -29,7 +29,7 @@ def test_two_runs_are_compared(runs, capsys):
     assert "code" not in printed.split("| differs |")[1].split("\n\n")[0]
 
 
-def test_json_is_all_there_is_on_standard_output(runs, capsys):
+def test_json_is_the_only_output(runs, capsys):
     assert entry(["compare", *runs[:2], "--json", "--metric", "sim_time_s"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["common_seeds"] == 1
@@ -38,7 +38,7 @@ def test_json_is_all_there_is_on_standard_output(runs, capsys):
 
 
 @pytest.mark.parametrize(
-    ("more", "word"), [([], "no seed is in both"), (["--metric", "x"], "no seed is in both")]
+    ("more", "word"), [([], "no common seed"), (["--metric", "x"], "no common seed")]
 )
 def test_runs_of_other_seeds_are_refused(runs, capsys, more, word):
     assert entry(["compare", runs[0], runs[2], *more]) == 2
@@ -47,4 +47,4 @@ def test_runs_of_other_seeds_are_refused(runs, capsys, more, word):
 
 def test_a_folder_of_something_else_is_refused(tmp_path, runs, capsys):
     assert entry(["compare", str(tmp_path), runs[0]]) == 2
-    assert "neither a sweep" in capsys.readouterr().err
+    assert "not a folder of a sweep or a run" in capsys.readouterr().err

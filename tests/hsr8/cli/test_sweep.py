@@ -3,14 +3,13 @@ import os
 import re
 import shlex
 import signal
-import sys
 from pathlib import Path
 
 import pytest
 
 from hsr8.cli.main import entry
 from hsr8.cli.options import Sweep
-from hsr8.cli.sweep import _variants
+from hsr8.cli.sweep import _combinations
 from hsr8.evaluation.sweep.folder import SweepFolder
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
@@ -28,10 +27,10 @@ GOOD = {
 
 
 class Instant:
-    """An executor whose runs all succeed at once, but for what is told."""
+    """Executor whose runs succeed at once, except for the outcomes by seed."""
 
-    def __init__(self, told):
-        self.told, self.queue, self.ran = told, [], []
+    def __init__(self, outcomes):
+        self.outcomes, self.queue, self.ran = outcomes, [], []
         self.closed = False
 
     def submit(self, job):
@@ -40,13 +39,13 @@ class Instant:
 
     def wait(self, seconds):
         job = self.queue.pop(0)
-        outcome = self.told.get(job.seed, "passed")
+        outcome = self.outcomes.get(job.seed, "passed")
         if isinstance(outcome, BaseException):
             raise outcome
         if callable(outcome):
             outcome()
-        row = {"seed": job.seed, "outcome": outcome, "attempts": job.attempt, "worker": "here"}
-        return [(job, row | (GOOD if outcome in ("passed", "failed") else {"error": "oh no"}))]
+        result = {"seed": job.seed, "outcome": outcome, "attempts": job.attempt, "worker": "here"}
+        return [(job, result | (GOOD if outcome in ("passed", "failed") else {"error": "oh no"}))]
 
     def close(self):
         self.closed = True
@@ -57,8 +56,8 @@ def instant(monkeypatch, tmp_path):
     """Replace the executor; the command runs in `tmp_path`."""
     monkeypatch.chdir(tmp_path)
 
-    def use(told=None):
-        executor = Instant(told or {})
+    def use(outcomes=None):
+        executor = Instant(outcomes or {})
         monkeypatch.setattr("hsr8.cli.sweep.open_executor", lambda name, workers: executor)
         return executor
 
@@ -71,28 +70,33 @@ def test_two_workers_give_the_states_of_single_runs(tmp_path, capsys):
     assert entry([*FAST, "--seeds", "4:6", "--workers", "2", "--out", str(out), "--json"]) == 1
     summary = json.loads(capsys.readouterr().out)
     assert summary["runs"] == 2
-    rows = SweepFolder.read(out).rows()
+    results = SweepFolder.read(out).results()
     overrides = ("robot.body=kinematic", "camera.source=analytic", "duration=0.3")
-    for row in rows:
-        alone = Simulation(load_scenario("quick", overrides, row["seed"]), row["seed"]).run()
-        assert row["state_hash"] == alone.state_hash
-        assert (out / row["run"] / "metrics.json").exists()
-        assert not (out / row["run"] / "log.rrd").exists()
-        assert row["command"] == (
-            f"hsr8 run quick --duration 0.3 --body kinematic --camera analytic --seed {row['seed']}"
+    for result in results:
+        alone = Simulation(load_scenario("quick", overrides, result["seed"]), result["seed"]).run()
+        assert result["state_hash"] == alone.state_hash
+        assert (out / result["run"] / "metrics.json").exists()
+        assert not (out / result["run"] / "log.rrd").exists()
+        assert result["command"] == (
+            "hsr8 run quick --duration 0.3 --body kinematic --camera analytic "
+            f"--seed {result['seed']}"
         )
     assert (out / "runs.parquet").exists()
-    assert rows[0]["command"] in (out / "report.md").read_text()
+    assert results[0]["command"] in (out / "report.md").read_text()
 
 
-def test_what_has_a_result_is_kept_and_more_seeds_join(instant, tmp_path, capsys):
+def test_seeds_with_a_result_are_kept_and_further_seeds_join(instant, tmp_path, capsys):
     instant()
     assert entry([*FAST, "--seeds", "0:2"]) == 0
     more = instant()
     assert entry([*FAST, "--seeds", "0:3"]) == 0
     assert [job.seed for job in more.ran] == [2]
     assert more.closed
-    assert [r["seed"] for r in SweepFolder.read(tmp_path / "sweeps" / "quick").rows()] == [0, 1, 2]
+    assert [r["seed"] for r in SweepFolder.read(tmp_path / "sweeps" / "quick").results()] == [
+        0,
+        1,
+        2,
+    ]
 
 
 def test_another_scenario_does_not_join(instant, capsys):
@@ -103,7 +107,7 @@ def test_another_scenario_does_not_join(instant, capsys):
 
 
 @pytest.mark.parametrize(
-    ("told", "code"),
+    ("outcomes", "code"),
     [
         ({}, 0),
         ({1: "failed"}, 1),
@@ -113,27 +117,27 @@ def test_another_scenario_does_not_join(instant, capsys):
         ({0: "refused", 1: "refused"}, 2),
     ],
 )
-def test_exit_codes(instant, told, code):
-    instant(told)
+def test_exit_codes(instant, outcomes, code):
+    instant(outcomes)
     assert entry([*FAST, "--seeds", "0:2"]) == code
 
 
 @pytest.mark.parametrize(
-    ("told", "said"),
+    ("outcomes", "message"),
     [
         ({}, ""),
         ({1: "failed"}, ""),
-        ({1: "refused"}, "hsr8: of 3 runs 1 refused; why: sweeps/quick/report.md\n"),
+        ({1: "refused"}, "hsr8: of 3 runs 1 refused; reasons: sweeps/quick/report.md\n"),
         (
             {0: "crashed", 1: "diverged", 2: "crashed"},
-            "hsr8: of 3 runs 2 crashed, 1 diverged; why: sweeps/quick/report.md\n",
+            "hsr8: of 3 runs 2 crashed, 1 diverged; reasons: sweeps/quick/report.md\n",
         ),
     ],
 )
-def test_runs_without_a_result_are_told_to_the_quiet_too(instant, capsys, told, said):
-    instant(told)
+def test_quiet_sweeps_report_runs_without_a_result_too(instant, capsys, outcomes, message):
+    instant(outcomes)
     entry([*FAST, "--seeds", "0:3"])
-    assert capsys.readouterr().err == said
+    assert capsys.readouterr().err == message
 
 
 def test_a_crashed_run_is_run_again_by_the_next_sweep(instant):
@@ -144,14 +148,14 @@ def test_a_crashed_run_is_run_again_by_the_next_sweep(instant):
     assert [job.seed for job in again.ran] == [1]
 
 
-def test_ctrl_c_leaves_a_folder_that_goes_on(instant, capsys):
+def test_the_command_continues_after_ctrl_c(instant, capsys):
     stopped = instant({1: KeyboardInterrupt()})
     more = ["--seeds", "0:3", "--workers", "3", "--keep", "failed", "--log", "--out", "a b"]
     assert entry([*FAST, *more]) == 130
     assert stopped.closed
-    (said,) = re.findall("go on with: hsr8 (.*)", capsys.readouterr().err)
+    (command,) = re.findall("continue with: hsr8 (.*)", capsys.readouterr().err)
     again = instant()
-    assert entry(shlex.split(said)) == 0
+    assert entry(shlex.split(command)) == 0
     assert all(job.keep == "failed" and job.log for job in again.ran)
     assert [job.seed for job in again.ran] == [1, 2]
 
@@ -163,7 +167,7 @@ def test_a_scheduler_s_signal_is_like_ctrl_c(instant):
     assert signal.getsignal(signal.SIGTERM) is handler
 
 
-def test_shards_are_put_together(instant, capsys):
+def test_shards_are_merged(instant, capsys):
     ran = []
     for shard in ("1/2", "2/2"):
         executor = instant()
@@ -176,7 +180,7 @@ def test_shards_are_put_together(instant, capsys):
     assert json.loads(capsys.readouterr().out)["runs"] == 5
 
 
-def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_path, capsys):
+def test_every_value_has_a_folder_and_a_line_of_the_page(instant, tmp_path, capsys):
     executor = instant()
     vary = ["--vary", "camera.period_ms=40,80", "--vary", "world.n_moving=0,1"]
     assert entry([*FAST, "--seeds", "0:2", *vary, "--out", "v", "--json"]) == 0
@@ -186,7 +190,7 @@ def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_
     page = (tmp_path / "v" / "report.md").read_text()
     assert "| `camera.period_ms=80,world.n_moving=0` | 2 |" in page
     one = SweepFolder.read(tmp_path / "v" / "camera.period_ms=80,world.n_moving=0")
-    assert one.rows()[0]["command"].endswith(
+    assert one.results()[0]["command"].endswith(
         "--set camera.period_ms=80 --set world.n_moving=0 --seed 0"
     )
 
@@ -199,12 +203,12 @@ def test_values_have_folders_of_their_own_and_a_page_that_compares(instant, tmp_
         ["plugin.planner=a/p.py:P,a_p.py:P"],
     ],
 )
-def test_every_combination_has_a_folder_of_its_own(varied):
+def test_every_combination_has_its_own_folder(varied):
     """Also where characters are replaced and long names cut."""
-    variants = _variants(Sweep("quick", "0:2", vary=[tuple(varied)]))
-    assert len(variants) == 2 ** len(varied)
-    assert len(set(variants.values())) == len(variants)
-    assert all(len(name) <= 120 and "/" not in name for name in variants)
+    combinations = _combinations(Sweep("quick", "0:2", vary=[tuple(varied)]))
+    assert len(combinations) == 2 ** len(varied)
+    assert len(set(combinations.values())) == len(combinations)
+    assert all(len(name) <= 120 and "/" not in name for name in combinations)
 
 
 @pytest.mark.parametrize(
@@ -217,14 +221,14 @@ def test_every_combination_has_a_folder_of_its_own(varied):
         (["--seeds", "0:2", "--timeout", "inf"], "at most 1e+07 s"),
         (["--seeds", "0:2", "--timeout", "nan"], "--timeout"),
         (["--seeds", "0:2", "--vary", "a"], "--vary"),
-        (["--seeds", "0:2", "--vary", "seed=1,2", "seed=3"], "twice"),
+        (["--seeds", "0:2", "--vary", "seed=1,2", "seed=3"], "repeated"),
         (["--seeds", "0:2", "--vary", "wrld.n=1,2"], "world"),
         (["--seeds", "0:2", "--set", "nonsense"], "nonsense"),
         (["--seeds", "0:2", "--executor", "slurm"], "--executor"),
         (["--seeds", "0:2", "--executor", "local://x"], "--executor"),
     ],
 )
-def test_wrong_options_are_told(tmp_path, monkeypatch, capsys, more, word):
+def test_invalid_options_are_reported(tmp_path, monkeypatch, capsys, more, word):
     monkeypatch.chdir(tmp_path)
     assert entry([*FAST, *more]) == 2
     printed = capsys.readouterr()
@@ -233,14 +237,14 @@ def test_wrong_options_are_told(tmp_path, monkeypatch, capsys, more, word):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_program_that_changes_under_way_is_told(instant, monkeypatch, capsys):
+def test_a_program_that_changes_during_the_sweep_is_reported(instant, monkeypatch, capsys):
     monkeypatch.setattr("hsr8.cli.sweep.code_digest", lambda: "another")
     instant()
     entry([*FAST, "--seeds", "0:2"])
     assert "changed during the sweep" in capsys.readouterr().err
 
 
-def test_a_full_disk_is_told_and_results_stay(instant, tmp_path, monkeypatch, capsys):
+def test_a_full_disk_is_reported_and_results_stay(instant, tmp_path, monkeypatch, capsys):
     instant()
     entry([*FAST, "--seeds", "0:2"])
 
@@ -252,11 +256,11 @@ def test_a_full_disk_is_told_and_results_stay(instant, tmp_path, monkeypatch, ca
     assert entry([*FAST, "--seeds", "0:4"]) == 3
     assert "No space left on device" in capsys.readouterr().err
     assert stopped.closed
-    rows = SweepFolder.read(tmp_path / "sweeps" / "quick").rows()
-    assert {r["seed"] for r in rows} >= {0, 1}
+    results = SweepFolder.read(tmp_path / "sweeps" / "quick").results()
+    assert {r["seed"] for r in results} >= {0, 1}
 
 
-def test_progress_and_table_are_told(instant, capsys):
+def test_progress_and_table_are_printed(instant, capsys):
     instant({1: "failed"})
     entry([*FAST[:-1], "--seeds", "0:2"])
     printed = capsys.readouterr()
@@ -265,7 +269,7 @@ def test_progress_and_table_are_told(instant, capsys):
     assert "sweeps/quick/report.md" in printed.out
 
 
-def test_the_page_about_sweeps_is_right(instant, monkeypatch, capsys):
+def test_the_examples_of_the_documentation_work(instant, monkeypatch, capsys):
     """Every command of it, in order, on runs that end at once; then its Python."""
     page = (Path(__file__).parents[3] / "docs" / "sweeps.md").read_text()
     monkeypatch.setattr("hsr8.cli.sweep.require_gl", lambda: "none")
@@ -278,51 +282,12 @@ def test_the_page_about_sweeps_is_right(instant, monkeypatch, capsys):
         assert entry(words[1:]) == 0, command
     for example in re.findall(r"^```python\n(.*?)^```", page, re.M | re.S):
         exec(example, {})
-    assert "Share(count=200" in capsys.readouterr().out
-
-
-def test_a_dry_run_tells_the_cost_and_leaves_nothing(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    words = ["sweep", "quick", *TINY, "--seeds", "0:10", "--vary", "world.n_moving=0,2"]
-    assert entry([*words, "--workers", "4", "--dry-run", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["runs"] == 20
-    assert told["simulated_time_s"] == 20 * 30.0
-    assert entry([*words, "--workers", "2", "--keep", "none", "--dry-run", "--json"]) == 0
-    fewer = json.loads(capsys.readouterr().out)
-    assert fewer["estimated_wall_time_s"] == pytest.approx(
-        2 * told["estimated_wall_time_s"], abs=0.3
-    )
-    assert fewer["estimated_disk_mb"] == 0.0
-    assert entry([*words, "--dry-run"]) == 0
-    said = capsys.readouterr().out
-    assert "2 x 10 seeds" in said
-    assert said.splitlines()[-1].endswith("--vary world.n_moving=0,2")
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_dry_run_refuses_what_the_sweep_would(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    (tmp_path / "afile").touch()
-    (tmp_path / "lost").mkdir()
-    (tmp_path / "lost" / "runs.jsonl").touch()
-    other = ["sweep", "quick", *TINY, "--seeds", "0:2", "--quiet", "--out", "other"]
-    monkeypatch.setattr("hsr8.cli.sweep.drive", lambda *_: None)
-    entry([*other, "--set", "world.n_moving=0"])
-    capsys.readouterr()
-    for more, text in (
-        (["--out", "afile"], "cannot write the sweep afile: "),
-        (["--out", "afile/within"], "cannot write the sweep afile/within: Not a directory"),
-        (["--out", "lost"], "holds results but no sweep.json"),
-        (["--out", "other"], "other holds runs of something else"),
-        (["--executor", "dask"], "needs a package that is missing"),
-    ):
-        assert entry([*other[:-2], *more, "--dry-run"]) == 2
-        assert text in capsys.readouterr().err
+    assert "200 of 200, 100.0 %" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("option", ["--set", "--vary"])
-def test_seeds_are_no_setting_of_a_sweep(instant, capsys, option):
+def test_the_seed_is_not_a_setting_of_a_sweep(instant, capsys, option):
     assert entry([*FAST, "--seeds", "0:2", option, "seed=1"]) == 2
-    assert f"{option} seed=1: the seeds of a sweep are given by --seeds" in capsys.readouterr().err
+    assert (
+        f"{option}: the seed is not a setting, got seed=1; use --seeds" in capsys.readouterr().err
+    )

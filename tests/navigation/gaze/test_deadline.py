@@ -20,13 +20,16 @@ P = NavigationParameters.extended()
 SAMPLES = SamplePoints.polar(NavigationParameters.paper().evaluation, np.pi / 2)
 
 
-def votes(b, way=0.0):
-    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
-    return obstacle_deadlines(scene, b, way, 0.2, P)
+def scene_of(b):
+    return gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
 
 
-def value(b, way=0.0):
-    (v,) = votes(b, way).value
+def votes(b, path=0.0):
+    return obstacle_deadlines(scene_of(b), path, 0.2, P)
+
+
+def value(b, path=0.0):
+    (v,) = votes(b, path).value
     return v
 
 
@@ -37,20 +40,20 @@ def test_a_vote_grows_with_age_up_to_its_limit(belief, track):
     assert values[-1] == pytest.approx(P.gaze.deadline.max_urgency**1.5)
 
 
-def test_it_is_1_at_half_the_worst_case_time_to_contact(belief, track):
+def test_a_vote_is_1_at_half_the_worst_case_time_to_collision(belief, track):
     gap = 1.0 - 0.08 - P.univector.s_robot - 0.05
-    contact = gap / (0.05 + 0.5 * 0.01 + 0.2)
-    age = 0.5 * contact - 0.1
+    time = gap / (0.05 + 0.5 * 0.01 + 0.2)
+    age = 0.5 * time - 0.1
     assert value(belief([track((1, 0), (-0.05, 0), age=age)])) == pytest.approx(1.0)
 
 
-def test_near_before_far_and_on_the_way_before_beside(belief, track):
-    def v(place, way=0.0):
-        return value(belief([track(place, (-0.05, 0), age=0.3)]), way)
+def test_near_before_far_and_on_the_path_before_sideways(belief, track):
+    def v(place, path=0.0):
+        return value(belief([track(place, (-0.05, 0), age=0.3)]), path)
 
     assert v((0.6, 0)) > v((1.2, 0))
     assert v((1, 0)) > v((0, 1))
-    assert v((0, 1), way=np.pi / 2) == pytest.approx(v((1, 0)))
+    assert v((0, 1), path=np.pi / 2) == pytest.approx(v((1, 0)))
 
 
 def test_undecided_before_mover_before_static(belief, track):
@@ -59,7 +62,7 @@ def test_undecided_before_mover_before_static(belief, track):
     assert by[Motion.UNKNOWN] > by[Motion.MOVING] > by[Motion.STATIC]
 
 
-def test_what_is_new_and_undecided_is_looked_at_until_it_was_seen_often_enough(belief, track):
+def test_new_undecided_tracks_get_a_bonus_until_they_have_enough_detections(belief, track):
     few, enough = P.gaze.deadline.fresh_hits - 1, P.gaze.deadline.fresh_hits
 
     def v(motion, hits):
@@ -70,7 +73,7 @@ def test_what_is_new_and_undecided_is_looked_at_until_it_was_seen_often_enough(b
         assert v(known, few) == v(known, enough)
 
 
-def test_beyond_the_range_of_attention_only_what_is_new_votes(belief, track):
+def test_beyond_the_attention_range_only_new_tracks_vote(belief, track):
     far = P.evaluation.attention_range + 0.5
     hits = (P.gaze.deadline.fresh_hits - 1, P.gaze.deadline.fresh_hits)
     new, known = (belief([track((far, 0), (0, 0), Motion.UNKNOWN, hits=n)]) for n in hits)
@@ -78,14 +81,14 @@ def test_beyond_the_range_of_attention_only_what_is_new_votes(belief, track):
     assert len(votes(known).value) == 0
 
 
-def test_a_lost_mover_votes_where_it_may_be(belief, track):
+def test_a_lost_mover_votes_at_its_particles(belief, track):
     cloud = ([[1, 0.5], [1, -0.5], [-3, 0]], np.zeros((3, 2)), [0.5, 0.3, 0.2])
     v = votes(belief([track((1, 0), (0.1, 0), age=3.0, particles=cloud)]))
     assert v.pan == pytest.approx([np.arctan2(0.5, 1), -np.arctan2(0.5, 1)])
     assert v.value[0] / v.value[1] == pytest.approx(0.5 / 0.3)
 
 
-def test_votes_are_not_clipped_to_the_pan_stop(belief, track):
+def test_votes_are_not_clipped_to_the_pan_limit(belief, track):
     angle = np.radians(115)
     v = votes(belief([track((np.cos(angle), np.sin(angle)), (0.0, -0.1))]))
     assert v.pan == pytest.approx([angle])
@@ -94,21 +97,20 @@ def test_votes_are_not_clipped_to_the_pan_stop(belief, track):
 
 def test_fresh_ground_does_not_vote_and_old_ground_does(belief):
     b = belief(age=lambda x, y: 3.0 if y > 0 else 0.0)
-    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
-    v = map_deadlines(scene, b, 0.0, 0.2, P)
+    v = map_deadlines(scene_of(b), 0.0, 0.2, P)
     assert np.all(v.value[v.pan < -0.01] == 0.0)
     assert np.all(v.value[v.pan > 0.01] > 0.0)
     never = belief(age=lambda x, y: np.inf)
-    assert np.isfinite(map_deadlines(scene, never, 0.0, 0.2, P).value).all()
+    assert np.isfinite(map_deadlines(scene_of(never), 0.0, 0.2, P).value).all()
 
 
-def test_ground_votes_on_its_rings_as_far_round_as_the_gaze_sees(belief):
+def test_ground_votes_on_its_rings_within_the_reach_of_the_gaze(belief):
     p = replace(
         P, gaze=replace(P.gaze, deadline=DeadlineParameters(map_rings=(2.0, 0.4), map_rays=5))
     )
     b = belief()
-    scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), p)
-    v = map_deadlines(scene, b, 0.0, 0.2, p)
+    scene = scene_of(b)
+    v = map_deadlines(scene, 0.0, 0.2, p)
     reach = P.gaze.max_pan + P.gaze.box_fraction * b.view.horizontal_fov
     assert v.pan == pytest.approx(np.tile(np.linspace(-reach, reach, 5), 2))
     assert scene.camera_height / np.tan(-v.tilt) == pytest.approx(np.repeat([2.0, 0.4], 5))
@@ -121,13 +123,13 @@ def test_mirror_symmetry(belief, track):
     assert left.value == pytest.approx(right.value)
 
 
-def test_self_urgency_hears_position_and_heading(belief):
+def test_self_urgency_depends_on_position_and_heading(belief):
     assert self_urgency(belief(sigma=0.025, turn_sigma=0.0), P) == pytest.approx(0.5)
     assert self_urgency(belief(sigma=0.0, turn_sigma=0.03), P) == pytest.approx(0.5)
     assert self_urgency(belief(sigma=1.0), P) == 1.0
 
 
-def test_a_look_request_is_voted_for_once_the_gaze_reaches_it(belief):
+def test_a_look_request_votes_within_the_reach_of_the_gaze(belief):
     reach = P.gaze.max_pan + P.gaze.box_fraction * belief().view.horizontal_fov
     for heading in (0.0, 2.0, -3.0):
         b = belief(pose=(1.0, 0.0, heading))
@@ -142,12 +144,11 @@ def test_a_look_request_is_voted_for_once_the_gaze_reaches_it(belief):
 
 
 @pytest.mark.parametrize("turn", [0.8, -0.8])
-def test_a_body_that_turns_votes_for_what_comes_into_reach(belief, track, turn):
+def test_a_turning_body_votes_for_tracks_that_come_into_reach(belief, track, turn):
     def pans(bearing, rate):
         place = (np.cos(bearing), np.sin(bearing))
         b = belief([track(place, (0.05, 0.0), age=3.0)], age=lambda x, y: 0.0)
-        scene = gaze_scene(b, None, SAMPLES, np.zeros((0, 2)), P)
-        v = deadline_votes(scene, b, 0.0, 0.2, P, turn=rate)
+        v = deadline_votes(scene_of(b), 0.0, 0.2, P, turn_rate=rate)
         return v.pan[v.value > P.gaze.deadline.path_weight]
 
     reach = P.gaze.max_pan + P.gaze.box_fraction * belief().view.horizontal_fov
@@ -158,9 +159,8 @@ def test_a_body_that_turns_votes_for_what_comes_into_reach(belief, track, turn):
     assert abs(pan) < abs(behind)
 
 
-def test_without_a_look_request_nobody_votes_for_one(belief):
-    scene = gaze_scene(belief(), None, SAMPLES, np.zeros((0, 2)), P)
+def test_a_look_request_is_one_more_vote(belief):
     without, with_one = (
-        deadline_votes(scene, belief(), 0.0, 0.2, P, look_request=g) for g in (None, 2.0)
+        deadline_votes(scene_of(belief()), 0.0, 0.2, P, look_request=g) for g in (None, 2.0)
     )
     assert len(with_one.value) == len(without.value) + 1

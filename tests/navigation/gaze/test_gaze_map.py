@@ -4,19 +4,13 @@ import numpy as np
 import pytest
 
 from navigation.gaze.gaze_map import GazeGrid, Votes
+from navigation.parameters.gaze import GazeParameters
 
 STEP = pi / 36
 
 
 def grid(half_pan=0.75, half_tilt=0.6, *, step=STEP):
-    return GazeGrid(
-        max_pan=pi / 2,
-        min_tilt=-pi / 3,
-        max_tilt=pi / 9,
-        step=step,
-        half_pan=half_pan,
-        half_tilt=half_tilt,
-    )
+    return GazeGrid(GazeParameters(step=step, box_fraction=0.5), 2 * half_pan, 2 * half_tilt)
 
 
 def random_votes(rng, n):
@@ -31,7 +25,7 @@ def test_the_grid_covers_the_head():
 
 
 @pytest.mark.parametrize("step", np.linspace(0.03, 0.5, 24))
-def test_every_cell_is_within_the_head_s_limits_and_none_is_left_out(step):
+def test_the_cells_fill_the_limits_of_the_head(step):
     g = grid(step=step)
     assert pi / 2 - step < g.pan[-1] <= pi / 2 + 1e-9
     assert g.pan[0] == -g.pan[-1]
@@ -97,7 +91,7 @@ def test_scaling_all_weights_changes_nothing():
         assert one == g.highest_centre(g.gaze_map(scaled), 0.1, -0.3)
 
 
-def test_nothing_to_see_keeps_the_gaze():
+def test_a_map_of_zeros_keeps_the_gaze():
     g = grid()
     assert g.highest_centre(np.zeros((17, 37)), 0.33, -0.2) == (0.33, -0.2)
 
@@ -142,9 +136,8 @@ def test_a_bent_plateau_gives_its_member_nearest_the_centroid():
     assert g.highest_centre(gm, 0.0, 0.0) == (g.pan[12], g.tilt[8])
 
 
-def test_no_votes_ask_for_nothing():
+def test_votes_are_joined_in_order():
     nothing = Votes.join([])
-    assert len(nothing.pan) == len(nothing.tilt) == len(nothing.value) == 0
     assert not grid().gaze_map(nothing).any()
     joined = Votes.join([Votes.one(0.1, -0.2, 0.3), nothing, Votes.one(0.4, -0.5, 0.6)])
     assert joined.pan.tolist() == [0.1, 0.4]

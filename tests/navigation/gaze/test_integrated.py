@@ -13,7 +13,7 @@ NO_BEACONS = np.zeros((0, 2))
 
 
 def votes(b, t, p=PAPER, beacons=NO_BEACONS):
-    return integrated_votes(gaze_scene(b, None, SAMPLES, beacons, p), b, t, p)
+    return integrated_votes(gaze_scene(b, None, SAMPLES, beacons, p), t, p)
 
 
 def test_the_printed_map_stays_within_0_and_1(belief, task, track, limits):
@@ -32,7 +32,7 @@ def test_the_printed_map_stays_within_0_and_1(belief, task, track, limits):
         assert gm.max() <= 1.0 + 1e-12
 
 
-def test_no_obstacles_leave_the_way_and_the_map(belief, task):
+def test_without_obstacles_waypoint_and_map_vote(belief, task):
     v = votes(belief(sigma=0.0), task((2.0, 2.0)))
     assert v.pan == pytest.approx([np.pi / 4])
     assert v.value == pytest.approx([PAPER.gaze.w_way])
@@ -41,7 +41,7 @@ def test_no_obstacles_leave_the_way_and_the_map(belief, task):
     assert v.value[0] == pytest.approx(PAPER.gaze.w_lm)
 
 
-def test_stale_on_both_sides_looks_ahead_in_the_paper_but_aside_in_extended(belief, task):
+def test_stale_ground_on_both_sides_votes_ahead_in_paper_and_sideways_in_extended(belief, task):
     b = belief(sigma=0.0, confidence=lambda x, y: float(abs(y) < 0.5))
     assert abs(votes(b, task()).pan[0]) < 0.05
     v = votes(b, task(), EXTENDED)
@@ -73,7 +73,7 @@ def test_beacons_share_the_vote_of_self_localization(belief, task):
     assert v.tilt[-2:] == pytest.approx(0.0)
 
 
-def test_what_the_head_cannot_reach_does_not_vote(belief, task, track):
+def test_obstacles_out_of_reach_do_not_vote(belief, task, track):
     behind = track((-1.0, 0.05), (0.3, 0.0), sigma=0.2)
     assert len(votes(belief([behind], sigma=0.0), task()).pan) == 1
 

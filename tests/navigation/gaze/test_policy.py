@@ -7,14 +7,14 @@ import pytest
 from navigation.gaze.gaze_map import GazeGrid, Votes
 from navigation.gaze.planner import GazePlanner
 from navigation.gaze.policy import VotingGaze, gaze_policy, single_weight
-from navigation.parameters.gaze import GazeMode
+from navigation.parameters.gaze import GazeMode, GazeParameters
 from navigation.parameters.navigation import NavigationParameters
 
 BEACONS = {"cyan/yellow": (2.9, 0.5), "yellow/cyan": (-2.9, 0.0), "magenta/cyan": (0.5, 2.9)}
 P = NavigationParameters.extended()
 MODES = get_args(GazeMode)
 PSI = [mode for mode in MODES if mode.startswith("psi-")]
-LISTENING = [mode for mode in MODES if mode not in ("fixed", "sweep")]
+VOTING = [mode for mode in MODES if mode not in ("fixed", "sweep")]
 
 
 def planner(limits, mode):
@@ -29,21 +29,13 @@ def choose(limits, task):
     return choose
 
 
-@pytest.mark.parametrize("mode", MODES)
-def test_every_gaze_stays_within_the_head_s_limits(mode, choose, belief, track):
-    rng = np.random.default_rng(1)
-    for k in range(12):
-        tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (5, 2))]
-        gaze = choose(mode, belief(tracks, time=0.37 * k, confidence=lambda x, y: 0.5))
-        assert abs(gaze.pan) <= P.gaze.max_pan + 1e-9
-        assert P.gaze.min_tilt - 1e-9 <= gaze.tilt <= P.gaze.max_tilt + 1e-9
-        assert np.isfinite(gaze.gaze_map).all()
-        assert gaze.gaze_map.min() >= 0.0
+ODD = {"step": 0.13, "max_pan": 1.5, "min_tilt": -1.0, "max_tilt": 0.27}
 
 
+@pytest.mark.parametrize("changes", [{}, ODD], ids=["default", "no multiple of the step"])
 @pytest.mark.parametrize("mode", MODES)
-def test_limits_that_are_no_multiple_of_the_step_are_kept_too(mode, limits, task, belief, track):
-    p = replace(P.gaze, mode=mode, step=0.13, max_pan=1.5, min_tilt=-1.0, max_tilt=0.27)
+def test_every_gaze_stays_within_the_limits_of_the_head(mode, changes, limits, task, belief, track):
+    p = replace(P.gaze, mode=mode, **changes)
     rng = np.random.default_rng(1)
     for k in range(12):
         tracks = [track(c, (0.1, 0.0), age=1.0) for c in rng.uniform(-1.5, 1.5, (5, 2))]
@@ -51,12 +43,15 @@ def test_limits_that_are_no_multiple_of_the_step_are_kept_too(mode, limits, task
         gaze = GazePlanner(replace(P, gaze=p), limits, BEACONS, 1.5, 1.22).choose(b, task(), None)
         assert abs(gaze.pan) <= p.max_pan + 1e-9
         assert p.min_tilt - 1e-9 <= gaze.tilt <= p.max_tilt + 1e-9
+        assert np.isfinite(gaze.gaze_map).all()
+        assert gaze.gaze_map.min() >= 0.0
 
 
 @pytest.mark.parametrize("ratio", [1.0, 1.1])
 def test_at_a_ratio_of_one_the_gaze_is_the_centre_of_the_plateau_and_stays(ratio):
-    grid = GazeGrid(max_pan=1.0, min_tilt=-1.0, max_tilt=0.0, step=0.1, half_pan=0.4, half_tilt=0.3)
-    gaze = VotingGaze(lambda moment: Votes.join([]), grid, ratio)
+    p = GazeParameters(max_pan=1.0, min_tilt=-1.0, max_tilt=0.0, step=0.1, box_fraction=0.5)
+    grid = GazeGrid(p, 0.8, 0.6)
+    gaze = VotingGaze(lambda context: Votes.join([]), grid, ratio)
     top = grid.gaze_map(Votes.one(0.2, -0.5, 1.0))
     now = (0.5, -0.4)
     for _ in range(5):
@@ -64,7 +59,7 @@ def test_at_a_ratio_of_one_the_gaze_is_the_centre_of_the_plateau_and_stays(ratio
     assert now == pytest.approx((0.2, -0.5) if ratio == 1.0 else (0.5, -0.4))
 
 
-@pytest.mark.parametrize("mode", LISTENING)
+@pytest.mark.parametrize("mode", VOTING)
 def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(
     mode, choose, belief, track, limits, task
 ):
@@ -82,7 +77,7 @@ def test_the_mirror_image_of_a_world_is_looked_at_from_the_other_side(
     assert right.gaze_map == pytest.approx(left.gaze_map[:, ::-1])
 
 
-def test_a_single_evaluation_hears_itself_alone(choose, belief, track):
+def test_a_single_evaluation_votes_alone(choose, belief, track):
     blind = belief(sigma=0.0, turn_sigma=0.0)
     assert choose("psi-lm", blind).gaze_map.max() == 0.0
     assert choose("psi-sf", blind).gaze_map.max() == 0.0
@@ -110,13 +105,13 @@ def test_only_the_sweep_moves_without_arriving(limits):
         assert steady == (mode != "sweep")
 
 
-def test_the_sweep_comes_back_after_its_period(choose, belief):
-    one = choose("sweep", belief(time=0.7))
-    assert choose("sweep", belief(time=0.7 + P.gaze.sweep_period)).pan == pytest.approx(one.pan)
-    half = choose("sweep", belief(time=0.7 + 0.5 * P.gaze.sweep_period))
-    assert half.pan == pytest.approx(-one.pan)
+def test_the_sweep_has_its_amplitude_and_period(choose, belief):
+    p = P.gaze
+    times = np.linspace(0.0, p.sweep_period, 41)
+    pans = [choose("sweep", belief(time=t)).pan for t in times]
+    assert pans == pytest.approx(p.sweep_amplitude * np.sin(2.0 * np.pi * times / p.sweep_period))
 
 
-def test_the_fixed_gaze_hears_nothing(choose, belief, track):
+def test_the_fixed_gaze_ignores_the_belief(choose, belief, track):
     urgent = belief([track((0.3, 0.6), (-0.1, 0), age=1.0)], lost=True)
     assert choose("fixed", urgent).pan == 0.0

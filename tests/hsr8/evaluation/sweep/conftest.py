@@ -7,7 +7,7 @@ from hsr8.evaluation.sweep.definition import Definition
 def definition():
     return Definition(
         name="course",
-        again=("hsr8", "run", "course", "--set", "a=[1, 2]"),
+        command_words=("hsr8", "run", "course", "--set", "a=[1, 2]"),
         hsr8="1",
         code="abc",
         processor="x86_64",
@@ -17,8 +17,8 @@ def definition():
 
 
 @pytest.fixture
-def row():
-    """A result; a success unless told otherwise."""
+def result():
+    """Makes the result of a successful run, with changes."""
 
     def make(seed, **change):
         return {

@@ -1,4 +1,4 @@
-"""Needs the extra `dask`; skipped without it."""
+"""Requires the extra `dask`; skipped without it."""
 
 import os
 import time
@@ -6,42 +6,55 @@ from dataclasses import replace
 
 import pytest
 
-pytest.importorskip("distributed")
-
 from hsr8.errors import UsageError
 from hsr8.evaluation.sweep import dask_executor as module
 from hsr8.evaluation.sweep.dask_executor import DaskExecutor
-from hsr8.evaluation.sweep.driver import drive
+from hsr8.evaluation.sweep.executor import run_jobs
 from hsr8.evaluation.sweep.job import Job
 
-JOB = Job(0, "/nowhere", "", 10.0)
+distributed = pytest.importorskip("distributed")
 
 
-def _work(job):
-    """Stands in for a run; the first one of seed 3 takes its worker with it."""
-    if job.seed == 3 and job.attempt == 1:
-        time.sleep(0.2)
-        os._exit(1)
-    return {"seed": job.seed, "outcome": "passed", "attempts": job.attempt, "worker": "w"}
+@pytest.fixture
+def address():
+    """Address of the scheduler of a cluster on this machine."""
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+    ) as cluster:
+        yield cluster.scheduler_address.removeprefix("tcp://")
 
 
-def test_every_run_ends_also_that_of_a_worker_that_dies(monkeypatch):
-    monkeypatch.setattr(module, "work", _work)
-    executor = DaskExecutor("", 2)
-    rows = []
-    try:
-        assert executor.workers == 2
-        jobs = [replace(JOB, seed=seed) for seed in range(6)]
-        drive(jobs, executor, lambda job, row: rows.append(row), lambda: None)
-    finally:
-        executor.close()
-    found = {row["seed"]: row for row in rows}
-    assert sorted(found) == list(range(6))
-    assert found[3]["attempts"] == 2
-    assert "worker went away" in found[3]["first_error"]
+def test_every_run_ends_even_if_its_worker_dies(address, monkeypatch, tmp_path):
+    def work(job):
+        if job.seed == 3 and not (tmp_path / "died").exists():
+            (tmp_path / "died").touch()
+            time.sleep(0.2)
+            os._exit(1)
+        return {"seed": job.seed, "outcome": "passed", "attempts": job.attempt}
+
+    monkeypatch.setattr(module, "work", work)
+    executor = DaskExecutor(address)
+    seeds = []
+    jobs = [replace(Job(0, "/nowhere", "", 10.0), seed=seed) for seed in range(6)]
+    run_jobs(jobs, executor, lambda job, result: seeds.append(result["seed"]), lambda: None)
+    executor.close()
+    assert sorted(seeds) == list(range(6))
 
 
-def test_a_scheduler_that_does_not_answer_is_told(monkeypatch):
-    monkeypatch.setattr(module, "PATIENCE", 0.5)
-    with pytest.raises(UsageError, match="nobody answers"):
-        DaskExecutor("127.0.0.1:9", 1)
+def test_a_run_has_a_process_and_a_wall_clock_limit(address, tmp_path):
+    executor = DaskExecutor(address)
+    executor.submit(Job(1, str(tmp_path), "nonsense = 1\n", 100.0))
+    executor.submit(Job(2, str(tmp_path), "", 0.01))
+    results = {}
+    while len(results) < 2:
+        results |= {job.seed: result for job, result in executor.wait(5.0)}
+    executor.close()
+    assert results[1]["outcome"] == "refused"
+    assert "nonsense" in results[1]["error"]
+    assert results[2]["outcome"] == "crashed"
+    assert "wall-clock limit" in results[2]["error"]
+
+
+def test_a_scheduler_that_does_not_answer_is_reported():
+    with pytest.raises(UsageError, match=r"no scheduler at 127\.0\.0\.1:9: connection refused"):
+        DaskExecutor("127.0.0.1:9")

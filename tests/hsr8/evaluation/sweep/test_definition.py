@@ -5,7 +5,7 @@ from hsr8.evaluation.sweep import definition as module
 from hsr8.evaluation.sweep.definition import (
     Definition,
     code_digest,
-    differences,
+    scenario_differences,
     version_differences,
 )
 
@@ -20,12 +20,12 @@ def test_a_run_is_repeated_by_words_that_a_shell_understands(definition):
 
 def test_differences_are_of_values_and_symmetric(definition):
     other = replace(definition, scenario="duration = 4.0\n[[world.mover]]\nspeed = 1\n")
-    there, back = differences(definition, other), differences(other, definition)
+    there, back = scenario_differences(definition, other), scenario_differences(other, definition)
     assert there["duration"] == ("3.0", "4.0")
     assert there["world.mover.0.speed"] == ("-", "1")
     assert "seed" not in there
     assert {key: (b, a) for key, (a, b) in there.items()} == back
-    assert differences(definition, definition) == {}
+    assert scenario_differences(definition, definition) == {}
 
 
 def test_versions_differ(definition):

@@ -1,129 +1,93 @@
-import subprocess
 import sys
 from dataclasses import replace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep import executor as module
-from hsr8.evaluation.sweep.executor import LocalExecutor, open_executor, parse_executor
+from hsr8.evaluation.sweep.dask_executor import DaskExecutor
+from hsr8.evaluation.sweep.executor import parse_executor, pending, run_jobs
 from hsr8.evaluation.sweep.job import Job
 
-JOB = Job(0, "/nowhere", "", 10.0)
+JOB = Job(0, "/sweep", "", 10.0)
 
 
-@pytest.fixture
-def local():
-    executor = LocalExecutor(2)
-    yield executor
-    executor.close()
+class Scripted:
+    """Executor whose jobs end at once with outcomes by seed and attempt."""
+
+    def __init__(self, outcomes):
+        self.outcomes, self.queue, self.submitted = outcomes, [], []
+
+    def submit(self, job):
+        self.submitted.append(job)
+        self.queue.append(job)
+
+    def wait(self, seconds):
+        job = self.queue.pop(0)
+        outcome = self.outcomes.get(job.seed, ["passed"])[job.attempt - 1]
+        result = {"seed": job.seed, "outcome": outcome, "attempts": job.attempt}
+        return [(job, result | ({"error": "killed"} if outcome == "crashed" else {}))]
 
 
-def _all(executor, n):
-    ended = []
-    while len(ended) < n:
-        ended += executor.wait(5.0)
-    return ended
+def _run(seeds, outcomes):
+    executor, results = Scripted(outcomes), {}
+    run_jobs(
+        [replace(JOB, seed=s) for s in seeds],
+        executor,
+        lambda job, result: results.setdefault(job.seed, []).append(result),
+        lambda: None,
+    )
+    assert all(len(each) == 1 for each in results.values())
+    return executor, {seed: each[0] for seed, each in results.items()}
 
 
-def test_every_job_ends_once(local, monkeypatch):
-    monkeypatch.setattr(module, "run_job", lambda job, start: {"seed": job.seed})
-    for seed in range(20):
-        local.submit(replace(JOB, seed=seed))
-    ended = _all(local, 20)
-    assert sorted(row["seed"] for _, row in ended) == list(range(20))
-    assert all(job.seed == row["seed"] for job, row in ended)
-    assert local.wait(0.0) == []
+def test_every_job_has_one_result():
+    executor, results = _run(range(5), {})
+    assert sorted(results) == list(range(5))
+    assert len(executor.submitted) == 5
+
+
+def test_a_crashed_run_is_repeated_once():
+    executor, results = _run([1, 2, 3], {1: ["crashed", "failed"], 2: ["crashed", "crashed"]})
+    assert [(j.seed, j.attempt) for j in executor.submitted[3:]] == [(1, 2), (2, 2)]
+    assert results[1] == {"seed": 1, "outcome": "failed", "attempts": 2, "first_error": "killed"}
+    assert results[2]["outcome"] == "crashed"
+    assert "first_error" not in results[3]
+
+
+def test_a_diverged_run_is_not_repeated():
+    executor, _ = _run([1], {1: ["diverged"]})
+    assert len(executor.submitted) == 1
+
+
+@given(st.integers(1, 7), st.integers(0, 30))
+def test_shards_divide_the_seeds(n, count):
+    seeds = tuple(range(100, 100 + count))
+    parts = [pending(seeds, [], (i, n)) for i in range(1, n + 1)]
+    assert sorted(seed for part in parts for seed in part) == list(seeds)
+    assert max(map(len, parts)) - min(map(len, parts)) <= 1
 
 
 @pytest.mark.parametrize(
-    "error",
-    [
-        OSError("No space left on device"),
-        RuntimeError("can't start new thread"),
-        OverflowError("timestamp too large"),
-    ],
+    ("outcome", "pending_again"),
+    [("passed", False), ("failed", False), ("diverged", False), ("crashed", True)],
 )
-def test_a_job_that_cannot_begin_is_a_crash(local, monkeypatch, error):
-    def fail(job, start):
-        raise error
-
-    monkeypatch.setattr(module, "run_job", fail)
-    local.submit(JOB)
-    ((_, row),) = _all(local, 1)
-    assert row["outcome"] == "crashed"
-    assert str(error) in row["error"]
+def test_seeds_with_a_result_are_not_run_again(outcome, pending_again):
+    results = [{"seed": 5, "outcome": outcome}]
+    assert pending((4, 5), results, None) == ((4, 5) if pending_again else (4,))
 
 
-@pytest.mark.parametrize("stubborn", [False, True])
-def test_closing_ends_what_runs(monkeypatch, stubborn):
-    monkeypatch.setattr(module, "GRACE", 0.3)
-    deaf = "signal.signal(signal.SIGTERM, signal.SIG_IGN);" if stubborn else ""
-    code = f"import signal, time; {deaf} print(flush=True); time.sleep(60)"
-    processes = []
-
-    def run(job, start):
-        start([]).communicate()
-        return {"seed": job.seed}
-
-    def begin(words):
-        process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
-        process.stdout.readline()
-        processes.append(process)
-        return process
-
-    monkeypatch.setattr(module, "run_job", run)
-    executor = LocalExecutor(1)
-    monkeypatch.setattr(executor._launcher, "start", begin)
-    executor.submit(JOB)
-    executor.submit(JOB)  # waits, and never begins
-    while not processes:
-        executor.wait(0.01)
-    executor.close()
-    assert [p.returncode for p in processes] == [-9 if stubborn else -15]
+def test_executors_are_local_or_have_an_address():
+    assert parse_executor("local") == ""
+    assert parse_executor("dask://node-1.lan:8786") == "node-1.lan:8786"
+    assert parse_executor("dask://[::1]:8786") == "[::1]:8786"
+    for name in ("slurm", "local://here", "", "dask", "dask://", "dask://h:99999", "ray"):
+        with pytest.raises(UsageError, match="expected local or dask://HOST:PORT"):
+            parse_executor(name)
 
 
-def test_when_the_server_is_killed_its_run_is_a_crash_and_the_next_has_a_new_one(monkeypatch):
-    program = "import sys, hsr8.cli.fork_server as p; p.load_everything = lambda: None;"
-    program += "p.entry = lambda words: exec(words[0]) or 0; p.main(sys.argv[1:])"
-    monkeypatch.setattr(
-        "hsr8.evaluation.sweep.fork_server.COMMAND", [sys.executable, "-c", program]
-    )
-
-    def run(job, start):
-        process = start(
-            ["import os, signal; os.kill(os.getppid(), 9); signal.pause()", "pass"][job.seed :]
-        )
-        process.communicate()
-        return {"seed": job.seed, "outcome": "passed"}
-
-    monkeypatch.setattr(module, "run_job", run)
-    executor = LocalExecutor(1)
-    executor.submit(JOB)
-    executor.submit(replace(JOB, seed=1))
-    first, second = (row for _, row in _all(executor, 2))
-    executor.close()
-    assert first["outcome"] == "crashed"
-    assert "the process that forks" in first["error"]
-    assert second["outcome"] == "passed"
-
-
-def test_other_names_are_refused():
-    for name in ("slurm", "local://here", "", "dask://", "dask://host", "ray://a b:3"):
-        with pytest.raises(UsageError, match="local, dask"):
-            open_executor(name, 1)
-
-
-def test_executors_have_addresses():
-    assert parse_executor("local") == ("local", "")
-    assert parse_executor("dask") == ("dask", "")
-    assert parse_executor("dask://node-1.lan:8786") == ("dask", "node-1.lan:8786")
-    assert parse_executor("ray://[::1]:10001") == ("ray", "[::1]:10001")
-
-
-@pytest.mark.parametrize(("name", "package"), [("dask", "distributed"), ("ray", "ray")])
-def test_a_missing_extra_says_what_to_install(monkeypatch, name, package):
-    monkeypatch.setitem(sys.modules, package, None)
-    monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(UsageError, match=rf"pip install \"hsr8\[{name}\]\""):
-        open_executor(name, 1)
+def test_a_missing_extra_names_the_installation_command(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UsageError, match=r"pip install \"hsr8\[dask\]\""):
+        DaskExecutor("127.0.0.1:9")

@@ -4,7 +4,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from hsr8.errors import UsageError
-from hsr8.evaluation.sweep.folder import LEDGER, REPORT, TABLE, SweepFolder
+from hsr8.evaluation.sweep.folder import REPORT, RESULTS, TABLE, SweepFolder
 
 
 @pytest.fixture
@@ -15,24 +15,24 @@ def folder(tmp_path, definition):
     folder.close()
 
 
-def test_rows_come_back_by_seed(folder, definition, row):
-    folder.append([row(7), row(3)])
+def test_rows_come_back_by_seed(folder, definition, result):
+    folder.append(result(7), result(3))
     folder.close()
     again = SweepFolder.read(folder.path)
-    assert again.rows() == [row(3), row(7)]
+    assert again.results() == [result(3), result(7)]
     assert again.definition == definition
-    assert SweepFolder.open(folder.path, definition).rows() == again.rows()
+    assert SweepFolder.open(folder.path, definition).results() == again.results()
 
 
-def test_a_line_that_a_kill_cut_off_is_dropped(folder, row):
-    folder.append([row(1), row(2)])
+def test_a_line_that_a_kill_cut_off_is_dropped(folder, result):
+    folder.append(result(1), result(2))
     folder.close()
-    ledger = folder.path / LEDGER
-    ledger.write_bytes(ledger.read_bytes()[:-20])
-    assert [r["seed"] for r in folder.rows()] == [1]
+    file = folder.path / RESULTS
+    file.write_bytes(file.read_bytes()[:-20])
+    assert [r["seed"] for r in folder.results()] == [1]
     folder.lock()
-    folder.append([row(5)])
-    assert [r["seed"] for r in folder.rows()] == [1, 5]
+    folder.append(result(5))
+    assert [r["seed"] for r in folder.results()] == [1, 5]
 
 
 @pytest.mark.parametrize(
@@ -50,22 +50,22 @@ def test_a_line_that_a_kill_cut_off_is_dropped(folder, row):
     ],
 )
 def test_a_damaged_line_is_named(folder, line):
-    (folder.path / LEDGER).write_text(line + "\n")
+    (folder.path / RESULTS).write_text(line + "\n")
     with pytest.raises(UsageError, match=r"runs.jsonl:1"):
-        folder.rows()
+        folder.results()
 
 
-def test_the_last_word_counts_but_a_crash_never_hides_a_result(folder, row):
-    folder.append([row(1, outcome="crashed"), row(1), row(2), row(2, outcome="crashed")])
-    assert [r["outcome"] for r in folder.rows()] == ["passed", "passed"]
+def test_the_last_word_counts_but_a_crash_never_hides_a_result(folder, result):
+    folder.append(result(1, outcome="crashed"), result(1), result(2), result(2, outcome="crashed"))
+    assert [r["outcome"] for r in folder.results()] == ["passed", "passed"]
 
 
-def test_shards_write_ledgers_of_their_own_and_are_read_together(folder, definition, row):
+def test_shards_write_files_of_their_own_and_are_read_together(folder, definition, result):
     shards = [SweepFolder.open(folder.path, definition) for _ in range(2)]
     for number, shard in enumerate(shards, start=1):
         shard.lock((number, 2))
-        shard.append([row(number)])
-    assert [r["seed"] for r in folder.rows()] == [1, 2]
+        shard.append(result(number))
+    assert [r["seed"] for r in folder.results()] == [1, 2]
 
 
 def test_nobody_else_may_write(folder, definition):
@@ -96,14 +96,14 @@ def test_the_seed_of_the_scenario_means_nothing(folder, definition):
 
 
 @pytest.mark.parametrize("text", ["{}", "no json", "[]", '{"name": 3}'])
-def test_a_damaged_definition_is_told(folder, text):
+def test_a_damaged_definition_is_reported(folder, text):
     (folder.path / "sweep.json").write_text(text)
     with pytest.raises(UsageError, match=r"sweep\.json"):
         SweepFolder.read(folder.path)
 
 
-def test_a_folder_that_is_none_is_told(tmp_path, definition):
-    with pytest.raises(UsageError, match="holds no sweep"):
+def test_other_folders_are_reported(tmp_path, definition):
+    with pytest.raises(UsageError, match="not a sweep"):
         SweepFolder.read(tmp_path)
     (tmp_path / "file").write_text("")
     with pytest.raises(UsageError, match="--out"):
@@ -113,9 +113,9 @@ def test_a_folder_that_is_none_is_told(tmp_path, definition):
         SweepFolder.open(tmp_path, definition)
 
 
-def test_results_are_written_as_table_and_report(folder, row):
-    folder.append([row(1, mean_velocity={"vx": 0.1}, time_to_goal_s=3), row(2, error="oh")])
-    folder.write_results("page")
+def test_results_are_written_as_table_and_report(folder, result):
+    folder.append(result(1, mean_velocity={"vx": 0.1}, time_to_goal_s=3), result(2, error="oh"))
+    folder.write_report("page")
     assert (folder.path / REPORT).read_text() == "page"
     table = pq.read_table(folder.path / TABLE).to_pylist()
     assert [r["seed"] for r in table] == [1, 2]

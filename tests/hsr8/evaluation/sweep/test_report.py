@@ -1,15 +1,15 @@
 from hsr8.evaluation.sweep.report import (
     LABELS,
-    fault,
-    write_comparison_of_values,
-    write_report,
+    problem,
+    report,
+    report_of_values,
 )
 from hsr8.evaluation.sweep.summary import QUANTITIES, summarize
 
 
-def test_the_page_tells_shares_worst_runs_and_how_to_repeat_them(definition, row):
-    rows = [row(1000), row(1001, success=False, outcome="failed", collisions=1)]
-    page = write_report(definition, rows, "hsr8 sweep course --seeds 1000:1002")
+def test_the_page_has_proportions_worst_runs_and_commands_to_repeat_them(definition, result):
+    rows = [result(1000), result(1001, success=False, outcome="failed", collisions=1)]
+    page = report(definition, rows, "hsr8 sweep course --seeds 1000:1002")
     assert page.startswith("# `course`: 2 seeds, 1000 to 1001\n")
     assert "    hsr8 sweep course --seeds 1000:1002\n" in page
     assert "| success | 1 of 2, 50.0 % (9.5 to 90.5 %) |" in page
@@ -19,44 +19,44 @@ def test_the_page_tells_shares_worst_runs_and_how_to_repeat_them(definition, row
     assert "| 1000 | passed | yes | 0 | 0 |" in page
 
 
-def test_where_all_is_well_the_closest_shaves_are_told(definition, row):
-    rows = [row(s, min_clearance_m=0.01 * s) for s in range(1, 9)]
-    page = write_report(definition, rows, "")
+def test_a_good_sweep_lists_the_smallest_clearances(definition, result):
+    rows = [result(s, min_clearance_m=0.01 * s) for s in range(1, 9)]
+    page = report(definition, rows, "")
     assert page.index("- seed 1: clearance 0.01 m") < page.index("- seed 2:")
     assert "- seed 4:" not in page
 
 
-def test_seeds_without_a_world_are_told_apart(definition, row):
-    rows = [row(1), {"seed": 7, "outcome": "refused", "error": "no room\nfor 12 obstacles"}]
-    page = write_report(definition, rows, "")
+def test_refused_seeds_are_listed_separately(definition, result):
+    rows = [result(1), {"seed": 7, "outcome": "refused", "error": "no room\nfor 12 obstacles"}]
+    page = report(definition, rows, "")
     assert "2 seeds, 1 to 7, with gaps" in page
     assert "success | 1 of 1" in page
     assert "- 7: no room\n" in page
 
 
 def test_an_empty_sweep_has_a_page(definition):
-    assert "no runs yet" in write_report(definition, [], "")
+    assert "no runs yet" in report(definition, [], "")
 
 
 def test_every_quantity_has_a_label():
-    assert set(LABELS) == {name for name, _ in QUANTITIES}
+    assert set(LABELS) == set(QUANTITIES)
 
 
-def test_faults_in_words(row):
-    assert fault(row(1)) == ""
-    assert fault(row(1, collisions=2, falls=1, success=False)) == "1 fall, 2 collisions"
-    assert fault(row(1, success=False, exit_reason="timeout")) == "timeout"
-    assert fault(row(1, outcome="failed")) == "criteria missed"
-    assert fault({"outcome": "crashed", "error": "killed by SIGKILL: \nmore"}).startswith(
+def test_problems_in_words(result):
+    assert problem(result(1)) == ""
+    assert problem(result(1, collisions=2, falls=1, success=False)) == "1 fall, 2 collisions"
+    assert problem(result(1, success=False, exit_reason="timeout")) == "timeout"
+    assert problem(result(1, outcome="failed")) == "criteria not met"
+    assert problem({"outcome": "crashed", "error": "killed by SIGKILL: \nmore"}).startswith(
         "crashed: killed by SIGKILL"
     )
 
 
-def test_values_are_lines(row):
+def test_values_are_lines(result):
     summaries = {
-        "a=1": summarize([row(1), row(2, success=False, falls=1)]),
+        "a=1": summarize([result(1), result(2, success=False, falls=1)]),
         "a=2": summarize([]),
     }
-    page = write_comparison_of_values("a", summaries, "hsr8 sweep x --vary a=1,2", "hsr8 1")
+    page = report_of_values("a", summaries, "hsr8 sweep x --vary a=1,2", "hsr8 1")
     assert "| `a=1` | 2 | 50% |" in page
     assert "| `a=2` | 0 |" in page

@@ -5,31 +5,31 @@ from hypothesis import strategies as st
 from hsr8.evaluation.sweep.summary import summarize, worst_first
 
 
-def test_counts(row):
+def test_counts(result):
     rows = [
-        row(1),
-        row(2, success=False, outcome="failed", collisions=2, collisions_moving=1, falls=1),
-        row(3, arrival_error_deg=20.0, attempts=2),
+        result(1),
+        result(2, success=False, outcome="failed", collisions=2, collisions_moving=1, falls=1),
+        result(3, arrival_error_deg=20.0, attempts=2),
         {"seed": 4, "outcome": "crashed", "attempts": 2},
         {"seed": 5, "outcome": "refused"},
-        row(6, success=False, outcome="diverged", exit_reason="diverged"),
+        result(6, success=False, outcome="diverged", exit_reason="diverged"),
     ]
     summary = summarize(rows)
     assert summary.runs == 5
-    assert (summary.refused, summary.crashed, summary.diverged, summary.retried) == (1, 1, 1, 2)
-    assert (summary.success.count, summary.success.of) == (2, 5)
-    assert (summary.without_fall.count, summary.without_fall.of) == (3, 4)
-    assert (summary.arrived.count, summary.arrived.of) == (1, 2)
-    assert summary.collisions == {"all": 2, "moving": 1, "static": 0, "closing": 0}
+    assert (summary.refused, summary.crashed, summary.diverged, summary.repeated) == (1, 1, 1, 2)
+    assert (summary.success.count, summary.success.n) == (2, 5)
+    assert (summary.without_fall.count, summary.without_fall.n) == (3, 4)
+    assert (summary.arrived.count, summary.arrived.n) == (1, 2)
+    assert summary.collisions == {"all": 2, "moving": 1, "static": 0, "at_fault": 0}
     assert summary.collisions_per_run == pytest.approx(0.5)
-    assert summary.collisions_per_metre == pytest.approx(2 / 40)
+    assert summary.collisions_per_m == pytest.approx(2 / 40)
     assert summary.falls == 1
-    assert summary.ended == {"goal": 3, "crashed": 1, "diverged": 1}
+    assert summary.exit_reasons == {"goal": 3, "crashed": 1, "diverged": 1}
     assert summary.quantities["time_to_goal_s"].n == 2
     assert summary.quantities["min_clearance_m"].n == 4
 
 
-def test_nothing_is_no_mistake():
+def test_an_empty_sweep_has_a_summary():
     summary = summarize([])
     assert summary.runs == 0
     assert summary.quantities == {}
@@ -38,25 +38,25 @@ def test_nothing_is_no_mistake():
 
 @settings(max_examples=25)
 @given(st.permutations(range(6)))
-def test_the_order_of_the_rows_does_not_matter(row_order):
+def test_the_order_of_the_results_does_not_matter(order):
     rows = [
         {"seed": s, "outcome": "passed", "success": s > 2, "min_clearance_m": 0.1 * s, "falls": 0}
         for s in range(6)
     ]
-    mixed = [rows[k] for k in row_order]
+    mixed = [rows[k] for k in order]
     assert summarize(mixed) == summarize(rows)
     assert worst_first(mixed) == worst_first(rows)
 
 
-def test_worst_first(row):
+def test_worst_first(result):
     rows = [
-        row(1),
-        row(2, min_clearance_m=0.01),
-        row(3, success=False, outcome="failed"),
-        row(4, collisions=1, success=False),
-        row(5, collisions=3, success=False),
-        row(6, falls=1, success=False),
-        row(7, outcome="diverged"),
+        result(1),
+        result(2, min_clearance_m=0.01),
+        result(3, success=False, outcome="failed"),
+        result(4, collisions=1, success=False),
+        result(5, collisions=3, success=False),
+        result(6, falls=1, success=False),
+        result(7, outcome="diverged"),
         {"seed": 8, "outcome": "crashed"},
         {"seed": 9, "outcome": "refused"},
     ]

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hsr8.evaluation.sweep.table import flat, write_table
+from hsr8.evaluation.sweep.table import flatten, write_table
 
 VALUES = (
     st.none() | st.booleans() | st.integers(-(2**60), 2**60) | st.floats() | st.text(max_size=3)
@@ -19,8 +19,8 @@ def test_any_mixture_of_values_has_a_table(rows, tmp_path_factory):
     table = pq.read_table(file)
     assert table.num_rows == len(rows)
     for name in table.column_names:
-        told = [value is None for value in table[name].to_pylist()]
-        assert told == [row.get(name) is None for row in rows]
+        null = [value is None for value in table[name].to_pylist()]
+        assert null == [row.get(name) is None for row in rows]
 
 
 @pytest.mark.parametrize(
@@ -51,5 +51,5 @@ def test_a_full_disk_leaves_the_old_table_alone(tmp_path, monkeypatch):
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [before]
 
 
-def test_nested_results_are_flat():
-    assert flat({"a": {"b": 1, "c": {"d": 2}}, "e": 3}) == {"a.b": 1, "a.c.d": 2, "e": 3}
+def test_nested_results_are_flatten():
+    assert flatten({"a": {"b": 1, "c": {"d": 2}}, "e": 3}) == {"a.b": 1, "a.c.d": 2, "e": 3}

@@ -37,14 +37,7 @@ def test_nothing_is_drawn_of_what_is_behind():
     [GazeParameters(), GazeParameters(max_pan=1.0, min_tilt=-0.8, max_tilt=0.11, step=0.13)],
 )
 def test_cells_of_the_gaze_map_are_where_its_picture_has_them(gaze):
-    grid = GazeGrid(
-        max_pan=gaze.max_pan,
-        min_tilt=gaze.min_tilt,
-        max_tilt=gaze.max_tilt,
-        step=gaze.step,
-        half_pan=0.5,
-        half_tilt=0.4,
-    )
+    grid = GazeGrid(gaze, 1.5, 1.2)
     rows, columns = len(grid.tilt), len(grid.pan)
     pan, tilt = np.meshgrid(grid.pan, grid.tilt)
     cells = np.column_stack([pan.ravel(), tilt.ravel()])

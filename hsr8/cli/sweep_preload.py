@@ -1,0 +1,27 @@
+"""Everything a run needs, loaded by importing this module in the fork server of a sweep.
+
+The server forks with one thread, without an OpenGL context and without Rerun, which starts
+threads on import.
+"""
+
+import gc
+import os
+import signal
+from contextlib import suppress
+
+from hsr8.cli.loading import loading
+from hsr8.parent_watch import end_with_parent
+
+end_with_parent(os.getppid(), signal.SIGKILL)
+
+with loading():
+    import hsr8.cli.recorded_run  # noqa: F401  chooses the OpenGL backend before MuJoCo loads
+    from hsr8.loop import Simulation
+    from hsr8.scenario.loader import load_scenario
+
+# A short run loads the compiled kernels. If it fails, the runs of the sweep report the reason.
+with suppress(Exception):
+    SHORT = ("robot.body=kinematic", "camera.source=analytic", "duration=1.0")
+    Simulation(load_scenario("quick", SHORT, 0), 0).run()
+gc.collect()
+gc.freeze()  # garbage collection leaves the memory that all runs share alone
