@@ -1,7 +1,7 @@
-"""OpenGL without a display: the one place that chooses how MuJoCo draws.
+"""OpenGL without a display: choice of the backend with which MuJoCo renders.
 
-MuJoCo reads ``MUJOCO_GL`` once, when it is first imported. The package calls
-`choose_backend` before anything of it imports MuJoCo.
+MuJoCo reads ``MUJOCO_GL`` once, when it is first imported. The package calls `choose_backend`
+before it imports MuJoCo.
 """
 
 import ctypes
@@ -15,48 +15,69 @@ from hsr8.errors import RenderingUnavailable
 APT_LINE = "apt-get install -y libegl1 libgl1"
 VULKAN_LINE = "apt-get install -y mesa-vulkan-drivers"  # for the Rerun viewer
 BACKENDS = ("egl", "osmesa")
-ASKED = os.environ.get("MUJOCO_GL", "").strip()  # by the user, before `choose_backend` writes it
+REQUESTED = os.environ.get("MUJOCO_GL", "").strip()  # by the user, before `choose_backend`
 _LIBRARIES = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
-# What else MuJoCo takes on Linux: a window of a display, or nothing at all.
+# Other values that MuJoCo accepts on Linux: a window of a display, or no rendering.
 _OTHERS = {"glfw", "glx", "enable", "enabled", "on", "true", "1"}
 _OTHERS |= {"disable", "disabled", "off", "false", "0"}
 SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "software")
 
 
 def choose_backend() -> str:
-    """Set ``MUJOCO_GL``: what the user asked for, else EGL, else OSMesa.
+    """Set ``MUJOCO_GL`` to the user's choice, else to EGL, else to OSMesa.
 
-    A backend that is unknown or whose library is missing is switched off, for it would make
-    the import of MuJoCo fail although physics needs no drawing.
+    An unknown backend or one with a missing library is switched off: with it the import of
+    MuJoCo would fail although physics does not need rendering.
 
     Returns:
         The backend in force.
     """
-    asked = os.environ.get("MUJOCO_GL", "").strip().lower()
-    if asked in _OTHERS:
-        return asked
-    wanted = [name for name in BACKENDS if asked in ("", name)]
-    chosen = next((name for name in wanted if _loads(_LIBRARIES[name])), "disable")
+    requested = os.environ.get("MUJOCO_GL", "").strip().lower()
+    if requested in _OTHERS:
+        return requested
+    candidates = [name for name in BACKENDS if requested in ("", name)]
+    chosen = next((name for name in candidates if _loads(_LIBRARIES[name])), "disable")
     os.environ["MUJOCO_GL"] = chosen
     return chosen
 
 
-@cache
 def require_gl() -> str:
-    """Make sure that MuJoCo can draw; asked once per process.
+    """Check that MuJoCo can render in this process; OpenGL is tried once.
 
     Returns:
-        Name of the renderer as OpenGL gives it, for example ``llvmpipe (LLVM 15.0.6, ...)``.
+        Name of the OpenGL renderer, for example ``llvmpipe (LLVM 15.0.6, ...)``.
 
     Raises:
-        RenderingUnavailable: no OpenGL draws here; the message says what to install.
+        RenderingUnavailable: OpenGL cannot render here, or was used before a fork of the process.
+    """
+    renderer, process = _first_use()
+    if process != os.getpid():
+        raise RenderingUnavailable(
+            "multiprocessing start method fork: OpenGL was used before the fork and would hang in "
+            "this process; expected forkserver or spawn, as in "
+            "multiprocessing.get_context('forkserver')"
+        )
+    return renderer
+
+
+@cache
+def _first_use() -> tuple[str, int]:
+    """Return the renderer and the process that used OpenGL first."""
+    return probe_gl(), os.getpid()
+
+
+def probe_gl() -> str:
+    """Open an OpenGL context and return the name of the renderer.
+
+    Raises:
+        RenderingUnavailable: OpenGL cannot render here.
     """
     if choose_backend() == "disable":
-        raise RenderingUnavailable(_advice("no library to draw with was found"))
+        raise RenderingUnavailable(_advice("no OpenGL library"))
     import mujoco  # noqa: PLC0415  the backend is chosen first
 
     try:
-        with warnings.catch_warnings(record=True) as said:  # GLFW's way to fail
+        with warnings.catch_warnings(record=True) as caught:  # GLFW fails with a warning
             warnings.simplefilter("always")
             context = mujoco.GLContext(16, 16)
             context.make_current()
@@ -67,22 +88,22 @@ def require_gl() -> str:
     except (ImportError, AttributeError, OSError, RuntimeError, TypeError, mujoco.FatalError) as e:
         raise RenderingUnavailable(_advice(str(e))) from e
     if name is None:
-        reason = "the context does not answer; was mujoco imported before hsr8?"
-        for warning in said[:1]:
+        reason = "the context does not respond; was mujoco imported before hsr8?"
+        for warning in caught[:1]:
             reason = re.sub(r"\(\d+\) b'(.*)'", r"\1", str(warning.message))
         raise RenderingUnavailable(_advice(reason))
     return str(name.decode())
 
 
 def flush() -> None:
-    """Start the queued drawing without waiting (glFlush)."""
+    """Start the queued rendering without waiting (glFlush)."""
     from OpenGL import GL  # noqa: PLC0415  binds to the platform of the context
 
     GL.glFlush()
 
 
 def is_software(renderer: str) -> bool:
-    """Whether this renderer draws on the processor."""
+    """Return whether this renderer runs on the CPU."""
     return any(word in renderer.lower() for word in SOFTWARE_RENDERERS)
 
 
@@ -96,15 +117,15 @@ def _loads(library: str) -> bool:
 
 def _advice(reason: str) -> str:
     why = reason.splitlines()[0] if reason else "no reason given"
-    if ASKED:
-        cause = f"no OpenGL can draw with MUJOCO_GL={ASKED} ({why})"
-        cure = f"let hsr8 choose:      unset MUJOCO_GL   (or choose {', '.join(BACKENDS)})"
+    if REQUESTED:
+        cause = f"MUJOCO_GL={REQUESTED}: OpenGL cannot render ({why})"
+        remedy = f"let hsr8 choose:      unset MUJOCO_GL   (or choose {', '.join(BACKENDS)})"
     else:
-        cause = f"no OpenGL can draw here ({why})"
-        cure = f"install it, as root:  {APT_LINE}"
+        cause = f"OpenGL cannot render ({why})"
+        remedy = f"install it, as root:  {APT_LINE}"
     return (
         f"{cause}"
-        f"\n  {cure}"
+        f"\n  {remedy}"
         "\n  or run without it:    --camera analytic"
         "\n  details:              hsr8 doctor"
     )

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
-from hsr8.gl import APT_LINE, ASKED, BACKENDS, VULKAN_LINE, is_software
+from hsr8.gl import APT_LINE, REQUESTED, BACKENDS, VULKAN_LINE, is_software
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import versions
 from hsr8.render import viewer
@@ -62,7 +62,7 @@ def examine() -> list[Finding]:
             for name, version in versions().items()
         ),
         *opengl({backend: probe(backend) for backend in BACKENDS}),
-        *_asked(ASKED),
+        *_asked(REQUESTED),
         _models(),
         _disk(),
         _viewer(),

@@ -10,7 +10,7 @@ from hsr8.world.model import models
 
 @pytest.fixture(autouse=True)
 def nothing_asked(monkeypatch):
-    monkeypatch.setattr(doctor, "ASKED", "")
+    monkeypatch.setattr(doctor, "REQUESTED", "")
 
 
 @pytest.mark.parametrize(
@@ -56,11 +56,11 @@ def test_a_backend_that_fails_is_a_note_not_an_error(monkeypatch):
 
 
 def test_a_backend_that_is_asked_for_must_draw(monkeypatch, capsys):
-    monkeypatch.setattr(doctor, "ASKED", "osmesa")
+    monkeypatch.setattr(doctor, "REQUESTED", "osmesa")
     monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe" if backend == "egl" else None)
     assert entry(["doctor"]) == 2
     assert "unset MUJOCO_GL" in " ".join(capsys.readouterr().out.split())
-    monkeypatch.setattr(doctor, "ASKED", "egl")
+    monkeypatch.setattr(doctor, "REQUESTED", "egl")
     assert entry(["doctor"]) == 0
 
 
