@@ -14,7 +14,7 @@ from rich.table import Table
 
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
-from hsr8.gl import APT_LINE, REQUESTED, BACKENDS, VULKAN_LINE, is_software
+from hsr8.gl import APT_LINE, BACKENDS, REQUESTED, VULKAN_LINE, is_software
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import versions
 from hsr8.render import viewer
