@@ -68,7 +68,7 @@ class Tally:
         for tick in range(round(duration / CONTROL_PERIOD)):
             now = tick * CONTROL_PERIOD
             targets = engine.step(body.sense(), script(now), HeadTarget())
-            body.apply(targets.position + targets.offset)
+            body.apply(targets.setpoint)
             self.ticks += 1
             limits = engine.limits
             self.altered += bool(limits)

@@ -118,7 +118,7 @@ class Trial:
 
     def _tick(self) -> None:
         targets = self._walker.step(self._body.sense(), self._command, HeadTarget())
-        self._body.apply(targets.position + targets.offset)
+        self._body.apply(targets.setpoint)
 
 
 def missed(

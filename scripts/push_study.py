@@ -60,7 +60,7 @@ class Walker:
         body.data.xfrc_applied[body.torso, :2] = 0.0 if force is None else force
         for _ in range(round(seconds / CONTROL_PERIOD)):
             targets = self._engine.step(body.sense(), self._command, HeadTarget())
-            body.apply(targets.position + targets.offset)
+            body.apply(targets.setpoint)
             if body.fallen:
                 return False
         return True

@@ -133,7 +133,7 @@ class Study:
             if state.step_count != steps:
                 steps = state.step_count
                 walk.landed.append((body.pose, state.odometry))
-            control = targets.position + targets.offset
+            control = targets.setpoint
             walk.beyond += bool((np.maximum(low - control, control - high) > BEYOND).any())
             body.apply(control)
             walk.poses.append(body.pose)

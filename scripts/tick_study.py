@@ -125,7 +125,7 @@ def measure(
         times.cpu.append(1e3 * cpu)
         times.wall.append(1e3 * wall)
         times.collected.append(collections.oldest)
-        body.apply(targets.position + targets.offset)
+        body.apply(targets.setpoint)
         if body.fallen:
             times.falls += 1
             body, engine = body_of(), engine_of()

@@ -50,7 +50,7 @@ def measured(
         now = tick * CONTROL_PERIOD
         head = saccades(now)[1] if made["head"] else HeadTarget()
         targets = engine.step(body.sense(), script(now)[0], head)
-        body.apply(targets.position + targets.offset)
+        body.apply(targets.setpoint)
         if now < SETTLED:
             continue
         state = engine.state()

@@ -113,7 +113,7 @@ def main() -> None:
             sensors = body.sense()
             frames.append(sensors)
             targets = walker.step(sensors, command, HeadTarget())
-            body.apply(targets.position + targets.offset)
+            body.apply(targets.setpoint)
         walker = engine()
         with cProfile.Profile() as profile:
             for sensors in frames:

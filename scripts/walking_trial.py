@@ -70,7 +70,7 @@ def walk(
         if tick % SAMPLE == 0:
             trace.sample(body, engine)
         start = time.process_time()
-        body.apply(targets.position + targets.offset)
+        body.apply(targets.setpoint)
         trace.cpu_physics += time.process_time() - start
         trace.ticks += 1
         if body.fallen:

@@ -12,14 +12,14 @@ Array = NDArray[np.float64]
 class JointTargets:
     """Setpoints of the 26 position servos for one control tick.
 
-    The setpoint sent to the servo is ``position + offset``. The offset makes up for the
-    compliance of the servo under the load expected of it (gravity, velocity lag); a body
-    without dynamics follows ``position`` alone.
+    The setpoint is the desired angle plus a feed-forward offset for the compliance of the servo
+    under its expected load (gravity, velocity lag), within the range of the joint. A body without
+    dynamics follows `position` alone.
 
     Attributes:
         position: desired joint angles, order of ``JOINT_NAMES`` (26,) [rad].
-        offset: feed-forward offset of the setpoints (26,) [rad].
+        setpoint: sent to the servos (26,) [rad].
     """
 
     position: Array
-    offset: Array
+    setpoint: Array

@@ -84,7 +84,7 @@ class Walker:
         if get_up is None:
             targets = self._engine.step(sensors, command, head)
             if self._parameters.get_up.enabled and self._engine.fallen:
-                angles = targets.position + targets.offset
+                angles = targets.setpoint
                 self.get_up = GetUp(self._robot, self._parameters.get_up, angles)
             return targets
         self._engine.observe(sensors)

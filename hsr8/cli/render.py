@@ -85,6 +85,5 @@ def _tell(made: RenderedVideo, wall: float, options: Render) -> None:
         if made.thumbnail:
             print(f"thumbnail   {made.thumbnail}")
         print(
-            f"{made.frames} frames, {made.duration:.1f} s at {made.speed:g}x, "
-            f"drawn in {wall:.0f} s"
+            f"{made.frames} frames, {made.duration:.1f} s at {made.speed:g}x, drawn in {wall:.0f} s"
         )

@@ -4,8 +4,6 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from hsr8.body_builder import build_body, build_model
 from hsr8.errors import SimulationDiverged
 from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS, decision_fingerprints, fingerprints
@@ -15,11 +13,8 @@ from hsr8.recorder.run.tape import HASH, Block
 from hsr8.robot_builder import build_decisions, build_estimator, build_schedule
 from hsr8.seeds import named_rng
 from hsr8.world.field.generator import draw_layout
-from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
-
-NO_OFFSET = np.zeros(len(JOINT_NAMES))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +70,7 @@ def replay_physics(run: Run, tape: list[Block]) -> Replayed:
             )
         try:
             for setpoints in block.setpoints:
-                body.apply(JointTargets(setpoints, NO_OFFSET))
+                body.apply(JointTargets(setpoints, setpoints))
                 ticks += 1
         except SimulationDiverged:
             time = ticks * CONTROL_PERIOD

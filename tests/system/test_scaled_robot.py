@@ -57,7 +57,7 @@ class Body:
         )
 
     def apply(self, targets):
-        self.data.ctrl[self._servos] = targets.position + targets.offset
+        self.data.ctrl[self._servos] = targets.setpoint
         for _ in range(round(CONTROL_PERIOD / self.model.opt.timestep)):
             mujoco.mj_step(self.model, self.data)
 

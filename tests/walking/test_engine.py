@@ -25,7 +25,7 @@ def run(robot, body, script, seconds, parameters=None, watch=None):
     for k in range(round(seconds / CONTROL_PERIOD)):
         targets = engine.step(body.sense(), script(k * CONTROL_PERIOD), AHEAD)
         body.apply(targets)
-        rows.append(np.concatenate([targets.position, targets.offset]))
+        rows.append(np.concatenate([targets.position, targets.setpoint]))
         if watch is not None:
             watch(engine, k)
     return engine, np.array(rows)
@@ -231,6 +231,21 @@ def test_head_turns_to_its_target(robot, ideal_body):
         targets = engine.step(ideal_body.sense(), VelocityCommand(), HeadTarget(0.8, -0.5))
         ideal_body.apply(targets)
     assert targets.position[HEAD] == pytest.approx([0.8, -0.5])
+
+
+def test_setpoints_stay_within_the_range_of_the_joints(robot, ideal_body):
+    """The head moves from stop to stop, where the feed-forward offset leads beyond the stop."""
+    engine = WalkingEngine(robot, WalkingParameters())
+    at_stop = 0
+    for k in range(800):
+        side = 1.0 if k // 100 % 2 else -1.0
+        head = HeadTarget(2.0 * side, -2.0 * side)
+        targets = engine.step(ideal_body.sense(), twists(k * CONTROL_PERIOD), head)
+        ideal_body.apply(targets)
+        assert (targets.setpoint >= robot.lower).all()
+        assert (targets.setpoint <= robot.upper).all()
+        at_stop += targets.setpoint[0] in {robot.lower[0], robot.upper[0]}
+    assert at_stop > 100
 
 
 def test_there_is_no_state_before_the_first_tick(robot):

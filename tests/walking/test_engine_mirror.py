@@ -83,7 +83,7 @@ def test_the_mirrored_walk_is_the_walk_mirrored(robot, ideal_body, generator):
         apart = max(
             apart,
             np.abs(joints(a.position) - b.position).max(),
-            np.abs(joints(a.offset) - b.offset).max(),
+            np.abs(joints(a.setpoint) - b.setpoint).max(),
         )
     assert one.state().step_count > 5
     assert apart < 1e-6

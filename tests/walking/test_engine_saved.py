@@ -21,7 +21,7 @@ def drive(engine, frames):
         if k % 2:
             command = CommandState(forward=0.05 * rng.uniform(), direction=0.2 * rng.uniform())
         targets = engine.step(frame, command, HeadTarget(0.3, -0.2))
-        rows.append(np.concatenate([targets.position, targets.offset]))
+        rows.append(np.concatenate([targets.position, targets.setpoint]))
     return np.array(rows)
 
 

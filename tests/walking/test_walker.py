@@ -26,7 +26,7 @@ def walk(walking, body, ticks):
     rows = []
     for _ in range(ticks):
         targets = walking.step(body.sense(), FORWARD, AHEAD)
-        rows.append(np.concatenate([targets.position, targets.offset]))
+        rows.append(np.concatenate([targets.position, targets.setpoint]))
         body.apply(targets)
     return np.array(rows)
 

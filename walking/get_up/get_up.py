@@ -83,7 +83,7 @@ class GetUp:
         if self.outcome is Outcome.UNDER_WAY:
             self._decide(up_in_trunk((w, x, y, z)), still=still)
         position = self._track.advance()
-        return JointTargets(position=position, offset=np.zeros_like(position))
+        return JointTargets(position=position, setpoint=position)
 
     def _decide(self, up: Vector, *, still: bool) -> None:
         self._waited += 1

@@ -95,7 +95,7 @@ class WholeBody:
         )
         self.pelvis, self.turn_rate = pelvis, (pelvis[2] - before) / CONTROL_PERIOD
         w2, (left, right) = self._w2, gait.footholds
-        setpoints = self._feedforward.offsets(
+        offsets = self._feedforward.offsets(
             position,
             pelvis,
             gait.spots,
@@ -104,4 +104,5 @@ class WholeBody:
             task=((left.yaw, right.yaw), zmp_shift, gyro),
         )
         self.com = self._robot.moved_com()
-        return JointTargets(position=position, offset=setpoints)
+        setpoint = np.minimum(np.maximum(position + offsets, self._robot.lower), self._robot.upper)
+        return JointTargets(position=position, setpoint=setpoint)

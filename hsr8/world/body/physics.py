@@ -113,7 +113,7 @@ class PhysicsBody:
         )
 
     def setpoints(self, targets: JointTargets) -> Array:
-        return targets.position + targets.offset
+        return targets.setpoint
 
     def apply(self, targets: JointTargets) -> None:
         """Send the setpoints and advance one control tick.

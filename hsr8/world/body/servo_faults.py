@@ -26,7 +26,7 @@ class ServoFaults:
         if not self._faults:
             return targets
         self._commanded.append(targets)
-        position, offset = targets.position.copy(), targets.offset.copy()
+        position, setpoint = targets.position.copy(), targets.setpoint.copy()
         for number, fault in enumerate(self._faults):
             if not fault.acts(tick):
                 continue
@@ -35,6 +35,6 @@ class ServoFaults:
             else:
                 then = self._frozen.setdefault(number, self._applied or targets)
             position[fault.joints] = then.position[fault.joints]
-            offset[fault.joints] = then.offset[fault.joints]
-        self._applied = JointTargets(position, offset)
+            setpoint[fault.joints] = then.setpoint[fault.joints]
+        self._applied = JointTargets(position, setpoint)
         return self._applied

@@ -77,7 +77,10 @@ def test_a_pendulum_off_its_zmp_is_accelerated_by_the_ankles(body):
     ahead, _ = body()
     at_rest, falling = follow(still), follow(ahead, zmp=(-0.01, 0.0))
     np.testing.assert_array_equal(at_rest.position, falling.position)
-    left, right = falling.offset[4] - at_rest.offset[4], falling.offset[10] - at_rest.offset[10]
+    left, right = (
+        falling.setpoint[4] - at_rest.setpoint[4],
+        falling.setpoint[10] - at_rest.setpoint[10],
+    )
     assert left == pytest.approx(right, rel=1e-6)
     assert left < -1e-3
 
@@ -95,7 +98,7 @@ def test_the_servos_are_told_of_the_pendulum_s_acceleration(robot, body):
         (w2 * 0.02, -w2 * 0.005),
         task=((0.0, 0.0), NONE, STILL),
     )
-    assert targets.offset == pytest.approx(expected, abs=1e-12)
+    assert targets.setpoint - targets.position == pytest.approx(expected, abs=1e-12)
 
 
 def test_what_is_mirrored_goes_in_and_comes_out(body, mirrored_joints):
@@ -122,4 +125,4 @@ def test_what_is_mirrored_goes_in_and_comes_out(body, mirrored_joints):
         offset=(0.002, -0.001),
     )
     assert mirrored_joints(a.position) == pytest.approx(b.position, abs=1e-9)
-    assert mirrored_joints(a.offset) == pytest.approx(b.offset, abs=1e-6)
+    assert mirrored_joints(a.setpoint) == pytest.approx(b.setpoint, abs=1e-6)

@@ -42,7 +42,7 @@ def test_joints_follow_their_targets_and_the_stance_foot_stays(world, silent):
     for k in range(20):
         position[2] -= 0.001  # both hips bend: the trunk moves, the planted foot does not
         position[8] -= 0.001
-        body.apply(JointTargets(position=position.copy(), offset=np.full(26, 0.3)))
+        body.apply(JointTargets(position=position.copy(), setpoint=position + 0.3))
         assert np.allclose(body.sense().joint_position, position)
         body.update_kinematics()
         assert np.allclose(body.data.site("l_foot").xpos[:2], foot[:2], atol=1e-9), k
@@ -96,7 +96,8 @@ def test_touching_an_obstacle_is_noticed_though_nothing_stops_it(world, silent, 
 def test_between_two_looks_for_contacts_movers_are_where_they_belong(world, silent):
     law = Line((1.0, 0.0), (-0.5, 0.0))
     body = body_in(world, silent, Obstacle((1.0, 0.0), 0.10, 0.40, "blue", law))
-    stands, gaps = JointTargets(body.sense().joint_position, np.zeros(26)), []
+    position, gaps = body.sense().joint_position, []
+    stands = JointTargets(position, position)
     for _ in range(8):
         body.apply(stands)
         gaps.append(body.truth().clearance)

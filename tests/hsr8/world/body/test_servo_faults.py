@@ -15,7 +15,7 @@ def told(faults, ticks=12):
     """What the left knee and the right one are told in every tick."""
     servos = ServoFaults(faults)
     said = [servos.apply_fault(asked(tick), tick) for tick in range(ticks)]
-    assert all(t.offset[k] == 0.01 * t.position[k] for t in said for k in range(26))
+    assert all(t.setpoint[k] == 0.01 * t.position[k] for t in said for k in range(26))
     return [int(t.position[KNEE]) for t in said], [int(t.position[KNEE + 6]) for t in said]
 
 
