@@ -95,8 +95,8 @@ def walking_parameters(body: RobotModel, scenario: Scenario) -> WalkingParameter
         value = getattr(getattr(parameters, section), margin)
         if value >= half:
             raise ScenarioError(
-                f"walking.{section}.{margin}: the sole has no support area left, got {value:g}; "
-                f"expected less than half the width of the sole, {half:g}"
+                f"constants.walking.{section}.{margin}: the sole has no support area left, "
+                f"got {value:g}; expected less than half the width of the sole, {half:g}"
             )
     return parameters
 

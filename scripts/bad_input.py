@@ -4,7 +4,7 @@ import random
 import re
 from typing import Any
 
-from hsr8.scenario.reference import json_schema, json_schema_definition
+from hsr8.scenario.reference import json_schema, resolve
 
 TOKENS = ("", "[", "]", "[[", "{", "}", '"', "'''", "=", ".", ",", "\n", "nan", "inf", "-", "1e999")
 TOKENS += ("0x7fffffffffffffff", "1979-05-27T07:32:00Z", "\x00", "\ud7ff", "é", "9" * 400, "true")
@@ -34,7 +34,7 @@ def near(rng: random.Random, node: dict[str, Any]) -> Any:
     if rng.random() < 0.1:
         return value(rng)
     if "$ref" in node:
-        return near(rng, json_schema_definition(node["$ref"]))
+        return near(rng, resolve(node, None))
     for several in ("anyOf", "oneOf", "allOf"):
         if several in node:
             return near(rng, rng.choice(node[several]))
@@ -73,7 +73,7 @@ def keys() -> list[tuple[str, dict[str, Any]]]:
 
     def descend(prefix: str, node: dict[str, Any]) -> None:
         if "$ref" in node:
-            node = {**json_schema_definition(node["$ref"]), "default": None}
+            node = {**resolve(node, None), "default": None}
         for key, inner in node.get("properties", {}).items():
             found.append((f"{prefix}{key}", inner))
             descend(f"{prefix}{key}.", inner)

@@ -61,7 +61,7 @@ def main() -> None:
     print("| turn rate while lost [rad/s] | N | found within 10 s, 40 s | median [s] | p90 [s] |")
     print("|---|---|---|---|---|")
     for turn in arguments.turns:
-        settings = [*arguments.set, f"navigation.velocity_mapping.lost_turn_rate={turn}"]
+        settings = [*arguments.set, f"constants.navigation.velocity_mapping.lost_turn_rate={turn}"]
         times = [search(arguments.scenario, settings, seed) for seed in arguments.seeds]
         middle, late = np.percentile(times, [50, 90], method="higher")
         in_time = sum(t <= 10.0 for t in times), sum(t <= LIMIT for t in times)

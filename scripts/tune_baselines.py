@@ -186,7 +186,9 @@ def walk(
 
 def lines(method: str, values: Settings) -> tuple[str, ...]:
     """Settings of a scenario for these values of a baseline's parameters."""
-    return tuple(f"navigation.planner.{section(method)}.{k}={v}" for k, v in values.items())
+    return tuple(
+        f"constants.navigation.planner.{section(method)}.{k}={v}" for k, v in values.items()
+    )
 
 
 def mean(rows: list[Row]) -> tuple[float, float]:

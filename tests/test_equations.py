@@ -64,4 +64,4 @@ def test_keys_in_the_tables_are_keys_of_a_scenario():
         re.findall(r"\(`(evaluation|univector|gaze|moving_obstacles)\.(\w+)`", TEXT)
     ):
         assert f"## `[navigation.{section}]`" in reference
-        assert f"| `{key}` |" in reference, key
+        assert f"| `{key}`" in reference, key

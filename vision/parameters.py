@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from annotated_types import Gt, Interval
+from annotated_types import Interval
 
 Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
 
@@ -41,17 +41,17 @@ class VisionParameters:
 
     color_table: str = ""
     """File of a colour table made by `hsr8 color-table`; empty: the built-in colour classes."""
-    obstacle_height: Annotated[float, Gt(0.0)] = 0.30
+    obstacle_height: Annotated[float, Interval(ge=0.001, le=100.0)] = 0.30
     """Height of every obstacle [m]."""
-    min_radius: Annotated[float, Gt(0.0)] = 0.05
+    min_radius: Annotated[float, Interval(ge=0.001, le=100.0)] = 0.05
     """Minimum radius of an obstacle [m]."""
-    max_radius: Annotated[float, Gt(0.0)] = 0.12
+    max_radius: Annotated[float, Interval(ge=0.001, le=100.0)] = 0.12
     """Maximum radius of an obstacle [m]."""
     beacon_height: float = 0.60  # its two colours meet in the middle [m]
     beacon_radius: float = 0.05  # [m]
-    max_obstacle_range: Annotated[float, Gt(0.0)] = 4.5
+    max_obstacle_range: Annotated[float, Interval(ge=0.001, le=100.0)] = 4.5
     """Maximum distance of a reported obstacle [m]."""
-    max_beacon_range: Annotated[float, Gt(0.0)] = 5.5
+    max_beacon_range: Annotated[float, Interval(ge=0.001, le=100.0)] = 5.5
     """Maximum distance of a reported beacon [m]."""
     min_area: int = 20  # minimum area of an obstacle's blob [pixel]
     min_beacon_area: int = 5  # minimum area of the blob of one colour of a beacon [pixel]

@@ -39,9 +39,9 @@ GRAVITY = 9.81  # [m/s²]
 class GaitParameters:
     """Shape and timing of a footstep."""
 
-    footstep_time: Annotated[float, Gt(0.0), TIME] = 0.34
+    footstep_time: Annotated[float, Interval(ge=0.01, le=10.0), TIME] = 0.34
     """Duration of a footstep, double support included, while that keeps it short enough [s]."""
-    min_footstep_time: Annotated[float, Gt(0.0), TIME] = 0.26
+    min_footstep_time: Annotated[float, Interval(ge=0.01, le=10.0), TIME] = 0.26
     """Duration of a footstep at the quickest [s]."""
     double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.15
     """Share of the footstep in double support [1]."""
@@ -53,7 +53,7 @@ class GaitParameters:
     """Standing before the first command is obeyed [s]."""
     half_stance: Annotated[float, Gt(0.0), STANCE] = 0.042
     """Lateral distance of a foot from the middle of the stance [m]."""
-    swing_height: Annotated[float, Gt(0.0), LENGTH] = 0.025
+    swing_height: Annotated[float, Interval(ge=0.001, le=1.0), LENGTH] = 0.025
     """Height of the swing foot at mid-swing [m]."""
     swing_height_rate: Annotated[float, Gt(0.0), SPEED] = 0.2
     """Fastest change of that height while the foot is in the air [m/s]."""
@@ -92,7 +92,7 @@ class PatternParameters:
     """Preview of the footholds by the DCM recursion or by Kajita's regulator; the modifiable
     walking pattern of the paper, two-level ZMP functions in single support; or a plan whose ZMP
     is inside the soles at all times, a command that does not allow one being altered."""
-    pelvis_height: Annotated[float, Gt(0.0), LENGTH] = 0.204
+    pelvis_height: Annotated[float, Interval(ge=0.02, le=5.0), LENGTH] = 0.204
     """Height of the hips while walking [m]."""
     lipm_height: Annotated[float, Gt(0.0), HEIGHT] = 0.19
     """Height of the pendulum that the pelvis follows; less than the height of the centre
@@ -223,13 +223,13 @@ class StabilizerParameters:
 class LimitParameters:
     """What may be asked of the legs."""
 
-    vx: Annotated[float, Gt(0.0), SPEED] = 0.55
+    vx: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.55
     """Fastest walk forward [m/s]."""
-    vx_backward: Annotated[float, Gt(0.0), SPEED] = 0.45
+    vx_backward: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.45
     """Fastest walk backward [m/s]."""
-    vy: Annotated[float, Gt(0.0), SPEED] = 0.20
+    vy: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.20
     """Fastest walk sideways [m/s]."""
-    wz: Annotated[float, Gt(0.0), RATE] = 2.0
+    wz: Annotated[float, Interval(ge=0.001, le=50.0), RATE] = 2.0
     """Fastest turn [rad/s]."""
     combined: Annotated[float, Gt(0.0), NUMBER] = 1.15
     """Largest norm of the velocity with every component in units of its limit [1]."""
@@ -265,9 +265,9 @@ class LimitParameters:
 class HeadParameters:
     """Pan and tilt."""
 
-    max_rate: Annotated[float, Gt(0.0), RATE] = 6.0
+    max_rate: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE] = 6.0
     """Fastest turn of the head, each axis [rad/s]."""
-    max_acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 60.0
+    max_acceleration: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE_CHANGE] = 60.0
     """Largest angular acceleration of the head, each axis [rad/s²]."""
 
 

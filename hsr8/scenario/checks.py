@@ -5,27 +5,21 @@ from math import cos, hypot, radians, sin
 from pathlib import Path as FilePath
 
 from hsr8.scenario.fault_checks import fault_problems
-from hsr8.scenario.magnitudes import magnitudes
+from hsr8.scenario.key_lines import Path
 from hsr8.scenario.mission import Course, Points, Tour, Walk
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Point
-from hsr8.scenario.toml_lines import Path
 from hsr8.scenario.world import ROBOT_RADIUS, CircleMover, Mover, ShuttleMover
 from vision.errors import VisionError
 
-MOST_CELLS = 1000
-"""Largest side of the local map, which every frame goes through [cells]."""
+MAX_CELLS = 1000
+"""Largest side of the local map, in cells."""
 
-# Section, and two of its keys of which the first is the lesser.
-BELOW: tuple[tuple[Path, str, str], ...] = (
-    (("vision",), "min_radius", "max_radius"),
-    (("walking", "gait"), "swing_start", "swing_end"),
-    (("walking", "stabilizer"), "slowdown_start_error", "slowdown_full_error"),
-)
+# Section, and two of its keys of which the first must be below the second.
+BELOW: tuple[tuple[Path, str, str], ...] = ((("vision",), "min_radius", "max_radius"),)
 NOT_ABOVE: tuple[tuple[Path, str, str], ...] = (
     (("navigation", "mission"), "r_goal", "r_release"),
-    (("navigation", "univector"), "side_clear", "side_set"),
     (("navigation", "evaluation"), "d_nm", "d_fm"),
 )
 
@@ -37,7 +31,6 @@ def check(scenario: Scenario) -> list[Problem]:
         *_colors(scenario),
         *_ordered(scenario),
         *_local_map(scenario),
-        *magnitudes(scenario),
         *_mission(scenario),
         *_command(scenario),
         *_disturbance(scenario),
@@ -93,10 +86,10 @@ def _bounds(scenario: Scenario, section: Path, lower: str, upper: str) -> tuple[
 
 def _local_map(scenario: Scenario) -> Iterator[Problem]:
     grid = scenario.belief.local_map
-    if grid.size > MOST_CELLS * grid.cell:
+    if grid.size > MAX_CELLS * grid.cell:
         yield Problem(
             ("belief", "local_map", "cell"),
-            f"a map of {grid.size:g} m has more than {MOST_CELLS} cells of {grid.cell:g} m a side",
+            f"a map of {grid.size:g} m has more than {MAX_CELLS} cells of {grid.cell:g} m a side",
         )
 
 

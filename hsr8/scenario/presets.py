@@ -1,4 +1,4 @@
-"""Names that stand for several values: the navigation profile and the camera's lens."""
+"""Presets: the navigation profile and the camera lens."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -13,17 +13,16 @@ PROFILES = {"extended": NavigationParameters.extended, "paper": NavigationParame
 
 
 def expand_presets(data: Mapping[str, Any]) -> Table:
-    """`data` of a scenario with the values its profile and its lens stand for.
+    """Return a scenario's tables with the values of its profile and lens.
 
-    Values that are given stay as they are. Malformed tables stay too: reading them
-    against the schema reports them.
+    Given values take precedence. Malformed tables remain, for validation to report them.
     """
     expanded = dict(data)
     navigation, camera = data.get("navigation"), data.get("camera")
     if isinstance(navigation, dict):
         profile = navigation.get("profile")
         if isinstance(profile, str) and profile in PROFILES:
-            expanded["navigation"] = _under(navigation, asdict(PROFILES[profile]()))
+            expanded["navigation"] = under(navigation, asdict(PROFILES[profile]()))
     if isinstance(camera, dict):
         expanded["camera"] = _with_lens(camera)
     return expanded
@@ -38,9 +37,10 @@ def _with_lens(camera: Table) -> Table:
     return camera
 
 
-def _under(given: Table, defaults: Table) -> Table:
+def under(given: Table, defaults: Table) -> Table:
+    """Return `given` with `defaults` for the keys that are missing, table by table."""
     merged = {**defaults, **given}
     for key, default in defaults.items():
         if isinstance(default, dict) and isinstance(given.get(key), dict):
-            merged[key] = _under(given[key], default)
+            merged[key] = under(given[key], default)
     return merged

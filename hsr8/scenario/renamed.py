@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from hsr8.scenario.key_lines import Path
 from hsr8.scenario.problem import Problem, shown
-from hsr8.scenario.toml_lines import Path
 
 # Old key -> new key, both with dots, without indices of lists; a section covers the keys below it.
 # Sorted, one entry per line.

@@ -1,34 +1,37 @@
-"""The robot of a scenario: body, start and speeds."""
+"""Section ``[robot]``: body, initial pose and speed limits."""
 
 from typing import Annotated, Literal
 
 from annotated_types import Interval
 
-from hsr8.scenario.section import Section, Speed
+from hsr8.scenario.section import Section
 from hsr8.scenario.world import Start
+
+# The search for a feasibility certificate takes a time in proportion to 1 / speed.
+WalkingSpeed = Annotated[float, Interval(ge=0.05, le=2.0)]
 
 
 class SpeedEnvelope(Section):
-    """Speeds navigation may ask of walking."""
+    """Speed limits of navigation."""
 
-    vx: Speed = 0.20
-    """Fastest walk forward [m/s]."""
-    vx_backward: Speed = 0.10
-    """Fastest walk backward [m/s]."""
-    vy: Speed = 0.08
-    """Fastest walk sideways [m/s]."""
-    wz: Annotated[float, Interval(gt=0.0, le=3.0)] = 0.8
-    """Fastest turn [rad/s]."""
-    acceleration: Annotated[float, Interval(gt=0.0, le=5.0)] = 0.3
-    """Largest change of speed [m/s²]."""
+    vx: WalkingSpeed = 0.20
+    """Maximum forward speed [m/s]."""
+    vx_backward: WalkingSpeed = 0.10
+    """Maximum backward speed [m/s]."""
+    vy: WalkingSpeed = 0.08
+    """Maximum sideways speed [m/s]."""
+    wz: Annotated[float, Interval(ge=0.05, le=3.0)] = 0.8
+    """Maximum turn rate [rad/s]."""
+    acceleration: Annotated[float, Interval(ge=0.05, le=5.0)] = 0.3
+    """Maximum acceleration [m/s²]."""
 
 
 class Robot(Section):
-    """Body, start and speeds."""
+    """Body, initial pose and speed limits."""
 
     body: Literal["full", "kinematic"] = "full"
-    """Full physics, or a body without dynamics whose footsteps land where they are planned."""
+    """full: MuJoCo physics; kinematic: no dynamics, every footstep lands as planned."""
     start: Start = Start()
-    """Where it stands at time zero."""
+    """Initial pose."""
     speed: SpeedEnvelope = SpeedEnvelope()
-    """Speeds navigation may ask of walking."""
+    """Speed limits of navigation."""

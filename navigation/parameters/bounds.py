@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from annotated_types import Ge, Gt
+from annotated_types import Interval
 
-Positive = Annotated[float, Gt(0.0)]
-NonNegative = Annotated[float, Ge(0.0)]
+Positive = Annotated[float, Interval(ge=0.001, le=1000.0)]
+NonNegative = Annotated[float, Interval(ge=0.0, le=1000.0)]

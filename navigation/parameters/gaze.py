@@ -131,7 +131,7 @@ class GazeParameters:
     """Vote of the local map: at the mean under-confident point as printed, or at each."""
     candidates: Literal["obstacles", "beacons"] = "beacons"
     """Candidates for self-localization: obstacles and beacons, or beacons alone."""
-    switch_ratio: Annotated[float, Ge(1.0)] = 1.1
+    switch_ratio: Annotated[float, Ge(1.0), Le(100.0)] = 1.1
     """Gain in the gaze map that moves the gaze, except in mode deadline [1]."""
     max_pan: Annotated[float, Ge(0.01), Le(7.0)] = pi / 2.0
     """Maximum pan to either side [rad]."""
@@ -141,7 +141,7 @@ class GazeParameters:
     """Highest tilt [rad]."""
     dwell: NonNegative = 0.1
     """Dwell: time between the arrival of the head and the next decision [s]."""
-    fixed_tilt: float = -0.45
+    fixed_tilt: Annotated[float, Ge(-2.0), Le(2.0)] = -0.45
     """Tilt of the fixed gaze and of the sweep [rad]."""
     sweep_amplitude: NonNegative = 1.2
     """Pan amplitude of the sweep [rad]."""

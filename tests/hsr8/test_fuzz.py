@@ -97,7 +97,7 @@ NUMBERS = [
 @settings(max_examples=60)
 @given(
     key=st.sampled_from(NUMBERS),
-    value=st.sampled_from(["1e300", "-1e300", "5e-324", "9223372036854775807", "nan"]),
+    value=st.sampled_from(["1e300", "-1e300", "9223372036854775807", "nan"]),
 )
 def test_no_number_is_out_of_all_bounds(key, value):
     with pytest.raises(ScenarioError, match=key.split(".")[-1]):
@@ -107,21 +107,15 @@ def test_no_number_is_out_of_all_bounds(key, value):
 @pytest.mark.parametrize(
     "setting",
     [
-        "walking.pattern.lipm_height=1e-9",
         "robot.speed.wz=1e-09",
         "robot.speed.vx=1e-05",
-        "walking.gait.preview_steps=100000000",
         "walking.gait.min_footstep_time=11.0",
         "walking.odometry.yaw_drift=500000",
         "vision.pose.yaw_sigma=10.0",
         "vision.pose.tilt_sigma=1e6",
         "belief.tracking.particles=1000000000",
-        "navigation.moving_obstacles.samples=1000000000",
         "navigation.gaze.step=1e-9",
         "navigation.gaze.min_tilt=-649177",
-        "navigation.gaze.deadline.exponent=1e6",
-        "navigation.evaluation.ring_step=1e-8",
-        "navigation.waypoint_search.cell=1e-8",
         "belief.local_map.cell=1e-8",
         "camera.width=100000",
         "recorder.period_ms=0",
@@ -137,15 +131,12 @@ def test_what_would_take_all_memory_or_time_is_refused_by_name(setting):
 @pytest.mark.parametrize(
     "setting",
     [
-        "walking.gait.start_time=1e-9",
         "walking.gait.min_footstep_time=10.0",
         "walking.odometry.yaw_drift=1.0",
         "walking.odometry.lateral_noise=1.0",
-        "belief.tracking.stop_rate=1e6",
         "navigation.gaze.step=7.0",
         "navigation.gaze.max_pan=0.01",
         "navigation.gaze.min_tilt=-2.0",
-        "navigation.gaze.deadline.exponent=10.0",
     ],
 )
 def test_a_run_bears_what_is_just_allowed(setting):

@@ -11,8 +11,10 @@ from hsr8.scenario.loader import load_scenario
 def test_a_margin_is_below_half_the_width_of_the_sole_of_the_robot_that_walks(key, monkeypatch):
     body = robot_model()
     half = body.sole.half_width
-    scenario = load_scenario("walk", [f"walking.{key}={half}"])
-    with pytest.raises(ScenarioError, match=f"walking.{key}: .* less than half the width"):
+    scenario = load_scenario("walk", [f"constants.walking.{key}={half}"])
+    with pytest.raises(
+        ScenarioError, match=f"constants.walking.{key}: .* less than half the width"
+    ):
         walking_parameters(body, scenario)
     monkeypatch.setattr(body, "sole", replace(body.sole, half_width=1.1 * half))
     walking_parameters(body, scenario)
