@@ -6,7 +6,24 @@ from typing import Any
 
 from hsr8.scenario.reference import json_schema, resolve
 
-TOKENS = ("", "[", "]", "[[", "{", "}", '"', "'''", "=", ".", ",", "\n", "nan", "inf", "-", "1e999")
+TOKENS: tuple[str, ...] = (
+    "",
+    "[",
+    "]",
+    "[[",
+    "{",
+    "}",
+    '"',
+    "'''",
+    "=",
+    ".",
+    ",",
+    "\n",
+    "nan",
+    "inf",
+    "-",
+    "1e999",
+)
 TOKENS += ("0x7fffffffffffffff", "1979-05-27T07:32:00Z", "\x00", "\ud7ff", "é", "9" * 400, "true")
 VALUE = re.compile(rb'(?<=[:,\[])\s*(-?[\d.e+-]+|"[^"]*"|true|false|null|\[\]|\{\})')
 

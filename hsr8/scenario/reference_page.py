@@ -71,7 +71,8 @@ class ReferencePage:
         for key, value in values.items():
             yield self._row(f"{name}.{key}".lstrip("."), key, value, key in required)
         for key, value in properties.items():
-            yield from self._sections((*path, key), value)
+            if key != "constants":  # see the introduction
+                yield from self._sections((*path, key), value)
 
     def _variants(self, name: str, tag: str, variants: dict[str, Node]) -> tuple[list[str], Node]:
         """Table of the variants with their own keys, and the keys that variants share."""
