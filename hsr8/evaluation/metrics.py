@@ -1,4 +1,9 @@
-"""Results of a run: a listener that compares what happened with what was believed."""
+"""Metrics of a run: a listener that compares the true motion with the belief.
+
+``success`` means: no collision, no fall, every via point passed and, with a goal, the goal reached,
+in a run that ended by ``goal`` or ``completed``. The criteria of a scenario are evaluated
+separately, see `hsr8.evaluation.verdict`.
+"""
 
 import time as clock
 from collections.abc import Sequence
@@ -19,14 +24,14 @@ from hsr8.world.truth.truth import Truth
 from navigation.angles import wrap
 
 Array = NDArray[np.float64]
-Seen = tuple[FrameRecord, Truth]  # a camera frame, and what was true then
+Sample = tuple[FrameRecord, Truth]  # a camera frame with the truth of that time
 
-TOLERANCE = 0.10  # the true position may be so much farther from a point than the believed [m]
+TOLERANCE = 0.10  # added to the radii of via points and goal for the true position [m]
 HEADING_TOLERANCE = 15.0  # of the true heading at the goal [deg]
-MATCHED = 0.4  # a track farther from every true obstacle is of none [m]
-SACCADE = 0.17  # a change of the wanted gaze as large as this is a saccade [rad]
-STILL = 0.02  # the robot stands below this speed [m/s]
-STILL_WINDOW = 1.0  # its speed is measured over this time, longer than a step [s]
+MAX_MATCH_DISTANCE = 0.4  # from a track to its obstacle [m]
+SACCADE = 0.17  # minimum change of the commanded gaze [rad]
+STANDING_SPEED = 0.02  # maximum speed of a standing robot [m/s]
+SPEED_WINDOW = 1.0  # interval over which speed is measured, longer than a step [s]
 
 
 class Metrics(Listener):
@@ -50,18 +55,18 @@ class Metrics(Listener):
         self._collisions = CollisionCounter()
         self._via = 0
         self._via_missed = 0
-        self._done_at: float | None = None
+        self._finish_time: float | None = None
         self._goal_near = False
         self._goal_turned = False
         self._last: Truth | None = None
         self._tilt = 0.0
         self._path = 0.0
-        self._paused = 0.0
+        self._standing = 0.0
         self._anchor: tuple[float, float, float] | None = None
         self._clearance = inf
         self._falls = Falls()
         self._frames = 0
-        self._place_squares = 0.0
+        self._position_squares = 0.0
         self._heading_squares = 0.0
         self._nees = 0.0
         self._speed_squares = 0.0
@@ -78,25 +83,24 @@ class Metrics(Listener):
     def on_record(self, record: TickRecord) -> None:
         """Take one record."""
         if self._buffer.add(record):
-            self._count_pending()
+            self._evaluate_buffer()
 
     def close(self, exit_reason: str) -> None:
         """Stop the clock."""
         self._wall = clock.perf_counter() - self._started
 
     def result(self, exit_reason: str, state_hash: str) -> dict[str, object]:
-        """All results by name, in the units their names end with.
+        """Return all results by name, with units at the end of the names.
 
-        What was not measured, for example the localization of a robot without a camera
-        frame, is None.
+        Unmeasured results are None, for example the localization of a run without a camera frame.
         """
-        self._count_pending()
+        self._evaluate_buffer()
         time = self._last.time if self._last is not None else 0.0
         wall = self._wall if self._wall is not None else clock.perf_counter() - self._started
         collisions = self._collisions.collisions
         moving = sum(c.moving for c in collisions)
         error = self._arrival_error()
-        goal_reached = self._done_at is not None and self._goal_near and self._goal_turned
+        goal_reached = self._finish_time is not None and self._goal_near and self._goal_turned
         n = self._frames
         return {
             "success": self._success(exit_reason, goal_reached),
@@ -106,10 +110,10 @@ class Metrics(Listener):
             "via_points_passed": self._via - self._via_missed,
             "goal_reached": goal_reached,
             "arrival_error_deg": error,
-            "time_to_goal_s": self._done_at,
+            "time_to_goal_s": self._finish_time,
             "path_length_m": self._path,
             "min_clearance_m": _measured(self._clearance),
-            "localization_rmse_m": sqrt(self._place_squares / n) if n else None,
+            "localization_rmse_m": sqrt(self._position_squares / n) if n else None,
             "heading_rmse_deg": degrees(sqrt(self._heading_squares / n)) if n else None,
             "nees_mean": self._nees / n if n else None,
             "obstacle_speed_rmse_mps": (
@@ -126,7 +130,7 @@ class Metrics(Listener):
             "collisions_per_m": len(collisions) / self._path if self._path > 0.0 else None,
             "via_points_missed": self._via_missed,
             "max_tilt_deg": degrees(self._tilt),
-            "time_standing_s": self._paused,
+            "time_standing_s": self._standing,
             "saccades_per_s": self._saccades / time if time > 0.0 else None,
             "head_travel_radps": self._head_travel / time if time > 0.0 else None,
             "lost_fraction": self._lost / n if n else None,
@@ -136,17 +140,16 @@ class Metrics(Listener):
             **self._walk.result(),
         }
 
-    def _count_pending(self) -> None:
-        """Count the records that wait."""
+    def _evaluate_buffer(self) -> None:
         records = self._buffer.take()
         for record in records:
             self._add(record)
-        seen = [(record.frame, record.truth) for record in records if record.frame is not None]
-        if seen:
-            self._locate(seen)
-            self._match(seen)
-        for frame, truth in seen:
-            self._look(frame, truth)
+        samples = [(record.frame, record.truth) for record in records if record.frame is not None]
+        if samples:
+            self._add_poses(samples)
+            self._add_speeds(samples)
+        for frame, truth in samples:
+            self._add_frame(frame, truth)
 
     def _add(self, record: TickRecord) -> None:
         truth = record.truth
@@ -160,7 +163,7 @@ class Metrics(Listener):
         self._last = truth
 
     def _via_total(self) -> int:
-        """Via points of the mission; of a tour, those of one round."""
+        """Return the number of via points of the mission, or of one round of a tour."""
         return len(self._points) - (1 if self._has_goal else 0)
 
     def _success(self, exit_reason: str, goal_reached: bool) -> bool:
@@ -171,42 +174,39 @@ class Metrics(Listener):
         return exit_reason in ("completed", "goal")
 
     def _arrival_error(self) -> float | None:
-        """Error of the true heading at the end of the run [deg].
-
-        None if the mission was not finished.
-        """
-        if self._done_at is None or self._layout.goal_heading is None or self._last is None:
+        """Return the true heading error at the end [deg]; None if the mission was not finished."""
+        if self._finish_time is None or self._layout.goal_heading is None or self._last is None:
             return None
         return degrees(abs(wrap(float(self._last.robot[2]) - self._layout.goal_heading)))
 
     def _move(self, truth: Truth) -> None:
-        """Path length and pauses, measured over more than a step so that sway is no way."""
+        """Update path length and standing time, with a window that averages the sway."""
         x, y, _ = truth.robot.tolist()
         if self._anchor is None:
             self._anchor = (truth.time, x, y)
             return
         then, x0, y0 = self._anchor
-        if truth.time - then < STILL_WINDOW - 1e-9:
+        if truth.time - then < SPEED_WINDOW - 1e-9:
             return
         moved = hypot(x - x0, y - y0)
         self._path += moved
-        if moved < STILL * (truth.time - then):
-            self._paused += truth.time - then
+        if moved < STANDING_SPEED * (truth.time - then):
+            self._standing += truth.time - then
         self._anchor = (truth.time, x, y)
 
-    def _locate(self, seen: Sequence[Seen]) -> None:
-        """Compare the believed poses with the true ones."""
-        errors = np.array([frame.belief.pose - truth.robot for frame, truth in seen])
+    def _add_poses(self, samples: Sequence[Sample]) -> None:
+        """Compare believed and true poses."""
+        errors = np.array([frame.belief.pose - truth.robot for frame, truth in samples])
         errors[:, 2] = [wrap(turn) for turn in errors[:, 2].tolist()]
-        covariances = np.array([frame.belief.pose_covariance for frame, _ in seen])
+        covariances = np.array([frame.belief.pose_covariance for frame, _ in samples])
         whitened = np.linalg.solve(covariances, errors[..., None])[..., 0]
         for error, white in zip(errors, whitened, strict=True):
             dx, dy, turn = error.tolist()
-            self._place_squares += dx * dx + dy * dy
+            self._position_squares += dx * dx + dy * dy
             self._heading_squares += turn**2
             self._nees += float(error @ white) / 3.0
 
-    def _look(self, frame: FrameRecord, truth: Truth) -> None:
+    def _add_frame(self, frame: FrameRecord, truth: Truth) -> None:
         belief = frame.belief
         self._frames += 1
         self._lost += belief.lost
@@ -223,26 +223,27 @@ class Metrics(Listener):
         self._head = head
         self._follow_mission(frame, truth)
 
-    def _match(self, seen: Sequence[Seen]) -> None:
-        """Compare the velocity of every track with that of the obstacle next to it."""
-        tracks = [track for frame, _ in seen for track in frame.belief.tracks]
+    def _add_speeds(self, samples: Sequence[Sample]) -> None:
+        """Compare the velocity of every track with that of the nearest obstacle."""
+        tracks = [track for frame, _ in samples for track in frame.belief.tracks]
         if not tracks or not self._layout.obstacles:
             return
-        moments = np.repeat(np.arange(len(seen)), [len(frame.belief.tracks) for frame, _ in seen])
-        obstacles = np.array([truth.obstacle_positions for _, truth in seen])
-        away = obstacles[moments] - np.array([track.position for track in tracks])[:, None]
-        distance = np.hypot(away[..., 0], away[..., 1])
+        counts = [len(frame.belief.tracks) for frame, _ in samples]
+        rows = np.repeat(np.arange(len(samples)), counts)
+        obstacles = np.array([truth.obstacle_positions for _, truth in samples])
+        offset = obstacles[rows] - np.array([track.position for track in tracks])[:, None]
+        distance = np.hypot(offset[..., 0], offset[..., 1])
         nearest = distance.argmin(axis=1)
-        found = distance.min(axis=1) <= MATCHED
-        true = np.array([truth.obstacle_velocities for _, truth in seen])[moments, nearest]
-        wrong = (np.array([track.velocity for track in tracks]) - true)[found]
-        ends = np.bincount(moments[found], minlength=len(seen)).cumsum()
+        matched = distance.min(axis=1) <= MAX_MATCH_DISTANCE
+        true = np.array([truth.obstacle_velocities for _, truth in samples])[rows, nearest]
+        wrong = (np.array([track.velocity for track in tracks]) - true)[matched]
+        ends = np.bincount(rows[matched], minlength=len(samples)).cumsum()
         for squares in np.split(wrong * wrong, ends[:-1]):
             self._speed_squares += float(np.sum(squares))
         self._speeds += len(wrong)
 
     def _follow_mission(self, frame: FrameRecord, truth: Truth) -> None:
-        """Check what the mission believes it has passed or reached against the truth."""
+        """Check the points that the mission believes passed or reached against the truth."""
         task = frame.task
         x, y, heading = truth.robot.tolist()
         while self._via < task.index and len(self._points):
@@ -250,8 +251,8 @@ class Metrics(Listener):
             if hypot(px - x, py - y) > self._r_via + TOLERANCE:
                 self._via_missed += 1
             self._via += 1
-        if self._has_goal and task.done and self._done_at is None:
-            self._done_at = frame.time
+        if self._has_goal and task.done and self._finish_time is None:
+            self._finish_time = frame.time
             px, py = self._points[-1].tolist()
             self._goal_near = hypot(px - x, py - y) <= self._r_goal + TOLERANCE
             wanted = self._layout.goal_heading

@@ -170,7 +170,7 @@ def _first_summary(a: Run, b: Run) -> RunDifference | None:
         for channel, u, v in _unequal(asdict(x), asdict(y)):
             name = f"{channel}, frame {index}"
             return RunDifference("frames", name, u, v, round(x.time / CONTROL_PERIOD), x.time)
-    return _longer("frames", "frames", *([frame.time for frame in told] for told in frames))
+    return _longer("frames", "frames", *([frame.time for frame in record] for record in frames))
 
 
 def _first_event(a: Run, b: Run) -> RunDifference | None:

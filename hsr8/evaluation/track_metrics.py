@@ -1,4 +1,4 @@
-"""How good the tracks of a run were: positions, velocities, honesty, and how soon."""
+"""Metrics of the tracks of a run: errors, consistency, and time until movers are recognised."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ from navigation.belief.belief import Motion, Track
 
 Array = NDArray[np.float64]
 
-NEAR = 0.3  # distance up to which a track belongs to an obstacle [m]
-SIGHT = 3.5  # distance up to which a detected mover is in view [m]
-SETTLED = 1.0  # time in view after which the errors of a mover that is known to move count [s]
+MAX_MATCH_DISTANCE = 0.3  # from a track to its obstacle [m]
+MAX_RANGE = 3.5  # movers farther away are not in view [m]
+SETTLING_TIME = 1.0  # time in view after which the errors of a moving track count [s]
 
 
 class TrackMetrics:
-    """Compares the tracks of every camera frame with the true obstacles.
+    """Comparison of the tracks of every camera frame with the true obstacles.
 
     Args:
         obstacles: of the run's world, in the order of the truth.
@@ -35,7 +35,7 @@ class TrackMetrics:
         self._before: float | None = None
 
     def add(self, frame: FrameRecord, truth: Truth) -> None:
-        """Take a frame and what was true when it was believed."""
+        """Take a frame and the truth of that time."""
         time = frame.belief.time
         dt = 0.0 if self._before is None else time - self._before
         self._before = time
@@ -50,7 +50,7 @@ class TrackMetrics:
                 self._static.add(error, track.covariance[:2, :2])
 
     def result(self) -> dict[str, object]:
-        """Results by name, in the units their names end with; None if nothing was measured."""
+        """Return the results by name, with units at the end; None if nothing was measured."""
         return {
             "static_track_rmse_m": self._static.rms,
             "static_track_nees_mean": self._static.nees,
@@ -64,8 +64,8 @@ class TrackMetrics:
         }
 
     def _follow(self, mover: "_Mover", track: Track, truth: Truth, i: int, *, dt: float) -> None:
-        away = truth.obstacle_positions[i] - truth.robot[:2]
-        if not track.visible or hypot(*away.tolist()) > SIGHT:
+        offset = truth.obstacle_positions[i] - truth.robot[:2]
+        if not track.visible or hypot(*offset.tolist()) > MAX_RANGE:
             return
         if mover.first_seen is None:
             mover.first_seen = truth.time
@@ -76,16 +76,16 @@ class TrackMetrics:
         if not mover.recognised:
             mover.recognised = True
             mover.recognised_after = truth.time - mover.first_seen
-        if mover.in_view > SETTLED:
-            astray = track.position - truth.obstacle_positions[i]
-            self._moving.add(astray, track.covariance[:2, :2])
-            wrong = track.velocity - truth.obstacle_velocities[i]
-            self._velocity.add(wrong, track.covariance[2:, 2:])
+        if mover.in_view > SETTLING_TIME:
+            position_error = track.position - truth.obstacle_positions[i]
+            self._moving.add(position_error, track.covariance[:2, :2])
+            velocity_error = track.velocity - truth.obstacle_velocities[i]
+            self._velocity.add(velocity_error, track.covariance[2:, 2:])
 
 
 @dataclass(slots=True)
 class _Mover:
-    """What happened so far to one mover."""
+    """View of one mover so far."""
 
     first_seen: float | None = None
     in_view: float = 0.0
@@ -94,7 +94,7 @@ class _Mover:
 
 
 class _Errors:
-    """Sums over errors in the plane."""
+    """Sums of errors in the plane."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -102,7 +102,7 @@ class _Errors:
         self._normalised = 0.0
 
     def add(self, error: Array, covariance: Array) -> None:
-        """Take an error (2,) with its covariance (2, 2)."""
+        """Add an error (2,) with its covariance (2, 2)."""
         x, y = error.tolist()
         (xx, xy), (yx, yy) = covariance.tolist()
         self._count += 1
@@ -111,38 +111,41 @@ class _Errors:
 
     @property
     def rms(self) -> float | None:
-        """Root mean square of the length, if there was an error."""
+        """Root mean square of the error, None without errors."""
         return sqrt(self._squares / self._count) if self._count else None
 
     @property
     def nees(self) -> float | None:
-        """Mean normalised error squared per degree of freedom: 1 is honest."""
+        """Normalised estimation error squared per degree of freedom, 1 if consistent."""
         return self._normalised / self._count if self._count else None
 
 
-def owners(tracks: Sequence[Track], colors: Sequence[str], places: Array) -> dict[int, Track]:
-    """The track of each obstacle that has one, by the obstacle's index; the nearest first.
+def owners(tracks: Sequence[Track], colors: Sequence[str], positions: Array) -> dict[int, Track]:
+    """Assign tracks to obstacles of their colour, the nearest pair first.
 
     Args:
-        tracks: to tell apart.
+        tracks: of a belief.
         colors: of the obstacles (n).
-        places: of the obstacles in W (n, 2) [m].
+        positions: of the obstacles in W (n, 2) [m].
+
+    Returns:
+        Track by index of the obstacle.
     """
-    alike: dict[str, list[tuple[int, float, float]]] = {}
-    for i, (color, (x, y)) in enumerate(zip(colors, places.tolist(), strict=True)):
-        alike.setdefault(color, []).append((i, x, y))
+    by_color: dict[str, list[tuple[int, float, float]]] = {}
+    for i, (color, (x, y)) in enumerate(zip(colors, positions.tolist(), strict=True)):
+        by_color.setdefault(color, []).append((i, x, y))
     pairs = []
     for k, track in enumerate(tracks):
         believed_x, believed_y = track.position.tolist()
-        for i, x, y in alike.get(track.label, ()):
+        for i, x, y in by_color.get(track.label, ()):
             distance = hypot(x - believed_x, y - believed_y)
-            if distance < NEAR:
+            if distance < MAX_MATCH_DISTANCE:
                 pairs.append((distance, k, i))
     pairs.sort()
-    found: dict[int, Track] = {}
+    owned: dict[int, Track] = {}
     taken: set[int] = set()
     for _, k, i in pairs:
-        if i not in found and k not in taken:
-            found[i] = tracks[k]
+        if i not in owned and k not in taken:
+            owned[i] = tracks[k]
             taken.add(k)
-    return found
+    return owned
