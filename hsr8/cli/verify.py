@@ -48,4 +48,4 @@ def _verdict(stage: "Replayed") -> str:
     if stage.equal:
         return f"equal, {stage.count} {stage.unit}, bit for bit"
     unit = stage.unit.removesuffix("s")
-    return f"different: {stage.channel} of {unit} {stage.place} ({stage.time:.3f} s)"
+    return f"different: {stage.channel} of {unit} {stage.index} ({stage.time:.3f} s)"

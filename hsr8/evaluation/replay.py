@@ -25,7 +25,7 @@ class Replayed:
         stage: physics, estimator or decisions.
         unit: unit of the comparison: ticks or frames.
         count: number of compared units.
-        place: number of the first different unit, None if all are equal.
+        index: number of the first different unit, None if all are equal.
         time: simulated time there [s].
         channel: channel that differs there.
     """
@@ -33,14 +33,14 @@ class Replayed:
     stage: str
     unit: str
     count: int
-    place: int | None = None
+    index: int | None = None
     time: float | None = None
     channel: str | None = None
 
     @property
     def equal(self) -> bool:
         """Whether nothing differs."""
-        return self.place is None
+        return self.index is None
 
 
 def replay(run: Run) -> tuple[Replayed, ...]:

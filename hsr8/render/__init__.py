@@ -1,1 +1,1 @@
-"""Pictures and video made from a recorded run."""
+"""Images and videos of recorded runs, and the Rerun viewer."""

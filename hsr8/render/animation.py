@@ -8,7 +8,7 @@ import av
 from hsr8.errors import UsageError
 from hsr8.render.atomic_writer import AtomicWriter, Image
 
-COLORS = 96  # of a GIF, chosen for all of its pictures
+COLORS = 96  # in the palette of a GIF
 WEBP = {"quality": "30", "compression_level": "6", "preset": "picture"}
 KINDS = (".gif", ".webp")
 MAX_PIXELS = 400_000_000  # of all images of a GIF, about 2 GB

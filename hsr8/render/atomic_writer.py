@@ -16,7 +16,7 @@ class AtomicWriter(ABC):
     """Writer of a file, used by ``with``.
 
     Args:
-        path: of the file; until it is complete, a draft beside it.
+        path: of the file; a draft next to it until it is complete.
     """
 
     def __init__(self, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What vision recognised and where the robot wants to look, drawn over its camera image."""
+"""Overlay of a camera image: detections and the commanded gaze."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -10,27 +10,24 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import palette
 from hsr8.recorder.run.frame_summary import Blob, FrameSummary
-from hsr8.render.canvas import Color, Image
-from hsr8.render.text import draw_text, font_size, text_width
+from hsr8.render.text import Color, Image, draw_text, font_size, text_width
 
 Array = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom [pixel]
 
 SUBPIXEL = 3  # bits of a pixel that OpenCV draws with
-WINDOW = (
-    0.36  # half a window as a share of the field of view; that of the votes would not be seen whole
-)
-CORNER = 0.30  # length of its corners as a share of its sides
-BEHIND = 0.1  # cosine below which a direction is no longer drawn
+WINDOW = 0.36  # half side of the gaze window, a fraction of the field of view
+CORNER = 0.30  # length of the drawn corners, a fraction of the sides
+MIN_COSINE = 0.1  # of a drawn direction to the optical axis
 TAG = (24, 26, 30)
 
 
 class CameraOverlay:
-    """Draws over one camera's images.
+    """Overlay of the images of one camera.
 
     Args:
-        camera: width and height of the image that vision saw [pixel].
-        size: width and height of the pictures [pixel]; what vision saw is as high as they are.
+        camera: width and height of the image of vision [pixel].
+        size: width and height of the drawn images, which show the same height [pixel].
         vertical_fov: [rad].
     """
 
@@ -43,32 +40,32 @@ class CameraOverlay:
         )
         self._letters = font_size(size[1] / 26)
 
-    def draw(self, picture: Image, frame: FrameSummary) -> None:
-        """Draw over `picture` (height, width, 3) what holds at a camera frame."""
+    def draw(self, image: Image, frame: FrameSummary) -> None:
+        """Draw the detections and the gaze of a frame over `image` (height, width, 3)."""
         near_first = sorted(frame.blobs, key=lambda blob: blob.distance)
         for blob in reversed(near_first):
-            self._draw_box(picture, blob)
+            self._draw_box(image, blob)
         tags: list[Rectangle] = []
         for number, blob in enumerate(near_first):
-            self._draw_tag(picture, blob, tags, near_first[:number])
-        self._draw_window(picture, frame.gaze, frame.look)
+            self._draw_tag(image, blob, tags, near_first[:number])
+        self._draw_window(image, frame.gaze, frame.look)
 
     def _box(self, blob: Blob) -> Rectangle:
-        """Left, top, right, bottom of a blob in the picture [pixel]."""
+        """Return the box of a detection in the drawn image [pixel]."""
         left, top, right, bottom = blob.box
         edge = 0.5 * (self._size[0] - self._scale * self._camera[0])
         u, v = self._scale * left + edge, self._scale * right + edge
         return u, self._scale * top, v, self._scale * bottom
 
-    def _draw_box(self, picture: Image, blob: Blob) -> None:
+    def _draw_box(self, image: Image, blob: Blob) -> None:
         left, top, right, bottom = self._box(blob)
         corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
-        _strokes(picture, corners, _light(palette.of_label(blob.label)), closed=True)
+        _lines(image, corners, _light(palette.of_label(blob.label)), closed=True)
 
     def _draw_tag(
-        self, picture: Image, blob: Blob, tags: list[Rectangle], nearer: Sequence[Blob]
+        self, image: Image, blob: Blob, tags: list[Rectangle], nearer: Sequence[Blob]
     ) -> None:
-        """Its distance, where no nearer one has its own: above it, or below it on free ground."""
+        """Draw the distance above the box, or below it, if the space is free."""
         left, top, right, bottom = map(round, self._box(blob))
         boxes = [self._box(other) for other in nearer]
         text, letters = f"{blob.distance:.2f} m", self._letters
@@ -81,16 +78,14 @@ class CameraOverlay:
             inside = tag[1] >= 0 and tag[3] <= self._size[1]
             if inside and not any(_overlap(tag, other) for other in taken):
                 tags.append(tag)
-                picture[tag[1] : tag[3], max(0, tag[0]) : tag[2]] = TAG
-                draw_text(
-                    picture, (column, row), text, _light(palette.of_label(blob.label)), letters
-                )
+                image[tag[1] : tag[3], max(0, tag[0]) : tag[2]] = TAG
+                draw_text(image, (column, row), text, _light(palette.of_label(blob.label)), letters)
                 return
 
     def _draw_window(
-        self, picture: Image, gaze: tuple[float, float], look: tuple[float, float]
+        self, image: Image, gaze: tuple[float, float], look: tuple[float, float]
     ) -> None:
-        """Corners of a window around the chosen direction, and its middle."""
+        """Draw the corners and the centre of a window around the commanded direction."""
         across, up = (2.0 * WINDOW * self._half_fov).tolist()
         for x in (-1.0, 1.0):
             for y in (-1.0, 1.0):
@@ -98,44 +93,47 @@ class CameraOverlay:
                 points = [
                     self._pixel(gaze, look[0] - across * a, look[1] + up * b) for a, b in bend
                 ]
-                _strokes(picture, points, palette.VIEW)
+                _lines(image, points, palette.VIEW)
         middle = self._pixel(gaze, *look)
         if middle is not None:
             arm = 0.02 * self._size[1]
             for step in (np.array([arm, 0.0]), np.array([0.0, arm])):
-                _strokes(picture, [middle - step, middle + step], palette.VIEW)
+                _lines(image, [middle - step, middle + step], palette.VIEW)
 
     def _pixel(self, gaze: tuple[float, float], pan: float, tilt: float) -> Array | None:
-        """Where a direction of the head lies in the picture (2,) [pixel], None behind it."""
+        """Return the pixel of a direction (2,), None behind the camera."""
         turn = pan - gaze[0]
         ahead, left = cos(tilt) * cos(turn), cos(tilt) * sin(turn)
         forward = cos(gaze[1]) * ahead + sin(gaze[1]) * sin(tilt)
         up = cos(gaze[1]) * sin(tilt) - sin(gaze[1]) * ahead
-        if forward < BEHIND:
+        if forward < MIN_COSINE:
             return None
         middle = 0.5 * np.array(self._size, float)
         pixel: Array = middle - self._focal / forward * np.array([left, up])
         return pixel
 
 
-def _strokes(
-    picture: Image, points: Array | list[Array] | list[Array | None], color: Color, *,
+def _lines(
+    image: Image,
+    points: Array | Sequence[Array | None],
+    color: Color,
+    *,
     closed: bool = False,
-) -> None:  # fmt: skip
+) -> None:
     if any(point is None for point in points):
         return
     pixels = np.round(np.array(points) * (1 << SUBPIXEL)).astype(np.int32)
-    # A dark edge keeps the strokes apart from walls and obstacles of their own colour.
-    width = max(1, round(picture.shape[0] / 240))
+    # A dark edge separates the lines from a background of the same colour.
+    width = max(1, round(image.shape[0] / 240))
     for shade, thickness in ((TAG, width + 2), (color, width)):
-        cv2.polylines(picture, [pixels], closed, shade, thickness, cv2.LINE_AA, SUBPIXEL)
+        cv2.polylines(image, [pixels], closed, shade, thickness, cv2.LINE_AA, SUBPIXEL)
 
 
 def _overlap(a: Rectangle, b: Rectangle) -> bool:
-    """Whether two rectangles have a pixel in common."""
+    """Return whether two rectangles overlap."""
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
 def _light(color: Color) -> Color:
-    """Lighter, so that it is read on dark ground."""
+    """Return a lighter colour for a dark background."""
     return tuple((channel + 255) // 2 for channel in color)

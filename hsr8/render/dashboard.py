@@ -1,4 +1,4 @@
-"""The dashboard of a video: the scene, what the robot sees, believes, and where it looks."""
+"""Dashboard of a video: scene, camera image, belief and gaze."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.render.camera_overlay import CameraOverlay
-from hsr8.render.canvas import Image
 from hsr8.render.gaze_panel import GazePanel
-from hsr8.render.text import draw_text, font_size, text_width
+from hsr8.render.text import Image, draw_text, font_size, text_width
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TopDown
 from hsr8.scenario.schema import Scenario
@@ -19,26 +18,26 @@ from hsr8.world.field.layout import Layout
 Array = NDArray[np.float64]
 Size = tuple[int, int]
 
-USUAL = 720  # height of picture that lengths below are meant for [pixel]
+REFERENCE = 720  # image height to which the lengths below apply [pixel]
 GAP, BAR, MARGIN, PANEL = 4, 54, 14, 270  # [pixel]
-VALUE, NAME, TITLE = 20, 13, 14  # size of letters [pixel]
+VALUE, NAME, TITLE = 20, 13, 14  # font sizes [pixel]
 FRAME, BAND = (18, 19, 22), (28, 30, 34)
 INK, FAINT, ALARM = (238, 239, 241), (150, 155, 164), (255, 130, 90)
-LEAST_PANEL = 120  # a narrower gaze map cannot be read [pixel]
-SHORTEST_NAMED = 40  # a lower band has no room for names above its values [pixel]
+MIN_PANEL = 120  # width of a legible gaze map [pixel]
+MIN_NAMED = 40  # height of a band with room for names above its values [pixel]
 
 
 @dataclass(frozen=True, slots=True)
 class DashboardFrame:
-    """What the dashboard tells of an instant.
+    """Content of the dashboard at one instant.
 
     Attributes:
-        time: simulated [s].
-        frame: the latest camera frame.
+        time: simulated time [s].
+        frame: latest camera frame.
         movers: true positions (n, 2) [m].
         trail: true path of the robot so far (m, 2) [m].
         collisions: so far.
-        doing: what the robot is at, in words.
+        state: current situation of the robot.
     """
 
     time: float
@@ -46,112 +45,110 @@ class DashboardFrame:
     movers: Array
     trail: Array
     collisions: int
-    doing: str
+    state: str
 
 
 class Dashboard:
-    """Puts the pictures of one video together.
+    """Composition of the images of one video.
 
     Args:
         layout: of the run's world.
         scenario: of the run.
-        timeline: what happens when, drawn under the scene.
+        timeline: drawn under the scene.
         size: width and height, both even [pixel].
         speed: simulated seconds per second of video.
 
     Attributes:
-        scene_size, eye_size: of the pictures to be handed in [pixel].
+        scene_size, camera_size: of the images to compose [pixel].
     """
 
     def __init__(
         self, layout: Layout, scenario: Scenario, timeline: Timeline, size: Size, speed: float
     ) -> None:
         width, height = size
-        self._unit = unit = height / USUAL
+        self._unit = unit = height / REFERENCE
         self._size, self._speed = size, speed
         self._vias = None if layout.endless else len(layout.waypoints)
         gap, self._bar = round(GAP * unit), max(16, round(BAR * unit))
         side = width // 3
         camera = scenario.camera
-        eye_height = min(side * camera.height // camera.width, height // 2)
+        camera_height = min(side * camera.height // camera.width, height // 2)
         self.scene_size: Size = (width - side - gap, height - self._bar)
-        self.eye_size: Size = (side, eye_height)
-        self._left, self._below = width - side, eye_height + gap
+        self.camera_size: Size = (side, camera_height)
+        self._left, self._below = width - side, camera_height + gap
         self._overlay = CameraOverlay(
-            (camera.width, camera.height), self.eye_size, camera.vertical_fov
+            (camera.width, camera.height), self.camera_size, camera.vertical_fov
         )
         self._above = TopDown(layout, (side, height - self._below))
         self._timeline = timeline
         gaze = scenario.navigation.gaze
         panel = round(PANEL * unit)
         self._panel = GazePanel(max(panel, 64), gaze.max_pan, (gaze.min_tilt, gaze.max_tilt))
-        self._with_panel = panel >= LEAST_PANEL and panel < self.scene_size[0]
-        self._picture: Image = np.full((height, width, 3), FRAME, np.uint8)
+        self._with_panel = panel >= MIN_PANEL and panel < self.scene_size[0]
+        self._background: Image = np.full((height, width, 3), FRAME, np.uint8)
 
-    def draw(self, scene: Image, eye: Image, moment: DashboardFrame) -> Image:
-        """The picture (height, width, 3); it is the caller's.
+    def draw(self, scene: Image, camera: Image, shown: DashboardFrame) -> Image:
+        """Return a new image (height, width, 3).
 
         Args:
             scene: the robot from outside, of `scene_size`.
-            eye: what its camera sees at the time of the frame, of `eye_size`.
-            moment: what to tell.
+            camera: image of the head camera at the capture of the frame, of `camera_size`.
+            shown: content.
         """
-        picture, frame = self._picture.copy(), moment.frame
+        image, frame = self._background.copy(), shown.frame
         width, height = self.scene_size
-        picture[:height, :width] = scene
-        part = picture[: self.eye_size[1], self._left :]
-        part[:] = eye
+        image[:height, :width] = scene
+        part = image[: self.camera_size[1], self._left :]
+        part[:] = camera
         self._overlay.draw(part, frame)
-        picture[self._below :, self._left :] = self._above.draw(frame, moment.movers, moment.trail)
+        image[self._below :, self._left :] = self._above.draw(frame, shown.movers, shown.trail)
         if self._with_panel:
             margin = round(MARGIN * self._unit)
             corner = margin, height - margin - self._panel.size[1]
-            self._panel.draw(picture, corner, frame)
-        self._write_titles(picture)
-        band = picture[height:, :width]
+            self._panel.draw(image, corner, frame)
+        self._draw_titles(image)
+        band = image[height:, :width]
         band[:] = BAND
-        self._write_numbers(band, moment)
-        self._timeline.draw(band, moment.time)
-        return picture
+        self._draw_values(band, shown)
+        self._timeline.draw(band, shown.time)
+        return image
 
-    def _write_titles(self, picture: Image) -> None:
-        if self._bar < SHORTEST_NAMED:
+    def _draw_titles(self, image: Image) -> None:
+        if self._bar < MIN_NAMED:
             return
         letters, pad = font_size(TITLE * self._unit), round(8 * self._unit)
         column = self._left + pad
-        row = self.eye_size[1] - pad
+        row = self.camera_size[1] - pad
         right = column + text_width("head camera", letters, strong=True) + pad
-        picture[row - letters - pad // 2 : row + pad, self._left : right] = BAND
-        draw_text(picture, (column, row), "head camera", INK, letters, strong=True)
+        image[row - letters - pad // 2 : row + pad, self._left : right] = BAND
+        draw_text(image, (column, row), "head camera", INK, letters, strong=True)
         row = self._below + pad + letters
-        draw_text(picture, (column, row), "belief", BAND, letters, strong=True)
-        place = (self._size[0] - pad, row)
-        draw_text(
-            picture, place, "filled: believed    outlined: true", BAND, letters - 2, side="right"
-        )
+        draw_text(image, (column, row), "belief", BAND, letters, strong=True)
+        legend, right = "filled: believed    outlined: true", self._size[0] - pad
+        draw_text(image, (right, row), legend, BAND, letters - 2, side="right")
 
-    def _write_numbers(self, band: Image, moment: DashboardFrame) -> None:
-        """A line of values, each under its name."""
-        frame = moment.frame
+    def _draw_values(self, band: Image, shown: DashboardFrame) -> None:
+        """Draw a line of values, each under its name."""
+        frame = shown.frame
         error = hypot(frame.pose[0] - frame.truth[0], frame.pose[1] - frame.truth[1])
         vias = f"{frame.passed}" + ("" if self._vias is None else f" / {self._vias}")
         speed = "time" if self._speed == 1.0 else f"time, {self._speed:g}x"
         numbers = [
-            (speed, f"{moment.time:.1f} s"),
-            ("way points", vias),
+            (speed, f"{shown.time:.1f} s"),
+            ("waypoints", vias),
             ("speed", f"{hypot(*frame.velocity[:2]):.2f} m/s"),
             ("pose error", f"{100.0 * error:.1f} cm"),
-            ("collisions", f"{moment.collisions}"),
-            ("doing", moment.doing),
+            ("collisions", f"{shown.collisions}"),
+            ("state", shown.state),
         ]
-        named = self._bar >= SHORTEST_NAMED
+        named = self._bar >= MIN_NAMED
         letters, names = font_size(VALUE * self._unit), font_size(NAME * self._unit)
         pad = round(MARGIN * self._unit)
         base = round(0.78 * self._bar) if named else (self._bar + letters) // 2 - 2
         step = (band.shape[1] - 2 * pad) / len(numbers)
         for k, (name, value) in enumerate(numbers):
             column = pad + round(k * step)
-            alarm = name == "collisions" and moment.collisions > 0
+            alarm = name == "collisions" and shown.collisions > 0
             if text_width(value, letters, strong=True) > step and not named:
                 continue
             draw_text(band, (column, base), value, ALARM if alarm else INK, letters, strong=True)

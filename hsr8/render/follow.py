@@ -1,4 +1,4 @@
-"""A camera operator who walks behind the robot with a steady hand."""
+"""Free camera that follows the robot from behind, with smooth motion."""
 
 from math import atan2, degrees
 
@@ -12,11 +12,11 @@ Array = NDArray[np.float64]
 
 DISTANCE = 1.75  # from the robot [m]
 ELEVATION = -22.0  # looking down [deg]
-BESIDE = 35.0  # the camera stands so far to the right of straight behind [deg]
+SIDE_ANGLE = 35.0  # of the camera to the right of straight behind [deg]
 HEIGHT = 0.22  # of the point looked at [m]
-STEADY = 0.6  # time constant of the position, in video time [s]
-NEAR = 1.2  # and at most this in simulated time, or the robot leaves a fast video [s]
-CALM = 2.5  # time constant of the direction, in video time [s]
+POSITION_TIME = 0.6  # time constant of the position, in video time [s]
+MAX_POSITION_TIME = 1.2  # in simulated time, so that the robot stays in fast videos [s]
+DIRECTION_TIME = 2.5  # time constant of the direction, in video time [s]
 
 
 class FollowCamera:
@@ -30,23 +30,23 @@ class FollowCamera:
 
     def __init__(self, qpos: Array, fps: float, speed: float) -> None:
         yaw = np.unwrap([heading(row[3:7]) for row in qpos])
-        self._place = _smooth(qpos[:, :2], min(STEADY, NEAR / speed) * fps)
-        direction = _smooth(np.column_stack([np.cos(yaw), np.sin(yaw)]), CALM * fps)
+        self._target = _smooth(qpos[:, :2], min(POSITION_TIME, MAX_POSITION_TIME / speed) * fps)
+        direction = _smooth(np.column_stack([np.cos(yaw), np.sin(yaw)]), DIRECTION_TIME * fps)
         self._yaw = np.unwrap([atan2(y, x) for x, y in direction.tolist()])
 
     def at(self, index: int) -> mujoco.MjvCamera:
-        """Camera of one frame."""
+        """Return the camera of one frame."""
         camera = mujoco.MjvCamera()
         camera.type = mujoco.mjtCamera.mjCAMERA_FREE
-        camera.lookat[:] = (*self._place[index], HEIGHT)
+        camera.lookat[:] = (*self._target[index], HEIGHT)
         camera.distance = DISTANCE
         camera.elevation = ELEVATION
-        camera.azimuth = degrees(self._yaw[index]) + BESIDE
+        camera.azimuth = degrees(self._yaw[index]) + SIDE_ANGLE
         return camera
 
 
 def _smooth(values: Array, frames: float) -> Array:
-    """Exponential filter forth and back, so that nothing lags (n, m)."""
+    """Filter exponentially forwards and backwards, without lag (n, m)."""
     keep = np.exp(-1.0 / max(frames, 1e-6))
     smooth = values.astype(np.float64, copy=True)
     for rows in (range(1, len(smooth)), range(len(smooth) - 2, -1, -1)):

@@ -1,4 +1,4 @@
-"""The gaze map GM with the chosen gaze, and the partial evaluations it comes from."""
+"""Panel with the gaze map GM, the gaze and the partial evaluations."""
 
 from math import degrees
 
@@ -7,23 +7,21 @@ import numpy as np
 
 from hsr8.recorder import palette
 from hsr8.recorder.run.frame_summary import FrameSummary
-from hsr8.render.canvas import Image
-from hsr8.render.text import draw_text, font_size
+from hsr8.render.text import Image, draw_text, font_size
 
 PANEL, GROOVE = (28, 30, 34), (70, 74, 82)
 INK, FAINT = (238, 239, 241), (164, 168, 176)
 OPACITY = 0.86
-EVALUATIONS = ("ψ lm", "ψ sf", "ψ ob", "ψ way")
-"""Of the local map, of the robot's own place, of obstacles, of the way."""
+EVALUATIONS = ("ψ lm", "ψ sf", "ψ ob", "ψ way")  # local map, self, obstacles, way
 
 
 class GazePanel:
-    """Draws the panel into a corner of a picture.
+    """Panel in a corner of an image.
 
     Args:
         width: of the panel [pixel].
-        max_pan: largest pan of the map to either side [rad].
-        tilts: lowest and highest tilt of the map [rad].
+        max_pan: maximum pan of the map to either side [rad].
+        tilts: minimum and maximum tilt of the map [rad].
     """
 
     def __init__(self, width: int, max_pan: float, tilts: tuple[float, float]) -> None:
@@ -40,15 +38,17 @@ class GazePanel:
         heat = cv2.applyColorMap(ramp, cv2.COLORMAP_INFERNO)[:, 0, ::-1]
         self._heat = np.ascontiguousarray(heat)
 
-    def draw(self, picture: Image, corner: tuple[int, int], frame: FrameSummary) -> None:
-        """Draw into `picture` (height, width, 3), the panel's left upper corner at `corner`."""
+    def draw(self, image: Image, corner: tuple[int, int], frame: FrameSummary) -> None:
+        """Draw into `image` (height, width, 3) with the upper left corner at `corner`."""
         left, top = corner
         width, height = self.size
-        panel = picture[top : top + height, left : left + width]
+        panel = image[top : top + height, left : left + width]
         panel[:] = cv2.addWeighted(panel, 1.0 - OPACITY, np.full_like(panel, PANEL), OPACITY, 0.0)
         pad, base = self._pad, self._pad + self._letters - 1
         draw_text(panel, (pad, base), "gaze map", INK, self._letters, strong=True)
-        draw_text(panel, (width - pad, base), _told(frame.look), FAINT, self._letters, side="right")
+        draw_text(
+            panel, (width - pad, base), _described(frame.look), FAINT, self._letters, side="right"
+        )
         self._draw_map(panel, frame)
         self._draw_evaluations(panel, frame)
 
@@ -58,15 +58,15 @@ class GazePanel:
         if frame.gaze_map is not None:
             shades = cv2.resize(frame.gaze_map.image(), self._map, interpolation=cv2.INTER_NEAREST)
             part[:] = self._heat[shades]
-        now = self._pixel(frame.gaze)
+        current = self._pixel(frame.gaze)
         radius = max(2, self._map[1] // 14)
         chosen = self._pixel(frame.look)
-        cv2.line(panel, now, chosen, INK, 1, cv2.LINE_AA)
+        cv2.line(panel, current, chosen, INK, 1, cv2.LINE_AA)
         cv2.circle(panel, chosen, radius + 2, palette.BELIEF, 2, cv2.LINE_AA)
-        cv2.circle(panel, now, radius - 1, INK, -1, cv2.LINE_AA)
+        cv2.circle(panel, current, radius - 1, INK, -1, cv2.LINE_AA)
 
     def _draw_evaluations(self, panel: Image, frame: FrameSummary) -> None:
-        """Four bars below the map, each under its name."""
+        """Draw a bar per evaluation below the map."""
         pad = self._pad
         row = self._top + self._map[1] + pad + self._letters
         step = (self.size[0] - pad) // len(EVALUATIONS)
@@ -79,7 +79,7 @@ class GazePanel:
             groove[:, : round(min(1.0, max(0.0, value)) * groove.shape[1])] = palette.VIEW
 
     def _pixel(self, gaze: tuple[float, float]) -> tuple[int, int]:
-        """Column and row of a gaze in the panel."""
+        """Return column and row of a direction in the panel."""
         low, high = self._tilts
         u = (self._max_pan - gaze[0]) / (2.0 * self._max_pan)
         v = (high - gaze[1]) / (high - low)
@@ -88,8 +88,7 @@ class GazePanel:
         return column, self._top + round(v * (self._map[1] - 1))
 
 
-def _told(look: tuple[float, float]) -> str:
-    """A gaze in words."""
+def _described(look: tuple[float, float]) -> str:
     pan, tilt = round(degrees(look[0])), round(degrees(look[1]))
     across = "left" if pan >= 0 else "right"
     return f"{abs(pan)}° {across}, {abs(tilt)}° {'up' if tilt > 0 else 'down'}"

@@ -1,11 +1,12 @@
-"""A world seen from above, as a picture for people."""
+"""Plan of a world with obstacles, lanes, route and certificate."""
 
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from hsr8.render.canvas import Canvas, Color, Image, Point, framed
+from hsr8.render.canvas import Canvas, Point, framed
+from hsr8.render.text import Color, Image, draw_text
 from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle
@@ -20,34 +21,35 @@ FLOOR = (226, 225, 221)
 WHITE = (255, 255, 255)
 LANE = (150, 147, 142)
 ROUTE = (235, 125, 20)
-WAY = (20, 125, 160)
+PATH = (20, 125, 160)
 ROBOT = (250, 250, 250)
-FEW = 12  # more way points than this are shown paler and without their numbers
-AHEAD = 60.0  # the lane of a mover that never turns is drawn so far ahead [s]
-BEAT = 10.0  # the certificate's way has a mark every so often [s]
-WAY_WIDTH, WAY_DOT = 2, 0.025  # of the certificate's way [pixel, m]
+MAX_LABELS = 12  # more waypoints than this are pale and without numbers
+AHEAD = 60.0  # length of the lane of a mover that never turns [s]
+MARK_PERIOD = 10.0  # between two marks on the path of the certificate [s]
+PATH_WIDTH, PATH_DOT = 2, 0.025  # of the path of the certificate [pixel, m]
+NUMBER, LABEL = 12, 15  # font sizes of obstacles and waypoints [pixel]
 
 
 class PlanView:
-    """Draws a layout, x of W to the right and y up.
+    """Plan of a layout, x of W to the right and y up.
 
     Args:
         layout: to draw.
-        size: of the longer side of the picture [pixel].
-        certificate: whose way is drawn; None for none.
+        size: of the longer side of the image [pixel].
+        certificate: whose path is drawn, if any.
     """
 
     def __init__(
         self, layout: Layout, size: int = 900, certificate: Certificate | None = None
     ) -> None:
         self._layout = layout
-        self._way = np.zeros((0, 4)) if certificate is None else certificate.path
+        self._path = np.zeros((0, 4)) if certificate is None else certificate.path
         extent = framed(layout.field_size)
         width, height = np.ceil(extent * (size / extent.max())).astype(int).tolist()
         self._canvas = Canvas(layout.field_size, (width, height), PAPER)
 
     def draw(self) -> Image:
-        """Picture (height, width, 3), RGB."""
+        """Return the image (height, width, 3), RGB."""
         canvas = self._canvas
         canvas.field(FLOOR, INK, 2)
         for bump in self._layout.bumps:
@@ -66,63 +68,66 @@ class PlanView:
         return canvas.image
 
     def _obstacle(self, number: int, obstacle: Obstacle) -> None:
-        law = obstacle.motion
-        if isinstance(law, Appearing):  # it is drawn where it appears
-            obstacle = replace(obstacle, position=law.position(law.start), motion=law.law)
-            law = law.law
+        motion = obstacle.motion
+        if isinstance(motion, Appearing):
+            obstacle = replace(obstacle, position=motion.position(motion.start), motion=motion.law)
+            motion = motion.law
         self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.color))
-        if law is not None:
-            # One that waits shows where it will go.
-            depart = law.depart if isinstance(law, Passage) else 0.0
-            self._arrow(obstacle.position, law.velocity(depart + 1e-6))
+        if motion is not None:
+            depart = motion.depart if isinstance(motion, Passage) else 0.0
+            self._arrow(obstacle.position, motion.velocity(depart + 1e-6))
             self._canvas.ring(obstacle.position, obstacle.radius, INK)
-        self._canvas.text(obstacle.position, str(number), WHITE, centred=True)
+        u, v = self._canvas.pixel(obstacle.position)
+        at = u, v + round(0.4 * NUMBER)
+        draw_text(self._canvas.image, at, str(number), WHITE, NUMBER, side="middle")
 
     def _route(self) -> None:
-        places = [np.asarray(self._layout.start[:2]), *self._layout.waypoints]
-        last = len(places) - 1
-        color = ROUTE if last < FEW else tuple((np.add(ROUTE, FLOOR) // 2).tolist())
-        for leg in pairwise(places):
+        points = [np.asarray(self._layout.start[:2]), *self._layout.waypoints]
+        last = len(points) - 1
+        color = ROUTE if last < MAX_LABELS else tuple((np.add(ROUTE, FLOOR) // 2).tolist())
+        for leg in pairwise(points):
             self._canvas.line(leg, color)
-        for k, place in enumerate(places[1:], start=1):
+        for k, point in enumerate(points[1:], start=1):
             if k == last and not self._layout.endless:
-                self._canvas.ring(place, 0.10, ROUTE)
+                self._canvas.ring(point, 0.10, ROUTE)
                 if self._layout.goal_heading is not None:
                     heading = self._layout.goal_heading
-                    self._arrow(place, (0.12 * np.cos(heading), 0.12 * np.sin(heading)), ROUTE)
-            self._canvas.disc(place, 0.035, ROUTE)
+                    self._arrow(point, (0.12 * np.cos(heading), 0.12 * np.sin(heading)), ROUTE)
+            self._canvas.disc(point, 0.035, ROUTE)
 
     def _numbers(self) -> None:
-        """Numbers of the points, side by side where the robot comes by again."""
+        """Draw the numbers of the waypoints, joined at points visited repeatedly."""
         numbers: dict[tuple[float, float], list[str]] = {}
         for k, (x, y) in enumerate(self._layout.waypoints.tolist(), start=1):
             numbers.setdefault((x, y), []).append(str(k))
-        if len(self._layout.waypoints) <= FEW:
+        if len(self._layout.waypoints) <= MAX_LABELS:
             for at, passed in numbers.items():
-                self._canvas.text(at, ",".join(passed), ROUTE, size=0.5)
+                u, v = self._canvas.pixel(at)
+                text = ",".join(passed)
+                draw_text(self._canvas.image, (u + 7, v - 6), text, ROUTE, LABEL)
 
     def _certificate(self) -> None:
-        """The way that was found, with a mark for every ten seconds."""
-        if len(self._way) == 0:
+        """Draw the path of the certificate with a mark every ten seconds."""
+        if len(self._path) == 0:
             return
-        times = np.arange(0.0, self._way[-1, 0], BEAT)
-        self._canvas.line(self._way[:, 1:3], WAY, WAY_WIDTH)
-        marks = [np.interp(times, self._way[:, 0], self._way[:, k]) for k in (1, 2)]
+        times = np.arange(0.0, self._path[-1, 0], MARK_PERIOD)
+        self._canvas.line(self._path[:, 1:3], PATH, PATH_WIDTH)
+        marks = [np.interp(times, self._path[:, 0], self._path[:, k]) for k in (1, 2)]
         for mark in np.stack(marks, axis=1):
-            self._canvas.disc(mark, WAY_DOT, WAY)
+            self._canvas.disc(mark, PATH_DOT, PATH)
 
-    def _lane(self, law: MotionLaw) -> None:
-        if isinstance(law, Appearing):
-            law = law.law
-        if isinstance(law, Shuttle | Passage):
-            self._canvas.line((law.start, law.end), LANE)
-        elif isinstance(law, Line):
-            ahead = np.asarray(law.start) + AHEAD * np.asarray(law.rate)
-            self._canvas.line((law.start, ahead), LANE)
-        elif isinstance(law, Circle):
-            self._canvas.ring(law.centre, law.radius, LANE)
-        elif isinstance(law, Wander):
-            self._canvas.outline(law.track, LANE)
+    def _lane(self, motion: MotionLaw) -> None:
+        if isinstance(motion, Appearing):
+            motion = motion.law
+        if isinstance(motion, Shuttle | Passage):
+            self._canvas.line((motion.start, motion.end), LANE)
+        elif isinstance(motion, Line):
+            ahead = np.asarray(motion.start) + AHEAD * np.asarray(motion.rate)
+            self._canvas.line((motion.start, ahead), LANE)
+        elif isinstance(motion, Circle):
+            self._canvas.ring(motion.centre, motion.radius, LANE)
+        elif isinstance(motion, Wander):
+            self._canvas.outline(motion.track, LANE)
 
     def _robot(self) -> None:
         x, y, heading = self._layout.start
@@ -131,7 +136,7 @@ class PlanView:
         self._arrow((x, y), (0.1 * np.cos(heading), 0.1 * np.sin(heading)))
 
     def _arrow(self, tail: Point, velocity: Point, color: Color = INK) -> None:
-        """Arrow of two seconds of `velocity`."""
+        """Draw an arrow of two seconds of `velocity`."""
         self._canvas.arrow(tail, np.add(tail, 2.0 * np.asarray(velocity)), color)
 
 

@@ -1,4 +1,4 @@
-"""Single pictures as files."""
+"""Writing of PNG files."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 
 def write_png(path: Path, image: NDArray[np.uint8]) -> None:
-    """Write `image` (height, width, 3), RGB, as PNG whatever `path` ends with.
+    """Write `image` (height, width, 3), RGB, as PNG, whatever the suffix of `path`.
 
     Raises:
         OSError: the file cannot be written.

@@ -1,4 +1,4 @@
-"""The pushes of a run as arrows in the picture, long enough to be seen."""
+"""Pushes of a run as arrows of visible length."""
 
 from dataclasses import dataclass
 
@@ -11,21 +11,21 @@ from hsr8.recorder.run.walking_table import WalkingTable
 Array = NDArray[np.float64]
 Arrow = tuple[Array, Array]
 
-SHOWN = 0.5  # an arrow is seen for so long, in video time [s]
-LENGTH = 0.02  # of an arrow per newton, while a push may be weak or strong [m/N]
-SHORTEST, LONGEST = 0.15, 0.40  # [m]
-GAP = 0.07  # an arrow ends so far from where it acts: at the skin, not inside the body [m]
+SHOWN = 0.5  # duration of an arrow in video time [s]
+LENGTH = 0.02  # of an arrow per newton [m/N]
+MIN_LENGTH, MAX_LENGTH = 0.15, 0.40  # [m]
+GAP = 0.07  # between the tip and the point of action, which is inside the body [m]
 
 
 @dataclass(frozen=True, slots=True)
-class SeenPush:
-    """One push.
+class PushArrow:
+    """Arrow of one push.
 
     Attributes:
-        begin: [s].
+        begin: start of the push [s].
         impulse: [N s].
-        tip: of its arrow, from the base of the robot along the axes of W (3,) [m].
-        vector: its arrow (3,) [m].
+        tip: from the base of the robot along the axes of W (3,) [m].
+        vector: from tail to tip (3,) [m].
     """
 
     begin: float
@@ -34,29 +34,29 @@ class SeenPush:
     vector: Array
 
 
-def pushes_of(table: WalkingTable, trajectory: Trajectory) -> tuple[SeenPush, ...]:
-    """All pushes that the table of a run tells of."""
-    found = []
-    seen = np.unique(table["push_begin"][table["push_impulse"] > 0.0], return_index=True)[1]
-    rows = np.flatnonzero(table["push_impulse"] > 0.0)[seen]
-    for row in rows.tolist():
+def push_arrows(table: WalkingTable, trajectory: Trajectory) -> tuple[PushArrow, ...]:
+    """Return the arrows of all pushes of a run."""
+    arrows = []
+    pushed = np.flatnonzero(table["push_impulse"] > 0.0)
+    firsts = np.unique(table["push_begin"][pushed], return_index=True)[1]
+    for row in pushed[firsts].tolist():
         force = np.array([table[f"push_f{axis}"][row] for axis in "xyz"])
         point = np.array([table[f"push_{axis}"][row] for axis in "xyz"])
         newtons = float(np.linalg.norm(force))
-        length = min(LONGEST, max(SHORTEST, LENGTH * newtons))
-        found.append(
-            SeenPush(
+        length = min(MAX_LENGTH, max(MIN_LENGTH, LENGTH * newtons))
+        arrows.append(
+            PushArrow(
                 begin=float(table["push_begin"][row]),
                 impulse=float(table["push_impulse"][row]),
                 tip=point - GAP / newtons * force - trajectory.qpos[row, :3],
                 vector=length / newtons * force,
             )
         )
-    return tuple(found)
+    return tuple(arrows)
 
 
-def arrows_at(pushes: tuple[SeenPush, ...], time: float, base: Array, speed: float) -> list[Arrow]:
-    """Tail and tip (3,) [m] of the arrows seen at `time`, the base of the robot being at `base`."""
+def arrows_at(pushes: tuple[PushArrow, ...], time: float, base: Array, speed: float) -> list[Arrow]:
+    """Return tail and tip (3,) [m] of the arrows visible at `time` with the robot at `base`."""
     shown = SHOWN * speed
     return [
         (base + push.tip - push.vector, base + push.tip)

@@ -1,4 +1,4 @@
-"""RunImages of a run at given instants, from one camera or as a dashboard."""
+"""Images of a run at given instants, from one camera or as a dashboard."""
 
 from bisect import bisect_right
 from collections.abc import Callable
@@ -11,70 +11,57 @@ from numpy.typing import NDArray
 from hsr8.errors import UsageError
 from hsr8.recorder.run.frame_summary import FrameSummary
 from hsr8.recorder.run.run_reader import Run
-from hsr8.recorder.run.trajectory import Trajectory, rows_at
+from hsr8.recorder.run.trajectory import rows_at
 from hsr8.render.camera_overlay import CameraOverlay
 from hsr8.render.dashboard import Dashboard, DashboardFrame
 from hsr8.render.follow import FollowCamera
-from hsr8.render.push_arrows import SHOWN, Arrow, SeenPush, arrows_at, pushes_of
+from hsr8.render.push_arrows import SHOWN, Arrow, PushArrow, arrows_at, push_arrows
 from hsr8.render.scene_renderer import Image, SceneRenderer
 from hsr8.render.timeline import Timeline
 from hsr8.render.top_down import TRAIL
-from hsr8.scenario.schema import Scenario
-from hsr8.world.field.layout import Layout
+from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import HEAD_CAMERA, Optics, Quality
 
 Array = NDArray[np.float64]
+Draw = Callable[[int], Image]
 
 CYCLE = 34  # records per gait cycle
-FINER = {True: 2.0, False: 1.0}  # fine and quick pictures are drawn so much finer than shown
-SMALL = 1.5  # as is the head camera's view in the dashboard: it costs little
+OVERSAMPLING = {True: 2.0, False: 1.0}  # of fine and of quick images
+CAMERA_OVERSAMPLING = 1.5  # of the head camera in the dashboard, which is small
 
 
 class RunImages:
-    """Draws the run at the instants of a video.
+    """Renderer of a run at the instants of a video, used by ``with``.
 
     Args:
         run: recorded run.
-        scenario: its scenario.
-        layout: its world.
-        times: simulated time of each picture (n,) [s].
+        times: simulated time of each image (n,) [s].
         size: width and height [pixel].
-        fps: pictures per second when shown.
+        fps: images per second of the video.
         speed: simulated seconds per second of video, shown in the dashboard.
         fine: smooth edges and sharp shadows, at twice the cost.
     """
 
     def __init__(
-        self,
-        run: Run,
-        scenario: Scenario,
-        layout: Layout,
-        *,
-        times: Array,
-        size: tuple[int, int],
-        fps: int,
-        speed: float,
-        fine: bool,
+        self, run: Run, times: Array, size: tuple[int, int], *, fps: int, speed: float, fine: bool
     ) -> None:
-        self._layout, self._size, self._speed = layout, size, speed
-        self._scenario = scenario
-        self._times = times
-        self._trajectory: Trajectory = run.trajectory()
+        self._scenario = run.scenario()
+        self._layout = draw_layout(self._scenario, run.seed)
+        self._times, self._size, self._speed, self._fine = times, size, speed, fine
+        self._trajectory = run.trajectory()
         self._rows = rows_at(self._trajectory.time, times)
         self._frames = run.frames()
         self._frame_times = [frame.time for frame in self._frames]
         self._events = run.events()
         self._collisions = [e["time"] for e in self._events if e["kind"] == "collision"]
-        self._pushes = self._read_pushes(run)
+        self._pushes: tuple[PushArrow, ...] = ()
+        if any(event["kind"] == "push" for event in self._events):
+            self._pushes = push_arrows(run.walking(), self._trajectory)
         self._follow = FollowCamera(self._trajectory.qpos[self._rows], fps, speed)
-        camera = scenario.camera
+        camera = self._scenario.camera
         self._optics = Optics(
-            camera.width,
-            camera.height,
-            camera.vertical_fov,
-            scenario.world.brightness,
+            camera.width, camera.height, camera.vertical_fov, self._scenario.world.brightness
         )
-        self._fine = fine
         self._stack = ExitStack()
 
     def __enter__(self) -> Self:
@@ -83,59 +70,61 @@ class RunImages:
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def camera(self, name: str) -> Callable[[int], Image]:
-        """Drawer of pictures by index: ``dashboard``, ``follow``, ``head`` or a model camera.
+    def camera(self, name: str) -> Draw:
+        """Return a function that draws an image by its index.
+
+        Args:
+            name: ``dashboard``, ``follow``, ``head`` or a camera of the model.
 
         Raises:
-            UsageError: there is no such camera.
+            UsageError: unknown camera.
         """
         if name == "dashboard" and self._frames:
             return self._dashboard()
-        if name in ("dashboard", "follow"):
-            stage = self._stage("show", self._size)
-            return lambda i: self._placed(stage, i).draw(self._follow.at(i), self._arrows(i))
         if name == "head":
             return self._head()
-        stage = self._stage("show", self._size)
-        stage.require_camera(name)
-        return lambda i: self._placed(stage, i).draw(name, self._arrows(i))
+        renderer = self._renderer("show", self._size)
+        if name in ("dashboard", "follow"):
+            return lambda i: self._draw_scene(renderer, i)
+        renderer.require_camera(name)
+        return lambda i: self._place(renderer, int(self._rows[i])).draw(name, self._arrows(i))
 
-    def _stage(
-        self, quality: Quality, size: tuple[int, int], finer: float | None = None
+    def _renderer(
+        self, quality: Quality, size: tuple[int, int], oversampling: float | None = None
     ) -> SceneRenderer:
-        stage = self._stack.enter_context(
-            closing(
-                SceneRenderer(
-                    self._layout,
-                    quality,
-                    size,
-                    optics=self._optics,
-                    finer=FINER[self._fine] if finer is None else finer,
-                    fine=self._fine,
-                )
-            )
+        renderer = SceneRenderer(
+            self._layout,
+            quality,
+            size,
+            optics=self._optics,
+            oversampling=oversampling or OVERSAMPLING[self._fine],
+            fine=self._fine,
         )
+        self._stack.enter_context(closing(renderer))
         recorded = (self._trajectory.qpos.shape[1], self._trajectory.movers.shape[1])
-        if recorded != (stage.model.nq, len(self._layout.movers)):
-            raise UsageError(
-                "the trajectory of this run belongs to another robot or scenario than its "
-                "scenario file"
-            )
-        return stage
+        if recorded != (renderer.model.nq, len(self._layout.movers)):
+            raise UsageError("the trajectory does not match the scenario file of this run")
+        return renderer
 
-    def _placed(self, stage: SceneRenderer, index: int) -> SceneRenderer:
-        stage.place(*self._state(int(self._rows[index])))
-        return stage
+    def _place(self, renderer: SceneRenderer, row: int) -> SceneRenderer:
+        """Put robot and movers where they are in a row of the trajectory."""
+        renderer.set_state(self._trajectory.qpos[row], self._trajectory.movers[row])
+        return renderer
 
-    def _state(self, row: int) -> tuple[Array, Array]:
-        """Robot and movers in a row of the recording."""
-        return self._trajectory.qpos[row], self._trajectory.movers[row]
+    def _draw_scene(self, renderer: SceneRenderer, index: int) -> Image:
+        placed = self._place(renderer, int(self._rows[index]))
+        return placed.draw(self._follow.at(index), self._arrows(index))
 
-    def _head(self) -> Callable[[int], Image]:
-        """What the robot sees; with what it recognises there, where a run tells."""
-        stage = self._stage("vision", self._size)
+    def _draw_camera(self, renderer: SceneRenderer, frame: FrameSummary) -> Image:
+        """Draw the image of the head camera at the capture of a frame."""
+        (row,) = rows_at(self._trajectory.time, [frame.captured]).tolist()
+        return self._place(renderer, row).draw(HEAD_CAMERA)
+
+    def _head(self) -> Draw:
+        """Draw the image of the head camera, with the detections if the run has frames."""
+        renderer = self._renderer("vision", self._size)
         if not self._frames:
-            return lambda i: self._placed(stage, i).draw(HEAD_CAMERA)
+            return lambda i: self._place(renderer, int(self._rows[i])).draw(HEAD_CAMERA)
         camera = self._scenario.camera
         overlay = CameraOverlay(
             (camera.width, camera.height), self._size, self._optics.vertical_fov
@@ -143,71 +132,61 @@ class RunImages:
 
         def draw(index: int) -> Image:
             frame = self._frames[self._frame(index)]
-            stage.place(*self._state(int(rows_at(self._trajectory.time, [frame.captured])[0])))
-            picture = stage.draw(HEAD_CAMERA)
-            overlay.draw(picture, frame)
-            return picture
+            image = self._draw_camera(renderer, frame)
+            overlay.draw(image, frame)
+            return image
 
         return draw
 
-    def _dashboard(self) -> Callable[[int], Image]:
+    def _dashboard(self) -> Draw:
         first, last = float(self._times[0]), float(self._times[-1])
         timeline = Timeline(self._events, first, last)
         board = Dashboard(self._layout, self._scenario, timeline, self._size, self._speed)
-        scene = self._stage("show", board.scene_size)
-        eye = self._stage("vision", board.eye_size, SMALL)
-        # The robot sees anew at every camera frame only, and the overlay belongs to that image.
-        seen: tuple[int, Image] | None = None
+        scene = self._renderer("show", board.scene_size)
+        camera = self._renderer("vision", board.camera_size, CAMERA_OVERSAMPLING)
+        latest: tuple[int, Image] | None = None  # one camera image per frame
 
-        def look(number: int) -> Image:
-            nonlocal seen
-            if seen is None or seen[0] != number:
-                captured = self._frames[number].captured
-                eye.place(*self._state(int(rows_at(self._trajectory.time, [captured])[0])))
-                seen = number, eye.draw(HEAD_CAMERA)
-            return seen[1]
+        def camera_image(number: int) -> Image:
+            nonlocal latest
+            if latest is None or latest[0] != number:
+                latest = number, self._draw_camera(camera, self._frames[number])
+            return latest[1]
 
         def draw(index: int) -> Image:
             number = self._frame(index)
-            outside = self._placed(scene, index).draw(self._follow.at(index), self._arrows(index))
-            return board.draw(outside, look(number), self._moment(index, self._frames[number]))
+            outside = self._draw_scene(scene, index)
+            shown = self._dashboard_frame(index, self._frames[number])
+            return board.draw(outside, camera_image(number), shown)
 
         return draw
 
-    def _moment(self, index: int, frame: FrameSummary) -> DashboardFrame:
+    def _dashboard_frame(self, index: int, frame: FrameSummary) -> DashboardFrame:
         time, row = float(self._times[index]), int(self._rows[index])
         pushed = [p for p in self._pushes if 0.0 <= time - p.begin < SHOWN * self._speed]
-        doing = "lost" if frame.lost else frame.situation.replace("_", " ")
+        state = "lost" if frame.lost else frame.situation.replace("_", " ")
         if pushed:
-            doing = f"push {pushed[-1].impulse:.2f} N s"
+            state = f"push {pushed[-1].impulse:.2f} N s"
         return DashboardFrame(
             time=time,
             frame=frame,
             movers=self._trajectory.movers[row],
             trail=self._trail(row),
             collisions=bisect_right(self._collisions, time),
-            doing=doing,
+            state=state,
         )
-
-    @staticmethod
-    def _read_pushes(run: Run) -> tuple[SeenPush, ...]:
-        """Pushes of a run; how it walked is left unread where nothing pushed it."""
-        if not any(event["kind"] == "push" for event in run.events()):
-            return ()
-        return pushes_of(run.walking(), run.trajectory())
 
     def _arrows(self, index: int) -> list[Arrow]:
         base = self._trajectory.qpos[int(self._rows[index]), :3]
         return arrows_at(self._pushes, float(self._times[index]), base, self._speed)
 
     def _frame(self, index: int) -> int:
-        """Number of the latest camera frame at a picture."""
+        """Return the number of the latest camera frame at an image."""
         return max(bisect_right(self._frame_times, float(self._times[index]) + 1e-9) - 1, 0)
 
     def _trail(self, row: int) -> Array:
+        """Return the path up to a row, averaged over gait cycles to remove the sway (n, 2) [m]."""
         first = int(np.searchsorted(self._trajectory.time, self._trajectory.time[row] - TRAIL))
         path = self._trajectory.qpos[first : row + 1, :2]
-        # The mean over a gait cycle shows the way without the sway.
         whole = len(path) // CYCLE * CYCLE
         trail: Array = path[:whole].reshape(-1, CYCLE, 2).mean(axis=1)
         return trail

@@ -13,7 +13,6 @@ from hsr8.render.animation import KINDS, AnimationWriter, require_room
 from hsr8.render.png import write_png
 from hsr8.render.run_images import RunImages
 from hsr8.render.video import VideoWriter
-from hsr8.world.field.generator import draw_layout
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -85,18 +84,9 @@ def render_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -
         times, speed = times[:1], 1.0
     count = len(times)
     require_room(out, options.size, count)
-    scenario = run.scenario()
-    layout = draw_layout(scenario, run.seed)
     thumbnail = None
     with RunImages(
-        run,
-        scenario,
-        layout,
-        times=times,
-        size=options.size,
-        fps=options.fps,
-        speed=speed,
-        fine=options.fine,
+        run, times, options.size, fps=options.fps, speed=speed, fine=options.fine
     ) as images:
         draw = images.camera(options.camera)
         if kind == ".png":

@@ -1,4 +1,4 @@
-"""A recorded world set up again, to be drawn from any camera."""
+"""Renderer of a recorded world from any camera."""
 
 from collections.abc import Sequence
 
@@ -17,30 +17,27 @@ from hsr8.world.model.assembly import Optics, Quality, assemble
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
-
 ARROW = np.array([0.90, 0.20, 0.45, 1.0], dtype=np.float32)  # colour of arrows
 ARROW_RADIUS = 0.012  # [m]
-SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick pictures [texel]
-SHADOW_CONE = 0.48  # share of the sun's cone that is searched for shadows
-EDGE = 24  # a pixel that differs so much from the mean of its neighbours is on an edge, of 255
-LARGEST = 8192  # side of what is drawn before it is scaled down [pixel]
+SHADOW_SIZE = {True: 4096, False: 2048}  # of fine and of quick images [texel]
+SHADOW_CONE = 0.48  # fraction of the sun's cone with shadows: up to the rim of the field
+EDGE = 24  # minimum difference of a pixel on an edge to the mean of its neighbours, of 255
+MAX_SIDE = 8192  # of an image before it is scaled down [pixel]
 
 
 class SceneRenderer:
-    """Draws a layout with the robot and the movers where a recording had them.
-
-    Use it as a context manager and in one thread only.
+    """Renderer of a layout with robot and movers; use it in one thread only and close it.
 
     Args:
         layout: of the run's world.
-        quality: ``show`` for people, ``vision`` for what the robot saw.
-        size: width and height of the pictures [pixel].
+        quality: ``show`` for people, ``vision`` for the robot's camera.
+        size: width and height of the images [pixel].
         optics: of the head camera.
-        finer: pictures are drawn so many times as fine along each side, and scaled down.
+        oversampling: factor by which images are drawn larger along each side.
         fine: sharp shadows; for ``show`` only.
 
     Raises:
-        RenderingUnavailable: no OpenGL draws here.
+        RenderingUnavailable: there is no OpenGL.
     """
 
     def __init__(
@@ -50,7 +47,7 @@ class SceneRenderer:
         size: tuple[int, int],
         *,
         optics: Optics,
-        finer: float,
+        oversampling: float,
         fine: bool,
     ) -> None:
         require_gl()
@@ -62,21 +59,19 @@ class SceneRenderer:
         )
         visual = self.model.vis
         self._size, self._soft = size, quality == "show"
-        finer = min(finer, LARGEST / max(size))
-        width, height = (round(finer * side) for side in size)
+        oversampling = min(oversampling, MAX_SIDE / max(size))
+        width, height = (round(oversampling * side) for side in size)
         visual.global_.offwidth, visual.global_.offheight = width, height
         if quality == "show":
-            visual.quality.offsamples = 0  # `finer` smooths shadows and texture, too
+            visual.quality.offsamples = 0  # oversampling smooths shadows and textures, too
             visual.quality.numslices, visual.quality.numstacks = 16, 10
             visual.quality.shadowsize = SHADOW_SIZE[fine]
-            # The sun's shadows reach the rim of the field, no further, so that they are sharp.
             visual.map.shadowscale = SHADOW_CONE
-            # A reflection would draw everything twice.
-            self.model.mat_reflectance[:] = 0.0
+            self.model.mat_reflectance[:] = 0.0  # a reflection draws the scene twice
         self._renderer = mujoco.Renderer(self.model, height=height, width=width)
 
-    def place(self, qpos: Array, movers: Array) -> None:
-        """Put the robot and the movers (n, 2) [m] where they were."""
+    def set_state(self, qpos: Array, movers: Array) -> None:
+        """Set the configuration of the robot and the positions of the movers (n, 2) [m]."""
         self.data.qpos[:] = qpos
         self.data.mocap_pos[self._movers, :2] = movers
         mujoco.mj_kinematics(self.model, self.data)
@@ -84,17 +79,15 @@ class SceneRenderer:
         mujoco.mj_camlight(self.model, self.data)
 
     def draw(self, view: str | mujoco.MjvCamera, arrows: Sequence[Arrow] = ()) -> Image:
-        """Picture (height, width, 3) from a camera of the model or a free one.
+        """Return an image (height, width, 3).
 
         Args:
-            view: camera.
+            view: camera of the model or a free one.
             arrows: tail and tip of each in W (3,) [m].
         """
         self._renderer.update_scene(self.data, camera=view)
         scene = self._renderer.scene
-        for tail, tip in arrows:
-            if scene.ngeom >= scene.maxgeom:
-                break
+        for tail, tip in arrows[: scene.maxgeom - scene.ngeom]:
             geom = scene.geoms[scene.ngeom]
             kind = mujoco.mjtGeom.mjGEOM_ARROW
             mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).ravel(), ARROW)
@@ -108,17 +101,17 @@ class SceneRenderer:
         return image
 
     def require_camera(self, name: str) -> None:
-        """Make sure that the model has a camera.
+        """Refuse a camera that the model lacks.
 
         Raises:
-            UsageError: it has not; the message names those it has.
+            UsageError: unknown camera.
         """
         names = [self.model.camera(i).name for i in range(self.model.ncam)]
         if name not in names:
             choices = list(dict.fromkeys(("dashboard", "follow", "head", *names)))
             raise UsageError(
-                f"there is no camera {name!r}{suggestion(name, choices)} "
-                f"(cameras: {', '.join(choices)})"
+                f"camera: unknown name {name!r}{suggestion(name, choices)}; "
+                f"expected one of {', '.join(choices)}"
             )
 
     def close(self) -> None:
@@ -127,9 +120,6 @@ class SceneRenderer:
 
 
 def soften(image: Image) -> None:
-    """Blur the edges in `image` (height, width, 3), whose steps show where it is drawn once.
-
-    It costs a tenth of what drawing finer does.
-    """
+    """Blur the edges of `image` (height, width, 3); a tenth of the cost of oversampling."""
     edges = np.abs(cv2.Laplacian(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), cv2.CV_16S)) > EDGE
     cv2.copyTo(cv2.GaussianBlur(image, (3, 3), 0.0), edges.astype(np.uint8), image)

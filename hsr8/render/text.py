@@ -1,16 +1,18 @@
-"""Text in pictures, in the outline font that comes with OpenCV."""
+"""Text in images, in the outline font of OpenCV."""
 
 from functools import cache
 from typing import Literal
 
 import cv2
+import numpy as np
+from numpy.typing import NDArray
 
-from hsr8.render.canvas import Color, Image
-
+Color = tuple[int, ...]
+Image = NDArray[np.uint8]
 Side = Literal["left", "middle", "right"]
 
-REGULAR, STRONG = 400, 600  # weights
-SMALLEST = 9  # letters lower than this cannot be read [pixel]
+REGULAR, BOLD = 400, 600  # weights
+MIN_SIZE = 9  # of legible letters [pixel]
 
 
 @cache
@@ -18,20 +20,19 @@ def _face() -> cv2.FontFace:
     return cv2.FontFace("sans")
 
 
-def font_size(share: float) -> int:
-    """Size of letters that would be `share` [pixel], but never too small to be read."""
-    return max(SMALLEST, round(share))
+def font_size(size: float) -> int:
+    """Return the nearest legible font size [pixel]."""
+    return max(MIN_SIZE, round(size))
 
 
 def text_width(text: str, size: int, *, strong: bool = False) -> int:
-    """Length of a line [pixel]."""
-    weight = STRONG if strong else REGULAR
-    box = cv2.getTextSize((0, 0), text, (0, 0), _face(), size, weight)
+    """Return the length of a line [pixel]."""
+    box = cv2.getTextSize((0, 0), text, (0, 0), _face(), size, BOLD if strong else REGULAR)
     return int(box[2])
 
 
 def draw_text(
-    picture: Image,
+    image: Image,
     at: tuple[int, int],
     text: str,
     color: Color,
@@ -40,20 +41,19 @@ def draw_text(
     strong: bool = False,
     side: Side = "left",
 ) -> None:
-    """Write one line.
+    """Draw one line of text.
 
     Args:
-        picture: to write into (height, width, 3).
+        image: to draw into (height, width, 3).
         at: column of the line's left end, middle or right end, and row of its baseline [pixel].
-        text: what to write.
+        text: to draw.
         color: of the letters.
-        size: of the letters [pixel].
-        strong: in heavier letters.
-        side: what of the line is at that column.
+        size: of the font [pixel].
+        strong: bold.
+        side: part of the line at that column.
     """
     column, row = at
     if side != "left":
         length = text_width(text, size, strong=strong)
         column -= length if side == "right" else length // 2
-    weight = STRONG if strong else REGULAR
-    cv2.putText(picture, text, (column, row), color, _face(), size, weight)
+    cv2.putText(image, text, (column, row), color, _face(), size, BOLD if strong else REGULAR)

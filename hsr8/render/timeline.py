@@ -1,18 +1,16 @@
-"""A strip under the dashboard: how far the video is, and when something happened."""
+"""Timeline under the dashboard: progress of the video and marks of events."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
+from hsr8.render.text import Image
 
-Image = NDArray[np.uint8]
 Color = tuple[int, int, int]
 
-HEIGHT = 0.1  # as a share of the picture drawn into
+HEIGHT = 0.1  # fraction of the image drawn into
 MARK = 3  # width of an event [pixel]
 AHEAD, DONE = (62, 65, 71), (138, 142, 150)
-MARKS: dict[str, Color] = {
+MARKS: dict[str, Color] = {  # colour by kind of event; later kinds cover earlier ones
     "via_point": (240, 180, 60),
     "goal": (76, 200, 110),
     "push": (230, 70, 130),
@@ -21,15 +19,14 @@ MARKS: dict[str, Color] = {
     "collision": (240, 120, 30),
     "fall": (230, 40, 40),
 }
-"""Colour of each kind of event that is marked; later ones cover earlier ones."""
 
 
 class Timeline:
-    """The strip of one video.
+    """Timeline of one video.
 
     Args:
         events: of the run, each with ``time`` and ``kind``.
-        start, stop: simulated time of the first and the last picture [s].
+        start, stop: simulated time of the first and the last image [s].
     """
 
     def __init__(self, events: Sequence[Mapping[str, Any]], start: float, stop: float) -> None:
@@ -40,10 +37,10 @@ class Timeline:
                 if event["kind"] == kind and start <= event["time"] <= stop:
                     self._marks.append((event["time"], color))
 
-    def draw(self, picture: Image, time: float) -> None:
-        """Draw over the lowest rows of `picture` (height, width, 3) what holds at `time` [s]."""
-        height, width, _ = picture.shape
-        strip = picture[-max(2, round(HEIGHT * height)) :]
+    def draw(self, image: Image, time: float) -> None:
+        """Draw the state at `time` [s] over the lowest rows of `image` (height, width, 3)."""
+        height, width, _ = image.shape
+        strip = image[-max(2, round(HEIGHT * height)) :]
         strip[:] = AHEAD
         strip[:, : self._column(time, width)] = DONE
         for when, color in self._marks:

@@ -1,4 +1,4 @@
-"""The world from above: what is true as outlines, what is believed filled."""
+"""Map of the world: ground truth in outlines, belief filled."""
 
 from collections.abc import Sequence
 from math import cos, pi, sin
@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from hsr8.recorder import ellipse, palette
 from hsr8.recorder.run.frame_summary import FrameSummary, TrackSummary
-from hsr8.render.canvas import Canvas, Image
-from hsr8.render.text import draw_text, font_size
+from hsr8.render.canvas import Canvas
+from hsr8.render.text import Image, draw_text, font_size
 from hsr8.world.field.layout import Layout
 
 Array = NDArray[np.float64]
@@ -19,19 +19,19 @@ PAPER, FIELD, RIM = (222, 225, 230), (247, 246, 243), (176, 178, 182)
 INK, SHADE, PATH = (44, 46, 52), (212, 211, 208), (146, 148, 154)
 VIEW_RANGE = 1.6  # drawn length of the field of view [m]
 VIEW_OPACITY = 0.35
-NUMBER = (176, 92, 0)  # of a way point
-TRAIL = 40.0  # path drawn behind the robot [s]
-ROBOT = ((0.16, 0.0), (-0.09, 0.10), (-0.05, 0.0), (-0.09, -0.10))  # an arrow head [m]
-AHEAD = 3  # way points shown
+NUMBER = (176, 92, 0)  # colour of waypoint numbers
+TRAIL = 40.0  # duration of the drawn path [s]
+ROBOT = ((0.16, 0.0), (-0.09, 0.10), (-0.05, 0.0), (-0.09, -0.10))  # arrow head [m]
+AHEAD = 3  # waypoints shown
 SIGMAS = 2.0
-VELOCITY = 2.0  # a line shows the way of so many seconds [s]
-LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
-FINER = 2  # drawn so many times as fine as shown, or small circles are none
-STROKE = 300  # lines are a pixel wide for so many pixels of height
+VELOCITY = 2.0  # prediction time of velocity lines [s]
+MAX_SIGMA = 0.5  # of a drawn ellipse [m]
+OVERSAMPLING = 2  # for smooth small circles
+STROKE = 300  # image height per pixel of line width [pixel]
 
 
 class TopDown:
-    """Draws one map per frame.
+    """Map of one run.
 
     Args:
         layout: of the run's world.
@@ -41,9 +41,11 @@ class TopDown:
     def __init__(self, layout: Layout, size: tuple[int, int]) -> None:
         self._layout = layout
         self._size = size
-        self._width = max(FINER, round(FINER * size[1] / STROKE))
-        self._letters = FINER * font_size(size[1] / 27)
-        self._ground = Canvas(layout.field_size, (FINER * size[0], FINER * size[1]), PAPER)
+        self._width = max(OVERSAMPLING, round(OVERSAMPLING * size[1] / STROKE))
+        self._letters = OVERSAMPLING * font_size(size[1] / 27)
+        self._ground = Canvas(
+            layout.field_size, (OVERSAMPLING * size[0], OVERSAMPLING * size[1]), PAPER
+        )
         self._ground.field(FIELD, RIM, self._width)
         for beacon in layout.beacons:
             top, bottom = palette.of_label(beacon.top), palette.of_label(beacon.bottom)
@@ -53,7 +55,7 @@ class TopDown:
             self._ground.ring(obstacle.position, obstacle.radius, INK, self._width)
 
     def draw(self, frame: FrameSummary, movers: Array, trail: Array) -> Image:
-        """The map at one camera frame.
+        """Return the map at one camera frame.
 
         Args:
             frame: belief and decisions.
@@ -61,7 +63,7 @@ class TopDown:
             trail: true path of the robot so far (m, 2) [m].
 
         Returns:
-            Picture (height, width, 3), RGB.
+            Image (height, width, 3), RGB.
         """
         canvas, width = self._ground.copy(), self._width
         canvas.area(_view(frame), palette.VIEW, VIEW_OPACITY)
@@ -73,7 +75,7 @@ class TopDown:
             canvas.ring(position, obstacle.radius, INK, width)
         for x, y, radius in frame.virtual_obstacles:
             canvas.ring((x, y), radius, palette.VIRTUAL, width)
-        self._draw_way_points(canvas, frame.passed)
+        self._draw_waypoints(canvas, frame.passed)
         canvas.line((frame.pose[:2], frame.target), palette.TARGET, width)
         canvas.disc(frame.target, 0.05, palette.TARGET)
         canvas.area(_robot(frame.pose), palette.BELIEF)
@@ -82,20 +84,19 @@ class TopDown:
         shown: Image = cv2.resize(canvas.image, self._size, interpolation=cv2.INTER_AREA)
         return shown
 
-    def _draw_way_points(self, canvas: Canvas, passed: int) -> None:
-        """The next few, numbered; the paper's tour has ninety."""
+    def _draw_waypoints(self, canvas: Canvas, passed: int) -> None:
+        """Draw the next waypoints with their numbers."""
         points = np.reshape(self._layout.waypoints, (-1, 2)).tolist()
         last = passed + AHEAD if self._layout.endless else min(passed + AHEAD, len(points))
         for number in range(passed, last):
             point = points[number % len(points)]
             canvas.ring(point, 0.05, palette.TARGET, self._width)
             u, v = canvas.pixel(point)
-            place = (u + self._letters // 2, v - self._letters // 2)
-            draw_text(canvas.image, place, str(number + 1), NUMBER, self._letters, strong=True)
+            corner = (u + self._letters // 2, v - self._letters // 2)
+            draw_text(canvas.image, corner, str(number + 1), NUMBER, self._letters, strong=True)
 
     def _draw_track(self, canvas: Canvas, track: TrackSummary) -> None:
         strong = palette.of_label(track.label)
-        # A track out of view is paler.
         pale = tuple((channel + 2 * 246) // 3 for channel in strong)
         canvas.disc(track.position, track.radius, strong if track.visible else pale)
         canvas.ring(track.position, track.radius, strong, self._width)
@@ -109,20 +110,20 @@ class TopDown:
         self, canvas: Canvas, at: Sequence[float], covariance: tuple[float, float, float]
     ) -> None:
         xx, xy, yy = covariance
-        if xx + yy < LOST_SIGMA**2:
+        if xx + yy < MAX_SIGMA**2:
             half, direction = ellipse.axes(np.array([[[xx, xy], [xy, yy]]]))
             canvas.ellipse(at, SIGMAS * half[0], float(direction[0]), palette.BELIEF, self._width)
 
 
 def _robot(pose: Sequence[float]) -> list[tuple[float, float]]:
-    """Outline of the robot in W [m]."""
+    """Return the outline of the robot in W [m]."""
     x, y, yaw = pose
     c, s = cos(yaw), sin(yaw)
     return [(x + c * u - s * v, y + s * u + c * v) for u, v in ROBOT]
 
 
 def _view(frame: FrameSummary) -> Array:
-    """Outline of the field of view in W [m]."""
+    """Return the outline of the field of view in W [m]."""
     x, y, yaw = frame.pose
     half = min(0.5 * frame.fov, pi)
     angles = yaw + frame.gaze[0] + half * np.linspace(-1.0, 1.0, 12)

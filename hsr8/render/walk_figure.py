@@ -1,4 +1,4 @@
-"""Plots of how a run walked, as they are printed."""
+"""Figures of the walking of a run, for print."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -45,8 +45,8 @@ class Panel:
     Attributes:
         height: [inch].
         draw: draws it.
-        legend: whether its curves are named beside it.
-        patches: what else is named there.
+        legend: whether its curves are named next to it.
+        patches: further entries of the legend.
     """
 
     height: float
@@ -66,9 +66,9 @@ TIME_PANELS: dict[str, tuple[Panel, ...]] = {
     "torques": tuple(Panel(1.1, partial(panels.torque, group=group)) for group in panels.JOINTS),
     "tilt": (Panel(0.9, panels.tilt),),
 }
-FEWEST = 4  # records that make a plot
-LOWEST, HIGHEST = 1.5, 4.5  # height of the view from above [inch]
-BESIDE = 0.8  # share of the width that the axes have [1]
+MIN_RECORDS = 4  # of a plot
+MIN_HEIGHT, MAX_HEIGHT = 1.5, 4.5  # of the view from above [inch]
+AXES_WIDTH = 0.8  # of the axes, a fraction of the figure [1]
 
 
 def draw(table: WalkingTable, what: What, title: str) -> Figure:
@@ -80,10 +80,10 @@ def draw(table: WalkingTable, what: What, title: str) -> Figure:
         title: of the figure.
 
     Raises:
-        UsageError: there are too few rows to draw.
+        UsageError: too few rows.
     """
-    if len(table) < FEWEST:
-        raise UsageError(f"nothing to plot: there are only {len(table)} records in that time")
+    if len(table) < MIN_RECORDS:
+        raise UsageError(f"nothing to plot: only {len(table)} records in that time")
     groups = tuple(TIME_PANELS) if what == "walking" else (what,)
     rows = [panel for group in groups for panel in TIME_PANELS.get(group, ())]
     above = _footsteps_height(table) if what in ("walking", "footsteps") else 0.0
@@ -111,7 +111,7 @@ def draw(table: WalkingTable, what: What, title: str) -> Figure:
 
 
 def save(figure: Figure, out: Path) -> None:
-    """Write a figure; the ending of the name says as what.
+    """Write a figure; the suffix of `out` selects the format.
 
     Raises:
         OSError: it cannot be written.
@@ -135,8 +135,8 @@ def _draw_over_time(axes: list[Axes], rows: list[Panel], table: WalkingTable) ->
 
 
 def _footsteps_height(table: WalkingTable) -> float:
-    """Height of the view from above that shows the way in its true shape [inch]."""
+    """Return the height of the view from above at equal scales [inch]."""
     origin, yaw = table.points("robot")[0], float(table["robot_yaw"][0])
-    way = panels.turned(table.points("robot"), origin, yaw)
-    extent = np.ptp(way, axis=0) + 0.25
-    return float(np.clip(BESIDE * WIDTH * extent[1] / extent[0], LOWEST, HIGHEST))
+    path = panels.to_local(table.points("robot"), origin, yaw)
+    extent = np.ptp(path, axis=0) + 0.25
+    return float(np.clip(AXES_WIDTH * WIDTH * extent[1] / extent[0], MIN_HEIGHT, MAX_HEIGHT))

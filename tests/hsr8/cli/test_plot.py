@@ -58,7 +58,7 @@ def test_a_run_without_the_table_says_so(run, tmp_path, capsys):
     (folder,) = run.glob("walk/*")
     (tmp_path / "manifest.json").write_text((folder / "manifest.json").read_text())
     assert entry(["plot", str(tmp_path)]) == 2
-    assert "run it again" in capsys.readouterr().err
+    assert "cannot read the walking table" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("module", ["hsr8.cli.plot", "hsr8.cli.verify"])

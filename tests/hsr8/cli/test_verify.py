@@ -80,7 +80,7 @@ def test_a_change_of_a_measurement_shows(run, capsys):
     rewrite(run, 7, flipped(8 + 4))  # x of the odometry, in its tenth digit
     assert entry(["verify", str(run), "--json"]) == 1
     found = stages(capsys)["estimator"]
-    assert (found["place"], found["channel"]) == (7, "pose")
+    assert (found["index"], found["channel"]) == (7, "pose")
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_a_decision_that_differs_is_named(run, capsys, byte, channel):
     rewrite(run, 11, flipped(byte))
     assert entry(["verify", str(run), "--json"]) == 1
     told = stages(capsys)
-    assert (told["decisions"]["place"], told["decisions"]["channel"]) == (11, channel)
+    assert (told["decisions"]["index"], told["decisions"]["channel"]) == (11, channel)
     assert told["physics"]["equal"]
     assert told["estimator"]["equal"]
 
@@ -101,7 +101,7 @@ def test_another_number_of_footsteps_makes_another_plan(run, capsys):
     step_count = -(4 + 5) * 8 - 9
     rewrite(run, 12, flipped(step_count))
     assert entry(["verify", str(run), "--json"]) == 1
-    assert stages(capsys)["decisions"]["place"] >= 12
+    assert stages(capsys)["decisions"]["index"] >= 12
 
 
 def test_another_set_point_gives_another_world(run, capsys):
@@ -113,7 +113,7 @@ def test_another_set_point_gives_another_world(run, capsys):
     file.write_bytes(content)
     assert entry(["verify", str(run), "--json"]) == 1
     found = stages(capsys)["physics"]
-    assert (found["place"], found["channel"]) == (200, "world")
+    assert (found["index"], found["channel"]) == (200, "world")
 
 
 def test_another_scenario_gives_another_belief(run, capsys):

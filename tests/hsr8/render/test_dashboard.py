@@ -12,19 +12,19 @@ from hsr8.scenario.loader import load_scenario
 def drawn(fake, layout):
     line = to_line(fake.frame(0.6, (0.0, 0.0, 0.0)), fake.record(0.6, (0.0, 0.0, 0.0)).truth)
 
-    def draw(size, collisions=0, doing="free"):
+    def draw(size, collisions=0, state="free"):
         board = Dashboard(layout, load_scenario("quick"), Timeline((), 0.0, 1.0), size, 1.0)
         scene = np.full((*board.scene_size[::-1], 3), (200, 0, 0), np.uint8)
-        eye = np.full((*board.eye_size[::-1], 3), (0, 200, 0), np.uint8)
-        moment = DashboardFrame(
+        camera = np.full((*board.camera_size[::-1], 3), (0, 200, 0), np.uint8)
+        shown = DashboardFrame(
             time=0.6,
             frame=from_line(line),
             movers=np.array([[1.0, 1.0]]),
             trail=np.zeros((0, 2)),
             collisions=collisions,
-            doing=doing,
+            state=state,
         )
-        return board.draw(scene, eye, moment), board
+        return board.draw(scene, camera, shown), board
 
     return draw
 
@@ -35,10 +35,10 @@ def test_scene_and_eye_are_shown_where_there_is_room(drawn, size):
     assert picture.shape == (size[1], size[0], 3)
     width, height = board.scene_size
     red = (picture[:height, :width] == (200, 0, 0)).all(axis=-1)
-    green = (picture[: board.eye_size[1], -board.eye_size[0] :] == (0, 200, 0)).all(axis=-1)
+    green = (picture[: board.camera_size[1], -board.camera_size[0] :] == (0, 200, 0)).all(axis=-1)
     assert red.mean() > 0.7
     assert green.mean() > 0.3
-    assert abs(board.eye_size[0] / board.eye_size[1] - 4 / 3) < 0.1 or size[0] > size[1] * 1.7
+    assert abs(board.camera_size[0] / board.camera_size[1] - 4 / 3) < 0.1 or size[0] > size[1] * 1.7
 
 
 def test_collisions_are_told(drawn):

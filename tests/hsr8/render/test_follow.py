@@ -1,6 +1,6 @@
 import numpy as np
 
-from hsr8.render.follow import BESIDE, FollowCamera
+from hsr8.render.follow import SIDE_ANGLE, FollowCamera
 
 
 def _walk(n, yaw):
@@ -10,12 +10,12 @@ def _walk(n, yaw):
     return qpos
 
 
-def test_a_standing_robot_is_seen_from_behind_and_beside():
+def test_a_standing_robot_is_seen_from_behind_and_from_the_side():
     qpos = _walk(50, np.full(50, 0.7))
     qpos[:, 0] = 1.0
     camera = FollowCamera(qpos, 25, 1.0).at(30)
     np.testing.assert_allclose(camera.lookat[:2], [1.0, 0.0], atol=1e-9)
-    assert np.isclose(camera.azimuth, np.degrees(0.7) + BESIDE)
+    assert np.isclose(camera.azimuth, np.degrees(0.7) + SIDE_ANGLE)
 
 
 def test_sway_does_not_shake_the_picture():
@@ -29,7 +29,7 @@ def test_sway_does_not_shake_the_picture():
     assert np.ptp(aside) < 0.01
 
 
-def test_a_turn_through_180_degrees_goes_the_short_way():
+def test_a_turn_through_180_degrees_takes_the_shorter_direction():
     n = 400
     follow = FollowCamera(_walk(n, np.linspace(3.0, 3.4, n)), 25, 1.0)
     azimuth = np.array([follow.at(i).azimuth for i in range(n)])

@@ -3,7 +3,7 @@ import pytest
 
 from hsr8.recorder.run.trajectory import Trajectory
 from hsr8.recorder.run.walking_table import COLUMNS, WalkingTable
-from hsr8.render.push_arrows import GAP, SHOWN, arrows_at, pushes_of
+from hsr8.render.push_arrows import GAP, SHOWN, arrows_at, push_arrows
 
 
 @pytest.fixture
@@ -21,8 +21,8 @@ def run():
     return table, Trajectory(time, qpos, np.zeros((100, 0, 2)))
 
 
-def test_pushes_are_told_apart_and_have_their_impulse(run):
-    first, second = pushes_of(*run)
+def test_pushes_are_distinguished_and_have_their_impulse(run):
+    first, second = push_arrows(*run)
     assert (first.begin, second.begin) == pytest.approx((0.19, 0.245))
     assert (first.impulse, second.impulse) == pytest.approx((0.5, 0.2))
     assert first.tip == pytest.approx([-GAP, 0.0, 0.3])
@@ -30,7 +30,7 @@ def test_pushes_are_told_apart_and_have_their_impulse(run):
 
 
 def test_an_arrow_goes_with_the_robot_and_is_seen_for_a_while(run):
-    pushes = pushes_of(*run)[:1]
+    pushes = push_arrows(*run)[:1]
     base = np.array([1.5, 0.2, 0.0])
     ((tail, tip),) = arrows_at(pushes, 0.3, base, 1.0)
     assert tip == pytest.approx(base + np.array([-GAP, 0.0, 0.3]))

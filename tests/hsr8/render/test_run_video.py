@@ -111,7 +111,7 @@ def test_a_trajectory_of_another_scenario_is_a_usage_error(run, tmp_path):
     other = scenario.replace("n_moving = 1", "n_moving = 0")
     assert other != scenario
     (copy / run_folder.SCENARIO).write_text(other)
-    with pytest.raises(UsageError, match="belongs to another"):
+    with pytest.raises(UsageError, match="does not match"):
         render_run(
             open_run(copy), VideoOptions(size=(64, 64)), tmp_path / "v.mp4", lambda n, total: None
         )

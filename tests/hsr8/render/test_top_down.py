@@ -47,13 +47,13 @@ def test_a_world_of_any_shape_fits(layout, summary):
         assert image.shape == (size[1], size[0], 3)
 
 
-def test_a_walk_without_way_points_can_be_drawn(layout, summary):
+def test_a_walk_without_waypoints_can_be_drawn(layout, summary):
     nowhere = replace(layout, waypoints=np.zeros((0, 2)))
     image = TopDown(nowhere, (64, 64)).draw(summary(), np.array([[1.0, 1.0]]), np.zeros((0, 2)))
     assert image.shape == (64, 64, 3)
 
 
-def test_only_the_next_way_points_are_shown(layout, summary):
+def test_only_the_next_waypoints_are_shown(layout, summary):
     """The more of a course is passed, the less of it is drawn."""
     above = TopDown(layout, (300, 300))
     drawn = []

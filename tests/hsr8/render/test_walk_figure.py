@@ -68,10 +68,10 @@ def test_a_sole_is_drawn_where_the_foot_stood(table):
     assert sorted(sides) == pytest.approx([0.06, 0.06, 0.105, 0.105])
 
 
-def test_the_walking_frame_has_the_way_of_the_robot_but_not_its_sway(table):
-    seen = walk_panels.WalkingFrame(table).seen(table.points("robot"))[20:-20]
-    assert np.abs(seen[:, 0]).max() < 0.004
-    assert seen[:, 1].max() == pytest.approx(0.02, abs=0.004)
+def test_the_walking_frame_follows_the_path_without_the_sway(table):
+    local = walk_panels.WalkingFrame(table).to_local(table.points("robot"))[20:-20]
+    assert np.abs(local[:, 0]).max() < 0.004
+    assert local[:, 1].max() == pytest.approx(0.02, abs=0.004)
 
 
 def test_the_achieved_velocity_is_that_of_the_arc(table):
@@ -98,6 +98,6 @@ def test_a_figure_is_the_same_each_time(table, tmp_path):
     assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
 
 
-def test_a_moment_is_no_plot(table):
+def test_a_few_records_are_not_plotted(table):
     with pytest.raises(UsageError, match="only 2 records"):
         draw(table.window(1.0, 1.02), "walking", "a walk")
