@@ -1,1 +1,1 @@
-"""Vision: an image and the pose of the camera become detections of coloured things."""
+"""Vision: detection of coloured cylinders in camera images."""

@@ -1,4 +1,4 @@
-"""Beacons: posts with one reserved colour above another."""
+"""Beacon hypotheses: a blob of one beacon colour stacked on another."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,11 +12,11 @@ from vision.value import value
 
 @value
 class Post:
-    """Two blobs that may be one beacon.
+    """Beacon hypothesis from two blobs.
 
     Attributes:
         upper, lower: indices of the blobs.
-        candidate: its edges.
+        candidate: edges.
     """
 
     upper: int
@@ -31,7 +31,7 @@ def find_posts(
     camera_height: float,
     parameters: VisionParameters,
 ) -> list[Post]:
-    """Pairs of blobs stacked like the two colours of a beacon.
+    """Return the pairs of blobs stacked like the two colours of a beacon.
 
     Args:
         blobs: of one image.
@@ -44,7 +44,7 @@ def find_posts(
     for i in indices:
         bottom = outlines[i].bottom
         for j in indices:
-            if i == j or not _rests_on(blobs[i], blobs[j]):
+            if i == j or not _adjacent(blobs[i], blobs[j]):
                 continue
             seam = bottom.against(blobs[j].label)
             if (
@@ -67,19 +67,19 @@ def find_posts(
     return posts
 
 
-def _rests_on(upper: Blob, lower: Blob) -> bool:
-    """Whether the boxes of two blobs touch or overlap."""
+def _adjacent(upper: Blob, lower: Blob) -> bool:
+    """Return whether the bounding boxes of two blobs touch or overlap."""
     a, b = upper.box, lower.box
     return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
 def _common_sides(upper: Outline, lower: Outline, tolerance: float) -> tuple[Side, Side] | None:
-    """Left and right side of the whole post, None if the colours do not share them.
+    """Return the left and right side of the whole post, None if the two colours disagree.
 
     Args:
         upper: outline of the upper colour.
-        lower: that of the lower one.
-        tolerance: largest difference of their sides [standard deviations].
+        lower: outline of the lower colour.
+        tolerance: maximum difference of their sides [standard deviations].
     """
     left = _merge(upper.left, lower.left, tolerance)
     right = _merge(upper.right, lower.right, tolerance)
@@ -89,24 +89,24 @@ def _common_sides(upper: Outline, lower: Outline, tolerance: float) -> tuple[Sid
 
 
 def _merge(a: Side, b: Side, tolerance: float) -> Side | None:
-    """One side seen in both colours, None if they differ by more [standard deviations]."""
-    hidden = a.hidden or b.hidden
+    """Return the common side, None if the sides differ by more [standard deviations]."""
+    occluded = a.occluded or b.occluded
     low, high = min(a.low, b.low), max(a.high, b.high)
     if not (a.trusted and b.trusted):
         best = a if a.trusted else b
-        return replace(best, hidden=hidden)
+        return replace(best, occluded=occluded)
     if abs(a.azimuth - b.azimuth) > tolerance * (a.sigma + b.sigma) / 2.0:
         return None
-    # The longer part averages more pixels.
+    # Weights: the longer part averages more pixels.
     wa, wb = a.high - a.low + 1e-3, b.high - b.low + 1e-3
     azimuth = (wa * a.azimuth + wb * b.azimuth) / (wa + wb)
-    return Side(azimuth, max(a.sigma, b.sigma), a.count + b.count, low, high, True, hidden)
+    return Side(azimuth, max(a.sigma, b.sigma), a.count + b.count, low, high, True, occluded)
 
 
 def _rims(
     seam: Rim, top: Rim, bottom: Rim, camera_height: float, parameters: VisionParameters
 ) -> tuple[RimCue, ...]:
-    """Seam, foot and head of the post, those that have points."""
+    """Return seam, foot and head of the post, as far as they have points."""
     head = parameters.beacon_height
     cues = (
         RimCue(seam, 0.5 * head, near=camera_height > 0.5 * head),

@@ -1,4 +1,4 @@
-"""Blobs: connected regions of one colour."""
+"""Blobs: connected components of one colour class."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +12,15 @@ Table = NDArray[np.int32]
 
 @value
 class Blob:
-    """One connected region of one colour.
+    """Connected component of one colour class.
 
     Attributes:
-        label: of its colour.
+        label: of its colour class.
         box: left, top, right, bottom pixel, right and bottom exclusive.
-        runs: row, first and last (exclusive) column of its runs of pixels, and its label,
+        runs: run-length encoding: row, first and last (exclusive) column and label of each run,
             by row, then column (n, 4) [pixel].
-        extents: first and last (exclusive) column of each of its rows, then first and last
-            (exclusive) row of each of its columns, one after the other
-            (2 (bottom - top) + 2 (right - left),) [pixel].
+        extents: first and last (exclusive) column of each row, then first and last (exclusive)
+            row of each column, concatenated (2 (bottom - top) + 2 (right - left),) [pixel].
         touches: whether it touches the left, top, right and bottom border.
     """
 
@@ -33,16 +32,16 @@ class Blob:
 
     @property
     def cut(self) -> bool:
-        """Whether the border of the image cuts it."""
+        """Whether it touches a border."""
         return any(self.touches)
 
 
 def find_blobs(labels: Labels, min_area: tuple[int, ...]) -> list[Blob]:
-    """Blobs of a classified image (h, w), 8-connected, by label, then top, then left.
+    """Return the 8-connected components of a label image (h, w), by label, then top, then left.
 
     Args:
         labels: label of each pixel, 0 for background.
-        min_area: smallest blob of label 1, 2, ... [pixel].
+        min_area: minimum area of blobs of label 1, 2, ... [pixel].
     """
     height, width = labels.shape
     regions, runs, extents = regions_of(labels, np.array(min_area, np.int32))

@@ -1,4 +1,4 @@
-"""Connected regions of one label in an image, compiled."""
+"""Compiled part of the blobs: connected-component labelling by run-length encoding."""
 
 import numpy as np
 from numba import njit
@@ -11,12 +11,12 @@ ROW, START, STOP, COLOR = range(4)  # columns of a table of runs
 LEFT, TOP, RIGHT, BOTTOM, AREA, LABEL, RUNS = range(7)  # columns of a table of regions
 
 WORD = 8  # pixels that are compared at once
-EACH = np.uint64(0x0101010101010101)  # a label times this is a word of it
+REPEAT = np.uint64(0x0101010101010101)  # a label times this is a word of that label
 
 
 @njit(cache=True)
 def _root(parent: Table, run: int) -> int:
-    """First run of the region that a run belongs to, so far as is known."""
+    """Return the root of a run in the union-find forest, with path halving."""
     while parent[run] != run:
         parent[run] = parent[parent[run]]
         run = parent[run]
@@ -25,16 +25,16 @@ def _root(parent: Table, run: int) -> int:
 
 @njit(cache=True)
 def _end(flat: Labels, words: NDArray[np.uint64], start: int, stop: int) -> int:
-    """Where the run of one label that begins at `start` ends, `stop` at the latest.
+    """Return the end of the run that begins at `start`.
 
     Args:
         flat: labels of an image, row by row (n,).
-        words: the same, but for less than a word at the end.
-        start: a pixel.
-        stop: the end of its row.
+        words: view of `flat` by words, without an incomplete last one.
+        start: first pixel of the run.
+        stop: end of its row.
     """
     label = flat[start]
-    word = label * EACH
+    word = label * REPEAT
     end = start + 1
     while end < stop and flat[end] == label:
         end += 1
@@ -45,7 +45,7 @@ def _end(flat: Labels, words: NDArray[np.uint64], start: int, stop: int) -> int:
 
 @njit(cache=True)
 def _runs_of(labels: Labels) -> tuple[Table, Table]:
-    """Runs of one label, by row, then column (n, 4), and an earlier one each is joined to (n,)."""
+    """Return all runs, by row, then column (n, 4), and the parent of each (n,)."""
     height, width = labels.shape
     flat = labels.reshape(-1)
     words = flat[: flat.size // WORD * WORD].view(np.uint64)
@@ -62,7 +62,7 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
                 continue
             runs[n, ROW], runs[n, START], runs[n, STOP], runs[n, COLOR] = row, start, end, label
             parent[n] = n
-            # What ends before this run starts touches none that comes after it either.
+            # A run above that ends before this run touches no later run either.
             while above < begin and runs[above, STOP] < start:
                 above += 1
             root = n
@@ -80,53 +80,56 @@ def _runs_of(labels: Labels) -> tuple[Table, Table]:
 
 @njit(cache=True)
 def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]:
-    """Regions that are large enough (n, 7), and which of them each run is in, or -1 (m,)."""
+    """Return the large enough regions (n, 7), and the region of each run, or -1 (m,)."""
     n = len(runs)
-    found = np.empty((n, 7), np.int32)
-    region, place = np.empty(n, np.int32), np.empty(n, np.int32)
+    table = np.empty((n, 7), np.int32)
+    region, index = np.empty(n, np.int32), np.empty(n, np.int32)
     count = 0
     for i in range(n):
         root = _root(parent, i)
         if root == i:
             k = count
             count += 1
-            found[k, LEFT], found[k, TOP], found[k, RIGHT] = runs[i, START], runs[i, ROW], 0
-            found[k, AREA], found[k, LABEL], found[k, RUNS] = 0, runs[i, COLOR], 0
-            place[k] = -1
+            table[k, LEFT], table[k, TOP], table[k, RIGHT] = (
+                runs[i, START],
+                runs[i, ROW],
+                0,
+            )
+            table[k, AREA], table[k, LABEL], table[k, RUNS] = 0, runs[i, COLOR], 0
+            index[k] = -1
         else:
             k = region[root]
         region[i] = k
-        found[k, LEFT] = min(found[k, LEFT], runs[i, START])
-        found[k, RIGHT] = max(found[k, RIGHT], runs[i, STOP])
-        found[k, BOTTOM] = runs[i, ROW] + 1
-        found[k, AREA] += runs[i, STOP] - runs[i, START]
-        found[k, RUNS] += 1
+        table[k, LEFT] = min(table[k, LEFT], runs[i, START])
+        table[k, RIGHT] = max(table[k, RIGHT], runs[i, STOP])
+        table[k, BOTTOM] = runs[i, ROW] + 1
+        table[k, AREA] += runs[i, STOP] - runs[i, START]
+        table[k, RUNS] += 1
     regions = np.empty((count, 7), np.int32)
     m = 0
     for label in range(1, len(min_area) + 1):
         for k in range(count):
-            if found[k, LABEL] == label and found[k, AREA] >= min_area[label - 1]:
+            if table[k, LABEL] == label and table[k, AREA] >= min_area[label - 1]:
                 for column in range(7):
-                    regions[m, column] = found[k, column]
-                place[k] = m
+                    regions[m, column] = table[k, column]
+                index[k] = m
                 m += 1
     for i in range(n):
-        region[i] = place[region[i]]
+        region[i] = index[region[i]]
     return regions[:m], region
 
 
 @njit(cache=True)
 def regions_of(labels: Labels, min_area: Table) -> tuple[Table, Table, Table]:
-    """Connected regions: the runs of each row, joined to those of the row above.
+    """Return the connected components of a label image: two-scan labelling of runs.
 
     Args:
         labels: label of each pixel (h, w), 0 for background.
-        min_area: smallest region of label 1, 2, ... (k,) [pixel].
+        min_area: minimum area of regions of label 1, 2, ... (k,) [pixel].
 
     Returns:
         Left, top, right, bottom, area, label and number of runs of each region (n, 7), by
-        label, top, left; and their runs (m, 4) and extents, as `Blob` has them, one region
-        after the other.
+        label, top, left; their runs (m, 4) and extents as in `Blob`, concatenated.
 
     Source: He, Chao and Suzuki, A run-based two-scan labeling algorithm, 2008.
     """

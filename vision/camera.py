@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 @value
 class CameraPose:
-    """Pose of the camera in the robot frame R at the time an image was taken.
+    """Pose of the camera in the robot frame R at capture.
 
     Attributes:
         rotation: R_RC, columns are the camera's right, down and forward axes (3, 3).
@@ -22,8 +22,8 @@ class CameraPose:
         roll_sigma: standard deviation of the roll of the camera [rad].
         yaw_sigma: standard deviation of the yaw of the camera [rad].
         height_sigma: standard deviation of its height [m].
-        pan_smear: how far the camera panned while the image was exposed [rad].
-        tilt_smear: how far it tilted [rad].
+        pan_smear: pan of the camera during the exposure (motion blur) [rad].
+        tilt_smear: tilt of the camera during the exposure [rad].
     """
 
     rotation: Array
@@ -38,7 +38,7 @@ class CameraPose:
 
 @dataclass(frozen=True, slots=True)
 class PinholeCamera:
-    """Ideal pinhole camera with square pixels and the centre in the middle.
+    """Ideal pinhole camera with square pixels and central principal point.
 
     Attributes:
         width, height: size of the image [pixel].
@@ -51,7 +51,7 @@ class PinholeCamera:
 
     @classmethod
     def from_vertical_fov(cls, width: int, height: int, fov: float) -> "PinholeCamera":
-        """Build from the vertical field of view `fov` [rad]."""
+        """Return the camera with a vertical field of view `fov` [rad]."""
         return cls(width, height, 0.5 * height / tan(0.5 * fov))
 
     @property
@@ -65,7 +65,7 @@ class PinholeCamera:
         return 2.0 * float(np.arctan(0.5 * self.height / self.focal))
 
     def project(self, points: Array) -> Array:
-        """Image points (..., 2) [pixel] of `points` in the camera frame (..., 3) [m].
+        """Project points in the camera frame (..., 3) [m] to the image (..., 2) [pixel].
 
         Pixel (i, j) covers u from i to i + 1 and v from j to j + 1. Points behind the camera
         give NaN.

@@ -1,4 +1,4 @@
-"""Colour classes: what colours mean, how things are painted, and a table to recognise them."""
+"""Colour classes of obstacles and beacons, and colour classification by a look-up table."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,18 +14,18 @@ from vision.errors import VisionError
 Labels = NDArray[np.uint8]
 
 TABLE_SIZE = 1 << 15  # one entry for each RGB555 colour
-OUTSIDE = 255  # label of what lies beyond the border of an image
+OUTSIDE = 255  # label of pixels outside the image or in the self mask
 
 
 @dataclass(frozen=True, slots=True)
 class ColorClass:
-    """A colour that means something.
+    """Colour class.
 
     Attributes:
         name: of the colour.
-        kind: whether obstacles or beacons carry it.
-        rgb: how such things are painted, channels 0..1. No channel comes near 1, so
-            that strong light clips none and the hue stays.
+        kind: of the objects painted in it.
+        rgb: paint, channels 0..1, well below 1 so that strong light clips no channel and keeps
+            the hue.
         hue: first and last hue in OpenCV's half degrees, 0..180; first > last wraps
             around red.
         min_saturation: 0..255.
@@ -40,7 +40,7 @@ class ColorClass:
     min_value: int = 18
 
     def contains(self, hue: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether each hue [half degree] lies in the class."""
+        """Return whether each hue [half degree] is in the class."""
         first, last = self.hue
         if first <= last:
             return (first <= hue) & (hue <= last)
@@ -59,19 +59,18 @@ COLOR_CLASSES: Mapping[str, ColorClass] = {
         ColorClass("magenta", "beacon", (0.62, 0.09, 0.55), (145.0, 165.0)),
     )
 }
-"""Every colour vision knows; label k of a classified image is the k-th of them, from 1."""
+"""All colour classes; label k of a classified image is the k-th of them, from 1."""
 
 
 class ColorTable:
     """Look-up table from RGB555 colours to labels.
 
     Args:
-        classes: colours to recognise; label k is the k-th of them, counted from 1.
-        labels: label of every RGB555 colour (32768,); made from the hues that the classes
-            declare if left out.
+        classes: colour classes; label k is the k-th of them, counted from 1.
+        labels: label of every RGB555 colour (32768,); default: from the bounds of the classes.
 
     Raises:
-        VisionError: two classes claim the same colour, or `labels` do not fit the classes.
+        VisionError: two classes overlap, or `labels` do not fit the classes.
     """
 
     def __init__(
@@ -79,61 +78,61 @@ class ColorTable:
     ) -> None:
         self.classes = tuple(classes.values())
         if labels is None:
-            labels = _declared(self.classes)
+            labels = _labels_of(self.classes)
         elif labels.shape != (TABLE_SIZE,) or labels.dtype != np.uint8:
             raise VisionError(
-                f"a colour table has {TABLE_SIZE} labels of uint8, "
-                f"got {labels.dtype} of shape {labels.shape}"
+                f"colour table: wrong labels, got {labels.dtype} of shape {labels.shape}; "
+                f"expected uint8 of shape ({TABLE_SIZE},)"
             )
         elif int(labels.max()) > len(self.classes):
             raise VisionError(
-                f"the colour table has a label {int(labels.max())}, but there are "
-                f"{len(self.classes)} colour classes"
+                f"colour table: wrong labels, got label {int(labels.max())}; "
+                f"expected 0 to {len(self.classes)}"
             )
         self.labels = labels
 
     def classify(self, image: NDArray[np.uint8]) -> Labels:
-        """Label of every pixel of an RGB image (h, w, 3): (h, w), 0 for no class.
+        """Return the label of every pixel of an RGB image (h, w, 3): (h, w), 0 for no class.
 
         Raises:
             VisionError: the image is not an array of uint8 of shape (h, w, 3).
         """
         if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
             raise VisionError(
-                "an image must be an RGB array of uint8 of shape (height, width, 3), "
-                f"got {image.dtype} of shape {image.shape}"
+                f"image: not RGB, got {image.dtype} of shape {image.shape}; "
+                "expected uint8 of shape (height, width, 3)"
             )
         return color_kernel.classify(np.ascontiguousarray(image), self.labels)
 
 
 def table_colors() -> NDArray[np.uint8]:
-    """RGB in the middle of each bin of a table (32768, 3), in the order of the codes."""
+    """Return the centre of each RGB555 bin (32768, 3), by code."""
     code = np.arange(TABLE_SIZE)
     rgb = np.stack([(code >> 10) & 31, (code >> 5) & 31, code & 31], axis=-1) * 8 + 4
     return rgb.astype(np.uint8)
 
 
-def _declared(classes: Sequence[ColorClass]) -> Labels:
-    """Labels from the hues, the saturation and the value that the classes declare."""
+def _labels_of(classes: Sequence[ColorClass]) -> Labels:
+    """Return the label of every RGB555 colour from the bounds of the classes."""
     labels = np.zeros(TABLE_SIZE, dtype=np.uint8)
     hue, saturation, value = _hsv_of_table()
     for label, color in enumerate(classes, start=1):
         claimed = (
             color.contains(hue) & (saturation >= color.min_saturation) & (value >= color.min_value)
         )
-        rivals = np.unique(labels[claimed & (labels > 0)]).tolist()
-        if rivals:
-            other = classes[rivals[0] - 1]
+        overlap = np.unique(labels[claimed & (labels > 0)]).tolist()
+        if overlap:
+            other = classes[overlap[0] - 1]
             raise VisionError(
-                f"colour classes {other.name!r} and {color.name!r} overlap: "
-                f"hues {other.hue} and {color.hue}"
+                f"colour classes {other.name!r} and {color.name!r}: overlapping hues, "
+                f"got {other.hue} and {color.hue}"
             )
         labels[claimed] = label
     return labels
 
 
 def _hsv_of_table() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Hue [half degree], saturation and value 0..255 in the middle of each RGB555 bin."""
+    """Return hue [half degree], saturation and value 0..255 of each RGB555 bin."""
     rgb = (table_colors()[None] / 255.0).astype(np.float32)
     hsv = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV)[0].astype(np.float64)
     return 0.5 * hsv[:, 0], 255.0 * hsv[:, 1], 255.0 * hsv[:, 2]

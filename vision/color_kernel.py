@@ -1,4 +1,4 @@
-"""Pixels to labels by a table, compiled."""
+"""Compiled part of the colour classification."""
 
 import numpy as np
 from numba import njit
@@ -9,7 +9,7 @@ Labels = NDArray[np.uint8]
 
 @njit(cache=True)
 def classify(image: Labels, table: Labels) -> Labels:
-    """Label of every pixel of an RGB image (h, w, 3): (h, w).
+    """Return the label of every pixel of an RGB image (h, w, 3): (h, w).
 
     Args:
         image: RGB.
@@ -19,9 +19,9 @@ def classify(image: Labels, table: Labels) -> Labels:
     labels, codes = np.empty((height, width), np.uint8), np.empty(width, np.uint16)
     for row in range(height):
         channels, of_row = image[row].reshape(-1), labels[row]
-        # Codes first: in a loop of their own many are made at once.
+        # A separate loop for the codes is vectorized.
         for k in range(width):
-            # As wide integers: a code has 15 bits, a channel 8.
+            # A code has 15 bits, a channel 8: compute with wider integers.
             red, green = int(channels[3 * k]), int(channels[3 * k + 1])
             blue = int(channels[3 * k + 2])
             codes[k] = (red >> 3) << 10 | (green >> 3) << 5 | blue >> 3

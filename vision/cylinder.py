@@ -1,12 +1,11 @@
-"""Upright cylinders on the floor, located from the edges seen of them.
+"""Pose estimation of upright cylinders on the floor from their silhouette edges.
 
-Unknown are the azimuth, the distance and the radius of the cylinder as the camera sees
-them. Both sides give azimuth +- asin(radius / distance). Every rim gives slopes
-(rim height - camera height) / (horizontal distance of the rim), with the near or the
-far part of the rim at distance * cos(phi) -+ sqrt(radius^2 - (distance * sin(phi))^2)
-in the direction phi off the axis. All are fused by Gauss-Newton with the full
-covariance of the measurements: pixels and what smears an edge, independent, and the pose
-of the camera, which shifts all edges together.
+The unknowns are azimuth, distance and radius of the cylinder relative to the camera. The two
+sides measure azimuth +- asin(radius / distance). Every rim point measures a slope
+(rim height - camera height) / (horizontal distance of the rim), with the near or far half of
+the rim at distance * cos(phi) -+ sqrt(radius^2 - (distance * sin(phi))^2) in the direction phi
+off the axis. Gauss-Newton fuses all edges with their full covariance: independent pixel errors
+and motion blur, and the error of the camera pose common to all edges.
 """
 
 from collections.abc import Sequence
@@ -25,12 +24,12 @@ Array = NDArray[np.float64]
 
 @value
 class RimCue:
-    """A rim taken for an edge of the cylinder.
+    """Rim edge of a cylinder.
 
     Attributes:
-        rim: the points.
+        rim: points.
         height: of the rim above the floor [m].
-        near: it is the near half of the circle and not the far one.
+        near: near half of the circle, else the far half.
     """
 
     rim: Rim
@@ -40,10 +39,10 @@ class RimCue:
 
 @value
 class Candidate:
-    """Edges that belong to one cylinder.
+    """Edges of one cylinder hypothesis.
 
     Attributes:
-        left, right: sides of greater and smaller azimuth.
+        left, right: sides of larger and smaller azimuth.
         rims: at most three.
         height: of the cylinder [m].
         radius: known or typical radius [m].
@@ -60,15 +59,15 @@ class Candidate:
 
 @value
 class Cylinder:
-    """A located cylinder, seen from the camera.
+    """Located cylinder relative to the camera.
 
     Attributes:
         azimuth: of the axis from the heading of the camera [rad].
         distance: horizontal, from the camera to the axis [m].
         radius: [m].
         covariance: of (azimuth, distance, radius) (3, 3).
-        misfit: sum of squared normalised residuals of the edges [1].
-        astray: share of rim points that do not follow the rim of one cylinder [1].
+        misfit: sum of squared normalized residuals of the edges [1].
+        outlier_fraction: fraction of outliers among the rim points [1].
     """
 
     azimuth: float
@@ -76,29 +75,29 @@ class Cylinder:
     radius: float
     covariance: Array
     misfit: float
-    astray: float
+    outlier_fraction: float
 
 
-def interpenetrate(a: Cylinder, b: Cylinder, shared: float) -> bool:
-    """Whether two cylinders take up the same place, so that one of them is not real.
+def interpenetrate(a: Cylinder, b: Cylinder, min_separation: float) -> bool:
+    """Return whether two cylinders interpenetrate, so that one must be a false detection.
 
     Args:
         a: one cylinder.
-        b: another.
-        shared: axes nearer than this share of the sum of the radii are in the same place.
+        b: another cylinder.
+        min_separation: minimum distance of the axes, relative to the sum of the radii [1].
     """
     gap2 = (
         a.distance**2 + b.distance**2 - 2.0 * a.distance * b.distance * cos(a.azimuth - b.azimuth)
     )
-    return gap2 < (shared * (a.radius + b.radius)) ** 2
+    return gap2 < (min_separation * (a.radius + b.radius)) ** 2
 
 
 def polar_in_robot(cylinder: Cylinder, view: View) -> tuple[float, float, Array, Array]:
-    """The axis from the origin of R.
+    """Return polar coordinates of the axis in R.
 
     Returns:
-        Distance [m] and bearing [rad], their covariance (2, 2), and by how much they would be
-        greater were the radius known to be greater (2,) [1, rad/m].
+        Distance [m] and bearing [rad], their covariance (2, 2), and their partial derivatives
+        with respect to the radius (2,) [1, rad/m].
     """
     azimuth = cylinder.azimuth + view.heading
     x = view.x + cylinder.distance * cos(azimuth)
@@ -126,16 +125,16 @@ def locate(
     view: View,
     roundness_sigma: float,
     edge_correlation: float,
-    stray: float,
+    outlier_threshold: float,
 ) -> list[Cylinder]:
-    """Cylinders that explain the edges of each candidate best.
+    """Return the cylinder that fits the edges of each candidate best (least squares).
 
     Args:
-        candidates: edges of one cylinder each; at least one rim or one side trusted.
+        candidates: edges of one cylinder each; at least one rim or one trusted side.
         view: camera and pose.
         roundness_sigma: standard deviation of the outline relative to the radius [1].
         edge_correlation: correlation of the errors of two points of one edge [1].
-        stray: deviation from a rim that makes a point stray [standard deviations].
+        outlier_threshold: deviation of an outlier from its rim [standard deviations].
     """
     if not candidates:
         return []
@@ -143,24 +142,24 @@ def locate(
     known: list[float] = []
     rims: list[float] = []
     azimuths, slopes = [], []
-    owned, points = [0], [0]
+    first_rims, points = [0], [0]
     for candidate in candidates:
         for side in (candidate.left, candidate.right):
             sides += side.azimuth, side.sigma, side.count, side.low, side.high, side.trusted
         known += candidate.radius, candidate.radius_sigma, candidate.height
-        for cue in sorted(candidate.rims, key=_height):
+        for cue in sorted(candidate.rims, key=lambda cue: cue.height):
             rim = cue.rim
             rims += cue.height, 1.0 if cue.near else -1.0, rim.sigma
             azimuths.append(rim.azimuth)
             slopes.append(rim.slope)
             points.append(points[-1] + len(rim.slope))
-        owned.append(len(slopes))
+        first_rims.append(len(slopes))
     pose = view.pose
     result, covariances = cylinder_kernel.locate(
         np.array(sides).reshape(-1, 2, 6),
         np.array(known).reshape(-1, 3),
         np.array(rims, float).reshape(-1, 3),
-        np.array(owned),
+        np.array(first_rims),
         np.array(points),
         np.concatenate(azimuths) if azimuths else np.empty(0),
         np.concatenate(slopes) if slopes else np.empty(0),
@@ -171,20 +170,16 @@ def locate(
                 pose.roll_sigma**2,
                 pose.yaw_sigma**2,
                 pose.height_sigma**2,
-                # An edge lies anywhere within what it is smeared over.
+                # Motion blur: the error of an edge is uniform over the smear.
                 pose.pan_smear**2 / 12.0,
                 pose.tilt_smear**2 / 12.0,
             ]
         ),
-        np.array([roundness_sigma, edge_correlation, stray]),
+        np.array([roundness_sigma, edge_correlation, outlier_threshold]),
     )
     return [
-        Cylinder(azimuth, distance, radius, covariance, misfit, astray)
-        for (azimuth, distance, radius, misfit, astray), covariance in zip(
+        Cylinder(azimuth, distance, radius, covariance, misfit, outlier_fraction)
+        for (azimuth, distance, radius, misfit, outlier_fraction), covariance in zip(
             result.tolist(), covariances, strict=True
         )
     ]
-
-
-def _height(cue: RimCue) -> float:
-    return cue.height

@@ -1,4 +1,4 @@
-"""Cylinders located from their edges, compiled: the Gauss-Newton steps of `vision.cylinder`."""
+"""Compiled part of the pose estimation of cylinders: the Gauss-Newton steps."""
 
 from math import asin, cos, hypot, inf, sin, sqrt
 
@@ -16,48 +16,47 @@ SIDES = 2
 PRIOR = SIDES + MAX_RIMS  # row of the prior of the radius
 SPAN = PRIOR + 1  # row of the span of a side
 ROWS = SPAN + 1
-NO_INFORMATION = 1e3  # standard deviation of what was not measured
-RIM_WIDTH = 0.75  # share of the half width within which points of a rim are used
-OUTER = 0.92  # share of the half width where a rim is too steep to predict
-HIDDEN_WIDTH = 0.08  # how far a hidden side may reach beyond what is seen [m]
+NO_INFORMATION = 1e3  # standard deviation of a missing measurement
+RIM_WIDTH = 0.75  # fraction of the half width within which points of a rim are used
+OUTER = 0.92  # fraction of the half width beyond which a rim is too steep to predict
+HIDDEN_WIDTH = 0.08  # standard deviation of an occluded side [m]
 MIN_DISTANCE, MAX_DISTANCE = 0.10, 12.0  # [m]
 MIN_RADIUS, MAX_RADIUS = 0.01, 0.5  # bounds of the iteration [m]
-MIN_HALF, MAX_HALF = 1e-3, 1.2  # bounds of the first half width [rad]
-FAR_SLOPE = -0.5  # a thing whose foot is seen less steeply is far
+MIN_HALF, MAX_HALF = 1e-3, 1.2  # bounds of the initial half width [rad]
+FAR_SLOPE = -0.5  # slope of the foot above which a cylinder is far
 MIN_SLOPE = 1e-6
 MIN_RUN = 0.02  # [m]
-STEEPEST = -3.0  # slope at which a side is taken to be seen at most
+MIN_SLOPE_OF_SIDE = -3.0  # minimum slope of the middle of a side
 UNIFORM = 12.0**0.5  # width of a pixel [standard deviations of an edge in it]
-MIN_CLEARANCE = 0.03  # a plane closer to the camera's own height gives no distance [m]
-SPAN_SIGMA = 0.02  # least standard deviation of a distance from a span, relative to itself [1]
+MIN_CLEARANCE = 0.03  # minimum height difference of camera and rim to measure distance [m]
+SPAN_SIGMA = 0.02  # minimum relative standard deviation of a distance from a span [1]
 TURNS = 3.0  # an edge that crosses n pixels has a common error 1 + TURNS*n times smaller
 
 
 @njit(cache=True)
 def independent(count: float, crossed: float) -> float:
-    """How many of an edge's points have errors of their own.
+    """Return the number of points of an edge with independent errors.
 
-    A pixel tells only that the edge passes through it, with an error that is uniform over
-    the pixel. An edge that runs along the pixels passes through all of them at the same
-    place and errs everywhere alike; one that crosses from pixel to pixel errs by turns.
+    The quantization error is uniform over a pixel. It is common to all points of an edge
+    parallel to the pixel grid and averages out along an edge that crosses pixels.
 
     Args:
-        count: points of the edge, one at least.
-        crossed: how many pixels it crosses, at right angles to itself.
+        count: points of the edge, at least one.
+        crossed: number of pixels crossed, perpendicular to the edge.
     """
-    alike = 1.0 / (1.0 + TURNS * crossed)
-    return 1.0 / max(1.0 / count, alike * alike)
+    common = 1.0 / (1.0 + TURNS * crossed)
+    return 1.0 / max(1.0 / count, common * common)
 
 
 @njit(cache=True)
 def _of_mean(count: float, common: float) -> float:
-    """Standard deviation of the mean of so many points, relative to that of one."""
+    """Return the standard deviation of the mean of `count` points, relative to that of one."""
     return sqrt(common + (1.0 - common) / count)
 
 
 @njit(cache=True)
 def _rim_distance(rims: Array, points: Table, slope: Array, h: float, radius: float) -> float:
-    """First distance from the rims of a candidate, 0 if they tell none; see `locate`."""
+    """Return the initial distance from the rims, 0 if there is none; see `locate`."""
     lowest = highest = -1
     for j in range(len(rims)):
         if points[j] < points[j + 1] and abs(rims[j, 0] - h) >= MIN_CLEARANCE:
@@ -68,7 +67,7 @@ def _rim_distance(rims: Array, points: Table, slope: Array, h: float, radius: fl
     low = slope[(points[lowest] + points[lowest + 1]) // 2]
     high = slope[(points[highest] + points[highest + 1]) // 2]
     if low > FAR_SLOPE and high > low:
-        # Far away an error of the tilt spoils each slope, but not their difference.
+        # Far away the difference of the slopes is more robust against a tilt error.
         return float(min((rims[highest, 0] - rims[lowest, 0]) / (high - low), MAX_DISTANCE))
     for j in range(lowest, highest + 1):
         if points[j] == points[j + 1] or abs(rims[j, 0] - h) < MIN_CLEARANCE:
@@ -82,10 +81,10 @@ def _rim_distance(rims: Array, points: Table, slope: Array, h: float, radius: fl
 
 @njit(cache=True)
 def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
-    """Distance to the only side that is trusted, from the part of it that is seen.
+    """Return the distance to the only trusted side, from the visible span of the side.
 
-    That part lies between foot and head. Near the border of the image a thing close by shows
-    little else: its foot is below the image, and its head beside it.
+    The span lies between foot and head. Of a close cylinder at the border of the image often
+    neither is visible.
 
     Args:
         sides: as for `locate`, of one candidate.
@@ -93,7 +92,7 @@ def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
         h: height of the camera [m].
 
     Returns:
-        Distance and its standard deviation [m]; 0, 0 if the span tells none.
+        Distance and its standard deviation [m]; 0, 0 if the span gives none.
     """
     if (sides[0, 5] != 0.0) == (sides[1, 5] != 0.0):
         return 0.0, 0.0
@@ -109,13 +108,13 @@ def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
 
 @njit(cache=True)
 def _guess(x: Array, sides: Array, known: Array, distance: float) -> None:
-    """Fill the first azimuth, distance and radius of a candidate; see `locate`.
+    """Write the initial azimuth, distance and radius of a candidate; see `locate`.
 
     Args:
-        x: to fill.
+        x: output (3,).
         sides: of the candidate.
         known: of the candidate.
-        distance: if something tells it, else 0 [m].
+        distance: initial distance, 0 if unknown [m].
     """
     left, right, radius = sides[0, 0], sides[1, 0], known[0]
     left_trusted, right_trusted = sides[0, 5] != 0.0, sides[1, 5] != 0.0
@@ -144,21 +143,18 @@ def _keep_inner(
     h: float,
     common: float,
 ) -> int:
-    """Tell the points not near the ends of their rims, and how well their means are known.
+    """Select the rim points away from the ends; return their number.
 
     Args:
-        keep: to fill, which points are used.
-        mean_sigma: to fill, standard deviation of the mean slope of each rim (3,) [1].
-        x: first azimuth, distance and radius.
+        keep: output, which points are used.
+        mean_sigma: output, standard deviation of the mean slope of each rim (3,) [1].
+        x: initial azimuth, distance and radius.
         rims: as for `locate`, of one candidate.
         points: first point of each of its rims, and the end of the last.
         azimuth: as for `locate`.
         slope: as for `locate`.
         h: height of the camera [m].
         common: correlation of the errors of two points of one edge [1].
-
-    Returns:
-        How many points are used.
     """
     theta, d, r = x[0], x[1], x[2]
     used = 0
@@ -194,7 +190,7 @@ def _linearise(
     h: float,
     span: float,
 ) -> None:
-    """Fill the Jacobian (7, 3) and the residuals (7,) of a candidate at x, and of its points."""
+    """Write Jacobian (7, 3) and residuals (7,) of a candidate at x, and residuals of its points."""
     theta, d, r = x[0], x[1], x[2]
     H[:] = 0.0
     residual[:] = 0.0
@@ -251,13 +247,13 @@ def _covariance(
     h: float,
     span_sigma: float,
 ) -> None:
-    """Fill the covariance of the measurements (7, 7): pixels, smear, roundness, camera pose."""
+    """Write the measurement covariance (7, 7): pixels, motion blur, roundness, camera pose."""
     theta, d, r = x[0], x[1], x[2]
     s, c = sin(theta), cos(theta)
     R[:] = 0.0
-    G[:] = 0.0  # by small rotations of the camera, tilt, roll and yaw, and by its height
+    G[:] = 0.0  # Jacobian by tilt, roll, yaw and height of the camera
     for j in range(SIDES):
-        level = max(0.5 * (sides[j, 3] + sides[j, 4]), STEEPEST)
+        level = max(0.5 * (sides[j, 3] + sides[j, 4]), MIN_SLOPE_OF_SIDE)
         G[j, 0], G[j, 1], G[j, 2] = -level * s, -level * c, 1.0
         sigma = hypot(side_sigma[j], roundness * r / d) if trusted[j] else HIDDEN_WIDTH / d
         R[j, j] = sigma * sigma + smear[0]
@@ -281,7 +277,7 @@ def _covariance(
 
 @njit(cache=True)
 def _whiten(R: Array, H: Array, residual: Array) -> None:
-    """Cholesky factor of R in its lower half, and its inverse applied to H and to the residual."""
+    """Whiten H and the residual by the Cholesky factor of R, which replaces R's lower half."""
     for i in range(ROWS):
         for j in range(i + 1):
             total = R[i, j]
@@ -301,7 +297,7 @@ def _whiten(R: Array, H: Array, residual: Array) -> None:
 
 @njit(cache=True)
 def _step(x: Array, P: Array, H: Array, residual: Array) -> None:
-    """One step of x to the least squares of whitened rows; fill its covariance P (3, 3)."""
+    """Take one Gauss-Newton step of x from whitened rows; write its covariance P (3, 3)."""
     N, g = np.zeros((3, 3)), np.zeros(3)
     for i in range(ROWS):
         for j in range(3):
@@ -325,7 +321,7 @@ def _step(x: Array, P: Array, H: Array, residual: Array) -> None:
 
 @njit(cache=True)
 def _positive(P: Array) -> bool:
-    """Whether P (3, 3) is positive definite."""
+    """Return whether P (3, 3) is positive definite."""
     minor = P[0, 0] * P[1, 1] - P[0, 1] * P[1, 0]
     determinant = (
         P[2, 2] * minor
@@ -336,17 +332,17 @@ def _positive(P: Array) -> bool:
 
 
 @njit(cache=True)
-def _astray(
-    residual: Array, means: Array, keep: Bools, rims: Array, points: Table, stray: float
+def _outlier_fraction(
+    residual: Array, means: Array, keep: Bools, rims: Array, points: Table, threshold: float
 ) -> float:
-    """Share of the used points of a candidate off their rim; see `locate`."""
-    total = strays = 0
+    """Return the fraction of outliers among the used points of a candidate; see `locate`."""
+    total = outliers = 0
     for j in range(len(rims)):
         for i in range(points[j], points[j + 1]):
             if keep[i]:
                 total += 1
-                strays += abs(residual[i] - means[j]) > stray * rims[j, 2]
-    return strays / max(total, 1)
+                outliers += abs(residual[i] - means[j]) > threshold * rims[j, 2]
+    return outliers / max(total, 1)
 
 
 @njit(cache=True)
@@ -354,33 +350,34 @@ def locate(
     sides: Array,
     known: Array,
     rims: Array,
-    owned: Table,
+    first_rims: Table,
     points: Table,
     azimuth: Array,
     slope: Array,
     pose: Array,
     options: Array,
 ) -> tuple[Array, Array]:
-    """Cylinders that explain the edges of each candidate best.
+    """Return the least-squares cylinder of each candidate.
 
     Args:
-        sides: azimuth [rad], its standard deviation for one point [rad], points with errors of
-            their own, lowest and highest slope and whether it is trusted, of the left and the
+        sides: azimuth [rad], its standard deviation for one point [rad], number of independent
+            points, minimum and maximum slope, and whether it is trusted, of the left and the
             right side of each candidate (n, 2, 6).
         known: radius, its standard deviation and height of each candidate (n, 3) [m].
         rims: height [m], 1 for the near half of the circle and -1 for the far one, and standard
             deviation of one slope, of all rims, from low to high for each candidate (m, 3).
-        owned: first rim of each candidate, and m (n + 1,).
+        first_rims: first rim of each candidate, and m (n + 1,).
         points: first point of each rim, and their number (m + 1,).
         azimuth: of the points of the rims [rad].
         slope: of the points of the rims [1].
-        pose: height of the camera [m]; variances of its tilt, roll, yaw [rad²], height [m²]; and
-            of an edge within what pan and tilt smear it over [rad²] (7,).
-        options: roundness, edge correlation and stray as for `vision.cylinder.locate` (3,).
+        pose: height of the camera [m]; variances of its tilt, roll, yaw [rad²], height [m²], and
+            of the motion blur by pan and tilt [rad²] (7,).
+        options: roundness, edge correlation and outlier threshold as for
+            `vision.cylinder.locate` (3,).
 
     Returns:
-        Azimuth [rad], distance [m], radius [m], misfit and share of points astray (n, 5); and
-        the covariance of the first three (n, 3, 3).
+        Azimuth [rad], distance [m], radius [m], misfit and outlier fraction (n, 5); covariance
+        of the first three (n, 3, 3).
     """
     n = len(sides)
     result, covariances = np.empty((n, 5)), np.empty((n, 3, 3))
@@ -389,12 +386,13 @@ def locate(
     R, G = np.empty((ROWS, ROWS)), np.empty((ROWS, 4))
     mean_sigma, means = np.empty(MAX_RIMS), np.empty(MAX_RIMS)
     side_sigma, trusted = np.empty(SIDES), np.empty(SIDES, np.bool_)
-    h, roundness, common, stray = pose[0], options[0], options[1], options[2]
+    h, roundness, common, threshold = pose[0], options[0], options[1], options[2]
     for k in range(n):
         side, x = sides[k], result[k, :3]
-        rim, ends = rims[owned[k] : owned[k + 1]], points[owned[k] : owned[k + 1] + 1]
-        told = _rim_distance(rim, ends, slope, h, known[k, 0])
-        _guess(x, side, known[k], told)
+        first, last = first_rims[k], first_rims[k + 1]
+        rim, ends = rims[first:last], points[first : last + 1]
+        distance = _rim_distance(rim, ends, slope, h, known[k, 0])
+        _guess(x, side, known[k], distance)
         used = _keep_inner(keep, mean_sigma, x, rim, ends, azimuth, slope, h, common)
         span = span_sigma = 0.0
         if used == 0:
@@ -423,7 +421,7 @@ def locate(
             )
             for j in range(MAX_RIMS):
                 means[j] = residual[SIDES + j]
-            # A side not seen between foot and head is not to be trusted.
+            # A side visible beyond foot or head is not an edge of the cylinder.
             reach = sqrt(x[1] * x[1] - x[2] * x[2])
             for j in range(SIDES):
                 slack = 0.5 * side_sigma[j]
@@ -451,11 +449,11 @@ def locate(
             _whiten(R, H, residual)
             _step(x, covariances[k], H, residual)
         if not _positive(covariances[k]):
-            # Edges that are no cylinder's lead the steps astray.
+            # The iteration diverges if the edges are not those of one cylinder.
             covariances[k] = NO_INFORMATION * NO_INFORMATION * np.eye(3)
         misfit = 0.0
         for i in range(ROWS):
             misfit += residual[i] * residual[i]
         result[k, 3] = misfit
-        result[k, 4] = _astray(point_residual, means, keep, rim, ends, stray)
+        result[k, 4] = _outlier_fraction(point_residual, means, keep, rim, ends, threshold)
     return result, covariances

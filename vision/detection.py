@@ -1,4 +1,4 @@
-"""What the camera recognised in one image."""
+"""Detection of a cylinder: the output of vision."""
 
 from typing import Literal
 
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 @value
 class Detection:
-    """One cylinder seen in one image, located in the robot frame R at capture.
+    """One cylinder detected in an image, in the robot frame R at capture.
 
     Attributes:
         kind: obstacle or beacon.
@@ -22,10 +22,10 @@ class Detection:
         covariance: of (distance, bearing) (2, 2) [m², m rad, rad²].
         radius: radius of the cylinder [m].
         radius_sigma: its standard deviation [m].
-        by_radius: by how much distance and bearing would be greater were the radius known to be
-            greater (2,) [1, rad/m].
-        cut: the blob touches the border of the image or the robot's own body.
-        occluded: another thing hides part of it.
+        by_radius: partial derivatives of (distance, bearing) with respect to the radius (2,)
+            [1, rad/m].
+        cut: the blob touches the border of the image or the self mask.
+        occluded: the cylinder is partly occluded.
         box: left, top, right, bottom pixel of the blob, right and bottom exclusive.
     """
 

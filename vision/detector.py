@@ -1,4 +1,4 @@
-"""The detector: one image and the pose of its camera become detections."""
+"""Detector of obstacles and beacons in an image."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,22 +26,22 @@ from vision.detection import Detection
 from vision.errors import VisionError
 from vision.outline import Outline, trace
 from vision.parameters import VisionParameters
-from vision.self_mask import BodyPart, hide
+from vision.self_mask import BodyPart, apply_self_mask
 from vision.split import split
 from vision.value import value
 from vision.view import View
 
 
 @value
-class _Sighting:
-    """Something that may be one cylinder.
+class _Hypothesis:
+    """Hypothesis of one cylinder.
 
     Attributes:
         kind: obstacle or beacon.
-        blobs: of an obstacle one, of a beacon the upper and the lower.
+        blobs: one of an obstacle, upper and lower of a beacon.
         outline: of the last blob.
         candidate: edges.
-        occluded: something hides part of it.
+        occluded: whether it is partly occluded.
     """
 
     kind: Literal["obstacle", "beacon"]
@@ -52,16 +52,16 @@ class _Sighting:
 
 
 class Detector:
-    """Recognises obstacles and beacons in images of one camera.
+    """Detector of obstacles and beacons in the images of one camera.
 
     Args:
         camera: intrinsics.
-        parameters: sizes of things and thresholds.
+        parameters: sizes, error models and thresholds.
         self_mask: parts of the robot that the camera may see.
 
     Raises:
-        VisionError: the smallest radius is not below the largest, or the file of the
-            colour table is wrong.
+        VisionError: min_radius is not below max_radius, or the file of the colour table is
+            invalid.
     """
 
     def __init__(
@@ -72,8 +72,8 @@ class Detector:
     ) -> None:
         if parameters.min_radius >= parameters.max_radius:
             raise VisionError(
-                f"min_radius ({parameters.min_radius}) must be below "
-                f"max_radius ({parameters.max_radius})"
+                f"min_radius: not below max_radius, got {parameters.min_radius}; "
+                f"expected less than {parameters.max_radius}"
             )
         self._camera = camera
         self._parameters = parameters
@@ -93,60 +93,55 @@ class Detector:
         self._padded = np.full((camera.height + 2, camera.width + 2), OUTSIDE, dtype=np.uint8)
 
     def detect(self, image: NDArray[np.uint8], pose: CameraPose) -> tuple[Detection, ...]:
-        """What `image` shows, by distance, then label.
+        """Return the detections in `image`, by distance, then label.
 
         Args:
             image: RGB (height, width, 3).
-            pose: of the camera when the image was taken.
+            pose: of the camera at capture.
 
         Raises:
-            VisionError: the image has not the size of the camera or is not RGB of uint8.
+            VisionError: the image does not have the size of the camera or is not RGB of uint8.
         """
         expected = (self._camera.height, self._camera.width, 3)
         if image.shape != expected:
-            raise VisionError(f"the camera gives images of shape {expected}, got {image.shape}")
+            raise VisionError(f"image: wrong shape, got {image.shape}; expected {expected}")
         labels = self._table.classify(image)
         blobs = find_blobs(labels, self._min_area)
         if not blobs:
             return ()
         inner = self._padded[1:-1, 1:-1]
         inner[:] = labels
-        if hide(self._self_mask, inner, camera=self._camera, pose=pose, label=OUTSIDE):
-            blobs = [_cut_by_body(blob, inner) for blob in blobs]
+        if apply_self_mask(self._self_mask, inner, camera=self._camera, pose=pose, label=OUTSIDE):
+            blobs = [_cut_by_self_mask(blob, inner) for blob in blobs]
         view = View(self._camera, pose)
         outlines = trace(blobs, self._padded, view, self._parameters.edge_sigma)
-        sightings = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
-        found: list[Detection | None] = []
-        parts: list[_Sighting] = []
+        hypotheses = self._obstacles(blobs, outlines, view) + self._beacons(blobs, outlines, view)
+        detections: list[Detection | None] = []
+        parts: list[_Hypothesis] = []
         # One call for all: its cost hardly depends on their number.
-        for sighting, cylinder in zip(sightings, self._locate(sightings, view), strict=True):
-            if self._explains(sighting, cylinder):
-                found.append(self._detection(sighting, cylinder, view))
-            elif sighting.kind == "obstacle":
-                pieces = self._split(sighting, view)
+        for hypothesis, cylinder in zip(hypotheses, self._locate(hypotheses, view), strict=True):
+            if self._consistent(hypothesis, cylinder):
+                detections.append(self._detection(hypothesis, cylinder, view))
+            elif hypothesis.kind == "obstacle":
+                pieces = self._split(hypothesis, view)
                 parts += pieces
                 if not pieces:
-                    found.append(
-                        self._detection(
-                            *_doubted(sighting, cylinder, self._parameters.covariance_inflation),
-                            view,
-                        )
-                    )
-        for sighting, cylinder in self._real(parts, self._locate(parts, view)):
-            found.append(self._detection(sighting, cylinder, view))
+                    detections.append(self._detection(*self._inflated(hypothesis, cylinder), view))
+        for hypothesis, cylinder in self._deduplicated(parts, self._locate(parts, view)):
+            detections.append(self._detection(hypothesis, cylinder, view))
         return tuple(
             sorted(
-                (d for d in found if d is not None),
+                (d for d in detections if d is not None),
                 key=lambda d: (d.distance, d.label, d.bearing),
             )
         )
 
     def _obstacles(
         self, blobs: Sequence[Blob], outlines: Sequence[Outline], view: View
-    ) -> list[_Sighting]:
-        """Blobs of obstacle colours, each taken for one obstacle, if they say enough."""
+    ) -> list[_Hypothesis]:
+        """Return one hypothesis per blob of an obstacle colour with at least one usable edge."""
         head = self._parameters.obstacle_height
-        sightings = []
+        hypotheses = []
         for blob, outline in zip(blobs, outlines, strict=True):
             if self._beacon_label[blob.label]:
                 continue
@@ -157,109 +152,119 @@ class Detector:
             if outline.top.slope.size and view.height > head:
                 rims.append(RimCue(outline.top, head, near=False))
             left, right = outline.left, outline.right
-            if not (rims or left.trusted or right.trusted):
-                continue
-            sightings.append(
-                _Sighting(
-                    "obstacle",
-                    (blob,),
-                    outline,
-                    Candidate(left, right, tuple(rims), head, *self._radius),
-                    outline.bottom.covered > self._parameters.max_occlusion_fraction
-                    or left.hidden
-                    or right.hidden,
-                )
-            )
-        return sightings
+            if rims or left.trusted or right.trusted:
+                candidate = Candidate(left, right, tuple(rims), head, *self._radius)
+                occluded = self._occluded(outline, candidate)
+                hypotheses.append(_Hypothesis("obstacle", (blob,), outline, candidate, occluded))
+        return hypotheses
 
     def _beacons(
         self, blobs: Sequence[Blob], outlines: Sequence[Outline], view: View
-    ) -> list[_Sighting]:
-        """Pairs of blobs of beacon colours that may be beacons."""
+    ) -> list[_Hypothesis]:
+        """Return one hypothesis per pair of stacked blobs of beacon colours."""
         indices = [k for k, blob in enumerate(blobs) if self._beacon_label[blob.label]]
         return [
-            _Sighting(
+            _Hypothesis(
                 "beacon",
                 (blobs[post.upper], blobs[post.lower]),
                 outlines[post.lower],
                 post.candidate,
-                outlines[post.lower].bottom.covered > self._parameters.max_occlusion_fraction
-                or post.candidate.left.hidden
-                or post.candidate.right.hidden,
+                self._occluded(outlines[post.lower], post.candidate),
             )
             for post in find_posts(blobs, outlines, indices, view.height, self._parameters)
         ]
 
-    def _split(self, sighting: _Sighting, view: View) -> list[_Sighting]:
-        """The obstacles of a blob that is not one obstacle, if they can be told apart."""
-        (blob,) = sighting.blobs
+    def _occluded(self, outline: Outline, candidate: Candidate) -> bool:
+        return (
+            outline.bottom.occlusion_fraction > self._parameters.max_occlusion_fraction
+            or candidate.left.occluded
+            or candidate.right.occluded
+        )
+
+    def _split(self, hypothesis: _Hypothesis, view: View) -> list[_Hypothesis]:
+        """Return the obstacles of a merged blob, empty if it cannot be segmented."""
+        (blob,) = hypothesis.blobs
         parts = split(
             blob,
-            sighting.outline,
+            hypothesis.outline,
             self._padded,
             view=view,
             parameters=self._parameters,
             radius=self._radius,
         )
         return [
-            replace(sighting, candidate=part.candidate, occluded=part.occluded) for part in parts
+            replace(hypothesis, candidate=part.candidate, occluded=part.occluded) for part in parts
         ]
 
-    def _explains(self, sighting: _Sighting, cylinder: Cylinder) -> bool:
-        """Whether one cylinder explains what was seen."""
+    def _consistent(self, hypothesis: _Hypothesis, cylinder: Cylinder) -> bool:
+        """Return whether the edges are consistent with one cylinder."""
         p = self._parameters
-        if sighting.kind == "beacon":
+        if hypothesis.kind == "beacon":
             return cylinder.misfit < p.beacon_misfit_factor * p.max_misfit
-        return cylinder.astray <= p.max_outlier_fraction and cylinder.misfit <= p.max_misfit
+        return (
+            cylinder.outlier_fraction <= p.max_outlier_fraction and cylinder.misfit <= p.max_misfit
+        )
 
-    def _real(
-        self, parts: Sequence[_Sighting], cylinders: Sequence[Cylinder]
-    ) -> list[tuple[_Sighting, Cylinder]]:
-        """The plausible parts of split blobs; of two in one place the better seen."""
+    def _deduplicated(
+        self, parts: Sequence[_Hypothesis], cylinders: Sequence[Cylinder]
+    ) -> list[tuple[_Hypothesis, Cylinder]]:
+        """Return the plausible parts of merged blobs; of two that interpenetrate the better one."""
         ranked = sorted(
             (pair for pair in zip(parts, cylinders, strict=True) if self._plausible(pair[1])),
-            key=lambda pair: (-_edges_seen(pair[0].candidate), pair[1].misfit),
+            key=lambda pair: (-_edge_count(pair[0].candidate), pair[1].misfit),
         )
-        shared = self._parameters.split.min_separation
-        real: list[tuple[_Sighting, Cylinder]] = []
-        for sighting, cylinder in ranked:
-            if not any(interpenetrate(cylinder, other, shared) for _, other in real):
-                real.append((sighting, cylinder))
-        return real
+        separation = self._parameters.split.min_separation
+        kept: list[tuple[_Hypothesis, Cylinder]] = []
+        for hypothesis, cylinder in ranked:
+            if not any(interpenetrate(cylinder, other, separation) for _, other in kept):
+                kept.append((hypothesis, cylinder))
+        return kept
+
+    def _inflated(
+        self, hypothesis: _Hypothesis, cylinder: Cylinder
+    ) -> tuple[_Hypothesis, Cylinder]:
+        """Mark an inconsistent hypothesis as occluded and inflate its covariance."""
+        inflation = max(self._parameters.covariance_inflation, 0.5 * cylinder.misfit)
+        return (
+            replace(hypothesis, occluded=True),
+            replace(cylinder, covariance=inflation * cylinder.covariance),
+        )
 
     def _plausible(self, cylinder: Cylinder) -> bool:
-        """Whether a part of a blob is like one obstacle."""
+        """Return whether misfit and radius of a part are those of an obstacle."""
         p = self._parameters
-        slack = p.split.radius_margin * (p.max_radius - p.min_radius)
+        margin = p.split.radius_margin * (p.max_radius - p.min_radius)
         return (
             cylinder.misfit < p.split.misfit_factor * p.max_misfit
-            and p.min_radius - slack < cylinder.radius < p.max_radius + slack
+            and p.min_radius - margin < cylinder.radius < p.max_radius + margin
         )
 
-    def _locate(self, sightings: Sequence[_Sighting], view: View) -> list[Cylinder]:
+    def _locate(self, hypotheses: Sequence[_Hypothesis], view: View) -> list[Cylinder]:
         parameters = self._parameters
         return locate(
-            [sighting.candidate for sighting in sightings],
+            [hypothesis.candidate for hypothesis in hypotheses],
             view,
             parameters.roundness_sigma,
             parameters.edge_correlation,
             0.5 * parameters.outline_step / parameters.edge_sigma,
         )
 
-    def _detection(self, sighting: _Sighting, cylinder: Cylinder, view: View) -> Detection | None:
-        """Detection of a located cylinder; None if it is too far or too uncertain."""
+    def _detection(
+        self, hypothesis: _Hypothesis, cylinder: Cylinder, view: View
+    ) -> Detection | None:
+        """Return the detection of a cylinder, None if it is too far or too uncertain."""
         parameters = self._parameters
-        beacon = sighting.kind == "beacon"
+        beacon = hypothesis.kind == "beacon"
         limit = parameters.max_beacon_range if beacon else parameters.max_obstacle_range
         if not beacon:
-            cylinder = _somewhere_within(cylinder, parameters.max_radius, self._radius[0])
+            cylinder = _inflated_if_too_wide(cylinder, parameters.max_radius, self._radius[0])
         distance, bearing, covariance, by_radius = polar_in_robot(cylinder, view)
-        sure = covariance[0, 0] <= (parameters.max_relative_sigma * distance) ** 2
-        if not (distance <= limit and sure):  # what is not a number is neither
+        certain = covariance[0, 0] <= (parameters.max_relative_sigma * distance) ** 2
+        if not (distance <= limit and certain):  # also if NaN
             return None
-        blobs = sighting.blobs
+        blobs = hypothesis.blobs
         return Detection(
-            kind=sighting.kind,
+            kind=hypothesis.kind,
             label="/".join(self._table.classes[blob.label - 1].name for blob in blobs),
             bearing=bearing,
             distance=distance,
@@ -268,51 +273,35 @@ class Detector:
             radius_sigma=sqrt(float(cylinder.covariance[2, 2])),
             by_radius=by_radius,
             cut=any(blob.cut for blob in blobs),
-            occluded=sighting.occluded,
-            box=_around(blobs),
+            occluded=hypothesis.occluded,
+            box=_bounding_box(blobs),
         )
 
 
-def _around(blobs: tuple[Blob, ...]) -> tuple[int, int, int, int]:
-    """Box around all of `blobs`."""
-    if len(blobs) == 1:
-        return blobs[0].box
+def _bounding_box(blobs: tuple[Blob, ...]) -> tuple[int, int, int, int]:
     lefts, tops, rights, bottoms = zip(*(blob.box for blob in blobs), strict=True)
     return min(lefts), min(tops), max(rights), max(bottoms)
 
 
-def _doubted(sighting: _Sighting, cylinder: Cylinder, least: float) -> tuple[_Sighting, Cylinder]:
-    """A cylinder that does not explain its edges: taken for occluded, believed less.
+def _inflated_if_too_wide(cylinder: Cylinder, max_radius: float, mean_radius: float) -> Cylinder:
+    """Inflate the covariance of a cylinder wider than any obstacle.
 
-    Args:
-        sighting: of it.
-        cylinder: as located.
-        least: growth of its covariance.
-    """
-    factor = max(least, 0.5 * cylinder.misfit)
-    return (
-        replace(sighting, occluded=True),
-        replace(cylinder, covariance=factor * cylinder.covariance),
-    )
-
-
-def _somewhere_within(cylinder: Cylinder, thickest: float, typical: float) -> Cylinder:
-    """What is thicker than any obstacle is one with something else: it stands anywhere in it.
+    The blob is an obstacle merged with another object; the obstacle is somewhere in it.
 
     Args:
         cylinder: as located.
-        thickest: largest radius of an obstacle [m].
-        typical: mean radius of an obstacle [m].
+        max_radius: of obstacles [m].
+        mean_radius: of obstacles [m].
     """
-    if cylinder.radius <= thickest + 2.0 * sqrt(float(cylinder.covariance[2, 2])):
+    if cylinder.radius <= max_radius + 2.0 * sqrt(float(cylinder.covariance[2, 2])):
         return cylinder
-    slack = cylinder.radius - typical
-    spread = np.diag([(slack / cylinder.distance) ** 2, slack * slack, slack * slack])
+    excess = cylinder.radius - mean_radius
+    spread = np.diag([(excess / cylinder.distance) ** 2, excess * excess, excess * excess])
     return replace(cylinder, covariance=cylinder.covariance + spread)
 
 
-def _cut_by_body(blob: Blob, labels: Labels) -> Blob:
-    """`blob`, which counts as cut at the bottom where it meets the robot's own body."""
+def _cut_by_self_mask(blob: Blob, labels: Labels) -> Blob:
+    """Mark a blob that touches the self mask as cut at the bottom."""
     left, top, right, bottom = blob.box
     around = labels[max(top - 1, 0) : bottom + 1, max(left - 1, 0) : right + 1]
     if not (around == OUTSIDE).any():
@@ -320,6 +309,6 @@ def _cut_by_body(blob: Blob, labels: Labels) -> Blob:
     return replace(blob, touches=(*blob.touches[:3], True))
 
 
-def _edges_seen(candidate: Candidate) -> int:
-    """How many edges locate a candidate."""
+def _edge_count(candidate: Candidate) -> int:
+    """Return the number of usable edges."""
     return len(candidate.rims) + candidate.left.trusted + candidate.right.trusted

@@ -2,4 +2,4 @@
 
 
 class VisionError(ValueError):
-    """Vision was handed something it cannot work on; the message says what and why."""
+    """Invalid input of vision."""

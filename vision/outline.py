@@ -1,10 +1,9 @@
-"""Outlines: the edges of blobs as azimuths and slopes, and which of them can be trusted.
+"""Silhouette edges of blobs in azimuth and slope, and which of them are edges of the object.
 
-The sides of an upright cylinder are two vertical lines; its lower and upper edge are
-rims. A side pixel whose outer neighbour has another colour may be the edge of whatever
-hides the cylinder; it is not used. Below a blob, another colour always belongs to a
-nearer thing, which hides the true rim; above it, to a farther one, which does not,
-because the camera stands higher than the obstacles.
+The silhouette of an upright cylinder has two vertical sides and a lower and an upper rim. Side
+pixels whose outer neighbour has another colour may be edges of an occluding object and are not
+used. Below a blob, another colour belongs to a nearer object, which occludes the rim; above a
+blob, to a farther object, because the camera is higher than the obstacles.
 """
 
 from collections.abc import Sequence
@@ -28,10 +27,10 @@ class Side:
     Attributes:
         azimuth: from the heading of the camera [rad].
         sigma: standard deviation of one point of it [rad].
-        count: of points with errors of their own that it was averaged over.
-        low, high: slopes between which the edge is seen [1].
-        trusted: it is an edge of the thing and not of what hides it or of the image.
-        hidden: a nearer thing covers part of it.
+        count: number of independent points averaged.
+        low, high: minimum and maximum slope of the visible edge [1].
+        trusted: an edge of the object, neither of an occluding object nor of the image.
+        occluded: partly occluded by a nearer object.
     """
 
     azimuth: float
@@ -40,17 +39,17 @@ class Side:
     low: float
     high: float
     trusted: bool
-    hidden: bool
+    occluded: bool
 
 
 @value
 class Rim:
-    """Lower or upper edge of a blob, without its ends and what the border cuts.
+    """Lower or upper edge of a blob, without its ends and cut parts.
 
     Attributes:
         azimuth: of its points from the heading of the camera (n,) [rad].
         slope: of its points (n,) [1].
-        outer: label beyond each point, 0 for the background (n,).
+        outer: label of the outer neighbour of each point, 0 for the background (n,).
         sigma: standard deviation of one slope [1].
     """
 
@@ -60,16 +59,16 @@ class Rim:
     sigma: float
 
     @property
-    def covered(self) -> float:
-        """Share of the edge next to another colour class."""
+    def occlusion_fraction(self) -> float:
+        """Fraction of the edge next to another colour class."""
         return int(np.count_nonzero(self.outer)) / max(self.outer.size, 1)
 
     def free(self) -> "Rim":
-        """The part next to the background."""
-        return self._part(self.outer == 0) if self.covered else self
+        """Return the part next to the background."""
+        return self._part(self.outer == 0) if self.occlusion_fraction else self
 
     def against(self, label: int) -> "Rim":
-        """The part next to things of colour class `label`."""
+        """Return the part next to colour class `label`."""
         return self._part(self.outer == label)
 
     def _part(self, chosen: NDArray[np.bool_]) -> "Rim":
@@ -81,10 +80,10 @@ class Outline:
     """Edges of one blob.
 
     Attributes:
-        left: side of greater azimuth.
+        left: side of larger azimuth.
         right: side of smaller azimuth.
-        bottom: rim of smaller slopes.
-        top: rim of greater slopes.
+        bottom: rim of smaller slope.
+        top: rim of larger slope.
     """
 
     left: Side
@@ -96,11 +95,11 @@ class Outline:
 def trace(
     blobs: Sequence[Blob], padded: NDArray[np.uint8], view: View, edge_sigma: float
 ) -> list[Outline]:
-    """Outlines of `blobs`.
+    """Trace the silhouette edges of blobs.
 
     Args:
         blobs: of one image.
-        padded: its labels with a frame of `OUTSIDE` one pixel wide (h + 2, w + 2).
+        padded: its labels with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: camera and pose.
         edge_sigma: standard deviation of one point of an edge [pixel].
     """
@@ -127,6 +126,6 @@ def trace(
 
 
 def _side(values: Sequence[float], edge_sigma: float) -> Side:
-    azimuth, pixel, points, crossed, low, high, trusted, hidden = values
-    own = independent(points, crossed)
-    return Side(azimuth, edge_sigma * pixel, own, low, high, trusted != 0.0, hidden != 0.0)
+    azimuth, pixel, points, crossed, low, high, trusted, occluded = values
+    count = independent(points, crossed)
+    return Side(azimuth, edge_sigma * pixel, count, low, high, trusted != 0.0, occluded != 0.0)

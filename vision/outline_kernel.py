@@ -1,6 +1,6 @@
-"""Outlines of blobs, compiled: from pixels to edges in azimuth and slope.
+"""Compiled part of the silhouette edges: from pixels to azimuth and slope.
 
-A view is a packed array here: half width, half height and focal length of the camera [pixel],
+A view is a packed array: half width, half height and focal length of the camera [pixel],
 the nine elements of R_RC row by row, and the cosine and the sine of its heading.
 """
 
@@ -16,23 +16,23 @@ Labels = NDArray[np.uint8]
 Table = NDArray[np.int32]
 
 OUTSIDE = 255  # as in `vision.color`
-MIN_DEPTH = 1e-3  # of a direction before the camera
-MIN_RUN = 1e-6  # horizontal part of a ray below which its slope is cut off
-LOW_SHARE = 0.25  # share of a side, from below, that tells whether a nearer thing hides it
-END_SHARE = 0.1  # share of the width near each side that is left out of rims
-END_PIXELS = 0.8  # and at least so much of it [pixel]
-NOWHERE = -9.0  # an azimuth that no point has [rad]
-ENVELOPE = 1.1  # side pixels within so much of the outermost lie on the side [pixel]
-MAX_OVERHANG = 2.5  # a side does not lie farther inside what is seen than this [pixel]
+MIN_DEPTH = 1e-3  # of a direction in front of the camera
+MIN_RUN = 1e-6  # minimum horizontal part of a ray
+LOW_FRACTION = 0.25  # lower fraction of a side that decides whether it is occluded
+END_FRACTION = 0.1  # fraction of the width at each end excluded from rims
+END_PIXELS = 0.8  # minimum width of that end [pixel]
+INVALID = -9.0  # outside the range of azimuths [rad]
+ENVELOPE = 1.1  # maximum distance of the points of a side from the outermost [pixel]
+MAX_OVERHANG = 2.5  # maximum distance of a side inside the blob [pixel]
 MAX_CELLS = 128  # of the grid of an envelope in each direction
-CUT = 4  # an edge has at least one point for so many at the border; fewer are noise there
-FINEST = 1e-4  # slope of a pixel at least, where a row of them looks level [1]
-OUTLIERS = 8  # one pixel in so many may stick out of a side
+CUT = 4  # maximum number of points at the border per point of an edge; else noise
+MIN_SLOPE = 1e-4  # minimum slope of a pixel [1]
+OUTLIERS = 8  # one in so many points of a side may be an outlier
 
 
 @njit(cache=True)
 def angles(view: Array, u: float, v: float) -> tuple[float, float]:
-    """Azimuth from the heading of the camera [rad] and slope [1] of an image point."""
+    """Return azimuth from the heading of the camera [rad] and slope [1] of an image point."""
     x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
     X = view[3] * x + view[4] * y + view[5]
     Y = view[6] * x + view[7] * y + view[8]
@@ -43,14 +43,14 @@ def angles(view: Array, u: float, v: float) -> tuple[float, float]:
 
 @njit(cache=True)
 def level(view: Array, azimuth: float) -> tuple[float, float]:
-    """Horizontal unit vector (X, Y) of an azimuth from the heading of the camera."""
+    """Return the horizontal unit vector (X, Y) of an azimuth from the heading of the camera."""
     c, s = cos(azimuth), sin(azimuth)
     return view[12] * c - view[13] * s, view[13] * c + view[12] * s
 
 
 @njit(cache=True)
 def project(view: Array, X: float, Y: float, slope: float) -> tuple[float, float, bool]:
-    """Image point (u, v) of the direction (X, Y, slope), and whether it lies before the camera."""
+    """Return the image point (u, v) of a direction, and whether it is in front of the camera."""
     z = view[5] * X + view[8] * Y + view[11] * slope
     ahead = z > MIN_DEPTH
     scale = view[2] / (z if ahead else 1.0)
@@ -61,11 +61,7 @@ def project(view: Array, X: float, Y: float, slope: float) -> tuple[float, float
 
 @njit(cache=True)
 def resolution(view: Array, u: float, v: float) -> tuple[float, float, float, float]:
-    """How much azimuth [rad] and slope [1] change per pixel.
-
-    Returns:
-        Magnitudes of d azimuth / du, d azimuth / dv, d slope / du, d slope / dv.
-    """
+    """Return |d azimuth / du|, |d azimuth / dv| [rad], |d slope / du|, |d slope / dv| [1]."""
     x, y, f = (u - view[0]) / view[2], (v - view[1]) / view[2], view[2]
     X = view[3] * x + view[4] * y + view[5]
     Y = view[6] * x + view[7] * y + view[8]
@@ -83,7 +79,7 @@ def resolution(view: Array, u: float, v: float) -> tuple[float, float, float, fl
 
 @njit(cache=True)
 def upright(view: Array, u: float, v: float) -> bool:
-    """Whether vertical lines run rather along columns than along rows at (u, v)."""
+    """Return whether vertical lines are closer to columns than to rows at (u, v)."""
     x, y = (u - view[0]) / view[2], (v - view[1]) / view[2]
     return bool(abs(view[10] - y * view[11]) >= abs(view[9] - x * view[11]))
 
@@ -92,16 +88,16 @@ def upright(view: Array, u: float, v: float) -> bool:
 def _edge(
     points: Array, outer: Labels, box: Table, extents: Table, padded: Labels, view: Array, e: int
 ) -> tuple[float, float]:
-    """Fill the points of one of the four edges of a blob (n, 3) and the labels beyond them (n,).
+    """Write the points of one of the four edges of a blob (n, 3) and their outer labels (n,).
 
     Returns:
-        How much azimuth [rad] and slope [1] change per pixel in its middle.
+        Change of azimuth [rad] and slope [1] per pixel in the middle of the edge.
     """
     left, top = box[0], box[1]
     azimuth_pixel = slope_pixel = 0.0
     for i in range(len(points)):
         end = extents[i]
-        # The frame shifts pixel (row, column) to (row + 1, column + 1).
+        # The border shifts pixel (row, column) to (row + 1, column + 1).
         if e < 2:
             u, v = float(end), top + i + 0.5
             outer[i] = padded[top + i + 1, end if e == 0 else end + 1]
@@ -109,7 +105,7 @@ def _edge(
             u, v = left + i + 0.5, float(end)
             outer[i] = padded[end if e == 2 else end + 1, left + i + 1]
         points[i, 0], points[i, 1] = angles(view, u, v)
-        # Ends of rows are known along u, ends of columns along v.
+        # Ends of rows measure u, ends of columns v.
         points[i, 2] = u if e < 2 else v
         if i == len(points) // 2:
             au, av, su, sv = resolution(view, u, v)
@@ -119,7 +115,7 @@ def _edge(
 
 @njit(cache=True)
 def _sort(values: Array) -> None:
-    """Sort a few values, by insertion."""
+    """Sort by insertion, in place."""
     for i in range(1, len(values)):
         value, j = values[i], i
         while j > 0 and values[j - 1] > value:
@@ -130,14 +126,14 @@ def _sort(values: Array) -> None:
 
 @njit(cache=True)
 def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) -> None:
-    """Fill one side (8,) from the points of an edge; see `trace`.
+    """Write one side (8,) from the points of an edge; see `trace`.
 
     Args:
-        side: to fill.
+        side: output.
         points: azimuth [rad], slope [1] and image coordinate across the edge [pixel] (n, 3).
-        outer: labels beyond the points (n,).
+        outer: labels of their outer neighbours (n,).
         pixel: azimuth of one pixel [rad].
-        sign: 1 of a left side, -1 of a right one.
+        sign: 1 for a left side, -1 for a right side.
     """
     n = len(points)
     bottom, top, furthest = inf, -inf, -inf
@@ -146,30 +142,30 @@ def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) 
     for i in range(n):
         outwards, slope = sign * points[i, 0], points[i, 1]
         bottom, top, furthest = min(bottom, slope), max(top, slope), max(furthest, outwards)
-        ranked[i] = outwards if outer[i] == 0 else NOWHERE
+        ranked[i] = outwards if outer[i] == 0 else INVALID
         free += outer[i] == 0
         cut += outer[i] == OUTSIDE
     _sort(ranked)
     # The side is the median of the free points near the outermost of them.
     outermost = ranked[n - 1 - free // OUTLIERS]
-    limit, low_limit = outermost - ENVELOPE * pixel, bottom + LOW_SHARE * (top - bottom)
-    low = covered = chosen = 0
+    limit, low_limit = outermost - ENVELOPE * pixel, bottom + LOW_FRACTION * (top - bottom)
+    low = covered = used = 0
     bottom, top, lowest, highest = inf, -inf, inf, -inf
     for i in range(n):
         outwards, slope = sign * points[i, 0], points[i, 1]
         if slope <= low_limit:
             low += 1
             covered += outer[i] != 0 and outer[i] != OUTSIDE
-        if (outwards if outer[i] == 0 else NOWHERE) >= limit:
-            chosen += 1
+        if (outwards if outer[i] == 0 else INVALID) >= limit:
+            used += 1
             bottom, top = min(bottom, slope), max(top, slope)
             lowest, highest = min(lowest, points[i, 2]), max(highest, points[i, 2])
-    # Where a thing reaches furthest next to something else, it goes on behind it.
-    trusted = furthest <= outermost + MAX_OVERHANG * pixel and CUT * chosen >= cut
-    median = 0.5 * (ranked[n - 1 - (chosen - 1) // 2] + ranked[n - 1 - chosen // 2])
+    # If the outermost points border on another colour, the object continues behind it.
+    trusted = furthest <= outermost + MAX_OVERHANG * pixel and CUT * used >= cut
+    median = 0.5 * (ranked[n - 1 - (used - 1) // 2] + ranked[n - 1 - used // 2])
     side[0] = sign * (median if trusted else furthest)
     side[1] = pixel
-    side[2] = max(chosen, 1)
+    side[2] = max(used, 1)
     side[3] = max(highest - lowest, 0.0)
     side[4] = bottom
     side[5] = top
@@ -181,9 +177,9 @@ def _side(side: Array, points: Array, outer: Labels, pixel: float, sign: float) 
 def _rim(
     rims: Array, rim_outer: Labels, points: Array, outer: Labels, right: float, left: float
 ) -> int:
-    """Fill a rim from the points of an edge between two azimuths; return their number.
+    """Write the points of a rim between two azimuths; return their number.
 
-    The ends are left out, where it may run along a side.
+    The ends are excluded, because the rim may follow a side there.
     """
     count = cut = 0
     for i in range(len(points)):
@@ -200,23 +196,23 @@ def _rim(
 def trace(
     boxes: Table, extents: Table, padded: Labels, view: Array
 ) -> tuple[Array, Table, Array, Array, Labels]:
-    """Sides and rims of all blobs of an image.
+    """Return the sides and rims of all blobs of an image.
 
-    A blob has four edges: the two ends of its rows and the two ends of its columns. Two are
-    sides and two are rims; which of them depends on how vertical lines run there.
+    A blob has four edges: the two ends of its rows and of its columns. The direction of
+    vertical lines in the image decides which two of them are the sides.
 
     Args:
         boxes: left, top, right, bottom of the blobs (n, 4) [pixel].
-        extents: of the blobs, one after the other.
-        padded: labels of the image with a frame of `OUTSIDE` one pixel wide (h + 2, w + 2).
+        extents: of the blobs, concatenated.
+        padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: packed.
 
     Returns:
-        The left and the right side of each blob (n, 2, 8): azimuth [rad], azimuth of a pixel
-        [rad], number of points, pixels it crosses, lowest and highest slope, whether it is
-        trusted, whether it is hidden. Of the lower and the upper rim the number of points
-        (n, 2) and the slope of a pixel (n, 2); azimuth and slope (2, m) and outer label (m,) of
-        the points of all rims, one after the other.
+        Left and right side of each blob (n, 2, 8): azimuth [rad], azimuth of a pixel [rad],
+        number of points, number of pixels crossed, minimum and maximum slope, whether it is
+        trusted, whether it is occluded. Of lower and upper rim the number of points (n, 2) and
+        the slope of a pixel (n, 2); azimuth and slope (2, m) and outer label (m,) of the points
+        of all rims, concatenated.
     """
     n = len(boxes)
     sides, counts, sizes = np.empty((n, 2, 8)), np.empty((n, 2), np.int32), np.empty((n, 2))
@@ -242,7 +238,7 @@ def trace(
             a, b = starts[e], starts[e + 1]
             _side(sides[k, j], points[a:b], outer[a:b], size[e, 0], 1.0 - 2.0 * j)
         leftmost, rightmost = sides[k, 0, 0], sides[k, 1, 0]
-        margin = max(END_SHARE * (leftmost - rightmost), END_PIXELS * size[side + swapped, 0])
+        margin = max(END_FRACTION * (leftmost - rightmost), END_PIXELS * size[side + swapped, 0])
         swapped = 0 if points[middle[rim + 1], 1] >= points[middle[rim], 1] else 1
         for j in range(2):
             e = rim + (j ^ swapped)
@@ -256,13 +252,13 @@ def trace(
                 leftmost - margin,
             )
             m += counts[k, j]
-            sizes[k, j] = max(size[e, 1], FINEST)
+            sizes[k, j] = max(size[e, 1], MIN_SLOPE)
     return sides, counts, sizes, rims[:, :m], rim_outer[:m]
 
 
 @njit(cache=True)
 def _label(padded: Labels, view: Array, X: float, Y: float, slope: float) -> int:
-    """Label of the pixel in the direction (X, Y, slope), `OUTSIDE` if there is none."""
+    """Return the label of the pixel in a direction, `OUTSIDE` if there is none."""
     u, v, ahead = project(view, X, Y, slope)
     if not ahead:
         return OUTSIDE
@@ -275,21 +271,21 @@ def _label(padded: Labels, view: Array, X: float, Y: float, slope: float) -> int
 def envelopes(
     box: Table, extents: Table, runs: Table, padded: Labels, view: Array
 ) -> tuple[float, float, float, Array, Bools]:
-    """Lower and upper envelope of a blob on a grid of azimuth and slope.
+    """Return lower and upper envelope of a blob on a grid of azimuth and slope.
 
-    There cylinders stand upright, whatever the head does.
+    Cylinders are upright on this grid for every head pose.
 
     Args:
         box: left, top, right, bottom of the blob (4,) [pixel].
         extents: of the blob.
         runs: of the blob.
-        padded: labels of the image with a frame of `OUTSIDE` one pixel wide (h + 2, w + 2).
+        padded: labels of the image with a border of `OUTSIDE` one pixel wide (h + 2, w + 2).
         view: packed.
 
     Returns:
-        Right end of the grid [rad], width of its columns [rad] and slope of a pixel [1]; lowest
-        and highest slope of the blob in each column, from right to left (2, n); and whether
-        these are the edge of a thing (2, n).
+        Right end of the grid [rad], width of its columns [rad] and slope of a pixel [1]; minimum
+        and maximum slope of the blob in each column, from right to left (2, n); whether these
+        are edges of an object (2, n).
     """
     left, top, right, bottom = box[0], box[1], box[2], box[3]
     mask = np.zeros((bottom - top, right - left), np.bool_)
@@ -311,7 +307,7 @@ def envelopes(
     size = max(su, sv)
     step = max(0.5 * size, height / MAX_CELLS)
     n = max(1, round(width / max(au, av, width / MAX_CELLS)))
-    # Two more cells below and above tell what lies beyond.
+    # Two more cells below and above hold the outer neighbours.
     cells = ceil(height / step) + 4
     result, usable = np.empty((2, n)), np.zeros((2, n), np.bool_)
     for i in range(n):

@@ -1,9 +1,8 @@
-"""The robot's own body in the image: what it hides is no edge of what is behind it.
+"""Self mask: pixels in which the robot sees its own body.
 
-Looking sideways and down, the head sees the robot's own arms. They have no colour, so the
-foot of an obstacle behind an arm would seem to end there, and the obstacle to stand
-farther away than it does. Pixels that may show the body are therefore treated like what
-lies beyond the border of the image.
+The arms are visible when the head points to the side and down. They have no colour class, so the
+foot of an obstacle behind an arm would seem to end there and the obstacle would be located too
+far away. Pixels of the self mask are treated as outside the image.
 """
 
 from collections.abc import Sequence
@@ -21,27 +20,27 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class BodyPart:
-    """Convex hull of spheres, fixed in the robot frame R, that contains a limb.
+    """Bounding volume of a limb: the convex hull of spheres fixed in the robot frame R.
 
     Attributes:
         centres: of the spheres (n, 3) [m].
-        radii: of the spheres (n,) [m], with room for how the limb moves.
+        radii: of the spheres (n,) [m], including the motion of the limb.
     """
 
     centres: Array
     radii: Array
 
     def outline(self, camera: PinholeCamera, pose: CameraPose) -> Array:
-        """Points of the image whose convex hull contains the part (n, 2) [pixel].
+        """Return image points whose convex hull contains the part (n, 2) [pixel].
 
-        There are none if the part is behind the camera, beside the image or around the camera.
+        Empty if the part is behind the camera, outside the image or around the camera.
         """
         middle = np.array([0.5 * camera.width, 0.5 * camera.height, camera.focal])
         position, rotation = map(np.ascontiguousarray, (pose.position, pose.rotation))
         return outline(self.centres, self.radii, position, rotation, middle)
 
 
-def hide(
+def apply_self_mask(
     parts: Sequence[BodyPart],
     labels: NDArray[np.uint8],
     *,
@@ -49,14 +48,14 @@ def hide(
     pose: CameraPose,
     label: int,
 ) -> bool:
-    """Give the background that may be the robot's own body another label, in place.
+    """Set the label of the background that may be the robot's body, in place.
 
     Args:
         parts: of the body.
         labels: of the image (h, w).
         camera: intrinsics.
         pose: of the camera.
-        label: what the body becomes.
+        label: of the self mask.
 
     Returns:
         Whether the body may be in the image.
@@ -67,12 +66,12 @@ def hide(
     hulls = [cv2.convexHull(np.rint(points).astype(np.int32)) for points in outlines]
     left, top, width, height = cv2.boundingRect(np.concatenate(hulls))
     corner = np.array([max(left, 0), max(top, 0)], np.int32)
-    seen = labels[corner[1] : top + height, corner[0] : left + width]
-    if not seen.size:
+    window = labels[corner[1] : top + height, corner[0] : left + width]
+    if not window.size:
         return False
-    hidden = np.zeros(seen.shape, np.uint8)
+    mask = np.zeros(window.shape, np.uint8)
     for hull in hulls:
-        cv2.fillConvexPoly(hidden, hull - corner, 1)
-    hidden *= seen == 0
-    seen += label * hidden
+        cv2.fillConvexPoly(mask, hull - corner, 1)
+    mask *= window == 0
+    window += label * mask
     return True

@@ -1,4 +1,4 @@
-"""Outline of a part of the robot's own body, compiled."""
+"""Compiled part of the self mask: projection of a limb."""
 
 from math import cos, hypot, inf, pi, sin, sqrt
 
@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 RIM_POINTS = 12
-LEAST_DEPTH = 0.004  # what is nearer to the plane of the camera is drawn at this depth [m]
-FAR = 4096.0  # image points farther out are drawn here [pixel]
-SWELL = 1.0 / cos(pi / RIM_POINTS)  # the polygon contains the circle
+MIN_DEPTH = 0.004  # points closer to the plane of the camera are clipped to this depth [m]
+FAR = 4096.0  # limit of the image coordinates [pixel]
+SWELL = 1.0 / cos(pi / RIM_POINTS)  # circumscribed polygon / circle
 
 
 @njit(cache=True)
 def outline(centres: Array, radii: Array, position: Array, rotation: Array, camera: Array) -> Array:
-    """Points whose convex hull contains the image of spheres (12 n, 2) [pixel].
+    """Return points whose convex hull contains the image of spheres (12 n, 2) [pixel].
 
-    They are polygons round the circles in which the rays of the camera touch the spheres. There
-    are none of spheres behind the camera, and none at all if the camera is in one of them or if
-    the points lie beside the image, all on one side of it.
+    Every sphere gives a polygon around its silhouette circle. Spheres behind the camera give no
+    points. There are no points at all if the camera is inside a sphere, or if all points are
+    outside the image on one side.
 
     Args:
         centres: of the spheres (n, 3) [m].
@@ -46,7 +46,7 @@ def outline(centres: Array, radii: Array, position: Array, rotation: Array, came
             continue
         shrink = 1.0 - (r / distance) ** 2
         radius = SWELL * r * sqrt(shrink)
-        # Two axes at right angles to the direction of the sphere, (x, y, z).
+        # Two axes perpendicular to the direction of the sphere, (x, y, z).
         x, y, z = p[0] / distance, p[1] / distance, p[2] / distance
         level = max(hypot(z, x), 1e-9)
         u, w = z / level, -x / level
@@ -55,12 +55,12 @@ def outline(centres: Array, radii: Array, position: Array, rotation: Array, came
             c, s = radius * cos(angle), radius * sin(angle)
             X = p[0] * shrink + c * u + s * y * w
             Y = p[1] * shrink + s * (z * u - x * w)
-            Z = max(p[2] * shrink + c * w - s * y * u, LEAST_DEPTH)
+            Z = max(p[2] * shrink + c * w - s * y * u, MIN_DEPTH)
             u_image = min(max(camera[0] + camera[2] * X / Z, -FAR), FAR)
             v_image = min(max(camera[1] + camera[2] * Y / Z, -FAR), FAR)
             points[n, 0], points[n, 1] = u_image, v_image
             low_u, high_u = min(low_u, u_image), max(high_u, u_image)
             low_v, high_v = min(low_v, v_image), max(high_v, v_image)
             n += 1
-    beside = high_u < 0.0 or high_v < 0.0 or low_u > 2.0 * camera[0] or low_v > 2.0 * camera[1]
-    return points[:0] if beside else points[:n]
+    outside = high_u < 0.0 or high_v < 0.0 or low_u > 2.0 * camera[0] or low_v > 2.0 * camera[1]
+    return points[:0] if outside else points[:n]

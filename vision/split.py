@@ -1,8 +1,8 @@
-"""Blobs of one colour that are several cylinders, told apart by steps in their outline.
+"""Segmentation of merged blobs: several cylinders of one colour that overlap in the image.
 
-From above, a nearer cylinder hides the foot of a farther one of the same colour but
-never its head: the lower outline of the common blob belongs to the nearest cylinder of
-each direction and the upper outline to the farthest. Where one ends, the outline steps.
+Seen from above, a nearer cylinder occludes the foot of a farther one but never its head. The
+lower outline of a merged blob belongs to the nearest cylinder of each direction, the upper
+outline to the farthest. The outline has a step where a cylinder ends.
 """
 
 from collections.abc import Sequence
@@ -28,11 +28,11 @@ Labels = NDArray[np.uint8]
 
 @value
 class _Piece:
-    """Part of the lower or upper outline that shows one cylinder.
+    """Piece of the lower or upper outline that belongs to one cylinder.
 
     Attributes:
         right, left: azimuths of its ends [rad].
-        right_true, left_true: whether the cylinder ends there.
+        right_true, left_true: whether these are sides of the cylinder.
         run: horizontal distance of its nearest (lower) or farthest (upper) point [m].
         azimuth, slope: usable points.
     """
@@ -48,11 +48,11 @@ class _Piece:
 
 @value
 class Part:
-    """One cylinder of a split blob.
+    """One cylinder of a merged blob.
 
     Attributes:
-        candidate: its edges.
-        occluded: another cylinder of the blob hides part of it.
+        candidate: edges.
+        occluded: partly occluded by another cylinder of the blob.
     """
 
     candidate: Candidate
@@ -68,15 +68,15 @@ def split(
     parameters: VisionParameters,
     radius: tuple[float, float],
 ) -> list[Part]:
-    """Cylinders of a blob that one cylinder does not explain; empty if none are told apart.
+    """Segment a merged blob; return its cylinders, empty if the outline has no steps.
 
     Args:
-        blob: to split.
+        blob: merged blob.
         outline: of the blob.
-        padded: labels of the image with a frame of `OUTSIDE` one pixel wide.
+        padded: labels of the image with a border of `OUTSIDE` one pixel wide.
         view: camera and pose.
         parameters: sizes of obstacles.
-        radius: typical radius and its standard deviation [m].
+        radius: mean radius and its standard deviation [m].
     """
     grid = _Grid(blob, outline, padded, view)
     step = parameters.outline_step
@@ -104,23 +104,23 @@ def split(
 
 
 class _Grid:
-    """The blob sampled on a grid of azimuth and slope, where cylinders stand upright."""
+    """Outline of a blob sampled on a grid of azimuth and slope, where cylinders are upright."""
 
     def __init__(self, blob: Blob, outline: Outline, padded: Labels, view: View) -> None:
         self.start, self.azimuth_step, self.pixel, self.ends, self.usable = envelopes(
             np.array(blob.box, np.int32), blob.extents, blob.runs, padded, view.packed
         )
-        self.outer_right = outline.right.trusted and not outline.right.hidden
-        self.outer_left = outline.left.trusted and not outline.left.hidden
+        self.outer_right = outline.right.trusted and not outline.right.occluded
+        self.outer_left = outline.left.trusted and not outline.left.occluded
 
     def pieces(self, drop: float, step: float, *, nearest: bool) -> list[_Piece]:
-        """Pieces of the lower or the upper outline.
+        """Return the pieces of the lower or the upper outline.
 
         Args:
             drop: height of the rim minus that of the camera [m].
-            step: that parts two pieces [pixel].
-            nearest: the lower outline, which shows the nearest thing of each column; the upper
-                one shows the farthest.
+            step: minimum step between two pieces [pixel].
+            nearest: lower outline, of the nearest object of each column; else upper outline, of
+                the farthest object.
         """
         row = 0 if nearest else 1
         table, azimuth, slope = split_kernel.pieces(
@@ -137,10 +137,10 @@ class _Grid:
         pieces = []
         first = 0
         for right, left, right_true, left_true, run, points in table.tolist():
-            own = slice(first, first + int(points))
+            of_piece = slice(first, first + int(points))
             true = right_true != 0.0, left_true != 0.0
-            pieces.append(_Piece(right, left, *true, run, azimuth[own], slope[own]))
-            first = own.stop
+            pieces.append(_Piece(right, left, *true, run, azimuth[of_piece], slope[of_piece]))
+            first = of_piece.stop
         return pieces
 
 
@@ -153,7 +153,7 @@ def _match(
     tolerance: float,
     parameters: VisionParameters,
 ) -> list[tuple[_Piece | None, _Piece | None]]:
-    """Foot and head of each cylinder, None for the one that is not seen."""
+    """Return foot and head of each cylinder, None for an occluded one."""
     costs = []
     fall = view.height - parameters.obstacle_height
     for i, low in enumerate(lower):
@@ -162,11 +162,11 @@ def _match(
             shorter = min(low.left - low.right, high.left - high.right)
             if common < 0.5 * shorter:
                 continue
-            slack = parameters.split.radius_tolerance + pixel * (
+            margin = parameters.split.radius_tolerance + pixel * (
                 low.run**2 / view.height + high.run**2 / fall
             )
             radius = 0.5 * (high.run - low.run)
-            if not parameters.min_radius - slack < radius < parameters.max_radius + slack:
+            if not parameters.min_radius - margin < radius < parameters.max_radius + margin:
                 continue
             gaps = [
                 abs(a - b)
@@ -179,14 +179,14 @@ def _match(
             if any(gap > tolerance for gap in gaps):
                 continue
             middle = 0.5 * (parameters.min_radius + parameters.max_radius)
-            costs.append((abs(radius - middle) / slack + sum(gaps) / tolerance, i, j))
+            costs.append((abs(radius - middle) / margin + sum(gaps) / tolerance, i, j))
     pairs: list[tuple[int, int]] = []
     feet, heads = set(range(len(lower))), set(range(len(upper)))
     for _, i, j in sorted(costs):
         if all(i != a and j != b for a, b in pairs):
             pairs.append((i, j))
-        # A piece that could pair with one already paired is another part of that thing,
-        # seen on the other side of what divides it.
+        # A piece that could also match a matched piece is another part of the same cylinder,
+        # divided by an occluding object.
         feet.discard(i)
         heads.discard(j)
     return [
@@ -197,9 +197,9 @@ def _match(
 
 
 def _over(low: _Piece | None, high: _Piece | None, feet: Sequence[_Piece]) -> _Piece | None:
-    """What of an upper piece stands over its own foot, if it also covers another's.
+    """Return the part of a head above its foot, if the head also spans another foot.
 
-    Two heads nearly as far as each other leave no step in the upper outline.
+    Two heads at nearly the same distance leave no step in the upper outline.
     """
     if low is None or high is None:
         return high
@@ -235,7 +235,7 @@ def _part(
     parameters: VisionParameters,
     radius: tuple[float, float],
 ) -> Part | None:
-    """One cylinder from its foot, its head or both; None if neither side is seen."""
+    """Return one cylinder from foot, head or both, None if neither side is visible."""
     pieces = [p for p in (low, high) if p is not None]
     rights = [p.right for p in pieces if p.right_true]
     lefts = [p.left for p in pieces if p.left_true]
@@ -253,7 +253,7 @@ def _part(
             low=span[0],
             high=span[1],
             trusted=bool(true),
-            hidden=not true,
+            occluded=not true,
         )
         for true, outermost in (
             (lefts, max(p.left for p in pieces)),

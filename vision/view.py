@@ -1,8 +1,8 @@
-"""A camera at a pose: pixels become azimuths and slopes in the robot frame.
+"""Camera at a pose: conversion of pixels to azimuth and slope in the robot frame.
 
-Seen from the camera, a vertical line has one azimuth whatever the head does, and a
-horizontal plane gives every slope (rise over horizontal run) one distance. Edges of
-upright cylinders are therefore measured in (azimuth, slope) and not in pixels.
+A vertical line has one azimuth for every head pose, and on a horizontal plane every slope
+(rise over horizontal run) means one distance. Edges of upright cylinders are therefore
+measured in (azimuth, slope).
 """
 
 from math import atan2, cos, pi, sin
@@ -13,7 +13,7 @@ from vision.camera import CameraPose, PinholeCamera
 
 
 class View:
-    """Maps pixels of one image to directions in the robot frame R.
+    """Mapping from pixels of one image to directions in the robot frame R.
 
     Args:
         camera: intrinsics.
@@ -27,8 +27,8 @@ class View:
         self.y: float = y
         self.height: float = z
         R: list[list[float]] = pose.rotation.tolist()
-        # The right axis is level but for roll, so it gives the heading even when the
-        # camera looks straight down.
+        # The right axis is level up to roll, so it defines the heading even if the camera
+        # points straight down.
         self.heading = atan2(R[1][0], R[0][0]) + 0.5 * pi
         self.packed = np.array(
             [

@@ -19,7 +19,7 @@ NAMES = np.array(list(COLOR_CLASSES))
 @pytest.mark.parametrize(
     ("arrays", "message"),
     [
-        ({"names": NAMES}, "no colour table"),
+        ({"names": NAMES}, "not a colour table"),
         ({"labels": np.zeros(1 << 15, np.uint8), "names": np.array(["pink"])}, "pink"),
         ({"labels": np.zeros(7, np.uint8), "names": NAMES}, "32768"),
         ({"labels": np.full(1 << 15, 8, np.uint8), "names": NAMES}, "label 8"),
@@ -34,7 +34,7 @@ def test_wrong_archives_are_refused(tmp_path, arrays, message) -> None:
 @pytest.mark.parametrize("content", [b"", b"no archive", b"PK\x03\x04 broken"])
 def test_other_files_are_refused(tmp_path, content) -> None:
     (tmp_path / "t.npz").write_bytes(content)
-    with pytest.raises(VisionError, match="no colour table"):
+    with pytest.raises(VisionError, match="not a colour table"):
         load_table(tmp_path / "t.npz")
 
 

@@ -66,8 +66,8 @@ def test_pixels_nobody_judged_teach_nothing() -> None:
     ("labels", "message"),
     [
         (np.zeros((4, 5), np.uint8), "shape"),
-        (np.full((4, 4), len(COLOR_CLASSES) + 1, np.uint8), "means no class"),
-        (np.zeros((4, 4), np.uint8), "no pixel"),
+        (np.full((4, 4), len(COLOR_CLASSES) + 1, np.uint8), "got label"),
+        (np.zeros((4, 4), np.uint8), "background"),
     ],
 )
 def test_wrong_labels_are_refused(labels: np.ndarray, message: str) -> None:

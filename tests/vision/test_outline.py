@@ -51,15 +51,18 @@ def test_rims_lie_on_the_floor_and_at_the_height_of_the_head() -> None:
     middle = len(outline.bottom.slope) // 2
     assert -0.47 / outline.bottom.slope[middle] == pytest.approx(1.2 - 0.09, rel=0.02)
     assert -0.17 / np.median(outline.top.slope) == pytest.approx(1.2 + 0.09, rel=0.06)
-    assert outline.bottom.covered == 0.0
+    assert outline.bottom.occlusion_fraction == 0.0
 
 
 def test_edges_next_to_another_color_are_not_taken_for_the_own() -> None:
     front, back = at(0.9, 4.0, "red", 0.09), at(1.6, 0.0, "green", 0.10)
     seen = outlines([front, back], pose(tilt=-0.3))
-    assert seen["green"].left.hidden
-    assert not seen["red"].right.hidden
-    assert seen["green"].bottom.covered == 0.0 or seen["green"].bottom.covered < 1.0
+    assert seen["green"].left.occluded
+    assert not seen["red"].right.occluded
+    assert (
+        seen["green"].bottom.occlusion_fraction == 0.0
+        or seen["green"].bottom.occlusion_fraction < 1.0
+    )
     half = asin(0.10 / hypot(back.x, back.y))
     for side, expected in ((seen["green"].left, half), (seen["green"].right, -half)):
         if side.trusted:
@@ -69,7 +72,7 @@ def test_edges_next_to_another_color_are_not_taken_for_the_own() -> None:
 def test_a_foot_behind_another_thing_is_not_seen() -> None:
     front, back = at(0.8, 0.0, "red", 0.12), at(1.6, 0.0, "violet", 0.05)
     seen = outlines([front, back], pose(tilt=-0.3))
-    assert seen["violet"].bottom.covered == 1.0
+    assert seen["violet"].bottom.occlusion_fraction == 1.0
     assert seen["violet"].bottom.free().slope.size == 0
     label = NAMES.index("red")
     assert seen["violet"].bottom.against(label).slope.size == seen["violet"].bottom.slope.size

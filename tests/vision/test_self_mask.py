@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.vision.scene import CAMERA, at, paint, pose, true_polar
 from vision.detector import Detector
 from vision.parameters import VisionParameters
-from vision.self_mask import BodyPart, hide
+from vision.self_mask import BodyPart, apply_self_mask
 
 SHOULDER = BodyPart(np.array([[0.0, 0.09, 0.38]]), np.array([0.03]))
 
@@ -50,7 +50,7 @@ def test_only_background_is_hidden() -> None:
     view = pose(pi / 2, -0.5)
     labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
     labels[:, ::2] = 3
-    assert hide((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
+    assert apply_self_mask((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
     assert (labels[:, ::2] == 3).all()
     hull = cv2.convexHull(np.rint(SHOULDER.outline(CAMERA, view)).astype(np.int32))
     shown = cv2.fillConvexPoly(np.zeros_like(labels), hull, 1)
@@ -61,7 +61,7 @@ def test_only_background_is_hidden() -> None:
 def test_nothing_is_hidden_when_the_body_is_out_of_the_image() -> None:
     labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
     view = pose(0.0, 0.0)
-    assert not hide((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
+    assert not apply_self_mask((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
     assert not labels.any()
 
 
@@ -74,7 +74,7 @@ def test_an_obstacle_behind_the_shoulder_is_located_by_its_upper_edge(distance, 
     # The shoulder as it looks: as grey as the ground, and smaller than what is masked.
     shoulder = replace(SHOULDER, radii=np.array([0.025]))
     shown = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
-    assert hide((shoulder,), shown, camera=CAMERA, pose=view, label=1)
+    assert apply_self_mask((shoulder,), shown, camera=CAMERA, pose=view, label=1)
     image[shown == 1] = ground[shown == 1]
     (naive,) = Detector(CAMERA, VisionParameters()).detect(image, view)
     (aware,) = Detector(CAMERA, VisionParameters(), (SHOULDER,)).detect(image, view)

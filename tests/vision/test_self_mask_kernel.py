@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.vision.scene import CAMERA, pose, rays
-from vision.self_mask_kernel import LEAST_DEPTH, outline
+from vision.self_mask_kernel import MIN_DEPTH, outline
 
 CENTRES, RADII = np.array([[0.0, 0.09, 0.38], [0.01, 0.1, 0.25]]), np.array([0.03, 0.045])
 MIDDLE = np.array([0.5 * CAMERA.width, 0.5 * CAMERA.height, CAMERA.focal])
@@ -23,7 +23,7 @@ def test_points_lie_beyond_the_tangents_to_their_sphere(pan, tilt):
     points = outline(CENTRES, RADII, view.position, view.rotation, MIDDLE)
     for centre, radius, polygon in zip(CENTRES, RADII, points.reshape(-1, 12, 2), strict=False):
         local = (centre - view.position) @ view.rotation
-        if local[2] - 1.1 * radius < LEAST_DEPTH or np.abs(polygon).max() >= 4096.0:
+        if local[2] - 1.1 * radius < MIN_DEPTH or np.abs(polygon).max() >= 4096.0:
             continue
         tangents = rays(CAMERA, polygon[:, 0], polygon[:, 1])
         tangents /= np.linalg.norm(tangents, axis=1)[:, None]
