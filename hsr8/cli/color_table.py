@@ -1,6 +1,5 @@
 """``hsr8 color-table``: learn a color table from labelled images."""
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,8 +10,9 @@ from rich.console import Console
 from rich.table import Table
 
 from hsr8.cli import options as cli
-from hsr8.cli.output_file import writing
+from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
+from hsr8.recorder.files import atomic
 from vision.color import COLOR_CLASSES, ColorTable, Labels
 from vision.color_file import SUFFIX, save_table
 from vision.color_learning import IGNORED, learn
@@ -21,11 +21,11 @@ from vision.errors import VisionError
 Image = NDArray[np.uint8]
 
 MASK = ".mask.png"
-WHITE = (255, 255, 255)  # in a mask: not judged
+WHITE = (255, 255, 255)  # in a mask: not labelled
 
 
 def mask_colors() -> dict[str, tuple[int, int, int]]:
-    """RGB with which masks mark each colour class."""
+    """Return the RGB that marks each color class in a mask."""
     return {
         name: (round(255 * c.rgb[0]), round(255 * c.rgb[1]), round(255 * c.rgb[2]))
         for name, c in COLOR_CLASSES.items()
@@ -33,94 +33,88 @@ def mask_colors() -> dict[str, tuple[int, int, int]]:
 
 
 def main(options: cli.ColorTable) -> int:
-    """Learn the table, write it, and tell how well it recognises its own images.
+    """Learn and write the table; report its recall on the images it was learned from.
 
     Raises:
-        UsageError: an image or a mask is missing or wrong, or the table cannot be written.
+        UsageError: an image or a mask is missing or invalid, or the table cannot be written.
     """
-    if options.out.suffix != SUFFIX:
-        raise UsageError(f"--out {options.out}: a colour table is a {SUFFIX} file")
+    require_file_name("--out", options.out, (SUFFIX,))
     if not options.images:
         raise UsageError("IMAGE: missing; expected images with masks NAME.mask.png")
-    pairs = [_read(path) for path in options.images]
+    pairs = [_read_pair(path) for path in options.images]
     try:
         table = learn(pairs)
     except VisionError as error:
         raise UsageError(str(error)) from None
     with writing("--out", options.out):
         save_table(table, options.out)
-    rows = list(_recognised(table, pairs))
+    rows = list(_recall(table, pairs))
     if options.json:
-        print(json.dumps({"color_table": str(options.out), "classes": rows}))
+        print(atomic.dumps({"color_table": str(options.out), "classes": rows}))
         return 0
-    shown = Table(title=f"Colour table from {len(pairs)} images", title_justify="left")
-    for heading in ("class", "pixels", "recognised %", "taken for another %"):
+    shown = Table(title=f"Color table from {len(pairs)} images", title_justify="left")
+    for heading in ("class", "pixels", "recognized %", "confused %"):
         shown.add_column(heading, justify="left" if heading == "class" else "right")
     for row in rows:
-        cells = ("-", "-") if not row["pixels"] else (row["recognised"], row["confused"])
-        shown.add_row(
-            str(row["class"]),
-            str(row["pixels"]),
-            *(c if isinstance(c, str) else f"{100.0 * float(c):.2f}" for c in cells),
-        )
-    console = Console()
+        percents = [f"{100.0 * float(row[key]):.2f}" for key in ("recognized", "confused")]
+        shown.add_row(str(row["class"]), str(row["pixels"]), *percents)
+    console = Console(highlight=False)
     console.print(shown)
-    console.print(f"Use it: hsr8 run quick --set vision.color_table={options.out}", highlight=False)
+    console.print(f"use it      hsr8 run quick --set vision.color_table={options.out}")
     return 0
 
 
-def _read(path: Path) -> tuple[Image, Labels]:
-    """An image and the labels its mask gives it."""
+def _read_pair(path: Path) -> tuple[Image, Labels]:
+    """Read an image and the labels of its mask."""
     mask_path = path.with_name(path.stem + MASK)
-    image, mask = _picture(path), _picture(mask_path)
+    image, mask = _read(path), _read(mask_path)
     if image.shape != mask.shape:
         raise UsageError(
-            f"{mask_path} is {mask.shape[1]}x{mask.shape[0]}, "
-            f"but {path} is {image.shape[1]}x{image.shape[0]}"
+            f"{mask_path}: wrong size, got {mask.shape[1]}x{mask.shape[0]}; "
+            f"expected {image.shape[1]}x{image.shape[0]}, the size of {path}"
         )
-    labels = np.full(mask.shape[:2], len(COLOR_CLASSES) + 1, np.uint8)
+    unknown_label = len(COLOR_CLASSES) + 1
+    labels = np.full(mask.shape[:2], unknown_label, np.uint8)
     legend = {"background": (0, 0, 0), **mask_colors()}
     for label, rgb in enumerate(legend.values()):
         labels[(mask == rgb).all(axis=2)] = label
     labels[(mask == WHITE).all(axis=2)] = IGNORED
-    unknown = np.argwhere(labels == len(COLOR_CLASSES) + 1)
+    unknown = np.argwhere(labels == unknown_label)
     if len(unknown):
         y, x = unknown[0].tolist()
         known = ", ".join(f"{name} {rgb}" for name, rgb in legend.items())
         raise UsageError(
-            f"{mask_path}: pixel ({x}, {y}) has the colour {tuple(mask[y, x].tolist())}, which "
-            f"marks nothing; a mask has only these, without smoothing: {known}, "
-            f"or {WHITE} for what is not judged"
+            f"{mask_path}: unknown color at pixel ({x}, {y}), got {tuple(mask[y, x].tolist())}; "
+            f"expected one of these, without smoothing: {known}, not labelled {WHITE}"
         )
     return image, labels
 
 
-def _picture(path: Path) -> Image:
-    """RGB of an image file."""
+def _read(path: Path) -> Image:
+    """Return the RGB image of a file."""
     try:
         data = np.frombuffer(path.read_bytes(), np.uint8)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     image = cv2.imdecode(data, cv2.IMREAD_COLOR) if len(data) else None
     if image is None:
-        raise UsageError(f"{path} is no image that can be read (PNG and JPEG can)")
+        raise UsageError(f"{path}: not an image; expected PNG or JPEG")
     rgb: Image = np.ascontiguousarray(image[:, :, ::-1])
     return rgb
 
 
-def _recognised(
+def _recall(
     table: ColorTable, pairs: list[tuple[Image, Labels]]
 ) -> Iterator[dict[str, str | int | float]]:
-    """Pixels of each class, and the shares recognised and taken for another class."""
-    seen = np.concatenate([table.classify(image).ravel() for image, _ in pairs])
-    true = np.concatenate([labels.ravel() for _, labels in pairs])
+    """Yield, per class, its pixels and the fractions recognized and taken for another class."""
+    classified = np.concatenate([table.classify(image).ravel() for image, _ in pairs])
+    labelled = np.concatenate([labels.ravel() for _, labels in pairs])
     for label, name in enumerate(("background", *COLOR_CLASSES)):
-        found = seen[true == label]
-        n = max(len(found), 1)
-        other = (found != label) & (found != 0)
+        of_class = classified[labelled == label]
+        n = max(len(of_class), 1)
         yield {
             "class": name,
-            "pixels": len(found),
-            "recognised": int((found == label).sum()) / n,
-            "confused": int(other.sum()) / n,
+            "pixels": len(of_class),
+            "recognized": int((of_class == label).sum()) / n,
+            "confused": int(((of_class != label) & (of_class != 0)).sum()) / n,
         }

@@ -1,4 +1,4 @@
-"""``hsr8 compare``: two sweeps on their common seeds."""
+"""``hsr8 compare``: two sweeps or two runs on their common seeds."""
 
 import shlex
 
@@ -9,10 +9,10 @@ from hsr8.recorder.files import atomic
 
 
 def main(options: Compare) -> int:
-    """Compare and print.
+    """Print the comparison.
 
     Raises:
-        UsageError: a folder is not a sweep's or a run's, or they cannot be compared.
+        UsageError: a folder is neither a sweep nor a run, or they cannot be compared.
     """
     comparison = compare(open_side(options.a), open_side(options.b), options.metric)
     if options.json:

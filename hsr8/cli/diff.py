@@ -1,4 +1,4 @@
-"""``hsr8 diff``: where two runs part."""
+"""``hsr8 diff``: first difference of two runs."""
 
 from dataclasses import asdict
 from typing import Any
@@ -14,69 +14,62 @@ from hsr8.recorder.files import atomic
 from hsr8.recorder.run.run_reader import Run, open_run
 
 DIFFERENT = 1
-LONGEST = 24  # characters of a value that are shown
-SHOWN = 12  # results in a terminal; all of them with --json
+MAX_VALUE_LENGTH = 24  # in the table [characters]
+MAX_ROWS = 12  # settings and results in the table; --json has all of them
 
 
 def main(options: Diff) -> int:
     """Compare two run folders.
 
     Returns:
-        0 where every bit of what happened is the same, else 1.
+        0 where every bit of the recorded motion is equal, else 1.
 
     Raises:
         UsageError: there is no such run, or its records cannot be read.
     """
     a, b = open_run(options.a), open_run(options.b)
-    parts = run_difference.motion(a, b)
+    motion = run_difference.motion(a, b)
     about = [*run_difference.settings(a, b), *run_difference.results(a, b)]
     if options.json:
-        told = {
+        comparison = {
             "a": str(a.path),
             "b": str(b.path),
-            "equal": not parts,
-            "first": asdict(parts[0]) if parts else None,
-            "differences": [asdict(d) for d in (*parts, *about)],
+            "equal": not motion,
+            "first": asdict(motion[0]) if motion else None,
+            "differences": [asdict(d) for d in (*motion, *about)],
         }
-        print(atomic.dumps(told))
+        print(atomic.dumps(comparison))
     else:
-        _show(a, b, parts, about)
-    return DIFFERENT if parts else 0
+        _show(a, b, motion, about)
+    return DIFFERENT if motion else 0
 
 
-def first_difference(a: Run, b: Run) -> str:
-    """Where two runs part, in a sentence; empty where they do not."""
-    parts = run_difference.motion(a, b)
-    if not parts:
-        return ""
-    d = parts[0]
-    return f"tick {d.tick} ({d.time:.3f} s), {d.channel}: {_said(d.a)} and {_said(d.b)}"
-
-
-def _show(a: Run, b: Run, parts: list[RunDifference], about: list[RunDifference]) -> None:
-    console = Console(highlight=False)
-    console.print(f"A           {a.path}\nB           {b.path}", markup=False, soft_wrap=True)
-    if parts:
-        console.print(f"they part   at {first_difference(a, b)}", markup=False, soft_wrap=True)
+def _show(a: Run, b: Run, motion: list[RunDifference], about: list[RunDifference]) -> None:
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(f"A           {a.path}\nB           {b.path}", markup=False)
+    if motion:
+        d = motion[0]
+        values = f"{_text(d.a)} and {_text(d.b)}"
+        where = f"at tick {d.tick} ({d.time:.3f} s), {d.channel}: {values}"
+        console.print(f"differ      {where}", markup=False)
     else:
-        told = ", ".join(run_difference.RECORDS)
-        console.print(f"they part   nowhere: equal, bit for bit ({told})", soft_wrap=True)
-    if not (parts or about):
+        console.print(f"equal       bit for bit ({', '.join(run_difference.RECORDS)})")
+    if not (motion or about):
         return
     table = Table("record", escape("first at [s]"))
-    table.add_column("what", overflow="fold")
+    table.add_column("channel", overflow="fold")
     table.add_column("A")
     table.add_column("B")
-    for d in (*parts, *about)[: len(parts) + SHOWN]:
+    for d in (*motion, *about)[: len(motion) + MAX_ROWS]:
         time = "" if d.time is None else f"{d.time:.3f}"
-        table.add_row(d.record, time, escape(d.channel), _said(d.a), _said(d.b))
-    console.print(table)
-    if len(about) > SHOWN:
-        console.print(f"and {len(about) - SHOWN} more settings and results, see --json")
+        table.add_row(d.record, time, escape(d.channel), _text(d.a), _text(d.b))
+    console.print(table, soft_wrap=False)
+    if len(about) > MAX_ROWS:
+        console.print(f"and {len(about) - MAX_ROWS} more settings and results, see --json")
 
 
-def _said(value: Any) -> str:
+def _text(value: Any) -> str:
     if value is None:
         return "none"
     text = repr(value) if isinstance(value, float) else str(value)
-    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+    return text if len(text) <= MAX_VALUE_LENGTH else text[: MAX_VALUE_LENGTH - 1] + "…"

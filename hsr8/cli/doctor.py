@@ -1,4 +1,4 @@
-"""``hsr8 doctor``: is everything in place?"""
+"""``hsr8 doctor``: check of the installation."""
 
 import os
 import platform
@@ -21,20 +21,21 @@ from hsr8.render import viewer
 from hsr8.version import VERSION
 from hsr8.world.model.models import models_dir
 
-PROBE_LIMIT = 60.0  # an OpenGL that needs longer hangs [s]
+PROBE_LIMIT = 60.0  # an OpenGL that takes longer hangs [s]
 VULKAN_FOLDERS = ("/usr/share", "/usr/local/share", "/etc")
-LEAST_DISK = 1.0  # [GB]
+MIN_DISK = 1.0  # [GB]
 PROBE = "from hsr8.gl import require_gl; print(require_gl())"
+COLORS = {"ok": "green", "note": "yellow", "missing": "red"}
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing looked at.
+    """One checked part of the installation.
 
     Attributes:
-        name: what.
+        name: the part.
         state: ok, note or missing.
-        text: what was found, and what to do.
+        text: the version or path, or the remedy.
     """
 
     name: str
@@ -43,26 +44,28 @@ class Finding:
 
 
 def main(options: Doctor) -> int:
-    """Look and report; 0 when a full run can be made here, else 2."""
+    """Report the findings; 0 where a full run can be made, else 2."""
     findings = examine()
     if options.json:
         print(atomic.dumps({"findings": [asdict(finding) for finding in findings]}))
     else:
-        _show(findings)
+        table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
+        for finding in findings:
+            color = COLORS[finding.state]
+            table.add_row(f"[{color}]{finding.state}[/]", finding.name, escape(finding.text))
+        Console(highlight=False).print(table)
     return 2 if any(finding.state == "missing" for finding in findings) else 0
 
 
 def examine() -> list[Finding]:
-    """Everything `hsr8` needs."""
+    """Check everything that `hsr8` needs."""
+    libraries = versions().items()
     return [
         Finding("hsr8", "ok", f"{VERSION}, {sys.prefix}"),
         Finding("Python", "ok", f"{platform.python_version()}, {platform.platform()}"),
-        *(
-            Finding(name, "missing" if version == "missing" else "ok", version)
-            for name, version in versions().items()
-        ),
+        *(Finding(name, "missing" if v == "missing" else "ok", v) for name, v in libraries),
         *opengl({backend: probe(backend) for backend in BACKENDS}),
-        *_asked(REQUESTED),
+        *_requested_opengl(REQUESTED),
         _models(),
         _disk(),
         _viewer(),
@@ -70,12 +73,13 @@ def examine() -> list[Finding]:
 
 
 def probe(backend: str) -> str | None:
-    """Renderer of a backend, tried in a process of its own; None if it does not draw."""
+    """Return the renderer of a backend, tried in another process; None if it does not draw."""
     environment = os.environ | {"MUJOCO_GL": backend}
     environment.pop("PYOPENGL_PLATFORM", None)
+    command = [sys.executable, "-P", "-c", PROBE]
     try:
         tried = subprocess.run(
-            [sys.executable, "-P", "-c", PROBE],
+            command,
             env=environment,
             capture_output=True,
             text=True,
@@ -89,39 +93,26 @@ def probe(backend: str) -> str | None:
 
 
 def opengl(renderers: dict[str, str | None]) -> list[Finding]:
-    """What the probes of all backends mean."""
+    """Return the findings of the renderers by backend; one of them is enough."""
     findings = []
     for backend, renderer in renderers.items():
+        state, text = "ok", str(renderer)
         if renderer is None:
-            findings.append(Finding(f"OpenGL {backend}", "note", "does not draw here"))
+            state, text = "note", "does not draw here"
         elif is_software(renderer):
-            findings.append(
-                Finding(
-                    f"OpenGL {backend}",
-                    "ok",
-                    f"{renderer}: drawn on the processor, enough for the head camera; "
-                    "videos take a minute or two",
-                )
-            )
-        else:
-            findings.append(Finding(f"OpenGL {backend}", "ok", renderer))
+            text += ": draws on the processor, enough for the head camera; videos take minutes"
+        findings.append(Finding(f"OpenGL {backend}", state, text))
     if not any(renderers.values()):
-        findings.append(
-            Finding(
-                "OpenGL",
-                "missing",
-                f"nothing draws; as root: {APT_LINE}   (or run with --camera analytic)",
-            )
-        )
+        remedy = f"nothing draws; as root: {APT_LINE}   (or run with --camera analytic)"
+        findings.append(Finding("OpenGL", "missing", remedy))
     return findings
 
 
-def _asked(backend: str) -> list[Finding]:
-    """Whether the backend that the user's environment asks for draws."""
+def _requested_opengl(backend: str) -> list[Finding]:
+    """Check the backend that the environment requests, if it does."""
     if not backend:
         return []
-    name = f"MUJOCO_GL={backend}"
-    renderer = probe(backend)
+    name, renderer = f"MUJOCO_GL={backend}", probe(backend)
     if renderer is None:
         return [Finding(name, "missing", "is set, but does not draw here: unset MUJOCO_GL")]
     return [Finding(name, "ok", f"is set and draws: {renderer}")]
@@ -137,29 +128,14 @@ def _models() -> Finding:
 def _disk() -> Finding:
     free = shutil.disk_usage(Path.cwd()).free / 1e9
     text = f"{free:.1f} GB free here; a run of ten minutes takes about 0.15 GB"
-    return Finding("disk", "ok" if free >= LEAST_DISK else "note", text)
+    return Finding("disk", "ok" if free >= MIN_DISK else "note", text)
 
 
 def _viewer() -> Finding:
     try:
-        found = viewer.executable()
+        text = f"{viewer.executable()}; bound to 127.0.0.1 only"
     except Hsr8Error as error:
         return Finding("Rerun viewer", "note", str(error))
-    text = f"{found}; hsr8 binds it to 127.0.0.1 only"
-    if not _vulkan_drivers():
+    if not any(file for f in VULKAN_FOLDERS for file in Path(f, "vulkan/icd.d").glob("*.json")):
         return Finding("Rerun viewer", "note", f"{text}; it draws with Vulkan: {VULKAN_LINE}")
     return Finding("Rerun viewer", "ok", text)
-
-
-def _vulkan_drivers() -> list[Path]:
-    return [
-        file for folder in VULKAN_FOLDERS for file in Path(folder, "vulkan/icd.d").glob("*.json")
-    ]
-
-
-def _show(findings: list[Finding]) -> None:
-    marks = {"ok": "[green]ok[/]", "note": "[yellow]note[/]", "missing": "[red]missing[/]"}
-    table = Table("", "", "", show_header=False, box=None, padding=(0, 2, 0, 0))
-    for finding in findings:
-        table.add_row(marks[finding.state], finding.name, escape(finding.text))
-    Console(highlight=False).print(table)

@@ -1,5 +1,6 @@
-"""``hsr8 info``: what a run folder holds."""
+"""``hsr8 info``: contents of a run folder."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -10,41 +11,37 @@ from rich.table import Table
 from hsr8.cli import report
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError
-from hsr8.evaluation.verdict import Criterion, evaluate_criteria
+from hsr8.evaluation.verdict import Criterion, evaluate_criteria, exit_code
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import RUNNING, other_versions
 from hsr8.recorder.run.run_reader import Run, open_run
 
-SHOWN = 30  # events in a terminal; all of them with --json
+MAX_EVENTS = 30  # in the table; --json has all of them
 
 
 def main(options: Info) -> int:
-    """Tell everything about a run that fits on a page.
+    """Show results, events, versions and files of a run.
 
     Raises:
         UsageError: there is no such run, or it is damaged.
     """
     run = open_run(options.run)
     if options.json:
-        print(atomic.dumps(facts(run)))
+        criteria = _criteria(run)
+        contents = {
+            "run": str(run.path),
+            "manifest": run.manifest,
+            "metrics": run.metrics(),
+            "criteria_met": exit_code(run.manifest["exit_reason"], criteria) == 0,
+            "criteria": [asdict(criterion) for criterion in criteria],
+            "definitions": report.VERDICTS,
+            "events": run.events(),
+            "files": dict(_files(run.path)),
+        }
+        print(atomic.dumps(contents))
     else:
         _show(run)
     return 0
-
-
-def facts(run: Run) -> dict[str, Any]:
-    """Manifest, results, criteria, events and files as plain values."""
-    return {
-        "run": str(run.path),
-        "manifest": run.manifest,
-        "metrics": run.metrics(),
-        "criteria": [
-            {"name": c.name, "expected": c.expected, "actual": c.actual, "met": c.met}
-            for c in _checks(run)
-        ],
-        "events": list(run.events()),
-        "files": {name: size for name, size in _files(run.path)},
-    }
 
 
 def _show(run: Run) -> None:
@@ -53,7 +50,9 @@ def _show(run: Run) -> None:
     made = Table(title=str(run.path), title_justify="left", show_header=False)
     made.add_row("scenario", f"{manifest.get('scenario', '?')}, seed {run.seed}")
     made.add_row("started", str(manifest.get("started", "?")))
-    made.add_row("state", _state(manifest.get("exit_reason")))
+    reason = manifest.get("exit_reason")
+    running = "running, or killed; its records can be read"
+    made.add_row("state", running if reason == RUNNING else f"ended: {reason}")
     made.add_row("made by", f"hsr8 {manifest.get('hsr8', '?')}, Python {manifest.get('python')}")
     made.add_row("on", f"{manifest.get('machine', '?')}; camera: {manifest.get('renderer', '?')}")
     for name, then, now in other_versions(manifest):
@@ -67,37 +66,30 @@ def _show(run: Run) -> None:
     report.show(
         "results",
         results=run.metrics(),
-        checks=_checks(run),
+        criteria=_criteria(run),
         path=run.path,
         command=str(manifest.get("command", "")),
         console=console,
     )
 
 
-def _state(reason: object) -> str:
-    if reason == RUNNING:
-        return "running, or it was killed; what was written can be read"
-    return f"ended: {reason}"
-
-
-def _checks(run: Run) -> tuple[Criterion, ...]:
-    """The criteria, where there are results and this version understands the scenario."""
+def _criteria(run: Run) -> tuple[Criterion, ...]:
+    """Return the criteria, where there are results and this version can read the scenario."""
     results = run.metrics()
-    if not results:
-        return ()
     try:
-        return evaluate_criteria(run.scenario().criteria, results)
+        return evaluate_criteria(run.scenario().criteria, results) if results else ()
     except (UsageError, KeyError):  # made by another version
         return ()
 
 
 def _table(events: tuple[dict[str, Any], ...]) -> Table:
-    title = "events" if len(events) <= SHOWN else f"the last {SHOWN} of {len(events)} events"
+    shown = events[-MAX_EVENTS:]
+    title = "events" if shown == events else f"the last {MAX_EVENTS} of {len(events)} events"
     table = Table(title=title, title_justify="left")
     table.add_column(escape("time [s]"), justify="right")
     table.add_column("kind")
-    table.add_column("what happened")
-    for event in events[-SHOWN:]:
+    table.add_column("event")
+    for event in shown:
         table.add_row(f"{event['time']:.2f}", event["kind"], escape(event["text"]))
     return table
 

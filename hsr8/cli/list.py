@@ -1,39 +1,37 @@
-"""``hsr8 list``: the scenarios that come with the program."""
-
-import json
+"""``hsr8 list``: the built-in scenarios."""
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from hsr8.cli.options import List
+from hsr8.recorder.files import atomic
 from hsr8.scenario.loader import built_in_names, load_scenario
 from hsr8.scenario.schema import Scenario
 
 
 def main(options: List) -> int:
-    """Print every built-in scenario with what it is about."""
-    scenarios = [load_scenario(name) for name in built_in_names()]
+    """Print every built-in scenario with its description."""
+    entries = [_entry(load_scenario(name)) for name in built_in_names()]
     if options.json:
-        print(json.dumps({"scenarios": [_entry(s) for s in scenarios]}))
+        print(atomic.dumps({"scenarios": entries}))
         return 0
     table = Table(title="Scenarios", title_justify="left")
     for heading in ("name", "obstacles", "mission"):
         table.add_column(heading)
     table.add_column(escape("time [s]"), justify="right")
-    table.add_column("what it is")
-    for scenario in scenarios:
-        entry = _entry(scenario)
+    table.add_column("description")
+    for entry in entries:
         table.add_row(
-            scenario.name,
+            str(entry["name"]),
             f"{entry['static']} + {entry['moving']} moving",
-            scenario.mission.kind,
-            f"{scenario.duration:g}",
-            scenario.description,
+            str(entry["mission"]),
+            f"{entry['duration']:g}",
+            str(entry["description"]),
         )
-    console = Console()
+    console = Console(highlight=False)
     console.print(table)
-    console.print("Look at one: hsr8 check NAME. Run it: hsr8 run NAME.", highlight=False)
+    console.print("show one    hsr8 check NAME\nrun it      hsr8 run NAME")
     return 0
 
 

@@ -9,7 +9,7 @@ import re
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stderr, suppress
-from typing import get_args
+from typing import Any, get_args
 
 import tyro
 
@@ -26,10 +26,10 @@ obstacles and navigates with on-board sensors only.
 
 First steps: `hsr8 doctor`, `hsr8 run quick`, `hsr8 render runs/quick`, `hsr8 replay runs/quick`.
 
-`hsr8 --version` prints the version. `hsr8 --tyro-print-completion bash` prints the completion \
-script of a shell: bash, zsh or fish.
+`hsr8 --version` prints the version, `hsr8 --tyro-print-completion bash` the completion script \
+of a shell: bash, zsh or fish.
 
-Exit codes: 0 done, 1 ran but missed its criteria (or differs), 2 wrong usage or input, \
+Exit codes: 0 done or criteria met, 1 criteria missed or runs differ, 2 wrong usage or input, \
 3 diverged or internal error, 130 interrupted."""
 INTERRUPTED = 130
 SIGPIPE_EXIT = 141  # the code of a program that SIGPIPE ends
@@ -51,12 +51,11 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         arguments: without the program's name; those of the process by default.
 
     Returns:
-        0 done or criteria met, 1 criteria missed, 2 usage or scenario error,
-        3 diverged or internal error, 130 interrupted.
+        The exit code, see `DESCRIPTION`.
     """
     atexit.register(gc.freeze)  # no last collection: it takes a tenth of a second
     sys.stdout = sys.stdout or io.StringIO()  # None where the stream is closed
-    sys.stderr = sys.stderr or io.StringIO()  # None where the stream is closed
+    sys.stderr = sys.stderr or io.StringIO()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # file names may hold any bytes
             stream.reconfigure(errors="backslashreplace")
@@ -64,7 +63,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
         code = _run(list(sys.argv[1:] if arguments is None else arguments))
         print(end="", flush=True)
     except OSError as error:  # a closed pipe or a full disk
-        with suppress(OSError, AttributeError):
+        with suppress(OSError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(error, BrokenPipeError):
             return SIGPIPE_EXIT
@@ -107,32 +106,33 @@ def parse(words: Sequence[str]) -> Command | None:
         UsageError: the command line is wrong.
     """
     name, *rest = words or ["--help"]
+    require_present_names(words)
     if name == "--version":
         print(f"hsr8 {VERSION}")
         return None
-    require_present_names(words)
     if name in COMMANDS:
-        if not {"-h", "--help"}.isdisjoint(rest):
-            rest = ["--help"]
-        return _parsed(COMMANDS[name], f"hsr8 {name}", rest)
-    if name.startswith("--tyro") and rest[:1] not in [[shell] for shell in SHELLS]:
-        raise UsageError(f"{name}: unknown shell, got {rest[:1]}; expected {', '.join(SHELLS)}")
-    if name in ("-h", "--help", "--tyro-print-completion", "--tyro-write-completion"):
-        return _parsed(Command, "hsr8", words or ["--help"])
+        help_wanted = not {"-h", "--help"}.isdisjoint(rest)
+        return _parse(COMMANDS[name], f"hsr8 {name}", ["--help"] if help_wanted else rest)
+    if name in ("-h", "--help"):
+        return _parse(Command, "hsr8", ["--help"], description=DESCRIPTION)
+    if name == "--tyro-print-completion":
+        if tuple(rest) not in [(shell,) for shell in SHELLS]:
+            raise UsageError(f"{name}: got {' '.join(rest)!r}; expected {', '.join(SHELLS)}")
+        return _parse(Command, "hsr8", words)
     hint = suggestion(name, list(COMMANDS))
     raise UsageError(f"{name}: unknown command{hint} (commands: {', '.join(COMMANDS)})")
 
 
-def _parsed(kind: type[Command], prog: str, words: Sequence[str]) -> Command | None:
+def _parse(kind: Any, prog: str, words: Sequence[str], **options: Any) -> Command | None:
     """Let tyro parse; turn the box that it prints about a mistake into a `UsageError`."""
-    said = io.StringIO()
-    description = None if kind in get_args(Command) else DESCRIPTION
+    box = io.StringIO()
     try:
-        with redirect_stderr(said):
-            return tyro.cli(kind, prog=prog, args=words, config=CONFIG, description=description)
+        with redirect_stderr(box):
+            command: Command = tyro.cli(kind, prog=prog, args=words, config=CONFIG, **options)
+            return command
     except SystemExit as stop:
         if not stop.code:
             return None
-    _, *rows = re.sub(r"\x1b\[[\d;]*m", "", said.getvalue()).splitlines()
+    _, *rows = re.sub(r"\x1b\[[\d;]*m", "", box.getvalue()).splitlines()  # without the title
     lines = [row[2:].rstrip("│ ") for row in rows]
     raise UsageError("\n  ".join(line for line in lines if re.search(r"\w", line)))

@@ -5,93 +5,88 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import tyro
-from tyro.conf import Positional, UseAppendAction
+from tyro.conf import Positional, UseAppendAction, arg
 from tyro.constructors import PrimitiveConstructorSpec
 
 
-def _arg(metavar: str, text: str) -> object:
-    return tyro.conf.arg(metavar=metavar, help=text, help_behavior_hint="")
-
-
-def _optional(kind: Callable[[str], Any], *choices: str) -> PrimitiveConstructorSpec[Any]:
+def _optional(
+    kind: Callable[[str], Any], metavar: str, choices: tuple[str, ...] | None = None
+) -> PrimitiveConstructorSpec[Any]:
     """Parse one value of an option whose default is None; the word ``None`` is not a value."""
     return PrimitiveConstructorSpec(
         nargs=1,
-        metavar="VALUE",
+        metavar=metavar,
         instance_from_str=lambda words: kind(words[0]),
         is_instance=lambda value: value is not None,
         str_from_instance=lambda value: [str(value)],
-        choices=choices or None,
+        choices=choices,
     )
 
 
-INTEGER, NUMBER = _optional(int), _optional(float)
-ScenarioName = Annotated[str, _arg("SCENARIO", "name (see `hsr8 list`) or TOML file")]
-Settings = UseAppendAction[
-    Annotated[
-        tuple[tuple[str, ...], ...],
-        _arg("KEY=VALUE", "any setting, e.g. --set world.n_moving=8; may be repeated"),
-    ]
-]
-Duration = Annotated[
-    float | None,
-    NUMBER,
-    _arg("S", "simulated time at most [s]; default: that of the scenario"),
-]
-Body = Annotated[
-    Literal["full", "kinematic"] | None,
-    _optional(str, "full", "kinematic"),
-    _arg("{full,kinematic}", "full physics, or feet that land exactly as planned (faster)"),
-]
+def _choice(*choices: str) -> PrimitiveConstructorSpec[Any]:
+    return _optional(str, f"{{{','.join(choices)}}}", choices)
+
+
+NO_DEFAULT = arg(help_behavior_hint="")  # in the help
+Integer = Annotated[int | None, _optional(int, "N"), NO_DEFAULT]
+Number = Annotated[float | None, _optional(float, "X"), NO_DEFAULT]
+Seconds = Annotated[float | None, _optional(float, "S"), NO_DEFAULT]
+Text = Annotated[str | None, _optional(str, "TEXT"), NO_DEFAULT]
+File = Annotated[Path | None, _optional(Path, "FILE"), NO_DEFAULT]
+Body = Annotated[Literal["full", "kinematic"] | None, _choice("full", "kinematic"), NO_DEFAULT]
 Camera = Annotated[
     Literal["rendered", "analytic", "omnidirectional"] | None,
-    _optional(str, "rendered", "analytic", "omnidirectional"),
-    _arg(
-        "{rendered,analytic,omnidirectional}",
-        "rendered: images drawn with OpenGL; analytic: geometry only; "
-        "omnidirectional: analytic, 360 deg",
-    ),
+    _choice("rendered", "analytic", "omnidirectional"),
+    NO_DEFAULT,
 ]
-RunPath = Annotated[Path, _arg("RUN", "run folder, or a parent folder for its newest run")]
-Json = Annotated[
-    bool, tyro.conf.arg(help="print one JSON object on standard output", help_behavior_hint="")
+Level = Annotated[
+    Literal["minimal", "standard", "full"] | None,
+    _choice("minimal", "standard", "full"),
+    NO_DEFAULT,
 ]
-Quiet = Annotated[
-    bool, tyro.conf.arg(help="print neither progress nor results", help_behavior_hint="")
+View = Annotated[Literal["native", "web"] | None, _choice("native", "web"), NO_DEFAULT]
+Flag = Annotated[bool, NO_DEFAULT]
+Scenario = Positional[
+    Annotated[str, arg(metavar="SCENARIO", help="name (see `hsr8 list`) or TOML file")]
 ]
+RunPath = Positional[
+    Annotated[Path, arg(metavar="RUN", help="run folder, or a parent folder for its newest run")]
+]
+SETTINGS = arg(
+    metavar="KEY=VALUE",
+    help="Any setting, such as world.n_moving=8; may be repeated.",
+    help_behavior_hint="",
+)
+Settings = UseAppendAction[Annotated[tuple[tuple[str, ...], ...], SETTINGS]]
+Values = UseAppendAction[
+    Annotated[tuple[tuple[str, ...], ...], arg(metavar="KEY=V1,V2,...", help_behavior_hint="")]
+]
+Json = Annotated[bool, arg(help="Print one JSON object on standard output.", help_behavior_hint="")]
+Quiet = Annotated[bool, arg(help="Print neither progress nor results.", help_behavior_hint="")]
 
 
 @dataclass(frozen=True)
 class Run:
     """Run a scenario and record it: physics, head camera, belief, gaze, walking."""
 
-    scenario: Positional[ScenarioName]
-    seed: Annotated[
-        int | None, INTEGER, _arg("N", "seed of world and noise; default: that of the scenario")
-    ] = None
+    scenario: Scenario
+    seed: Integer = None
+    """Seed of world and noise; default: that of the scenario."""
     out: Path = Path("runs")
     """Parent folder of run folders."""
-    duration: Duration = None
+    duration: Seconds = None
+    """Maximum simulated time [s]; default: that of the scenario."""
     set: Settings = ()
     body: Body = None
+    """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
-    no_log: bool = False
+    """rendered: OpenGL; analytic: geometry only; omnidirectional: analytic, 360 deg."""
+    no_log: Flag = False
     """Write no Rerun log."""
-    log_level: Annotated[
-        Literal["minimal", "standard", "full"] | None,
-        _optional(str, "minimal", "standard", "full"),
-        _arg(
-            "{minimal,standard,full}",
-            "minimal: poses, curves, events; standard (default): also images and beliefs; "
-            "full: every frame",
-        ),
-    ] = None
-    view: Annotated[
-        Literal["native", "web"] | None,
-        _optional(str, "native", "web"),
-        _arg("{native,web}", "show the log during the run: in a window or in a browser"),
-    ] = None
+    log_level: Level = None
+    """minimal: poses and events; standard (default): also images, beliefs; full: all frames."""
+    view: View = None
+    """Show the log during the run: in a window or in a browser."""
     json: Json = False
     quiet: Quiet = False
 
@@ -104,44 +99,31 @@ class Sweep:
     stopped sweep, and further seeds are added.
     """
 
-    scenario: Positional[ScenarioName]
-    seeds: Annotated[
-        str,
-        _arg("SEEDS", "A:B for A to B-1, or a list: 1000:1200, 1,5,9, or 0:10,42"),
-    ]
-    out: Annotated[
-        Path | None, _arg("DIR", "folder of the sweep; default: sweeps/ and the scenario's name")
-    ] = None
-    workers: Annotated[int | None, INTEGER, _arg("N", "parallel runs; default: number of CPUs")] = (
-        None
-    )
+    scenario: Scenario
+    seeds: Annotated[str, arg(metavar="SEEDS")]
+    """A:B for A to B-1, or a list: 1000:1200, 1,5,9, or 0:10,42."""
+    out: File = None
+    """Folder of the sweep; default: sweeps/ and the scenario's name."""
+    workers: Integer = None
+    """Parallel runs; default: number of CPUs."""
     set: Settings = ()
-    vary: UseAppendAction[
-        Annotated[
-            tuple[tuple[str, ...], ...],
-            _arg(
-                "KEY=V1,V2,...",
-                "also vary a setting, one folder per value; repeated: all combinations",
-            ),
-        ]
-    ] = ()
-    duration: Duration = None
+    vary: Values = ()
+    """Also vary a setting, one folder per value; repeated: all combinations."""
+    duration: Seconds = None
+    """Maximum simulated time [s]; default: that of the scenario."""
     body: Body = None
+    """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
+    """rendered: OpenGL; analytic: geometry only; omnidirectional: analytic, 360 deg."""
     executor: str = "local"
     """Executor: local, or dask://HOST:PORT for a Dask cluster."""
-    shard: Annotated[
-        str | None,
-        _arg("I/N", "run part I of N; afterwards the same line without --shard writes the report"),
-    ] = None
-    timeout: Annotated[
-        float | None,
-        NUMBER,
-        _arg("S", "wall-clock limit per run [s]; default: 60 s + 20 x its duration"),
-    ] = None
+    shard: Text = None
+    """Run part I of N, given as I/N; then the same line without --shard writes the report."""
+    timeout: Seconds = None
+    """Wall-clock limit per run [s]; default: 60 s + 20 x its duration."""
     keep: Literal["all", "failed", "none"] = "all"
     """Run folders to keep; one takes about 100 kB per simulated second."""
-    log: bool = False
+    log: Flag = False
     """Write the Rerun log of every run."""
     json: Json = False
     quiet: Quiet = False
@@ -151,14 +133,14 @@ class Sweep:
 class Compare:
     """Compare two sweeps or two runs on their common seeds: paired differences with tests."""
 
-    a: Positional[Annotated[Path, _arg("A", "folder of a sweep or of a run")]]
-    b: Positional[Annotated[Path, _arg("B", "folder to compare with A")]]
+    a: Positional[Annotated[Path, arg(metavar="A")]]
+    """Folder of a sweep or of a run."""
+    b: Positional[Annotated[Path, arg(metavar="B")]]
+    """Folder to compare with A."""
     metric: UseAppendAction[
-        Annotated[
-            tuple[str, ...],
-            _arg("NAME", "numeric key of metrics.json; may be repeated; default: the usual ones"),
-        ]
+        Annotated[tuple[str, ...], arg(metavar="KEY", help_behavior_hint="")]
     ] = ()
+    """Numeric key of metrics.json; may be repeated; default: the usual ones."""
     json: Json = False
 
 
@@ -173,14 +155,12 @@ class List:
 class Check:
     """Check a scenario without running it: settings, world, feasibility."""
 
-    scenario: Positional[ScenarioName]
-    seed: Annotated[
-        int | None, INTEGER, _arg("N", "seed of the world; default: that of the scenario")
-    ] = None
+    scenario: Scenario
+    seed: Integer = None
+    """Seed of the world; default: that of the scenario."""
     set: Settings = ()
-    image: Annotated[
-        Path | None, _arg("PNG", "draw the world and the path of the feasibility certificate")
-    ] = None
+    image: File = None
+    """Draw the world and the path of the feasibility certificate as a PNG."""
     json: Json = False
 
 
@@ -188,7 +168,7 @@ class Check:
 class Verify:
     """Recompute a run from its records and compare physics, belief and decisions bit for bit."""
 
-    run: Positional[RunPath]
+    run: RunPath
     json: Json = False
 
 
@@ -196,7 +176,7 @@ class Verify:
 class Info:
     """Show a run folder: results, events, versions, files."""
 
-    run: Positional[RunPath]
+    run: RunPath
     json: Json = False
 
 
@@ -204,8 +184,8 @@ class Info:
 class Diff:
     """Compare two runs bit for bit: first tick, channel and values that differ."""
 
-    a: Positional[RunPath]
-    b: Positional[RunPath]
+    a: RunPath
+    b: RunPath
     json: Json = False
 
 
@@ -213,33 +193,23 @@ class Diff:
 class Render:
     """Render the video of a run: H.264, with a thumbnail."""
 
-    run: Positional[RunPath]
+    run: RunPath
     camera: str = "dashboard"
     """Camera: dashboard, follow, head, top, or any camera of the model."""
     fps: int = 25
     """Frames per second of the video [1/s]."""
     size: str = "960x540"
     """Width x height [pixel]."""
-    fine: bool = False
+    fine: Flag = False
     """Smooth edges and sharper shadows, at twice the cost."""
-    out: Annotated[
-        Path | None,
-        _arg(
-            "FILE",
-            "output file; default: video.mp4 in the run folder; .gif and .webp: animation, "
-            ".png: one image, at --start",
-        ),
-    ] = None
+    out: File = None
+    """Video (.mp4, .gif, .webp) or image (.png, at --start); default: run folder, video.mp4."""
     start: float = 0.0
     """Simulated time at which the video begins [s]."""
-    stop: Annotated[
-        float | None, NUMBER, _arg("S", "simulated time at which the video ends [s]")
-    ] = None
-    speed: Annotated[
-        float | None,
-        NUMBER,
-        _arg("X", "simulated seconds per second of video; default: a video of at most a minute"),
-    ] = None
+    stop: Seconds = None
+    """Simulated time at which the video ends [s]."""
+    speed: Number = None
+    """Simulated seconds per second of video; default: a video of at most a minute."""
     json: Json = False
     quiet: Quiet = False
 
@@ -248,15 +218,11 @@ class Render:
 class Replay:
     """Open the log of a run in the Rerun viewer."""
 
-    run: Positional[RunPath]
-    screenshot: Annotated[
-        Path | None, _arg("PNG", "write a screenshot of the viewer instead; needs no display")
-    ] = None
-    time: Annotated[
-        float | None,
-        NUMBER,
-        _arg("S", "simulated time of the screenshot [s]; default: the middle of the run"),
-    ] = None
+    run: RunPath
+    screenshot: File = None
+    """Write a screenshot of the viewer as a PNG instead; needs no display."""
+    time: Seconds = None
+    """Simulated time of the screenshot [s]; default: the middle of the run."""
     size: str = "1600x900"
     """Width x height of the window [pixel]."""
     json: Json = False
@@ -266,24 +232,15 @@ class Replay:
 class Plot:
     """Plot the walking of a run: ZMP, CoM, DCM, soles, velocities, torques, tilt."""
 
-    run: Positional[RunPath]
+    run: RunPath
     what: Literal["walking", "zmp", "footsteps", "velocity", "torques", "tilt"] = "walking"
     """Quantity to plot; walking is all of them."""
-    out: Annotated[
-        Path | None, _arg("FILE", ".png, .svg or .pdf; default: a PNG in the run folder")
-    ] = None
-    start: Annotated[float, tyro.conf.arg(name="from", metavar="S")] = 0.0
+    out: File = None
+    """Figure, .png, .svg or .pdf; default: a PNG in the run folder."""
+    start: Annotated[float, arg(name="from", metavar="S")] = 0.0
     """Simulated time at which the plot begins [s]."""
-    stop: Annotated[
-        float | None,
-        NUMBER,
-        tyro.conf.arg(
-            name="to",
-            metavar="S",
-            help="simulated time at which the plot ends [s]",
-            help_behavior_hint="",
-        ),
-    ] = None
+    stop: Annotated[Seconds, arg(name="to")] = None
+    """Simulated time at which the plot ends [s]."""
     json: Json = False
 
 
@@ -296,7 +253,8 @@ class ColorTable:
     mask is refused with the list of these colors.
     """
 
-    images: Positional[Annotated[tuple[Path, ...], _arg("IMAGE", "images that have masks")]]
+    images: Positional[Annotated[tuple[Path, ...], arg(metavar="IMAGE", help_behavior_hint="")]]
+    """Images that have masks."""
     out: Path = Path("colors.npz")
     """File of the table; value of vision.color_table in a scenario."""
     json: Json = False
@@ -306,7 +264,8 @@ class ColorTable:
 class Schema:
     """Print the JSON Schema of scenario files, for completion and checks in editors."""
 
-    out: Annotated[Path | None, _arg("FILE", "output file; default: standard output")] = None
+    out: File = None
+    """File to write; default: standard output."""
 
 
 @dataclass(frozen=True)
@@ -316,19 +275,5 @@ class Doctor:
     json: Json = False
 
 
-Command = (
-    Run
-    | Sweep
-    | Compare
-    | List
-    | Check
-    | Verify
-    | Info
-    | Diff
-    | Render
-    | Replay
-    | Plot
-    | ColorTable
-    | Schema
-    | Doctor
-)
+OfRun = Verify | Info | Diff | Render | Replay | Plot
+Command = Run | Sweep | Compare | List | Check | OfRun | ColorTable | Schema | Doctor

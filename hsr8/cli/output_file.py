@@ -1,40 +1,58 @@
-"""A file that an option of the command line names: checked, and its errors told."""
+"""Output files and image sizes that options name."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from hsr8.errors import UsageError
 
 
-def require_png(option: str, file: Path) -> None:
-    """Make sure that a picture can be called so, before anything is drawn.
+def require_file_name(option: str, file: Path, suffixes: Sequence[str]) -> None:
+    """Check suffix and folder of an output file before anything is drawn.
 
     Args:
-        option: that names the file.
-        file: to be written.
+        option: option that names the file.
+        file: file to write.
+        suffixes: valid suffixes.
 
     Raises:
-        UsageError: it is no PNG, or its folder does not exist.
+        UsageError: the suffix is not valid or the folder does not exist.
     """
-    if file.suffix.lower() != ".png":
-        raise UsageError(f"{option} {file}: give a file that ends in .png")
-    if not file.parent.is_dir():
-        raise UsageError(f"{option} {file}: cannot be written: there is no folder {file.parent}")
+    if file.suffix.lower() not in suffixes:
+        raise UsageError(f"{option} {file}: wrong suffix; expected {', '.join(suffixes)}")
+    if file.is_dir() or not file.parent.is_dir():
+        reason = "it is a folder" if file.is_dir() else f"no folder {file.parent}"
+        raise UsageError(f"{option} {file}: cannot be written: {reason}")
 
 
 @contextmanager
 def writing(option: str, file: Path) -> Iterator[None]:
-    """Tell an error of the system as one of the option.
+    """Report an error of the system as an error of the option.
 
     Args:
-        option: that names the file.
-        file: written within the context.
+        option: option that names the file.
+        file: file that is written in the context.
 
     Raises:
-        UsageError: it cannot be written.
+        UsageError: the file cannot be written.
     """
     try:
         yield
     except OSError as error:
         raise UsageError(f"{option} {file}: cannot be written: {error.strerror}") from error
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Return width and height [pixel] of ``960x540``.
+
+    Raises:
+        UsageError: the text is not a size, or a side is odd or out of range.
+    """
+    match = re.fullmatch(r"(\d{2,5})[x×](\d{2,5})", text.strip())
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
+    if any(side % 2 or not 64 <= side <= 4096 for side in size):
+        raise UsageError(
+            f"--size: got {text!r}; expected WIDTHxHEIGHT, even, 64 to 4096, such as 1280x720"
+        )
+    return size

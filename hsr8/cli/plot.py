@@ -1,20 +1,19 @@
-"""``hsr8 plot``: how a run walked, as a picture to print."""
+"""``hsr8 plot``: figures of the walking of a run."""
 
 import sys
 
 from hsr8.cli.options import Plot
-from hsr8.cli.output_file import writing
+from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.run_reader import open_run
 
 
 def main(options: Plot) -> int:
-    """Draw the plot and say where it is.
+    """Draw the plot and print its path.
 
     Raises:
-        UsageError: there is no such run, it did not record how it walked, or an option will
-            not do.
+        UsageError: there is no such run or no record of its walking, or an option is invalid.
     """
     run = open_run(options.run)
     table = run.walking()
@@ -23,16 +22,14 @@ def main(options: Plot) -> int:
     stop = end if options.stop is None else min(options.stop, end)
     if not 0.0 <= start < stop:
         raise UsageError(
-            f"nothing to plot from {start:g} s to {stop:g} s: the run ended at {end:g} s"
+            f"--from, --to: nothing to plot from {start:g} s to {stop:g} s; "
+            f"the run ended at {end:g} s"
         )
     print(f"plotting    {run.path}", file=sys.stderr, flush=True)
     from hsr8.render.walk_figure import SUFFIXES, draw, save  # noqa: PLC0415  takes seconds
 
     out = options.out or run.path / f"{options.what}.png"
-    if out.suffix.lower() not in SUFFIXES:
-        raise UsageError(f"--out {out}: give a file that ends in {', '.join(SUFFIXES)}")
-    if not out.parent.is_dir():
-        raise UsageError(f"--out {out}: there is no folder {out.parent}")
+    require_file_name("--out", out, SUFFIXES)
     title = f"{run.manifest.get('scenario', run.path.name)}, seed {run.seed}"
     if (start, stop) != (0.0, end):
         title += f", {start:g} to {stop:g} s"

@@ -1,4 +1,4 @@
-"""What a person sees while a run goes on: one line on standard error."""
+"""Progress of a run: one line on standard error."""
 
 import sys
 import time as clock
@@ -12,17 +12,16 @@ from hsr8.recorder.record import TickRecord
 
 REFRESH = 0.1  # wall time between two updates of the live line [s]
 PLAIN_PERIOD = 10.0  # simulated time between two lines without a terminal [s]
-COUNTED = ("collision", "via_point", "fall")
 
 
 class Progress:
-    """Listener that shows how the run gets on.
+    """Listener that shows the progress of a run.
 
-    A terminal gets one live line, anything else a plain line every 10 simulated seconds.
+    A terminal gets one live line, any other stream a plain line every 10 simulated seconds.
 
     Args:
-        duration: of the run at most [s].
-        stream: where to write; standard error by default.
+        duration: maximum simulated time of the run [s].
+        stream: output; standard error by default.
     """
 
     def __init__(self, duration: float, stream: TextIO | None = None) -> None:
@@ -32,37 +31,32 @@ class Progress:
         self._live: Live | None = None
         if self._console.is_terminal:
             self._live = Live(console=self._console, auto_refresh=False, transient=True)
-        self._counts = dict.fromkeys(COUNTED, 0)
+        self._collisions = self._via_points = 0
         self._started = clock.perf_counter()
         self._shown_at = self._started
-        self._began: float | None = None  # simulated time of the first record [s]
         self._next_line = PLAIN_PERIOD
         self._situation = "starting"
 
     def on_record(self, record: TickRecord) -> None:
-        """Show the record, if it is time to."""
-        if self._began is None:
-            self._began = record.time
-            self._next_line = (record.time // PLAIN_PERIOD + 1) * PLAIN_PERIOD
+        """Show the record, if a new line is due."""
         if record.frame is not None:
-            task = record.frame.task
-            self._counts["via_point"] = task.index
+            self._via_points = record.frame.task.index
             self._situation = "lost" if record.frame.belief.lost else record.frame.motion.situation
         if self._live is None:
             if record.time >= self._next_line - 1e-9:
                 self._next_line += PLAIN_PERIOD
                 print(self.line(record), file=self._stream, flush=True)
             return
-        self._live.start()  # it hides the cursor: not before `close` is sure to come
+        self._live.start()  # hides the cursor: only once `close` is sure to be called
         now = clock.perf_counter()
         if now - self._shown_at >= REFRESH:
             self._shown_at = now
             self._live.update(Text(self.line(record), style="cyan"), refresh=True)
 
     def on_event(self, time: float, kind: str, text: str) -> None:
-        """Count it; a fall or a collision is worth a line of its own on a terminal."""
+        """Count collisions; on a terminal print each collision and fall."""
         if kind in ("collision", "fall"):
-            self._counts[kind] += 1
+            self._collisions += kind == "collision"
             if self._live is not None:
                 self._live.console.print(f"[yellow]{time:7.1f} s  {text}[/]")
 
@@ -73,11 +67,10 @@ class Progress:
             self._live = None
 
     def line(self, record: TickRecord) -> str:
-        """The line for `record`."""
-        elapsed = max(clock.perf_counter() - self._started, 1e-6)
-        rate = (record.time - (self._began or 0.0)) / elapsed
+        """Return the line for `record`."""
+        rate = record.time / max(clock.perf_counter() - self._started, 1e-6)
         return (
             f"{record.time:6.1f} / {self._duration:.1f} s   {rate:4.1f}x real time"
-            f"   via points {self._counts['via_point']:3d}   collisions "
-            f"{self._counts['collision']}   {record.walking.phase:<8}   {self._situation}"
+            f"   via points {self._via_points:3d}   collisions {self._collisions}"
+            f"   {record.walking.phase:<8}   {self._situation}"
         )

@@ -71,12 +71,13 @@ def _report(options: Run, result: Result, manifest: Manifest) -> int:
     if result.diverged:
         print(f"hsr8: {result.diverged}", file=sys.stderr)
     if options.json:
-        print(atomic.dumps(result.metrics))
+        verdicts = {"criteria_met": result.criteria_met, "definitions": report.VERDICTS}
+        print(atomic.dumps(result.metrics | verdicts))
     elif not options.quiet:
         report.show(
             f"{manifest.scenario}, seed {manifest.seed}",
             results=result.metrics,
-            checks=result.criteria,
+            criteria=result.criteria,
             path=result.folder,
             command=manifest.command,
         )

@@ -1,14 +1,12 @@
 """``hsr8 render``: the video of a run."""
 
 import time as clock
-from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hsr8.cli.options import Render
-from hsr8.cli.output_file import writing
-from hsr8.cli.size import parse_size
+from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.gl import is_software, require_gl
 from hsr8.recorder.files import atomic
@@ -17,23 +15,24 @@ from hsr8.recorder.run.run_reader import open_run
 from hsr8.render import animation
 from hsr8.render.run_video import RenderedVideo, VideoOptions, render_run
 
-KINDS = (".mp4", *animation.KINDS, ".png")
+SUFFIXES = (".mp4", *animation.KINDS, ".png")
 
 
 def main(options: Render) -> int:
-    """Draw the video and say where it is.
+    """Render the video and print its path.
 
     Raises:
-        UsageError: there is no such run, or an option will not do.
+        UsageError: there is no such run, or an option is invalid.
         RenderingUnavailable: no OpenGL draws here.
     """
     if not 1 <= options.fps <= 120:
-        raise UsageError(f"--fps {options.fps}: give 1 to 120 frames per second")
+        raise UsageError(f"--fps: out of range, got {options.fps}; expected 1 to 120")
     if options.speed is not None and not 0.01 <= options.speed <= 1000.0:
-        raise UsageError(f"--speed {options.speed:g}: give 0.01 to 1000")
+        raise UsageError(f"--speed: out of range, got {options.speed:g}; expected 0.01 to 1000")
     run = open_run(options.run)
     renderer = require_gl()
-    out = _checked(options.out or run.path / run_folder.VIDEO)
+    out = options.out or run.path / run_folder.VIDEO
+    require_file_name("--out", out, SUFFIXES)
     video = VideoOptions(
         camera=options.camera,
         size=parse_size(options.size),
@@ -54,22 +53,11 @@ def main(options: Render) -> int:
             made = render_run(
                 run, video, out, lambda n, total: bar.update(task, completed=n, total=total)
             )
-    _tell(made, clock.perf_counter() - started, options)
+    _report(made, clock.perf_counter() - started, options)
     return 0
 
 
-def _checked(out: Path) -> Path:
-    """The file to write, if it can be one."""
-    if out.suffix.lower() not in KINDS:
-        raise UsageError(f"--out {out}: give a file that ends in {', '.join(KINDS)}")
-    if not out.parent.is_dir():
-        raise UsageError(f"--out {out}: there is no folder {out.parent}")
-    if out.is_dir():
-        raise UsageError(f"--out {out} cannot be written: it is a folder")
-    return out
-
-
-def _tell(made: RenderedVideo, wall: float, options: Render) -> None:
+def _report(made: RenderedVideo, wall: float, options: Render) -> None:
     if options.json:
         result = {
             "video": str(made.video),
@@ -81,7 +69,7 @@ def _tell(made: RenderedVideo, wall: float, options: Render) -> None:
         }
         print(atomic.dumps(result))
     elif not options.quiet:
-        print(f"{'video' if made.thumbnail else 'picture':<12}{made.video}")
+        print(f"{'video' if made.thumbnail else 'image':<12}{made.video}")
         if made.thumbnail:
             print(f"thumbnail   {made.thumbnail}")
         print(

@@ -4,8 +4,7 @@ import shlex
 import sys
 
 from hsr8.cli.options import Replay
-from hsr8.cli.output_file import require_png, writing
-from hsr8.cli.size import parse_size
+from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import versions
@@ -14,34 +13,33 @@ from hsr8.render import viewer
 
 
 def main(options: Replay) -> int:
-    """Open the viewer, or draw it into a file.
+    """Open the viewer, or write a screenshot of it.
 
     Raises:
         UsageError: there is no such run or log, or no display.
     """
     run = open_run(options.run)
     if run.log_file is None:
-        raise UsageError(f"{run.path} has no log: it was run with --no-log")
+        raise UsageError(f"{run.path}: no log; the run was made with --no-log")
     if options.screenshot is not None:
-        require_png("--screenshot", options.screenshot)
+        require_file_name("--screenshot", options.screenshot, (".png",))
         size = parse_size(options.size)
         time = _time(options, run)
         print("drawing in the viewer, which takes some ten seconds", file=sys.stderr, flush=True)
-        picture = viewer.screenshot(run.log_file, time, size)
+        image = viewer.screenshot(run.log_file, time, size)
         with writing("--screenshot", options.screenshot):
-            options.screenshot.write_bytes(picture)
+            options.screenshot.write_bytes(image)
         if options.json:
             print(atomic.dumps({"screenshot": str(options.screenshot), "time_s": time}))
         else:
-            print(f"picture     {options.screenshot} (at {time:.1f} s)")
+            print(f"screenshot  {options.screenshot} (at {time:.1f} s)")
         return 0
     if not viewer.has_display():
-        run_word = shlex.quote(str(run.path))
-        log_word = shlex.quote(str(run.log_file))
+        run_word, log_word = shlex.quote(str(run.path)), shlex.quote(str(run.log_file))
         version = versions()["rerun-sdk"]
         raise UsageError(
-            "there is no display to open the viewer on"
-            f"\n  a picture of it:     hsr8 replay {run_word} --screenshot log.png"
+            "no display for the viewer"
+            f"\n  screenshot:          hsr8 replay {run_word} --screenshot log.png"
             f"\n  on another machine:  copy {log_word}, then"
             f"\n                       pip install rerun-sdk=={version} && rerun log.rrd"
         )
@@ -52,13 +50,11 @@ def main(options: Replay) -> int:
 
 
 def _time(options: Replay, run: Run) -> float:
-    """Simulated time of the picture [s]: what was asked for, or the middle of the run."""
+    """Return the simulated time of the screenshot [s]: by default the middle of the run."""
     time = run.trajectory().time
     if options.time is None:
         return float(time[len(time) // 2]) if len(time) else 0.0
     end = float(time[-1]) if len(time) else 0.0
     if not 0.0 <= options.time <= end:
-        raise UsageError(
-            f"--time {options.time:g}: nothing to draw there: the run goes from 0 s to {end:g} s"
-        )
+        raise UsageError(f"--time: not in the run, got {options.time:g}; expected 0 to {end:g} s")
     return options.time

@@ -1,4 +1,4 @@
-"""``hsr8 schema``: what a scenario file may hold, for editors."""
+"""``hsr8 schema``: JSON Schema of scenario files, for editors."""
 
 from hsr8.cli.options import Schema
 from hsr8.cli.output_file import writing

@@ -1,4 +1,4 @@
-"""SIGTERM, which schedulers and `timeout` send, ends a command as Ctrl-C does."""
+"""SIGTERM, which schedulers and `timeout` send, handled like Ctrl-C."""
 
 import signal
 from collections.abc import Iterator
@@ -8,7 +8,7 @@ from types import FrameType
 
 @contextmanager
 def like_ctrl_c() -> Iterator[None]:
-    """Within it SIGTERM raises KeyboardInterrupt, so that all that was begun is ended."""
+    """Let SIGTERM raise KeyboardInterrupt, so that every context is left in order."""
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         raise KeyboardInterrupt

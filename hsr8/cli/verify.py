@@ -1,4 +1,4 @@
-"""``hsr8 verify``: a run computed again from what it recorded."""
+"""``hsr8 verify``: recompute a run from its records."""
 
 from dataclasses import asdict
 from typing import TYPE_CHECKING
@@ -12,11 +12,11 @@ from hsr8.recorder.run.run_reader import open_run
 if TYPE_CHECKING:
     from hsr8.evaluation.replay import Replayed
 
-FAILED = 1
+DIFFERENT = 1
 
 
 def main(options: Verify) -> int:
-    """Compute physics, belief and decisions again and compare them, bit for bit.
+    """Recompute physics, belief and decisions and compare them bit for bit.
 
     Raises:
         UsageError: there is no such run, or its records cannot be read.
@@ -28,20 +28,17 @@ def main(options: Verify) -> int:
 
     stages = replay(run)
     if not any(stage.count for stage in stages):
-        raise UsageError(
-            f"{run.path} holds nothing to compute again: it ended before its first second"
-        )
+        raise UsageError(f"{run.path}: nothing to recompute: the run ended in its first second")
     equal = all(stage.equal for stage in stages)
     if options.json:
-        told = [asdict(stage) | {"equal": stage.equal} for stage in stages]
-        print(atomic.dumps({"run": str(run.path), "equal": equal, "stages": told}))
-        return 0 if equal else FAILED
-    for stage in stages:
-        print(f"{stage.stage:<12}{_verdict(stage)}")
-    if not equal:
-        for name, then, now in other_versions(run.manifest):
+        rows = [asdict(stage) | {"equal": stage.equal} for stage in stages]
+        print(atomic.dumps({"run": str(run.path), "equal": equal, "stages": rows}))
+    else:
+        for stage in stages:
+            print(f"{stage.stage:<12}{_verdict(stage)}")
+        for name, then, now in [] if equal else other_versions(run.manifest):
             print(f"            {name} was {then}, is {now}")
-    return 0 if equal else FAILED
+    return 0 if equal else DIFFERENT
 
 
 def _verdict(stage: "Replayed") -> str:

@@ -5,10 +5,9 @@ import pytest
 
 from hsr8.cli.check import main
 from hsr8.cli.options import Check
-from hsr8.errors import ScenarioError, UsageError
 
 
-def test_json_tells_world_certificate_and_cost(capsys):
+def test_json_holds_world_and_certificate(capsys):
     assert main(Check("course", seed=4, json=True)) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["seed"] == 4
@@ -28,25 +27,15 @@ def test_people_get_a_table(capsys, name):
     assert "certificate" in capsys.readouterr().out
 
 
-def test_settings_are_obeyed(capsys):
+def test_settings_change_the_world(capsys):
     assert main(Check("course", set=(("world.n_static=3", "world.n_moving=0"),), json=True)) == 0
     assert len(json.loads(capsys.readouterr().out)["obstacles"]) == 3
 
 
-def test_a_picture_is_drawn(tmp_path, capsys):
+def test_an_image_is_drawn(tmp_path, capsys):
     path = tmp_path / "world.png"
     assert main(Check("quick", image=path)) == 0
     assert cv2.imread(str(path)).shape == (900, 900, 3)
-
-
-def test_a_picture_that_cannot_be_written_is_one_clear_error(tmp_path):
-    with pytest.raises(UsageError, match="cannot be written"):
-        main(Check("quick", image=tmp_path / "no" / "world.png"))
-
-
-def test_a_picture_is_a_png(tmp_path):
-    with pytest.raises(UsageError, match=r"ends in \.png"):
-        main(Check("quick", image=tmp_path / "world.jpg"))
 
 
 def test_columns_have_their_units(capsys):
@@ -56,15 +45,10 @@ def test_columns_have_their_units(capsys):
         assert unit in said
 
 
-def test_a_wrong_scenario_is_one_clear_error():
-    with pytest.raises(ScenarioError, match="did you mean 'quick'"):
-        main(Check("quik"))
-
-
-def test_the_run_it_leads_to_is_the_one_that_was_checked(capsys):
+def test_the_printed_command_makes_the_checked_run(capsys):
     main(Check("quick", set=(("world.n_static=3",),)))
-    told = capsys.readouterr().out.splitlines()[-1]
-    assert told == "run it: hsr8 run quick --seed 2 --set world.n_static=3"
+    command = capsys.readouterr().out.splitlines()[-1]
+    assert command == "run it: hsr8 run quick --seed 2 --set world.n_static=3"
 
 
 @pytest.mark.parametrize(
@@ -78,6 +62,6 @@ def test_the_run_it_leads_to_is_the_one_that_was_checked(capsys):
         (["disturbance.random={}"], "drawn, 0.2 to 0.8 N s on torso_link"),
     ],
 )
-def test_commands_and_pushes_are_told(settings, wanted, capsys):
+def test_commands_and_pushes_are_shown(settings, wanted, capsys):
     assert main(Check("walk", set=(tuple(settings),))) == 0
     assert wanted in capsys.readouterr().out

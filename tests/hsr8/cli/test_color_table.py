@@ -6,7 +6,7 @@ import pytest
 
 from hsr8.cli.color_table import main, mask_colors
 from hsr8.cli.options import ColorTable
-from hsr8.errors import ScenarioError, UsageError
+from hsr8.errors import UsageError
 from hsr8.scenario.loader import load_scenario
 from vision.color_file import load_table
 
@@ -29,8 +29,8 @@ def test_a_table_is_learnt_written_and_named_in_a_scenario(picture, tmp_path, ca
     assert main(ColorTable((picture,), out, json=True)) == 0
     rows = {r["class"]: r for r in json.loads(capsys.readouterr().out)["classes"]}
     assert rows["red"]["pixels"] == 200
-    assert rows["red"]["recognised"] > 0.99
-    assert rows["background"]["recognised"] > 0.99
+    assert rows["red"]["recognized"] > 0.99
+    assert rows["background"]["recognized"] > 0.99
     assert load_table(out).labels.max() == 1
     assert load_scenario("quick", [f"vision.color_table={out}"]).vision.color_table == str(out)
     assert main(ColorTable((picture,), out)) == 0
@@ -50,12 +50,7 @@ def test_what_is_missing_or_no_image_is_told(picture, tmp_path):
     with pytest.raises(UsageError, match=r"b\.png: cannot be read"):
         main(ColorTable((tmp_path / "b.png",)))
     picture.with_name("a.mask.png").write_bytes(b"no image")
-    with pytest.raises(UsageError, match="no image"):
+    with pytest.raises(UsageError, match="not an image"):
         main(ColorTable((picture,)))
     with pytest.raises(UsageError, match="npz"):
         main(ColorTable((picture,), tmp_path / "table.txt"))
-
-
-def test_a_wrong_table_in_a_scenario_is_a_mistake_of_the_scenario(tmp_path):
-    with pytest.raises(ScenarioError, match=r"vision\.color_table.*nowhere\.npz"):
-        load_scenario("quick", ["vision.color_table=nowhere.npz"])

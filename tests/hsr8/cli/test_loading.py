@@ -31,13 +31,6 @@ def test_what_a_command_left_behind_is_not_kept_by_the_next_one():
     assert gc.get_freeze_count() == 0
 
 
-def test_a_collector_that_was_off_stays_off():
-    gc.disable()
-    with loading():
-        pass
-    assert not gc.isenabled()
-
-
 def test_the_collector_goes_on_after_a_failed_import():
     with pytest.raises(ImportError), loading():
         raise ImportError

@@ -1,10 +1,10 @@
 import pytest
 
-from hsr8.cli.output_file import require_png, writing
+from hsr8.cli.output_file import parse_size, require_file_name, writing
 from hsr8.errors import UsageError
 
 
-def test_a_file_that_cannot_be_written_is_told_with_its_option(tmp_path):
+def test_a_file_that_cannot_be_written_is_reported_with_its_option(tmp_path):
     file = tmp_path / "none" / "x.png"
     with (
         pytest.raises(UsageError, match=rf"--out {file}: cannot be written: No such file"),
@@ -13,14 +13,30 @@ def test_a_file_that_cannot_be_written_is_told_with_its_option(tmp_path):
         file.write_bytes(b"")
 
 
-def test_other_errors_are_left_alone(tmp_path):
+def test_other_errors_pass_through(tmp_path):
     with pytest.raises(ZeroDivisionError), writing("--out", tmp_path / "x"):
         raise ZeroDivisionError
 
 
-def test_a_picture_is_a_png_in_a_folder_that_is_there(tmp_path):
-    require_png("--picture", tmp_path / "x.PNG")
-    with pytest.raises(UsageError, match=r"--picture .*x\.jpg: give a file that ends in \.png"):
-        require_png("--picture", tmp_path / "x.jpg")
-    with pytest.raises(UsageError, match="there is no folder"):
-        require_png("--picture", tmp_path / "none" / "x.png")
+def test_suffix_and_folder_are_checked(tmp_path):
+    require_file_name("--image", tmp_path / "x.PNG", (".png",))
+    for file, reason in (
+        (tmp_path / "x.jpg", r"--image .*x\.jpg: wrong suffix; expected \.png"),
+        (tmp_path / "none" / "x.png", "no folder"),
+    ):
+        with pytest.raises(UsageError, match=reason):
+            require_file_name("--image", file, (".png",))
+    (tmp_path / "y.png").mkdir()
+    with pytest.raises(UsageError, match="it is a folder"):
+        require_file_name("--image", tmp_path / "y.png", (".png",))
+
+
+@pytest.mark.parametrize(("text", "size"), [("960x540", (960, 540)), (" 1280×720 ", (1280, 720))])
+def test_sizes(text, size):
+    assert parse_size(text) == size
+
+
+@pytest.mark.parametrize("text", ["", "960", "960x541", "8x8", "10000x10000", "-960x540", "axb"])
+def test_an_invalid_size_is_refused_with_an_example(text):
+    with pytest.raises(UsageError, match="1280x720"):
+        parse_size(text)

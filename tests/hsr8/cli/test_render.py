@@ -28,21 +28,10 @@ def test_json_is_all_there_is_on_standard_output(run, tmp_path, capsys):
     assert video.exists()
 
 
-@pytest.mark.parametrize(
-    ("options", "word"),
-    [
-        (["--size", "big"], "1280x720"),
-        (["--fps", "0"], "--fps"),
-        (["--speed", "-1"], "--speed"),
-        (["--out", "nowhere/v.mp4"], "nowhere"),
-        (["--out", "v.avi"], "ends in .mp4, .gif, .webp, .png"),
-        (["--start", "7"], "ended at 0.5 s"),
-    ],
-)
-def test_wrong_options_are_usage_errors(run, capsys, monkeypatch, options, word):
+def test_a_start_after_the_end_of_the_run_is_refused(run, capsys, monkeypatch):
     monkeypatch.setattr("hsr8.cli.render.require_gl", lambda: "llvmpipe")
-    assert entry(["render", str(run), *options, "--quiet"]) == 2
-    assert word in capsys.readouterr().err
+    assert entry(["render", str(run), "--start", "7", "--quiet"]) == 2
+    assert "ended at 0.5 s" in capsys.readouterr().err
 
 
 def test_without_opengl_it_says_so(run, capsys, monkeypatch):
@@ -55,7 +44,7 @@ def test_without_opengl_it_says_so(run, capsys, monkeypatch):
 
 
 @pytest.mark.gl
-def test_a_video_that_cannot_be_written_is_one_clear_error(run, tmp_path, capsys):
+def test_a_video_in_place_of_a_folder_is_refused(run, tmp_path, capsys):
     video = tmp_path / "v.mp4"
     video.mkdir()
     options = ["--size", "64x64", "--fps", "4", "--out", str(video), "--quiet"]

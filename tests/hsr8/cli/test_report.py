@@ -1,6 +1,8 @@
 import io
+import re
 from pathlib import Path
 
+import pytest
 from rich.console import Console
 
 from hsr8.cli import report
@@ -8,65 +10,72 @@ from hsr8.evaluation.metrics import Metrics
 from hsr8.evaluation.verdict import Criterion
 
 
-def test_the_report_shows_results_criteria_and_what_to_do_next(layout, walk, tmp_path):
-    metrics = Metrics(layout, 0.15, 0.05)
-    for record in walk(2.0):
-        metrics.on_record(record)
+def shown(path, *, results, criteria=()):
     stream = io.StringIO()
     report.show(
         "quick, seed 3",
-        results=metrics.result("timeout", "hash"),
-        checks=(
-            Criterion("falls", "<= 0", "0", True),
-            Criterion("goal reached", "yes", "no", False),
-        ),
-        path=tmp_path,
+        results=results,
+        criteria=criteria,
+        path=path,
         command="hsr8 run quick",
-        console=Console(file=stream, width=100),
+        console=Console(file=stream, width=200),
     )
-    text = stream.getvalue()
-    for words in ("quick, seed 3", "0.4 m", "met", "not met", str(tmp_path), "hsr8 run quick"):
+    return stream.getvalue()
+
+
+@pytest.fixture
+def results(layout, walk):
+    metrics = Metrics(layout, 0.15, 0.05)
+    for record in walk(6.0):
+        metrics.on_record(record)
+    return metrics.result("timeout", "hash")
+
+
+def test_results_criteria_and_next_commands_are_shown(results, tmp_path):
+    criteria = (
+        Criterion("falls", "<= 0", "0", True),
+        Criterion("goal reached", "yes", "no", False),
+    )
+    text = shown(tmp_path, results=results, criteria=criteria)
+    for words in (
+        "quick, seed 3",
+        "path length",
+        "met",
+        "not met",
+        str(tmp_path),
+        "hsr8 run quick",
+    ):
         assert words in text
-    # Without a log there is nothing to replay.
-    assert "hsr8 replay" not in text
+    assert "minus commanded" in text
+    assert "hsr8 replay" not in text, "there is no log"
     assert "time to goal" not in text
+
+
+def test_both_verdicts_are_explained_where_they_are_shown(results, tmp_path):
+    text = shown(tmp_path, results=results, criteria=(Criterion("falls", "<= 0", "0", True),))
+    assert f"no ({report.SUCCESS})" in text
+    assert f"criteria_met: yes ({report.CRITERIA_MET})" in text
+
+
+def test_every_row_is_a_documented_metric():
+    text = (Path(__file__).parents[3] / "docs/metrics.md").read_text()
+    for _, key, form in report.ROWS:
+        others = re.findall(r"{([a-z_]\w+)", form)
+        for name in {key, *others} - {"reasons", "clipped", "stopped"}:
+            assert f"`{name}`" in text
 
 
 def test_a_log_can_be_replayed(tmp_path):
     (tmp_path / "log.rrd").touch()
-    stream = io.StringIO()
-    report.show(
-        "quick",
-        results={"exit_reason": "goal"},
-        checks=(),
-        path=Path(tmp_path),
-        command="",
-        console=Console(file=stream, width=200),
-    )
-    assert f"hsr8 replay {tmp_path}" in stream.getvalue()
+    assert f"hsr8 replay {tmp_path}" in shown(tmp_path, results={})
 
 
-def test_a_path_with_spaces_can_be_typed_again(tmp_path):
-    path = tmp_path / "my runs"
-    path.mkdir()
-    stream = io.StringIO()
-    console = Console(file=stream, width=200)
-    report.show("quick", results={}, checks=(), path=path, command="", console=console)
-    assert f"hsr8 render '{path}'" in stream.getvalue()
+def test_a_path_with_spaces_is_quoted(tmp_path):
+    assert "hsr8 render '" in shown(tmp_path / "my runs", results={})
 
 
-def test_cut_off_set_points_are_told_only_when_there_are_any(tmp_path):
-    said = []
-    for ticks, by in ((0, {}), (3, {"l_knee": 3, "r_hip_pitch": 1})):
-        stream = io.StringIO()
-        report.show(
-            "walk",
-            results={"clipped_target_ticks": ticks, "clipped_target_by": by},
-            checks=(),
-            path=tmp_path,
-            command="",
-            console=Console(file=stream, width=200),
-        )
-        said.append(stream.getvalue())
-    assert "beyond range" not in said[0]
-    assert "in 3 ticks: l_knee 3, r_hip_pitch 1" in said[1]
+def test_setpoints_beyond_range_are_shown_only_if_there_are_any(tmp_path):
+    clipped = {"clipped_target_ticks": 3, "clipped_target_by": {"l_knee": 3, "r_hip_pitch": 1}}
+    assert "in 3 ticks: l_knee 3, r_hip_pitch 1" in shown(tmp_path, results=clipped)
+    unclipped = {"clipped_target_ticks": 0, "clipped_target_by": {}}
+    assert "beyond range" not in shown(tmp_path, results=unclipped)
