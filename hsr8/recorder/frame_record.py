@@ -39,20 +39,20 @@ class FrameRecord:
 
     @property
     def belief(self) -> Belief:
-        """What the robot believes at `time`."""
+        """Belief at `time`."""
         return self.decision.belief
 
     @property
     def gaze(self) -> GazeDecision:
-        """Where it decided to look."""
+        """Gaze decision."""
         return self.decision.gaze
 
     @property
     def motion(self) -> MotionDecision:
-        """How it decided to move (the decision in force; new once per footstep)."""
+        """Motion decision, new once per footstep."""
         return self.decision.motion
 
     @property
     def task(self) -> Task:
-        """Where it is going."""
+        """Current task of the mission."""
         return self.decision.task

@@ -1,4 +1,4 @@
-"""Colours of people's pictures: log, plots and video agree on them."""
+"""Colours shared by log, plots and video."""
 
 from collections.abc import Iterable
 
@@ -30,22 +30,22 @@ RIGHT_FOOT: Color = (220, 110, 70)
 
 
 def of_label(label: str) -> Color:
-    """Colour of an obstacle's class, or of the top of a beacon ``top/bottom``."""
+    """Return the colour of an obstacle's class, or of the top of a beacon ``top/bottom``."""
     return LABELS.get(label.partition("/")[0], UNKNOWN)
 
 
 def darker(color: Color) -> Color:
-    """The colour of what lies on a disc of `color`."""
+    """Return a colour that is visible on a disc of `color`."""
     red, green, blue = color
     return red // 2, green // 2, blue // 2
 
 
 def packed(color: Color, alpha: int = 255) -> int:
-    """0xRRGGBBAA."""
+    """Return 0xRRGGBBAA."""
     red, green, blue = color
     return (red << 24) | (green << 16) | (blue << 8) | alpha
 
 
 def packed_all(colors: Iterable[Color]) -> NDArray[np.uint32]:
-    """Opaque colours, each as 0xRRGGBBAA (n,)."""
+    """Return opaque colours as 0xRRGGBBAA (n,)."""
     return np.array([packed(color) for color in colors], dtype=np.uint32)

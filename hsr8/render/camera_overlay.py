@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.recorder import palette
-from hsr8.recorder.run.frame_summary import Blob, FrameSummary
+from hsr8.recorder.run.frame_summary import Box, FrameSummary
 from hsr8.render.text import Color, Image, draw_text, font_size, text_width
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ class CameraOverlay:
 
     def draw(self, image: Image, frame: FrameSummary) -> None:
         """Draw the detections and the gaze of a frame over `image` (height, width, 3)."""
-        near_first = sorted(frame.blobs, key=lambda blob: blob.distance)
+        near_first = sorted(frame.boxes, key=lambda blob: blob.distance)
         for blob in reversed(near_first):
             self._draw_box(image, blob)
         tags: list[Rectangle] = []
@@ -50,20 +50,20 @@ class CameraOverlay:
             self._draw_tag(image, blob, tags, near_first[:number])
         self._draw_window(image, frame.gaze, frame.look)
 
-    def _box(self, blob: Blob) -> Rectangle:
+    def _box(self, blob: Box) -> Rectangle:
         """Return the box of a detection in the drawn image [pixel]."""
         left, top, right, bottom = blob.box
         edge = 0.5 * (self._size[0] - self._scale * self._camera[0])
         u, v = self._scale * left + edge, self._scale * right + edge
         return u, self._scale * top, v, self._scale * bottom
 
-    def _draw_box(self, image: Image, blob: Blob) -> None:
+    def _draw_box(self, image: Image, blob: Box) -> None:
         left, top, right, bottom = self._box(blob)
         corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
         _lines(image, corners, _light(palette.of_label(blob.label)), closed=True)
 
     def _draw_tag(
-        self, image: Image, blob: Blob, tags: list[Rectangle], nearer: Sequence[Blob]
+        self, image: Image, blob: Box, tags: list[Rectangle], nearer: Sequence[Box]
     ) -> None:
         """Draw the distance above the box, or below it, if the space is free."""
         left, top, right, bottom = map(round, self._box(blob))

@@ -27,7 +27,7 @@ def guarded(payload: bytes) -> bytes:
 def read_payloads(
     path: Path, magic: bytes, *, file: str, payload: str, whole: bool
 ) -> Iterator[tuple[str, bytes]]:
-    """Yield the place, for messages, and the content of every payload of a file.
+    """Yield the location, for messages, and the content of every payload of a file.
 
     Args:
         path: the file.
@@ -40,12 +40,12 @@ def read_payloads(
         UsageError: the file is missing, damaged, or of another kind or format.
     """
     content = _content(path, magic, file)
-    place, count = len(magic), 0
-    while place < len(content):
-        where, start = f"in {payload} {count}, at byte {place}", place + _GUARD.size
+    offset, count = len(magic), 0
+    while offset < len(content):
+        where, start = f"in {payload} {count}, at byte {offset}", offset + _GUARD.size
         length, checksum = 0, 0
         if start <= len(content):
-            length, checksum = _GUARD.unpack_from(content, place)
+            length, checksum = _GUARD.unpack_from(content, offset)
         if length == 0 or start + length > len(content):
             if whole:
                 raise UsageError(f"{path}: cut off {where}")
@@ -54,7 +54,7 @@ def read_payloads(
         if zlib.crc32(body) != checksum:
             raise UsageError(f"{path}: damaged {where}")
         yield where, body
-        place, count = start + length, count + 1
+        offset, count = start + length, count + 1
 
 
 def head(magic: bytes, header: Mapping[str, Any]) -> bytes:

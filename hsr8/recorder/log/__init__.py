@@ -1,1 +1,1 @@
-"""The Rerun log: a layer for each thing it shows, written and read back."""
+"""Writing and reading of the Rerun log, one layer per subject."""

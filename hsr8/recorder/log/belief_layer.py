@@ -1,4 +1,4 @@
-"""What the robot believes, drawn over the true world."""
+"""Belief: pose, tracks, particles, local map, virtual obstacles, target."""
 
 from collections.abc import Sequence
 from math import pi
@@ -18,71 +18,75 @@ from navigation.observation import CameraView
 
 Array = NDArray[np.float64]
 
-SIGMAS = 2.0  # ellipses show so many standard deviations
+SIGMAS = 2.0  # standard deviations of ellipses
 HEADING_LENGTH = 0.35  # [m]
-VELOCITY_SCALE = 2.0  # an arrow shows the way of so many seconds [s]
+VELOCITY_SCALE = 2.0  # prediction time of velocity arrows [s]
 VIEW_RANGE = 1.5  # drawn length of the field of view [m]
-MAP_HEIGHT, MARK_HEIGHT = 0.002, 0.012  # heights at which flat things are drawn [m]
-FLAT = 0.004  # and their thickness [m]
-PARTICLE, PARTICLE_SHARES = 0.025, (0.2, 4.0)  # its drawn radius [m], by relative weight
-LOST_SIGMA = 0.5  # a track less certain than this could be anywhere: no ellipse [m]
+MAP_HEIGHT, MARK_HEIGHT = 0.002, 0.012  # heights of flat drawings [m]
+FLAT = 0.004  # their thickness [m]
+PARTICLE, PARTICLE_WEIGHTS = 0.025, (0.2, 4.0)  # drawn radius [m], range of relative weights
+MAX_SIGMA = 0.5  # of a drawn ellipse [m]
 SEEN, UNSEEN = 255, 160  # opacity of tracks in view and out of it
 
 
 class BeliefLayer:
-    """Logs pose, tracks, particles, local map, virtual obstacles and destination.
+    """Layer of the belief.
 
     Args:
-        stream: where it goes.
-        map_period: time between two local maps and clouds of particles at least [s].
+        stream: recording.
+        map_period: minimum interval between two local maps and particle clouds [s].
     """
 
     def __init__(self, stream: BlockStream, map_period: float) -> None:
         self._stream = stream
         self._map_throttle = Throttle(map_period)
         self._map_shape: tuple[int, ...] = ()
-        self._motion: MotionDecision | None = None  # whose virtual obstacles are shown
-        self._aim: list[float] = []
+        self._motion: MotionDecision | None = None  # of the shown virtual obstacles
+        self._target_position: list[float] = []
         solid = rr.components.FillMode.Solid
         lines = rr.components.FillMode.MajorWireframe
-        for path, style in (
-            ("/belief/pose", rr.Arrows3D.from_fields(colors=[palette.BELIEF], radii=[0.015])),
-            ("/belief/uncertainty", _rings(palette.BELIEF, lines)),
-            ("/belief/tracks", rr.Cylinders3D.from_fields(fill_mode=solid)),
-            ("/belief/track_uncertainty", _rings(palette.BELIEF, lines)),
-            ("/belief/velocities", rr.Arrows3D.from_fields(colors=[palette.BELIEF], radii=[0.01])),
-            (
-                "/belief/virtual_obstacles",
-                rr.Cylinders3D.from_fields(
-                    colors=[palette.VIRTUAL], fill_mode=lines, line_radii=[0.006]
-                ),
-            ),
-            ("/belief/view", rr.LineStrips3D.from_fields(colors=[palette.VIEW], radii=[0.008])),
-            ("/belief/target", rr.Points3D.from_fields(colors=[palette.TARGET], radii=[0.05])),
-        ):
-            stream.log(path, style, static=True)
-        self._pose = Channel(stream, "/belief/pose", rr.Arrows3D.columns)
-        self._uncertainty = Channel(stream, "/belief/uncertainty", rr.Ellipsoids3D.columns)
-        self._tracks = Channel(stream, "/belief/tracks", rr.Cylinders3D.columns)
-        self._spread = Channel(stream, "/belief/track_uncertainty", rr.Ellipsoids3D.columns)
-        self._velocities = Channel(stream, "/belief/velocities", rr.Arrows3D.columns)
-        self._virtual = Channel(stream, "/belief/virtual_obstacles", rr.Cylinders3D.columns)
-        self._view = Channel(stream, "/belief/view", rr.LineStrips3D.columns)
-        self._target = Channel(stream, "/belief/target", rr.Points3D.columns)
+        arrows, cylinders = rr.Arrows3D, rr.Cylinders3D
+        self._pose = Channel(
+            stream,
+            "/belief/pose",
+            arrows.columns,
+            arrows.from_fields(colors=[palette.BELIEF], radii=[0.015]),
+        )
+        self._uncertainty = Channel(
+            stream, "/belief/uncertainty", rr.Ellipsoids3D.columns, _rings(lines)
+        )
+        self._tracks = Channel(
+            stream, "/belief/tracks", cylinders.columns, cylinders.from_fields(fill_mode=solid)
+        )
+        self._track_uncertainty = Channel(
+            stream, "/belief/track_uncertainty", rr.Ellipsoids3D.columns, _rings(lines)
+        )
+        self._velocities = Channel(
+            stream,
+            "/belief/velocities",
+            arrows.columns,
+            arrows.from_fields(colors=[palette.BELIEF], radii=[0.01]),
+        )
+        self._virtual = Channel(
+            stream,
+            "/belief/virtual_obstacles",
+            cylinders.columns,
+            cylinders.from_fields(colors=[palette.VIRTUAL], fill_mode=lines, line_radii=[0.006]),
+        )
+        self._view = Channel(
+            stream,
+            "/belief/view",
+            rr.LineStrips3D.columns,
+            rr.LineStrips3D.from_fields(colors=[palette.VIEW], radii=[0.008]),
+        )
+        self._target = Channel(
+            stream,
+            "/belief/target",
+            rr.Points3D.columns,
+            rr.Points3D.from_fields(colors=[palette.TARGET], radii=[0.05]),
+        )
         self._particles = Channel(stream, "/belief/particles", rr.Points3D.columns)
         self._map = Channel(stream, "/belief/local_map", rr.GridMap.columns)
-        self._channels = (
-            self._pose,
-            self._uncertainty,
-            self._tracks,
-            self._spread,
-            self._velocities,
-            self._virtual,
-            self._view,
-            self._target,
-            self._particles,
-            self._map,
-        )
 
     def add(self, frames: Sequence[FrameRecord]) -> None:
         """Take camera frames."""
@@ -102,21 +106,16 @@ class BeliefLayer:
                 self._motion = frame.motion
                 self._add_virtual(frame)
             target = frame.task.target.tolist()
-            if target != self._aim:
-                self._aim = target
+            if target != self._target_position:
+                self._target_position = target
                 self._target.add(frame.time, positions=np.array([[*target, 0.05]]))
             if self._map_throttle.due(frame.time):
                 self._add_particles(frame.time, frame.belief)
                 self._add_map(frame.time, frame.belief)
 
-    def flush(self) -> None:
-        """Send the block."""
-        for channel in self._channels:
-            channel.flush()
-
     def _add_tracks(self, times: list[float], beliefs: Sequence[Belief]) -> None:
         tracks = [track for belief in beliefs for track in belief.tracks]
-        moments = np.repeat(np.arange(len(times)), [len(belief.tracks) for belief in beliefs])
+        rows = np.repeat(np.arange(len(times)), [len(belief.tracks) for belief in beliefs])
         centres = np.full((len(tracks), 3), MARK_HEIGHT)
         centres[:, :2] = np.reshape([t.position for t in tracks], (-1, 2))
         colors = [
@@ -124,33 +123,33 @@ class BeliefLayer:
         ]
         self._tracks.add_rows(
             times,
-            _counts(times, moments),
+            _counts(times, rows),
             centers=centres,
             lengths=np.full(len(tracks), FLAT),
             radii=np.array([t.radius for t in tracks]),
             colors=np.array(colors, dtype=np.uint32),
         )
         covariances = np.reshape([t.covariance for t in tracks], (-1, 4, 4))[:, :2, :2]
-        known = np.trace(covariances, axis1=1, axis2=2) < LOST_SIGMA**2
-        counts = _counts(times, moments[known])
-        self._ellipses(self._spread, times, counts, centres[known], covariances[known])
+        known = np.trace(covariances, axis1=1, axis2=2) < MAX_SIGMA**2
+        counts = _counts(times, rows[known])
+        self._ellipses(self._track_uncertainty, times, counts, centres[known], covariances[known])
         moving = np.array([t.motion is not Motion.STATIC for t in tracks], dtype=bool)
         vectors = np.zeros((len(tracks), 3))
         vectors[:, :2] = np.reshape([t.velocity for t in tracks], (-1, 2))
         self._velocities.add_rows(
             times,
-            _counts(times, moments[moving]),
+            _counts(times, rows[moving]),
             origins=centres[moving],
             vectors=VELOCITY_SCALE * vectors[moving],
         )
 
     def _add_particles(self, time: float, belief: Belief) -> None:
-        """Where lost movers may be; a particle is the larger the more likely it is."""
+        """Add the particles of lost movers, with radii by weight."""
         clouds = [(t, t.particles) for t in belief.tracks if t.particles is not None]
         positions = [cloud.positions for _, cloud in clouds]
-        shares = [len(cloud.weights) * cloud.weights for _, cloud in clouds]
-        places = np.concatenate(positions) if clouds else np.zeros((0, 2))
-        weights = np.concatenate(shares) if clouds else np.zeros(0)
+        relative = [len(cloud.weights) * cloud.weights for _, cloud in clouds]
+        points = np.concatenate(positions) if clouds else np.zeros((0, 2))
+        weights = np.concatenate(relative) if clouds else np.zeros(0)
         colors = [
             palette.packed(palette.darker(palette.of_label(t.label)))
             for t, cloud in clouds
@@ -158,8 +157,8 @@ class BeliefLayer:
         ]
         self._particles.add(
             time,
-            positions=np.column_stack([places, np.full(len(places), MARK_HEIGHT)]),
-            radii=PARTICLE * np.sqrt(np.clip(weights, *PARTICLE_SHARES)),
+            positions=np.column_stack([points, np.full(len(points), MARK_HEIGHT)]),
+            radii=PARTICLE * np.sqrt(np.clip(weights, *PARTICLE_WEIGHTS)),
             colors=np.array(colors, dtype=np.uint32),
         )
 
@@ -176,11 +175,11 @@ class BeliefLayer:
 
     def _add_map(self, time: float, belief: Belief) -> None:
         grid = belief.local_map
-        # The first row of an image is its top, the first row of the map its least y.
+        # The first row of an image is its top, the first row of the map its minimum y.
         cells = np.round(255.0 * grid.confidence[::-1]).astype(np.uint8)
         if cells.shape != self._map_shape:
             self._map_shape = cells.shape
-            self._stream.log("/belief/local_map", _map_look(grid.cell, cells.shape), static=True)
+            self._stream.log("/belief/local_map", _map_style(grid.cell, cells.shape), static=True)
         self._map.add(
             time, data=[cells.ravel()], translation=np.array([[*grid.origin, MAP_HEIGHT]])
         )
@@ -206,14 +205,14 @@ class BeliefLayer:
         )
 
 
-def _counts(times: list[float], moments: NDArray[np.intp]) -> list[int]:
-    """How many of `moments` are each of the times, by its number."""
-    counts: list[int] = np.bincount(moments, minlength=len(times)).tolist()
+def _counts(times: list[float], rows: NDArray[np.intp]) -> list[int]:
+    """Return the number of elements in `rows` for each of the times."""
+    counts: list[int] = np.bincount(rows, minlength=len(times)).tolist()
     return counts
 
 
-def _map_look(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
-    """What never changes of a map of so many rows and columns."""
+def _map_style(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
+    """Return the style of a map with `shape` rows and columns."""
     return rr.GridMap.from_fields(
         format=rr.components.ImageFormat(
             width=shape[1],
@@ -227,12 +226,12 @@ def _map_look(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
     )
 
 
-def _rings(color: palette.Color, fill: rr.components.FillMode) -> rr.Ellipsoids3D:
-    return rr.Ellipsoids3D.from_fields(colors=[color], fill_mode=fill, line_radii=[0.004])
+def _rings(fill: rr.components.FillMode) -> rr.Ellipsoids3D:
+    return rr.Ellipsoids3D.from_fields(colors=[palette.BELIEF], fill_mode=fill, line_radii=[0.004])
 
 
 def _wedges(poses: Array, views: Sequence[CameraView]) -> Array:
-    """Outlines on the floor of the fields of view from poses (m, 3): (m, n, 3) [m]."""
+    """Return the outlines of the fields of view on the floor (m, n, 3) [m]."""
     axes = np.array([view.rotation[:, 2] for view in views])
     middles = poses[:, 2] + np.arctan2(axes[:, 1], axes[:, 0])
     halves = np.minimum([0.5 * view.horizontal_fov for view in views], pi)

@@ -1,4 +1,4 @@
-"""How the viewer arranges a log."""
+"""Arrangement of a log in the viewer."""
 
 import rerun as rr
 import rerun.blueprint as rrb
@@ -12,8 +12,7 @@ AROUND = rrb.VisibleTimeRange(
     end=rrb.TimeRangeBoundary.cursor_relative(seconds=1.5),
 )
 BACKGROUND = [228, 231, 235]
-# Over the truth in outlines the belief can be told from it.
-TRUTH = (
+TRUTH = (  # drawn in outlines below the belief
     "/world/obstacles/boxes",
     "/world/obstacles/capsules",
     "/world/obstacles/cylinders",
@@ -22,16 +21,16 @@ TRUTH = (
 OUTLINES = rr.Cylinders3D.from_fields(
     fill_mode=rr.components.FillMode.MajorWireframe, colors=[palette.TRUTH], line_radii=[0.006]
 )
-ABOVE = 6.2  # height of the eye over a field of 5 m [m]
+ABOVE = 6.2  # height of the viewpoint over a field of 5 m [m]
 
 
 def blueprint(field_size: float, *, walking: bool, images: bool) -> rrb.Blueprint:
-    """Two tabs: the whole robot, and its walking in detail.
+    """Return two tabs: the whole robot, and its walking in detail.
 
     Args:
         field_size: longer side of the field [m].
-        walking: whether walking is shown first.
-        images: whether there are images, beliefs and plans to show.
+        walking: show walking first.
+        images: show images, beliefs and plans.
     """
     return rrb.Blueprint(
         rrb.Tabs(_overview(field_size, images), _walking(), active_tab=1 if walking else 0),
@@ -42,7 +41,7 @@ def blueprint(field_size: float, *, walking: bool, images: bool) -> rrb.Blueprin
 
 
 def _walking() -> rrb.Container:
-    """The robot over its footsteps on the left; curves on the right."""
+    """Return the robot over its footsteps on the left, curves on the right."""
     robot = rrb.Spatial3DView(
         name="Walking",
         origin="/",
@@ -72,9 +71,9 @@ def _walking() -> rrb.Container:
         *(
             rrb.TimeSeriesView(name=name, origin=f"/plots/{entity}", time_ranges=ranges)
             for name, entity, ranges in (
-                ("Forward", "speed_vx", None),
-                ("Left", "speed_vy", None),
-                ("Turn", "speed_wz", None),
+                ("vx", "speed_vx", None),
+                ("vy", "speed_vy", None),
+                ("wz", "speed_wz", None),
                 ("Knee", "torque_knee", AROUND),
                 ("Hip", "torque_hip", AROUND),
                 ("Ankle", "torque_ankle", AROUND),
@@ -91,7 +90,7 @@ def _walking() -> rrb.Container:
 
 
 def _overview(field_size: float, images: bool) -> rrb.Container:
-    """Robot and belief above; camera, gaze, states and curves below."""
+    """Return robot and belief above, camera, gaze, states and curves below."""
     height = ABOVE * field_size / 5.0
     robot = rrb.Spatial3DView(
         name="HSR-VIII",
@@ -101,7 +100,7 @@ def _overview(field_size: float, images: bool) -> rrb.Container:
             "+ /belief/**",
             "+ /plan/**",
             "- /belief/local_map",
-            # The image has a view of its own; here it would hide the robot.
+            # The image is in another view; here it would hide the robot.
             "- /world/camera/image",
             "- /world/camera/detections",
             "- /world/camera/gaze_window",

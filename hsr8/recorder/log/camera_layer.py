@@ -1,4 +1,4 @@
-"""The head camera: its pose in the world, its image, what was recognised, the gaze map."""
+"""Head camera: pose, image, detections, gaze map."""
 
 from collections.abc import Sequence
 from math import cos, pi, radians, sin, tan
@@ -27,14 +27,14 @@ OUTLINE = np.concatenate(  # of the square from -1 to 1 (28, 2)
 
 
 class CameraLayer:
-    """Logs the camera.
+    """Layer of the head camera.
 
     Args:
-        stream: where it goes.
-        model: compiled world, which has the camera.
+        stream: recording.
+        model: compiled world.
         size: width and height of the image [pixel].
         jpeg: quality of the images [%].
-        gaze: what the gaze map spans, and the window in which its votes are summed.
+        gaze: range of the gaze map, and size of its window.
     """
 
     def __init__(
@@ -47,13 +47,10 @@ class CameraLayer:
     ) -> None:
         self._jpeg_quality = jpeg
         self._parameters = gaze
-        self._gaze: GazeDecision | None = None  # that is shown
-        self._times: list[float] = []
-        self._positions: list[Array] = []
-        self._rotations: list[Array] = []
-        self._id = model.camera(HEAD_CAMERA).id
+        self._gaze: GazeDecision | None = None  # shown
         self._size = width, height = size
-        self._focal = focal = 0.5 * height / tan(0.5 * radians(float(model.cam_fovy[self._id])))
+        fov = radians(float(model.camera(HEAD_CAMERA).fovy[0]))
+        self._focal = focal = 0.5 * height / tan(0.5 * fov)
         stream.log(
             "/world/camera",
             rr.Pinhole(
@@ -65,79 +62,48 @@ class CameraLayer:
             ),
             static=True,
         )
-        stream.log(
-            "/world/camera/image",
-            rr.EncodedImage.from_fields(media_type="image/jpeg"),
-            static=True,
-        )
-        stream.log("/gaze/choice", rr.Points2D.from_fields(radii=[0.5]), static=True)
-        for path, radius in (("/gaze/window", 0.12), ("/world/camera/gaze_window", 1.2)):
-            style = rr.LineStrips2D.from_fields(colors=[palette.VIEW], radii=[radius])
-            stream.log(path, style, static=True)
-        # OpenCV builds its table anew at every call.
+        # A table, because OpenCV computes it at every call.
         ramp = np.arange(256, dtype=np.uint8)[:, None]
         self._heat = cv2.applyColorMap(ramp, cv2.COLORMAP_MAGMA)[:, 0]
         self._pose = Channel(stream, "/world/camera", rr.Transform3D.columns)
-        self._image = Channel(stream, "/world/camera/image", rr.EncodedImage.columns)
+        self._image = _images(stream, "/world/camera/image", "jpeg")
         self._boxes = Channel(stream, "/world/camera/detections", rr.Boxes2D.columns)
-        self._gaze_map = Channel(stream, "/gaze/map", rr.EncodedImage.columns)
-        self._window = Channel(stream, "/gaze/window", rr.LineStrips2D.columns)
-        self._seen_window = Channel(stream, "/world/camera/gaze_window", rr.LineStrips2D.columns)
-        self._choice = Channel(stream, "/gaze/choice", rr.Points2D.columns)
-        stream.log("/gaze/map", rr.EncodedImage.from_fields(media_type="image/png"), static=True)
+        self._gaze_map = _images(stream, "/gaze/map", "png")
+        self._window = _lines(stream, "/gaze/window", 0.12)
+        self._image_window = _lines(stream, "/world/camera/gaze_window", 1.2)
+        self._choice = Channel(
+            stream, "/gaze/choice", rr.Points2D.columns, rr.Points2D.from_fields(radii=[0.5])
+        )
 
-    def add_pose(self, time: float, data: mujoco.MjData) -> None:
-        """Take the camera's true pose from `data`."""
-        self._times.append(time)
-        self._positions.append(data.cam_xpos[self._id].copy())
-        self._rotations.append(data.cam_xmat[self._id].copy())
+    def add_poses(self, times: Sequence[float], positions: Array, rotations: Array) -> None:
+        """Add true poses: positions (n, 3) [m] and MuJoCo's rotations (n, 9)."""
+        self._pose.add_rows(
+            times, [1] * len(times), translation=positions, quaternion=_quaternions(rotations)
+        )
 
     def add_frames(self, frames: Sequence[FrameRecord]) -> None:
         """Take camera frames."""
-        found = [d for frame in frames for d in frame.detections]
-        boxes = np.array([d.box for d in found], dtype=float).reshape(-1, 4)
+        detections = [d for frame in frames for d in frame.detections]
+        boxes = np.array([d.box for d in detections], dtype=float).reshape(-1, 4)
         self._boxes.add_rows(
             [frame.time for frame in frames],
             [len(frame.detections) for frame in frames],
             centers=0.5 * (boxes[:, :2] + boxes[:, 2:]),
             half_sizes=0.5 * (boxes[:, 2:] - boxes[:, :2]),
-            colors=palette.packed_all(palette.of_label(d.label) for d in found),
-            labels=[f"{d.distance:.1f} m" for d in found],
+            colors=palette.packed_all(palette.of_label(d.label) for d in detections),
+            labels=[f"{d.distance:.1f} m" for d in detections],
         )
         for frame in frames:
             if frame.image is not None:
                 self._image.add(frame.time, blob=[_jpeg(frame.image, self._jpeg_quality)])
             self._add_gaze(frame)
 
-    def flush(self) -> None:
-        """Send the block."""
-        if self._times:
-            self._pose.add_rows(
-                self._times,
-                [1] * len(self._times),
-                translation=np.array(self._positions),
-                quaternion=_attitudes(np.array(self._rotations)),
-            )
-        self._times.clear()
-        self._positions.clear()
-        self._rotations.clear()
-        for channel in (
-            self._pose,
-            self._image,
-            self._boxes,
-            self._gaze_map,
-            self._choice,
-            self._window,
-            self._seen_window,
-        ):
-            channel.flush()
-
     def _add_gaze(self, frame: FrameRecord) -> None:
         gaze_map = frame.gaze.gaze_map
         window = self._outline(frame)
         view = frame.belief.view
-        seen = image_points((view.pan, view.tilt), window, self._focal, self._size)
-        self._seen_window.add(frame.time, strips=[] if seen is None else [seen])
+        outline = image_points((view.pan, view.tilt), window, self._focal, self._size)
+        self._image_window.add(frame.time, strips=[] if outline is None else [outline])
         if frame.gaze is self._gaze or gaze_map.size <= 1:
             return
         self._gaze = frame.gaze
@@ -145,7 +111,7 @@ class CameraLayer:
         shades = np.zeros(gaze_map.shape, np.uint8)
         if top > 0.0:
             shades = np.round(255.0 * gaze_map / top).astype(np.uint8)
-        # Left and up in the head are left and up in the picture.
+        # Rows and columns of the map run up and left.
         colored = self._heat[shades[::-1, ::-1]]
         self._gaze_map.add(frame.time, blob=[cv2.imencode(".png", colored)[1].ravel()])
         chosen = np.array([[frame.gaze.pan, frame.gaze.tilt]])
@@ -157,23 +123,23 @@ class CameraLayer:
         self._window.add(frame.time, strips=[map_points(window, gaze_map.shape, self._parameters)])
 
     def _outline(self, frame: FrameRecord) -> Array:
-        """Outline of the gaze window that was chosen: pan and tilt (n, 2) [rad]."""
+        """Return the outline of the chosen gaze window, pan and tilt (n, 2) [rad]."""
         view, gaze = frame.belief.view, frame.gaze
         fov = np.minimum([view.horizontal_fov, view.vertical_fov], pi)
-        found: Array = OUTLINE * (self._parameters.box_fraction * fov) + (gaze.pan, gaze.tilt)
-        return found
+        outline: Array = OUTLINE * (self._parameters.box_fraction * fov) + (gaze.pan, gaze.tilt)
+        return outline
 
 
 def map_points(angles: Array, shape: tuple[int, ...], gaze: GazeParameters) -> Array:
-    """Where directions are in the picture of the gaze map; what lies beyond it is on its border.
+    """Return the pixels of directions in the image of the gaze map, clipped to its border.
 
     Args:
         angles: pan and tilt of n directions (n, 2) [rad].
         shape: cells of the map, tilts and pans.
-        gaze: what the map spans.
+        gaze: range of the map.
 
     Returns:
-        Pixels (n, 2), those of cells at their middles.
+        Pixels (n, 2); cells are at their centres.
     """
     rows, columns = shape
     u = 0.5 * columns - angles[:, 0] / gaze.step
@@ -184,9 +150,7 @@ def map_points(angles: Array, shape: tuple[int, ...], gaze: GazeParameters) -> A
 def image_points(
     head: tuple[float, float], angles: Array, focal: float, size: tuple[int, int]
 ) -> Array | None:
-    """Where directions are in the image of the head camera.
-
-    What lies beyond the image is put on its border.
+    """Return the pixels of directions in the image of the head camera, clipped to its border.
 
     Args:
         head: pan and tilt, left and up positive [rad].
@@ -195,7 +159,7 @@ def image_points(
         size: width and height of the image [pixel].
 
     Returns:
-        Pixels (n, 2); None if all of the directions are behind the camera.
+        Pixels (n, 2); None if all directions are behind the camera.
     """
     tilt = head[1]
     turn, up = angles[:, 0] - head[0], angles[:, 1]
@@ -212,14 +176,24 @@ def image_points(
     return np.clip(pixels, 0.0, size)
 
 
-def _attitudes(rotations: Array) -> Array:
-    """Quaternions in Rerun's order (n, 4) of a camera with MuJoCo's rotations (n, 9)."""
-    # MuJoCo's camera looks along -z with y up; Rerun's as the project's along z, y down.
+def _images(stream: BlockStream, path: str, kind: str) -> Channel:
+    style = rr.EncodedImage.from_fields(media_type=f"image/{kind}")
+    return Channel(stream, path, rr.EncodedImage.columns, style)
+
+
+def _lines(stream: BlockStream, path: str, radius: float) -> Channel:
+    style = rr.LineStrips2D.from_fields(colors=[palette.VIEW], radii=[radius])
+    return Channel(stream, path, rr.LineStrips2D.columns, style)
+
+
+def _quaternions(rotations: Array) -> Array:
+    """Return Rerun's quaternions (n, 4) of cameras with MuJoCo's rotations (n, 9)."""
+    # MuJoCo's camera looks along -z with y up, Rerun's along z with y down.
     turned = rotations * np.tile((1.0, -1.0, -1.0), 3)
-    found = np.empty((len(turned), 4))
-    for quaternion, rotation in zip(found, turned, strict=True):
+    quaternions = np.empty((len(turned), 4))
+    for quaternion, rotation in zip(quaternions, turned, strict=True):
         mujoco.mju_mat2Quat(quaternion, rotation)
-    return xyzw(found)
+    return xyzw(quaternions)
 
 
 def _jpeg(image: Image, quality: int) -> NDArray[np.uint8]:

@@ -1,41 +1,56 @@
-"""Rows of one Rerun entity, sent in blocks: thirty times cheaper than one call per row."""
+"""Rows of Rerun entities, sent in batches: thirty times cheaper than one call per row."""
 
 from collections.abc import Callable, Sequence
 from itertools import accumulate
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import pyarrow as pa
 import rerun as rr
 
-from hsr8.recorder.log.block_stream import BlockStream
-
 TIMELINE = "sim_time"
+
+Columns = dict[rr.ComponentDescriptor, pa.Array]
+
+
+class Stream(Protocol):
+    """Recording that a channel belongs to."""
+
+    def add_channel(self, channel: "Channel") -> None:
+        """Send the rows of `channel` from now on."""
+
+    def log(self, path: str, archetype: Any, *, static: bool) -> None:
+        """Log one archetype."""
 
 
 class Channel:
-    """One entity of the log.
+    """Rows of one entity.
 
-    Numbers and words go past the general conversion of Rerun's archetypes, which costs several
-    times as much as all the rest: what it made of the first block tells their types.
+    Numbers and strings bypass the general conversion of Rerun's archetypes, which costs several
+    times as much as the rest of the log. Rerun converts the first batch, whose types are kept.
 
     Args:
-        stream: where it goes.
-        path: the entity.
+        stream: recording.
+        path: of the entity.
         columns: builds the columns from components, for example ``rr.Points3D.columns``.
+        style: components that never change, if any.
     """
 
-    def __init__(self, stream: BlockStream, path: str, columns: Callable[..., Any]) -> None:
-        self._stream = stream
-        self._path = path
+    def __init__(
+        self, stream: Stream, path: str, columns: Callable[..., Any], style: Any = None
+    ) -> None:
+        self.path = path
         self._columns = columns
         self._types: dict[str, tuple[rr.ComponentDescriptor, pa.DataType]] = {}
         self._times: list[float] = []
         self._counts: list[int] = []
         self._components: dict[str, list[Any]] = {}
+        stream.add_channel(self)
+        if style is not None:
+            stream.log(path, style, static=True)
 
     def add(self, time: float, **components: Sequence[Any] | np.ndarray) -> None:
-        """Add one row; every component has one element per instance, which may be none."""
+        """Add one row; every component has one element per instance, or none."""
         self.add_rows([time], [len(next(iter(components.values())))], **components)
 
     def add_rows(
@@ -50,27 +65,27 @@ class Channel:
         Args:
             times: of the rows [s].
             counts: number of instances of each row.
-            components: one element per instance, those of one row after those of the other.
+            components: one element per instance, row by row.
         """
         self._times += times
         self._counts += counts
         for name, values in components.items():
             self._components.setdefault(name, []).append(values)
 
-    def flush(self) -> None:
-        """Send the rows added since the last flush."""
+    def take(self) -> tuple[dict[str, pa.Array], Columns] | None:
+        """Remove all rows; return their times by timeline and their values, None without rows."""
         if not self._times:
-            return
+            return None
         times = pa.array((1e9 * np.array(self._times)).astype("timedelta64[ns]"))
-        self._stream.keep(self._path, {TIMELINE: times}, self._packed())
+        packed = self._packed()
         self._times.clear()
         self._counts.clear()
         self._components.clear()
+        return {TIMELINE: times}, packed
 
-    def _packed(self) -> dict[rr.ComponentDescriptor, pa.Array]:
-        """The rows of each component as Rerun wants them."""
+    def _packed(self) -> Columns:
         offsets = pa.array(np.fromiter(accumulate(self._counts, initial=0), np.int32))
-        packed: dict[rr.ComponentDescriptor, pa.Array] = {}
+        packed: Columns = {}
         new: dict[str, Any] = {}
         for name, rows in self._components.items():
             values = _joined(rows)
@@ -79,17 +94,17 @@ class Channel:
                 packed[descriptor] = pa.ListArray.from_arrays(offsets, _array(values, kind))
             else:
                 new[name] = values
-        return packed | self._learned(new) if new else packed
+        return packed | self._converted(new) if new else packed
 
-    def _learned(self, components: dict[str, Any]) -> dict[rr.ComponentDescriptor, pa.Array]:
-        """The rows of components as Rerun itself packs them; their types are kept."""
-        found = self._columns(**components)
-        for column in found:
+    def _converted(self, components: dict[str, Any]) -> Columns:
+        """Let Rerun pack the rows of components, and keep their types."""
+        columns = self._columns(**components)
+        for column in columns:
             kind = column.as_arrow_array().type.value_type
             name = str(column.component_descriptor().component).rpartition(":")[2]
             if _convertible(components.get(name), kind):
                 self._types[name] = (column.component_descriptor(), kind)
-        rows = found.partition(self._counts)
+        rows = columns.partition(self._counts)
         return {column.component_descriptor(): column.as_arrow_array() for column in rows}
 
 
@@ -100,7 +115,7 @@ def _joined(rows: list[Any]) -> Any:
 
 
 def _convertible(values: Any, kind: pa.DataType) -> bool:
-    """Whether `_array` makes instances of a type from such values."""
+    """Return whether `_array` converts such values to instances of a type."""
     if pa.types.is_string(kind):
         return True
     if pa.types.is_list(kind):
@@ -111,7 +126,7 @@ def _convertible(values: Any, kind: pa.DataType) -> bool:
 
 
 def _array(values: Any, kind: pa.DataType) -> pa.Array:
-    """Instances of strings, numbers, so many numbers each, or lists of these."""
+    """Return instances of strings, numbers, tuples of numbers, or lists of these."""
     if pa.types.is_list(kind):
         offsets = np.zeros(len(values) + 1, np.int32)
         np.cumsum([len(value) for value in values], out=offsets[1:])

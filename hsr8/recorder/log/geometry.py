@@ -1,7 +1,7 @@
-"""The model's geoms as Rerun shapes: the scene once, the robot as four moving batches.
+"""Geoms of the model as Rerun shapes: static scene, and batches for robot and movers.
 
-All geoms of one kind share an entity and one row carries all their poses. That costs a
-fifth of one transform per body, and the log is no larger.
+All geoms of one kind share an entity, and one row has all their poses, which costs a fifth of one
+transform per body.
 """
 
 from collections.abc import Sequence
@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
+from hsr8.world.model.assembly import HEAD_CAMERA
 
 Array = NDArray[np.float64]
 
 VISUAL_GROUPS = (0, 1, 2)  # groups 3 and up are collision shapes
 BASE = "base_link"
-# What stands, by the beginning of its names; the walls only the robot sees are left out.
-STANDING = {
+STATIC = {  # prefix of the names by entity; walls for the robot's camera are left out
     "/world/beacons": "beacon",
     "/world/obstacles": "obstacle",
     "/world/rim": "rim",
@@ -64,9 +64,9 @@ class Batch:
         return "translations" if self.kind == "capsules" else "centers"
 
 
-def batches(model: mujoco.MjModel, chosen: NDArray[np.bool_]) -> list[Batch]:
-    """Geoms in the mask `chosen` (ngeom,), one batch per kind that occurs."""
-    found = []
+def batches_of(model: mujoco.MjModel, chosen: NDArray[np.bool_]) -> list[Batch]:
+    """Return the geoms in the mask `chosen` (ngeom,), one batch per kind."""
+    batches = []
     for kind, types in KINDS.items():
         geoms = np.flatnonzero(chosen & np.isin(model.geom_type, types))
         if len(geoms) == 0:
@@ -74,35 +74,35 @@ def batches(model: mujoco.MjModel, chosen: NDArray[np.bool_]) -> list[Batch]:
         rotation = np.array(model.geom_quat[geoms])
         offset = np.array(model.geom_pos[geoms])
         if kind == "capsules":
-            # Rerun's capsule begins at its origin, MuJoCo's is centred there.
+            # Rerun's capsule starts at its origin, MuJoCo's is centred there.
             half = np.zeros((len(geoms), 3))
             half[:, 2] = model.geom_size[geoms, 1]
             offset -= rotate(rotation, half)
         bodies = np.asarray(model.geom_bodyid[geoms], dtype=np.intp)
-        found.append(Batch(kind, geoms, bodies, offset, rotation))
-    return found
+        batches.append(Batch(kind, geoms, bodies, offset, rotation))
+    return batches
 
 
 def shapes(model: mujoco.MjModel, batch: Batch, **pose: Array) -> Any:
-    """Rerun archetype of sizes and colours, and of poses where they are given."""
+    """Return the Rerun archetype with sizes, colours and, if given, poses."""
     size = model.geom_size[batch.geoms]
-    look: dict[str, Any] = {
+    style: dict[str, Any] = {
         "colors": colors(model, batch.geoms),
         "fill_mode": rr.components.FillMode.Solid,
         **pose,
     }
     if batch.kind == "boxes":
-        return rr.Boxes3D(half_sizes=size, **look)
+        return rr.Boxes3D(half_sizes=size, **style)
     if batch.kind == "capsules":
-        return rr.Capsules3D(lengths=2.0 * size[:, 1], radii=size[:, 0], **look)
+        return rr.Capsules3D(lengths=2.0 * size[:, 1], radii=size[:, 0], **style)
     if batch.kind == "cylinders":
-        return rr.Cylinders3D(lengths=2.0 * size[:, 1], radii=size[:, 0], **look)
+        return rr.Cylinders3D(lengths=2.0 * size[:, 1], radii=size[:, 0], **style)
     spheres = model.geom_type[batch.geoms] == _SPHERE
-    return rr.Ellipsoids3D(half_sizes=np.where(spheres[:, None], size[:, :1], size), **look)
+    return rr.Ellipsoids3D(half_sizes=np.where(spheres[:, None], size[:, :1], size), **style)
 
 
 def colors(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]:
-    """Colours of geoms (n, 4), from their material if they have one."""
+    """Return the colours of geoms or of their materials (n, 4)."""
     rgba = np.array(model.geom_rgba[geoms])
     material = model.geom_matid[geoms]
     if (material >= 0).any():
@@ -112,7 +112,7 @@ def colors(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> NDArray[np.uint8]:
 
 
 def sole_outline(model: mujoco.MjModel, side: str) -> Array:
-    """Outline of the sole of the left or right ("l", "r") foot in its own frame (5, 2) [m]."""
+    """Return the outline of the sole of the "l" or "r" foot in the frame of the foot (5, 2) [m]."""
     sole, foot = model.geom(f"{side}_sole"), model.site(f"{side}_foot")
     corners = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)])
     outline: Array = (sole.pos - foot.pos)[:2] + sole.size[:2] * corners
@@ -120,7 +120,7 @@ def sole_outline(model: mujoco.MjModel, side: str) -> Array:
 
 
 def _belongs(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
-    """Geoms whose name begins so (ngeom,)."""
+    """Return the mask of geoms whose names begin with `prefix` (ngeom,)."""
     return np.array([model.geom(i).name.startswith(prefix) for i in range(model.ngeom)])
 
 
@@ -140,9 +140,9 @@ def multiply(a: Array, b: Array) -> Array:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    """Cross products (..., 3); NumPy's own takes three times as long on arrays so small."""
-    found: Array = a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
-    return found
+    """Return cross products (..., 3) in a third of the time of NumPy's function."""
+    product: Array = a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
+    return product
 
 
 def xyzw(q: Array) -> Array:
@@ -151,12 +151,12 @@ def xyzw(q: Array) -> Array:
 
 
 class Scene:
-    """Logs everything that stands, once, and the robot and the movers as they move.
+    """Layer of the true world: static objects once, robot and movers over time.
 
     Args:
-        stream: where it goes.
+        stream: recording.
         model: compiled world.
-        extent: size of the floor shown along x and y [m].
+        extent: size of the floor along x and y [m].
     """
 
     def __init__(
@@ -164,23 +164,24 @@ class Scene:
     ) -> None:
         self._model = model
         self._data = mujoco.MjData(model)
+        self._camera = model.camera(HEAD_CAMERA).id
         mujoco.mj_kinematics(model, self._data)
         root = model.body_rootid[model.geom_bodyid]
         on_robot = root == model.body(BASE).id
         visible = np.isin(model.geom_group, VISUAL_GROUPS) & (model.geom_type != _PLANE)
         mobile = model.body_mocapid[model.geom_bodyid] >= 0
-        self._robot = batches(model, on_robot & visible)
-        self._movers = batches(model, mobile & visible)
+        self._robot = batches_of(model, on_robot & visible)
+        self._movers = batches_of(model, mobile & visible)
         self._channels = []
         for batch in self._robot:
-            stream.log(f"/world/robot/{batch.kind}", shapes(model, batch), static=True)
-            columns = type(shapes(model, batch)).columns
-            self._channels.append(Channel(stream, f"/world/robot/{batch.kind}", columns))
+            style = shapes(model, batch)
+            path = f"/world/robot/{batch.kind}"
+            self._channels.append(Channel(stream, path, type(style).columns, style))
         self._mover_channel = Channel(stream, "/world/movers", rr.Cylinders3D.columns)
         for batch in self._movers:
             stream.log("/world/movers", shapes(model, batch), static=True)
-        for path, prefix in STANDING.items():
-            self._stand(stream, path, visible & ~mobile & _belongs(model, prefix))
+        for path, prefix in STATIC.items():
+            self._log_static(stream, path, visible & ~mobile & _belongs(model, prefix))
         stream.log(
             "/world/floor",
             rr.Boxes3D(
@@ -191,40 +192,34 @@ class Scene:
             ),
             static=True,
         )
-        self._times: list[float] = []
-        self._places: list[Array] = []
-        self._positions: list[Array] = []
-        self._quaternions: list[Array] = []
 
-    def _stand(self, stream: BlockStream, path: str, chosen: NDArray[np.bool_]) -> None:
-        for batch in batches(self._model, chosen):
+    def _log_static(self, stream: BlockStream, path: str, chosen: NDArray[np.bool_]) -> None:
+        for batch in batches_of(self._model, chosen):
             position, quaternion = _poses([batch], self._data.xpos, self._data.xquat)
             pose = {batch.centre: position, "quaternions": quaternion}
             stream.log(f"{path}/{batch.kind}", shapes(self._model, batch, **pose), static=True)
 
-    @property
-    def data(self) -> mujoco.MjData:
-        """Poses at the latest `add`."""
-        return self._data
+    def add(
+        self, times: Sequence[float], qpos: Sequence[Array], movers: Sequence[Array]
+    ) -> tuple[Array, Array]:
+        """Add n rows: times [s], configurations (nq,), mover positions in W (m, 2) [m].
 
-    def add(self, time: float, qpos: Array, movers: Array) -> None:
-        """Take the robot's configuration and the positions of the movers in W (n, 2)."""
-        self._data.qpos[:] = qpos
-        mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_comPos(self._model, self._data)
-        mujoco.mj_camlight(self._model, self._data)
-        self._times.append(time)
-        self._positions.append(self._data.xpos.copy())
-        self._quaternions.append(self._data.xquat.copy())
-        self._places.append(movers)
-
-    def flush(self) -> None:
-        """Send the block."""
-        if not self._times:
-            return
-        position, quaternion = _poses(
-            self._robot, np.array(self._positions), np.array(self._quaternions)
+        Returns:
+            True positions (n, 3) [m] and rotations (n, 9) of the head camera.
+        """
+        data = self._data
+        poses = []
+        for configuration in qpos:
+            data.qpos[:] = configuration
+            mujoco.mj_kinematics(self._model, data)
+            mujoco.mj_comPos(self._model, data)
+            mujoco.mj_camlight(self._model, data)
+            camera = data.cam_xpos[self._camera].copy(), data.cam_xmat[self._camera].copy()
+            poses.append((data.xpos.copy(), data.xquat.copy(), *camera))
+        positions, quaternions, camera_positions, camera_rotations = map(
+            np.array, zip(*poses, strict=True)
         )
+        position, quaternion = _poses(self._robot, positions, quaternions)
         first = 0
         for batch, channel in zip(self._robot, self._channels, strict=True):
             last = first + len(batch.geoms)
@@ -232,33 +227,26 @@ class Scene:
                 batch.centre: position[:, first:last].reshape(-1, 3),
                 "quaternions": quaternion[:, first:last].reshape(-1, 4),
             }
-            channel.add_rows(self._times, [len(batch.geoms)] * len(self._times), **rows)
-            channel.flush()
+            channel.add_rows(times, [len(batch.geoms)] * len(times), **rows)
             first = last
         for batch in self._movers:
-            places = np.concatenate(self._places)
-            heights = np.full(len(places), self._model.geom_size[batch.geoms[0], 1])
+            centres = np.concatenate(movers)
+            heights = np.full(len(centres), self._model.geom_size[batch.geoms[0], 1])
             self._mover_channel.add_rows(
-                self._times,
-                [len(movers) for movers in self._places],
-                centers=np.column_stack([places, heights]),
+                times, list(map(len, movers)), centers=np.column_stack([centres, heights])
             )
-        self._mover_channel.flush()
-        self._times.clear()
-        self._places.clear()
-        self._positions.clear()
-        self._quaternions.clear()
+        return camera_positions, camera_rotations
 
 
-def _poses(found: Sequence[Batch], positions: Array, quaternions: Array) -> tuple[Array, Array]:
-    """Poses of the geoms of batches, one after the other, from those of all bodies.
+def _poses(batches: Sequence[Batch], positions: Array, quaternions: Array) -> tuple[Array, Array]:
+    """Return the poses of the geoms of batches, given those of all bodies.
 
     Returns:
         Positions (..., n, 3) [m] and quaternions in Rerun's order (..., n, 4).
     """
-    bodies = np.concatenate([batch.bodies for batch in found])
-    offset = np.concatenate([batch.offset for batch in found])
-    rotation = np.concatenate([batch.rotation for batch in found])
+    bodies = np.concatenate([batch.bodies for batch in batches])
+    offset = np.concatenate([batch.offset for batch in batches])
+    rotation = np.concatenate([batch.rotation for batch in batches])
     turn = quaternions[..., bodies, :]
     position = positions[..., bodies, :] + rotate(turn, offset)
     return position, xyzw(multiply(turn, rotation))

@@ -1,4 +1,4 @@
-"""What the planner is about to do: its field around the robot, the way along it, the decision."""
+"""Plan of the motion planner: its direction field, the path along the field, the decision."""
 
 from collections.abc import Sequence
 from math import cos, sin
@@ -17,34 +17,43 @@ from navigation.motion.univector import normalized
 
 Array = NDArray[np.float64]
 
-SPACING, REACH = 0.25, 1.5  # of the arrows of the field, and how far they go [m]
+SPACING, REACH = 0.25, 1.5  # of the arrows of the field, and their maximum distance [m]
 ARROW = 0.13  # length of each [m]
-STRIDE, STRIDES = 0.15, 8  # of the way that follows the field [m]
-SPEED_SCALE = 2.0  # the arrow of the decision shows the way of so many seconds [s]
-HEIGHT = 0.016  # at which all this is drawn [m]
+STEP, STEPS = 0.15, 8  # of the path that follows the field [m]
+SPEED_SCALE = 2.0  # prediction time of the arrow of the decision [s]
+HEIGHT = 0.016  # of the drawing [m]
 
 
 class PlanLayer:
-    """Logs each new motion decision; planners without a field have only the decision.
+    """Layer of new motion decisions, with the field of planners that have one.
 
     Args:
-        stream: where it goes.
-        period: time between two fields at least [s].
+        stream: recording.
+        period: minimum interval between two fields [s].
     """
 
     def __init__(self, stream: BlockStream, period: float) -> None:
         self._throttle = Throttle(period)
         self._motion: MotionDecision | None = None
         self._shown = False
-        for path, style in (
-            ("/plan/field", rr.Arrows3D.from_fields(colors=[palette.FIELD], radii=[0.008])),
-            ("/plan/way", rr.LineStrips3D.from_fields(colors=[palette.PLAN], radii=[0.007])),
-            ("/plan/decision", rr.Arrows3D.from_fields(colors=[palette.PLAN], radii=[0.011])),
-        ):
-            stream.log(path, style, static=True)
-        self._field = Channel(stream, "/plan/field", rr.Arrows3D.columns)
-        self._way = Channel(stream, "/plan/way", rr.LineStrips3D.columns)
-        self._decision = Channel(stream, "/plan/decision", rr.Arrows3D.columns)
+        self._field = Channel(
+            stream,
+            "/plan/field",
+            rr.Arrows3D.columns,
+            rr.Arrows3D.from_fields(colors=[palette.FIELD], radii=[0.008]),
+        )
+        self._path = Channel(
+            stream,
+            "/plan/path",
+            rr.LineStrips3D.columns,
+            rr.LineStrips3D.from_fields(colors=[palette.PLAN], radii=[0.007]),
+        )
+        self._decision = Channel(
+            stream,
+            "/plan/decision",
+            rr.Arrows3D.columns,
+            rr.Arrows3D.from_fields(colors=[palette.PLAN], radii=[0.011]),
+        )
 
     def add(self, frames: Sequence[FrameRecord]) -> None:
         """Take camera frames."""
@@ -52,11 +61,6 @@ class PlanLayer:
             if frame.motion is not self._motion:
                 self._motion = frame.motion
                 self._add_decision(frame, frame.motion)
-
-    def flush(self) -> None:
-        """Send the block."""
-        for channel in (self._field, self._way, self._decision):
-            channel.flush()
 
     def _add_decision(self, frame: FrameRecord, motion: MotionDecision) -> None:
         x, y, _ = frame.belief.pose.tolist()
@@ -72,37 +76,37 @@ class PlanLayer:
             self._shown = False
         elif self._throttle.due(frame.time):
             self._shown = True
-            here = frame.belief.pose[:2]
-            points = grid(here)
-            way = along(motion.field, here, frame.task.target)
-            self._draw(frame.time, points, normalized(motion.field.at(points)), [way])
+            position = frame.belief.pose[:2]
+            points = grid(position)
+            path = path_along(motion.field, position, frame.task.target)
+            self._draw(frame.time, points, normalized(motion.field.at(points)), [path])
 
-    def _draw(self, time: float, points: Array, directions: Array, ways: list[Array]) -> None:
+    def _draw(self, time: float, points: Array, directions: Array, paths: list[Array]) -> None:
         arrows = ARROW * _raised(directions, 0.0)
-        # The middle of an arrow is the point that it tells of.
+        # Arrows are centred on their points.
         self._field.add(time, origins=_raised(points, HEIGHT) - 0.5 * arrows, vectors=arrows)
-        self._way.add(time, strips=[_raised(way, HEIGHT) for way in ways])
+        self._path.add(time, strips=[_raised(path, HEIGHT) for path in paths])
 
 
-def grid(here: Array) -> Array:
-    """Points around `here` (2,) that stay where they are while the robot moves on (n, 2) [m]."""
-    middle = np.round(here / SPACING) * SPACING
+def grid(position: Array) -> Array:
+    """Return the points of a fixed grid around `position` (2,) (n, 2) [m]."""
+    centre = np.round(position / SPACING) * SPACING
     steps = np.arange(-REACH, REACH + 0.5 * SPACING, SPACING)
-    x, y = np.meshgrid(middle[0] + steps, middle[1] + steps)
+    x, y = np.meshgrid(centre[0] + steps, centre[1] + steps)
     points = np.column_stack([x.ravel(), y.ravel()])
-    inside: Array = points[np.hypot(*(points - here).T) <= REACH]
+    inside: Array = points[np.hypot(*(points - position).T) <= REACH]
     return inside
 
 
-def along(field: DirectionField, here: Array, target: Array) -> Array:
-    """Where the field leads from `here` (2,), as far as `target` (2,) (n, 2) [m]."""
-    way = [np.asarray(here, dtype=float)]
-    for _ in range(STRIDES):
-        if float(np.hypot(*(target - way[-1]))) <= STRIDE:
-            way.append(target)
+def path_along(field: DirectionField, position: Array, target: Array) -> Array:
+    """Return the path along a field from `position` (2,) up to `target` (2,) (n, 2) [m]."""
+    path = [np.asarray(position, dtype=float)]
+    for _ in range(STEPS):
+        if float(np.hypot(*(target - path[-1]))) <= STEP:
+            path.append(target)
             break
-        way.append(way[-1] + STRIDE * normalized(field.at(way[-1])))
-    return np.array(way)
+        path.append(path[-1] + STEP * normalized(field.at(path[-1])))
+    return np.array(path)
 
 
 def _raised(points: Array, height: float) -> Array:

@@ -1,4 +1,4 @@
-"""Curves and state lanes: what went on, over time."""
+"""Curves and state lanes over time."""
 
 from collections.abc import Sequence
 
@@ -39,58 +39,46 @@ class Curves:
     """Several curves in one plot.
 
     Args:
-        stream: where they go.
+        stream: recording.
         path: entity of the plot.
         curves: name and colour of each.
     """
 
     def __init__(
-        self,
-        stream: BlockStream,
-        path: str,
-        curves: Sequence[tuple[str, palette.Color]],
+        self, stream: BlockStream, path: str, curves: Sequence[tuple[str, palette.Color]]
     ) -> None:
         names, colors = zip(*curves, strict=True)
-        stream.log(path, rr.SeriesLines(names=list(names), colors=list(colors)), static=True)
-        self._channel = Channel(stream, path, rr.Scalars.columns)
+        style = rr.SeriesLines(names=list(names), colors=list(colors))
+        self._channel = Channel(stream, path, rr.Scalars.columns, style)
 
     def add(self, times: Sequence[float], values: Array) -> None:
-        """Values of all curves at n times (n, curves); NaN leaves a gap."""
+        """Add the values of all curves at n times (n, curves); NaN leaves a gap."""
         self._channel.add_rows(times, [values.shape[1]] * len(values), scalars=values.ravel())
-
-    def flush(self) -> None:
-        """Send the block."""
-        self._channel.flush()
 
 
 class Lane:
     """A state over time; only changes are logged.
 
     Args:
-        stream: where it goes.
+        stream: recording.
         path: entity of the lane.
         states: colour of every state.
     """
 
     def __init__(self, stream: BlockStream, path: str, states: dict[str, palette.Color]) -> None:
-        look = rr.StateConfiguration(values=list(states), colors=list(states.values()))
-        stream.log(path, look, static=True)
-        self._channel = Channel(stream, path, rr.StateChange.columns)
+        style = rr.StateConfiguration(values=list(states), colors=list(states.values()))
+        self._channel = Channel(stream, path, rr.StateChange.columns, style)
         self._state = ""
 
     def add(self, time: float, state: str) -> None:
-        """The state at `time`."""
+        """Add the state at `time`."""
         if state != self._state:
             self._state = state
             self._channel.add(time, state=[state])
 
-    def flush(self) -> None:
-        """Send the block."""
-        self._channel.flush()
-
 
 def gaze_reason(frame: FrameRecord) -> str:
-    """What the head looks for: the largest partial evaluation at the time of the choice."""
+    """Return the reason of the gaze: its maximum partial evaluation."""
     if frame.belief.lost:
         return "search"
     gaze = frame.gaze
@@ -99,7 +87,7 @@ def gaze_reason(frame: FrameRecord) -> str:
 
 
 class PlotLayer:
-    """Plots and state lanes of the decisions and the belief."""
+    """Layer of plots and state lanes of decisions and belief."""
 
     def __init__(self, stream: BlockStream) -> None:
         self._clearance = Curves(stream, "/plots/clearance", (("clearance [m]", BLUE),))
@@ -116,14 +104,6 @@ class PlotLayer:
         self._situation = Lane(stream, "/state/planner", SITUATIONS)
         self._gaze = Lane(stream, "/state/gaze", GAZE)
         self._localization = Lane(stream, "/state/localization", LOCALIZATION)
-        self._parts = (
-            self._clearance,
-            self._partial,
-            self._error,
-            self._situation,
-            self._gaze,
-            self._localization,
-        )
 
     def add(self, records: Sequence[TickRecord]) -> None:
         """Take records at the rate of the plots."""
@@ -131,14 +111,14 @@ class PlotLayer:
         shown = np.where(np.isfinite(clearance), clearance, np.nan)
         self._clearance.add([record.time for record in records], shown)
 
-    def add_frames(self, seen: Sequence[tuple[FrameRecord, Array]]) -> None:
-        """Take camera frames, each with the true pose (3,) at that time."""
-        frames = [frame for frame, _ in seen]
+    def add_frames(self, samples: Sequence[tuple[FrameRecord, Array]]) -> None:
+        """Take camera frames, each with the true pose (3,) of that time."""
+        frames = [frame for frame, _ in samples]
         times, gazes = [f.time for f in frames], [f.gaze for f in frames]
         self._partial.add(
             times, np.array([(g.psi_lm, g.psi_sf, g.psi_ob, g.psi_way) for g in gazes])
         )
-        dx, dy, turn = np.array([frame.belief.pose - truth for frame, truth in seen]).T
+        dx, dy, turn = np.array([frame.belief.pose - truth for frame, truth in samples]).T
         covariance = np.array([f.belief.pose_covariance for f in frames])[:, :2, :2]
         spread = 2.0 * ellipse.axes(covariance)[0][:, 0]
         turned = [abs(wrap(angle)) for angle in turn.tolist()]
@@ -147,8 +127,3 @@ class PlotLayer:
             self._situation.add(frame.time, frame.motion.situation)
             self._gaze.add(frame.time, gaze_reason(frame))
             self._localization.add(frame.time, "lost" if frame.belief.lost else "localized")
-
-    def flush(self) -> None:
-        """Send the block."""
-        for part in self._parts:
-            part.flush()

@@ -101,10 +101,10 @@ class RerunLog:
         self._scene = Scene(self._stream, model, (width + APRON, depth + APRON))
         self._soles = tuple(sole_outline(model, side) for side in "lr")
         self._camera: CameraLayer | None = None
-        self._minds: tuple[BeliefLayer | PlanLayer, ...] = ()
+        self._belief_layers: tuple[BeliefLayer | PlanLayer, ...] = ()
         if rates.images:
             self._camera = CameraLayer(self._stream, model, image_size, rates.jpeg, gaze)
-            self._minds = (
+            self._belief_layers = (
                 BeliefLayer(self._stream, rates.map),
                 PlanLayer(self._stream, rates.map),
             )
@@ -143,28 +143,28 @@ class RerunLog:
     def _add(self, records: Sequence[TickRecord]) -> None:
         self._time = records[-1].time
         shown = [record for record in records if self._pose_throttle.due(record.time)]
-        for record in shown:
-            truth = record.truth
-            movers = truth.obstacle_positions[len(truth.obstacle_positions) - self._n_movers :]
-            self._scene.add(record.time, truth.qpos, movers)
-            if self._camera is not None:
-                self._camera.add_pose(record.time, self._scene.data)
         if shown:
+            times, truths = [r.time for r in shown], [r.truth for r in shown]
+            first = len(truths[0].obstacle_positions) - self._n_movers
+            movers = [truth.obstacle_positions[first:] for truth in truths]
+            poses = self._scene.add(times, [truth.qpos for truth in truths], movers)
+            if self._camera is not None:
+                self._camera.add_poses(times, *poses)
             self._plots.add(shown)
             self._walk.add(shown)
         for record in records:
             self._walk.watch(record)
         with_frame = [record for record in records if record.frame is not None]
-        seen = [record for record in with_frame if self._frame_throttle.due(record.time)]
-        if seen:
-            self._add_frames(seen)
+        selected = [record for record in with_frame if self._frame_throttle.due(record.time)]
+        if selected:
+            self._add_frames(selected)
 
     def _add_frames(self, records: Sequence[TickRecord]) -> None:
         pairs = [(r.frame, r.truth.robot) for r in records if r.frame is not None]
         frames = [frame for frame, _ in pairs]
         if self._camera is not None:
             self._camera.add_frames(frames)
-        for layer in self._minds:
+        for layer in self._belief_layers:
             layer.add(frames)
         self._plots.add_frames(pairs)
         for record in records:
@@ -179,14 +179,14 @@ class RerunLog:
         counts = [len(record.walking.footsteps) for record in records]
         rows = np.repeat(np.arange(len(records)), counts)
         transform = OdometryToWorld(records)
-        places = transform.point(np.reshape([(f.x, f.y) for f in steps], (-1, 2)), rows)
+        positions = transform.point(np.reshape([(f.x, f.y) for f in steps], (-1, 2)), rows)
         yaws = np.array([f.yaw for f in steps]) + transform.turn[rows]
         self._footsteps.add_rows(
             times,
             counts,
             strips=[
-                self._sole(step.left, place, yaw)
-                for step, place, yaw in zip(steps, places, yaws.tolist(), strict=True)
+                self._sole(step.left, position, yaw)
+                for step, position, yaw in zip(steps, positions, yaws.tolist(), strict=True)
             ],
             colors=palette.packed_all(
                 palette.LEFT_FOOT if step.left else palette.RIGHT_FOOT for step in steps
@@ -194,11 +194,11 @@ class RerunLog:
             radii=np.full(len(steps), 0.004),
         )
 
-    def _sole(self, left: bool, place: Array, yaw: float) -> Array:
+    def _sole(self, left: bool, position: Array, yaw: float) -> Array:
         """Return the outline of a foot on the floor (5, 3) [m]."""
         c, s = cos(yaw), sin(yaw)
         outline = np.full((5, 3), SOLE_HEIGHT)
-        outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + place
+        outline[:, :2] = self._soles[not left] @ np.array([[c, s], [-s, c]]) + position
         return outline
 
     def _write_buffer(self) -> None:
@@ -214,12 +214,6 @@ class RerunLog:
                 radii=np.array([0.006]),
             )
             del self._trail[: -round(TRAIL / TRAIL_PERIOD)]
-        if self._camera is not None:
-            self._camera.flush()
-        for part in (self._scene, *self._minds, self._plots, self._walk):
-            part.flush()
-        self._footsteps.flush()
-        self._path.flush()
         self._wait()
         self._stream.send()
         if self._waits:

@@ -1,4 +1,4 @@
-"""Walking in the log: ZMP, CoM, DCM and soles on the floor and over time, torques, pushes."""
+"""Walking: ZMP, CoM, DCM and soles on the floor and over time, torques, pushes."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -29,41 +29,43 @@ GAIT = {
     "fallen": RED,
 }
 POINTS = (("ZMP planned", ORANGE), ("ZMP measured", BLUE), ("CoM", GREEN), ("DCM", VIOLET))
-FLOOR = 0.006  # height at which things on the floor are drawn [m]
-PIN = 0.16  # points on the floor are shown by pins of this height, seen above the feet [m]
+FLOOR = 0.006  # height of drawings on the floor [m]
+PIN = 0.16  # height of the pins that mark points on the floor [m]
 ARROW = 0.025  # drawn length of a push per newton [m/N]
-GAP = 0.07  # from the point of an arrow to where the push acts [m]
+GAP = 0.07  # between the tip of an arrow and the point of action [m]
 STRIDE = 2  # footsteps over which the achieved velocity is measured
-PATIENCE = 1.0  # a robot that has not stepped for so long is measured over this time [s]
-ROUTINE = Limit.LANDING_FROZEN  # binds at the end of every step: no news
+IDLE_WINDOW = 1.0  # of the achieved velocity without footsteps [s]
+ROUTINE = Limit.LANDING_FROZEN  # active at the end of every step, not logged
 TORQUES = ("hip", "knee", "ankle")
 SIDES = {"l": (BLUE, SAND, GREEN), "r": (ORANGE, RED, VIOLET)}
 
 
 class WalkLayer:
-    """Logs how the robot walks."""
+    """Layer of walking."""
 
     def __init__(self, stream: BlockStream) -> None:
-        stream.log(
+        self._points = Channel(
+            stream,
             "/world/walking/points",
+            rr.Arrows3D.columns,
             rr.Arrows3D.from_fields(
                 colors=[color for _, color in POINTS],
                 radii=[0.003],
                 vectors=np.tile([0.0, 0.0, FLOOR - PIN], (len(POINTS), 1)),
             ),
-            static=True,
         )
-        stream.log(
+        self._support = Channel(
+            stream,
             "/world/walking/support",
+            rr.LineStrips3D.columns,
             rr.LineStrips3D.from_fields(colors=[palette.TARGET], radii=[0.0025]),
-            static=True,
         )
-        stream.log(
-            "/world/pushes", rr.Arrows3D.from_fields(colors=[RED], radii=[0.012]), static=True
+        self._pushes = Channel(
+            stream,
+            "/world/pushes",
+            rr.Arrows3D.columns,
+            rr.Arrows3D.from_fields(colors=[RED], radii=[0.012]),
         )
-        self._points = Channel(stream, "/world/walking/points", rr.Arrows3D.columns)
-        self._support = Channel(stream, "/world/walking/support", rr.LineStrips3D.columns)
-        self._pushes = Channel(stream, "/world/pushes", rr.Arrows3D.columns)
         curves = (*POINTS, ("edge of the soles", GREY), ("edge of the soles", GREY))
         self._zmp = tuple(
             Curves(stream, f"/plots/zmp_{axis}", curves) for axis in ("forward", "left")
@@ -86,39 +88,27 @@ class WalkLayer:
         self._torque = tuple(self._torque_curves(stream, group) for group in TORQUES)
         self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
         self._phase = Lane(stream, "/state/gait", GAIT)
-        self._said = Channel(stream, "/command_limits", rr.TextLog.columns)
+        self._limits = Channel(stream, "/command_limits", rr.TextLog.columns)
         self._meter = _Speedometer()
-        self._stood: tuple[str, int] | None = None
-        self._told: tuple[Limit, ...] = ()
+        self._interval: tuple[str, int] | None = None
+        self._active: tuple[Limit, ...] = ()
         self._pushed = False
-        self._parts: tuple[Channel | Curves | Lane, ...] = (
-            self._points,
-            self._support,
-            self._pushes,
-            *self._zmp,
-            *self._commanded,
-            *self._achieved,
-            *(curves for curves, _ in self._torque),
-            self._tilt,
-            self._phase,
-            self._said,
-        )
 
     def add(self, records: Sequence[TickRecord]) -> None:
         """Take records at the rate of the plots."""
         times, truths = [r.time for r in records], [r.truth for r in records]
         walks = [record.walking for record in records]
-        there = OdometryToWorld(records)
+        transform = OdometryToWorld(records)
         known = [(walking.zmp, walking.balance.com, walking.balance.dcm) for walking in walks]
-        planned, com, dcm = there.point(np.array(known)).swapaxes(0, 1)
-        pressed = np.array([truth.foot_force for truth in truths]).sum(axis=1) > LIGHT
+        planned, com, dcm = transform.point(np.array(known)).swapaxes(0, 1)
+        loaded = np.array([truth.foot_force for truth in truths]).sum(axis=1) > LIGHT
         zmp = np.array([truth.zmp for truth in truths])
-        measured = np.where(pressed[:, None], zmp, np.nan)
+        measured = np.where(loaded[:, None], zmp, np.nan)
         corners = [len(walking.balance.support) for walking in walks]
-        moments = np.repeat(np.arange(len(walks)), corners)
-        support = there.point(np.concatenate([w.balance.support for w in walks]), moments)
+        rows = np.repeat(np.arange(len(walks)), corners)
+        support = transform.point(np.concatenate([w.balance.support for w in walks]), rows)
         points = np.stack([planned, measured, com, dcm], axis=1)
-        self._add_curves(times, np.array([t.robot for t in truths]), points, support, moments)
+        self._add_curves(times, np.array([t.robot for t in truths]), points, support, rows)
         points[:, 1] = np.where(np.isnan(measured[:, :1]), planned, measured)
         pins = np.full((len(times), len(POINTS), 3), PIN)
         pins[..., :2] = points
@@ -136,7 +126,7 @@ class WalkLayer:
             self._log_limits(record)
 
     def watch(self, record: TickRecord) -> None:
-        """Take every record: what is too short for the rate of the plots."""
+        """Take every record, for footsteps and pushes shorter than the period of the plots."""
         measured = self._meter.add(record)
         if measured is not None:
             time, velocity = measured
@@ -146,15 +136,9 @@ class WalkLayer:
         if pushes or self._pushed:
             self._pushed = bool(pushes)
             vectors = ARROW * np.array([p.force for p in pushes]).reshape(-1, 3)
-            # The arrow ends at the skin, not inside the body.
             reach = 1.0 + GAP / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
             origins = np.array([p.point for p in pushes]).reshape(-1, 3) - reach * vectors
             self._pushes.add(record.time, origins=origins, vectors=vectors)
-
-    def flush(self) -> None:
-        """Send the block."""
-        for part in self._parts:
-            part.flush()
 
     @staticmethod
     def _torque_curves(stream: BlockStream, group: str) -> tuple[Curves, list[int]]:
@@ -172,26 +156,26 @@ class WalkLayer:
         robot: Array,
         points: Array,
         support: Array,
-        moments: NDArray[np.intp],
+        rows: NDArray[np.intp],
     ) -> None:
-        """Points (n, 4, 2), and corners of the soles with the moment of each."""
-        here, yaw = robot[:, :2], robot[:, 2]
+        """Add points (n, 4, 2), and corners of the soles (m, 2) with the row of each."""
+        position, yaw = robot[:, :2], robot[:, 2]
         c, s = np.cos(yaw), np.sin(yaw)
-        x, y = (points - here[:, None]).T
-        edge_x, edge_y = (support - here[moments]).T
-        firsts = np.searchsorted(moments, np.arange(len(times)))
-        # Forward and left of the robot.
+        x, y = (points - position[:, None]).T
+        edge_x, edge_y = (support - position[rows]).T
+        firsts = np.searchsorted(rows, np.arange(len(times)))
+        # Along the axes of the robot.
         for curves, (along, across) in zip(self._zmp, ((c, s), (-s, c)), strict=True):
-            edges = along[moments] * edge_x + across[moments] * edge_y
+            edges = along[rows] * edge_x + across[rows] * edge_y
             ends = np.minimum.reduceat(edges, firsts), np.maximum.reduceat(edges, firsts)
             curves.add(times, np.column_stack([(along * x + across * y).T, *ends]))
 
     def _add_gait(self, time: float, walking: WalkingState, support: Array) -> None:
-        """The phase, and with every new one the support polygon (n, 2) in W [m]."""
+        """Add the phase and, if it is new, the support polygon (n, 2) in W [m]."""
         self._phase.add(time, str(walking.phase))
-        standing = (str(walking.phase), walking.step_count)
-        if standing != self._stood:
-            self._stood = standing
+        interval = (str(walking.phase), walking.step_count)
+        if interval != self._interval:
+            self._interval = interval
             strip = np.full((len(support) + 1, 3), FLOOR)
             strip[:, :2] = *support, support[0]
             self._support.add(time, strips=[strip])
@@ -199,19 +183,19 @@ class WalkLayer:
     def _log_limits(self, record: TickRecord) -> None:
         report = record.walking.command_limits
         limits = () if report is None else report.limits
-        news = tuple(dict.fromkeys(limit for limit in limits if limit is not ROUTINE))
-        if news == self._told or report is None:
+        active = tuple(dict.fromkeys(limit for limit in limits if limit is not ROUTINE))
+        if active == self._active or report is None:
             return
-        self._told = news
+        self._active = active
         commanded = report.commanded.velocity
         applied = record.walking.applied_velocity.tolist()
-        text = "obeyed" if not news else ", ".join(news)
-        said = f"{text}: commanded {_words(commanded)}, applied {_words(applied)}"
-        self._said.add(record.time, text=[said], level=["WARN" if news else "INFO"])
+        text = "obeyed" if not active else ", ".join(active)
+        line = f"{text}: commanded {_described(commanded)}, applied {_described(applied)}"
+        self._limits.add(record.time, text=[line], level=["WARN" if active else "INFO"])
 
 
 class _Speedometer:
-    """Velocity over one stride, each time a footstep ends."""
+    """Mean velocity over one stride, once per footstep."""
 
     def __init__(self) -> None:
         self._marks: deque[tuple[float, Array]] = deque(maxlen=STRIDE + 1)
@@ -219,22 +203,22 @@ class _Speedometer:
         self._yaw = 0.0
 
     def add(self, record: TickRecord) -> tuple[float, list[float]] | None:
-        """Middle of the stride [s] and velocity in it, when there is one."""
+        """Return the middle of the stride [s] and the velocity, if a stride ends."""
         x, y, yaw = record.truth.robot.tolist()
         self._yaw += wrap(yaw - self._yaw)
-        waited = not self._marks or record.time - self._marks[-1][0] >= PATIENCE - 1e-9
-        if record.walking.step_count == self._steps and not waited:
+        idle = not self._marks or record.time - self._marks[-1][0] >= IDLE_WINDOW - 1e-9
+        if record.walking.step_count == self._steps and not idle:
             return None
         self._steps = record.walking.step_count
         pose = np.array([x, y, self._yaw])
         self._marks.append((record.time, pose))
-        first, start = self._marks[0] if not waited else self._marks[max(0, len(self._marks) - 2)]
+        first, start = self._marks[0] if not idle else self._marks[max(0, len(self._marks) - 2)]
         if record.time - first <= 0.0:
             return None
         elapsed = record.time - first
         return first + 0.5 * elapsed, mean_velocity(start, pose, elapsed).tolist()
 
 
-def _words(velocity: tuple[float, ...] | list[float]) -> str:
+def _described(velocity: tuple[float, ...] | list[float]) -> str:
     vx, vy, wz = velocity
     return f"{vx:.2f} {vy:.2f} m/s {wz:.2f} rad/s"

@@ -1,4 +1,4 @@
-"""Short digests of what a robot believed and decided: equal bits, equal fingerprints."""
+"""Fingerprints of beliefs and decisions: equal bits have equal fingerprints."""
 
 import hashlib
 import struct
@@ -13,12 +13,12 @@ FINGERPRINT = 8  # bytes per channel
 
 
 def fingerprints(belief: Belief) -> tuple[bytes, ...]:
-    """Digest of each channel of a belief, in the order of `CHANNELS`."""
+    """Return the digest of each channel of a belief, in the order of `CHANNELS`."""
     tracks: list[bytes] = []
     for t in belief.tracks:
-        told = f"{t.id} {t.label} {t.motion} {t.hits} {t.visible}"
+        text = f"{t.id} {t.label} {t.motion} {t.hits} {t.visible}"
         numbers = (t.radius, t.radius_sigma, t.age, t.reach, t.turn_rate)
-        tracks += (told.encode(), struct.pack("<5d", *numbers))
+        tracks += (text.encode(), struct.pack("<5d", *numbers))
         parts = [t.position, t.velocity, t.covariance, t.last_seen]
         if t.particles is not None:
             cloud = t.particles
@@ -37,15 +37,15 @@ def fingerprints(belief: Belief) -> tuple[bytes, ...]:
 def decision_fingerprints(
     decision: Decision, believed: tuple[bytes, ...] | None = None
 ) -> tuple[bytes, ...]:
-    """Digest of each part of a decision, in the order of `DECISIONS`.
+    """Return the digest of each part of a decision, in the order of `DECISIONS`.
 
     Args:
         decision: to hash.
-        believed: fingerprints of the belief in it, where they are known.
+        believed: fingerprints of its belief, if known.
     """
     task, motion, gaze = decision.task, decision.motion, decision.gaze
-    place = f"{task.is_goal} {task.index} {task.aligning} {task.done}".encode()
-    place += task.target.tobytes() + struct.pack("<d", task.heading)
+    target = f"{task.is_goal} {task.index} {task.aligning} {task.done}".encode()
+    target += task.target.tobytes() + struct.pack("<d", task.heading)
     move = motion.situation.encode() + motion.velocity.tobytes()
     look_request = nan if motion.look_request is None else motion.look_request
     move += struct.pack("<3d", motion.direction, motion.speed, look_request)
@@ -56,11 +56,11 @@ def decision_fingerprints(
     evaluations = (gaze.psi_lm, gaze.psi_sf, gaze.psi_ob, gaze.psi_way)
     look = struct.pack("<6d", gaze.pan, gaze.tilt, *evaluations) + gaze.gaze_map.tobytes()
     believed = believed or fingerprints(decision.belief)
-    return _digest(b"".join(believed)), _digest(place), _digest(move), _digest(look)
+    return _digest(b"".join(believed)), _digest(target), _digest(move), _digest(look)
 
 
 def _digest(*parts: bytes | memoryview) -> bytes:
-    found = hashlib.blake2b(digest_size=FINGERPRINT)
+    digest = hashlib.blake2b(digest_size=FINGERPRINT)
     for part in parts:
-        found.update(part)
-    return found.digest()
+        digest.update(part)
+    return digest.digest()

@@ -1,4 +1,4 @@
-"""One camera frame as a line of JSON: what the dashboard of a video shows."""
+"""Summary of a camera frame as a line of JSON, for the dashboard of a video."""
 
 import base64
 import json
@@ -45,8 +45,8 @@ class TrackSummary:
 
 
 @dataclass(frozen=True, slots=True)
-class Blob:
-    """What vision recognised in the image.
+class Box:
+    """Detection in the image.
 
     Attributes:
         label: colour class, of a beacon ``top/bottom``.
@@ -61,7 +61,7 @@ class Blob:
 
 @dataclass(frozen=True, slots=True)
 class GazeMapSummary:
-    """GM in 255 shades of its maximum.
+    """Gaze map in 255 shades of its maximum.
 
     Attributes:
         rows, columns: cells of tilt, from below, and of pan, from the right.
@@ -73,14 +73,14 @@ class GazeMapSummary:
     shades: bytes
 
     def image(self) -> NDArray[np.uint8]:
-        """Shades (rows, columns) as the robot sees: left is left, up is up."""
+        """Return the shades (rows, columns) with left and up of the head at left and up."""
         cells = np.frombuffer(self.shades, np.uint8).reshape(self.rows, self.columns)
         return cells[::-1, ::-1]
 
 
 @dataclass(frozen=True, slots=True)
 class FrameSummary:
-    """What one camera frame led to, without the image.
+    """Belief and decisions of one camera frame.
 
     Attributes:
         time: when the frame reached the robot [s].
@@ -92,15 +92,15 @@ class FrameSummary:
         target: destination in W [m].
         passed: via points passed.
         velocity: decided (vx, vy, wz) [m/s, m/s, rad/s].
-        situation: what velocity modification found.
+        situation: result of velocity modification.
         psi: partial evaluations lm, sf, ob, way.
-        lost: localization has noticed that it is lost.
+        lost: localization reports being lost.
         tracks: believed obstacles.
         virtual_obstacles: x, y, radius of each [m].
         captured: when the image was taken [s].
         look: chosen pan and tilt [rad].
-        blobs: what vision recognised.
-        gaze_map: None where no map was made.
+        boxes: detections.
+        gaze_map: None without a map.
     """
 
     time: float
@@ -119,17 +119,17 @@ class FrameSummary:
     virtual_obstacles: tuple[tuple[float, float, float], ...]
     captured: float
     look: tuple[float, float]
-    blobs: tuple[Blob, ...]
+    boxes: tuple[Box, ...]
     gaze_map: GazeMapSummary | None
 
 
 def to_line(frame: FrameRecord, truth: Truth, *, new_map: bool = True) -> str:
-    """`frame` as one line of JSON, without the newline.
+    """Return `frame` as one line of JSON, without the newline.
 
     Args:
         frame: to write.
         truth: of that time.
-        new_map: tell the gaze map too; else it is that of the line before.
+        new_map: include the gaze map; otherwise that of the previous line applies.
     """
     belief, gaze, motion = frame.belief, frame.gaze, frame.motion
     line: dict[str, Any] = {
@@ -157,11 +157,11 @@ def to_line(frame: FrameRecord, truth: Truth, *, new_map: bool = True) -> str:
 
 
 def from_line(line: str, before: FrameSummary | None = None) -> FrameSummary:
-    """Inverse of `to_line`, up to rounding.
+    """Read a line of `to_line`.
 
     Args:
         line: to read.
-        before: what the line before told.
+        before: summary of the previous line.
     """
     row = json.loads(line)
     kept = None if before is None else before.gaze_map
@@ -194,8 +194,8 @@ def from_line(line: str, before: FrameSummary | None = None) -> FrameSummary:
         virtual_obstacles=tuple((x, y, radius) for x, y, radius in row["virtual"]),
         captured=row["seen"],
         look=tuple(row["look"]),
-        blobs=tuple(
-            Blob(label, (left, top, right, bottom), distance)
+        boxes=tuple(
+            Box(label, (left, top, right, bottom), distance)
             for label, left, top, right, bottom, distance in row["blobs"]
         ),
         gaze_map=_unpacked(row["gm"]) if "gm" in row else kept,
@@ -203,7 +203,7 @@ def from_line(line: str, before: FrameSummary | None = None) -> FrameSummary:
 
 
 def _track(track: Track) -> str:
-    """A track as JSON; most numbers of a line are in its tracks, and it writes them faster."""
+    """Return a track as JSON, faster than the encoder, because most numbers are in tracks."""
     (xx, xy, *_), (_, yy, *_), *_ = track.covariance.tolist()
     x, y = track.position.tolist()
     vx, vy = track.velocity.tolist()
@@ -220,7 +220,7 @@ def _quoted(label: str) -> str:
 
 
 def _packed(gaze_map: NDArray[np.float64]) -> list[Any] | None:
-    """Shape and shades; a gaze that weighs nothing makes no map."""
+    """Return shape and shades, None for a gaze without a map."""
     top = float(gaze_map.max(initial=0.0))
     if gaze_map.size <= 1:
         return None

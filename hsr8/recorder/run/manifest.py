@@ -25,7 +25,7 @@ LIBRARIES = (
 )
 FORMAT = 4  # of run folders; those without a number are of format 1
 RUNNING = "running"
-OWN = "hsr8.run("  # begins the command of a run with a planner or a gaze of one's own
+OWN = "hsr8.run("  # begins the command of a run with a planner or gaze object
 
 
 @dataclass(frozen=True, slots=True)

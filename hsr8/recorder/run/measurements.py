@@ -122,9 +122,9 @@ def _packed(frame: Frame) -> bytes:
         label = o.label.encode()
         flags = _KINDS.index(o.kind) | o.cut << 1 | o.occluded << 2
         (xx, xy), (yx, yy) = o.covariance.tolist()
-        place, size = (o.distance, o.bearing, xx, xy, yx, yy), (o.radius, o.radius_sigma)
-        seen = _SEEN.pack(*place, *size, *o.by_radius.tolist())
-        parts.append(bytes((flags, len(label))) + label + seen)
+        offset, size = (o.distance, o.bearing, xx, xy, yx, yy), (o.radius, o.radius_sigma)
+        content = _SEEN.pack(*offset, *size, *o.by_radius.tolist())
+        parts.append(bytes((flags, len(label))) + label + content)
     return b"".join(parts)
 
 
@@ -148,17 +148,17 @@ def _view(numbers: Array) -> CameraView:
 def _unpacked(payload: bytes) -> Measurement:
     numbers = np.frombuffer(payload, "<f8", _FIXED).astype(np.float64)
     time, odometry, motion, view = np.split(numbers, [1, 4, 13])
-    place = 8 * _FIXED
-    (count,) = _COUNT.unpack_from(payload, place)
-    place += _COUNT.size
+    offset = 8 * _FIXED
+    (count,) = _COUNT.unpack_from(payload, offset)
+    offset += _COUNT.size
     observations = []
     for _ in range(count):
-        flags, length = payload[place], payload[place + 1]
-        place += 2 + length
-        label = payload[place - length : place].decode()
-        distance, bearing, *rest = _SEEN.unpack_from(payload, place)
+        flags, length = payload[offset], payload[offset + 1]
+        offset += 2 + length
+        label = payload[offset - length : offset].decode()
+        distance, bearing, *rest = _SEEN.unpack_from(payload, offset)
         covariance, (radius, radius_sigma), by_radius = rest[:4], rest[4:6], rest[6:]
-        place += _SEEN.size
+        offset += _SEEN.size
         observations.append(
             Observation(
                 kind="beacon" if flags & 1 else "obstacle",
@@ -180,11 +180,11 @@ def _unpacked(payload: bytes) -> Measurement:
         view=_view(view),
         observations=tuple(observations),
     )
-    numbers = np.frombuffer(payload, "<f8", _NOW, place).astype(np.float64)
-    place += 8 * _NOW
-    step_count, fresh = _STEP.unpack_from(payload, place)
-    place += _STEP.size
+    numbers = np.frombuffer(payload, "<f8", _NOW, offset).astype(np.float64)
+    offset += 8 * _NOW
+    step_count, fresh = _STEP.unpack_from(payload, offset)
+    offset += _STEP.size
     now = DecisionContext(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
-    prints = [payload[k : k + FINGERPRINT] for k in range(place, len(payload), FINGERPRINT)]
+    prints = [payload[k : k + FINGERPRINT] for k in range(offset, len(payload), FINGERPRINT)]
     decided, believed = prints[: len(DECISIONS)], prints[len(DECISIONS) :]
     return Measurement(frame, now, fresh, tuple(believed), tuple(decided))

@@ -114,8 +114,8 @@ def read_tape(path: Path, *, whole: bool) -> list[Block]:
 
 
 def _block(payload: bytes) -> Block:
-    place = _FIRST.size
-    world, robot = payload[place : place + HASH], payload[place + HASH : place + 2 * HASH]
-    rows = np.frombuffer(payload, "<f8", offset=place + 2 * HASH).astype(np.float64)
+    offset = _FIRST.size
+    world, robot = payload[offset : offset + HASH], payload[offset + HASH : offset + 2 * HASH]
+    rows = np.frombuffer(payload, "<f8", offset=offset + 2 * HASH).astype(np.float64)
     (tick,) = _FIRST.unpack_from(payload)
     return Block(tick, world.hex(), robot.hex(), rows.reshape(-1, len(JOINT_NAMES)))

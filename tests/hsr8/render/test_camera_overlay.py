@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hsr8.recorder import palette
-from hsr8.recorder.run.frame_summary import Blob, from_line, to_line
+from hsr8.recorder.run.frame_summary import Box, from_line, to_line
 from hsr8.render import camera_overlay
 from hsr8.render.camera_overlay import CameraOverlay
 
@@ -43,7 +43,7 @@ def _cross(picture):
 
 @pytest.mark.parametrize("tilt", [0.0, -0.1])
 def test_a_gaze_that_has_arrived_has_its_window_in_the_middle(summary, tilt):
-    frame = summary(blobs=(), gaze=(0.2, tilt), look=(0.2, tilt))
+    frame = summary(boxes=(), gaze=(0.2, tilt), look=(0.2, tilt))
     picture = _drawn(frame)
     rows, columns = _strokes(picture)
     assert 0.5 * (columns.min() + columns.max()) == pytest.approx(160, abs=1)
@@ -52,14 +52,14 @@ def test_a_gaze_that_has_arrived_has_its_window_in_the_middle(summary, tilt):
 
 
 def test_the_window_lies_where_the_pinhole_shows_the_chosen_gaze(summary):
-    left = _cross(_drawn(summary(blobs=(), gaze=(0.0, 0.0), look=(0.1, 0.0))))
+    left = _cross(_drawn(summary(boxes=(), gaze=(0.0, 0.0), look=(0.1, 0.0))))
     assert left[0] == pytest.approx(160 - FOCAL * np.tan(0.1), abs=4)
-    up = _cross(_drawn(summary(blobs=(), gaze=(0.0, 0.0), look=(0.0, 0.1))))
+    up = _cross(_drawn(summary(boxes=(), gaze=(0.0, 0.0), look=(0.0, 0.1))))
     assert up[1] == pytest.approx(120 - FOCAL * np.tan(0.1), abs=4)
 
 
 def test_a_gaze_behind_the_camera_is_not_drawn(summary):
-    assert not _drawn(summary(blobs=(), **AWAY)).any()
+    assert not _drawn(summary(boxes=(), **AWAY)).any()
 
 
 @pytest.mark.parametrize("scale", [1, 2])
@@ -100,8 +100,8 @@ def test_no_distance_is_written_over_another(summary, seed):
         left, top = rng.integers(0, (280, 200))
         width, height = rng.integers(6, (40, 60))
         box = (int(left), int(top), int(left + width), int(top + height))
-        blobs.append(Blob("red", box, 0.5 + 0.25 * number))
-    tags = _tags(summary(blobs=tuple(blobs), **AWAY))
+        blobs.append(Box("red", box, 0.5 + 0.25 * number))
+    tags = _tags(summary(boxes=tuple(blobs), **AWAY))
     assert 1 <= len(tags) <= len(blobs)
     for k, (_, left, top, right, bottom) in enumerate(tags):
         assert 0 <= top < bottom <= 480
@@ -112,8 +112,8 @@ def test_no_distance_is_written_over_another(summary, seed):
 
 
 def test_the_nearest_keeps_its_distance(summary):
-    same = [Blob("red", (100, 80, 140, 160), distance) for distance in (3.0, 0.7, 2.0, 1.5)]
-    assert [text for text, *_ in _tags(summary(blobs=tuple(same), **AWAY))] == [
+    same = [Box("red", (100, 80, 140, 160), distance) for distance in (3.0, 0.7, 2.0, 1.5)]
+    assert [text for text, *_ in _tags(summary(boxes=tuple(same), **AWAY))] == [
         "0.70 m",
         "1.50 m",
     ]

@@ -1,6 +1,5 @@
 import pytest
 import rerun as rr
-import rerun_bindings
 
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.blueprint import blueprint
@@ -8,32 +7,21 @@ from hsr8.recorder.log.channel import Channel
 from hsr8.recorder.log.log_reader import Log
 
 
-def test_columns_are_sent_when_asked_for_and_once(tmp_path, monkeypatch):
-    sent = []
-    really = rerun_bindings.send_arrow_chunk
-
-    def send(path, *rest):
-        sent.append(path)
-        really(path, *rest)
-
-    monkeypatch.setattr(rerun_bindings, "send_arrow_chunk", send)
+def test_the_rows_of_a_channel_are_sent_once(tmp_path):
     stream = BlockStream("test")
     stream.save(tmp_path / "log.rrd")
     channel = Channel(stream, "/plots/x", rr.Scalars.columns)
     for block in range(3):
         for k in range(2):
             channel.add(float(2 * block + k), scalars=[float(block)])
-        channel.flush()
-    assert sent == []
-    stream.send()
-    stream.send()
-    assert sent == ["/plots/x"] * 3
+        stream.send()
+        stream.send()
     stream.disconnect()
     table = Log(tmp_path / "log.rrd").table("/plots/x")
     assert table.array()[:, 0].tolist() == [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]
 
 
-def test_the_arrangement_is_in_the_file_as_if_rerun_had_set_the_sinks(tmp_path):
+def test_the_arrangement_is_in_the_file_as_with_set_sinks(tmp_path):
     ours, theirs = BlockStream("test"), BlockStream("test")
     ours.begin(
         [rr.FileSink(str(tmp_path / "ours.rrd"))], blueprint(5.0, walking=False, images=True)

@@ -1,5 +1,3 @@
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 import rerun as rr
@@ -39,28 +37,28 @@ KINDS = (
 
 
 class Stream:
-    """Keeps what is sent."""
+    """Recording that sends nothing."""
 
-    def __init__(self):
-        self.sent = []
+    def add_channel(self, channel):
+        pass
 
-    def keep(self, path, times, values):
-        rows = {str(component): value for component, value in values.items()}
-        self.sent.append((path, times[TIMELINE], rows))
+
+def taken(channel):
+    """Times and rows of a channel, by the names of the components."""
+    times, rows = channel.take()
+    return times[TIMELINE], {str(component): values for component, values in rows.items()}
 
 
 @pytest.mark.parametrize(("columns", "rows"), KINDS)
-def test_later_blocks_are_what_rerun_itself_makes_of_them(columns, rows):
-    stream = Stream()
-    taught = Channel(stream, "/there", columns)
+def test_later_batches_equal_those_of_rerun(columns, rows):
+    taught, fresh = (Channel(Stream(), "/there", columns) for _ in range(2))
     taught.add(0.0, **rows(3))
-    taught.flush()
-    block = [(0.1 * k, rows(n)) for k, n in enumerate((2, 0, 4, 1))]
-    for channel in (taught, Channel(stream, "/there", columns)):
-        for time, row in block:
+    taught.take()
+    batch = [(0.1 * k, rows(n)) for k, n in enumerate((2, 0, 4, 1))]
+    for channel in (taught, fresh):
+        for time, row in batch:
             channel.add(time, **row)
-        channel.flush()
-    (_, times, later), (_, same_times, first) = stream.sent[1:]
+    (times, later), (same_times, first) = taken(taught), taken(fresh)
     assert times.equals(same_times)
     assert later.keys() == first.keys()
     for name, values in later.items():
@@ -68,12 +66,12 @@ def test_later_blocks_are_what_rerun_itself_makes_of_them(columns, rows):
         assert values.to_pylist() == first[name].to_pylist()
 
 
-def test_rows_at_once_are_rows_one_by_one():
-    stream, counts = Stream(), [4, 0, 1, 3]
-    once, each = (Channel(stream, "/there", rr.Points3D.columns) for _ in range(2))
+def test_rows_added_together_equal_rows_added_singly():
+    counts = [4, 0, 1, 3]
+    together, singly = (Channel(Stream(), "/there", rr.Points3D.columns) for _ in range(2))
     for _ in range(2):
         rows = [points(n) for n in counts]
-        once.add_rows(
+        together.add_rows(
             [0.1 * k for k in range(len(rows))],
             counts,
             positions=np.concatenate([row["positions"] for row in rows]),
@@ -81,16 +79,11 @@ def test_rows_at_once_are_rows_one_by_one():
             labels=[label for row in rows for label in row["labels"]],
         )
         for k, row in enumerate(rows):
-            each.add(0.1 * k, **row)
-        once.flush()
-        each.flush()
-    for (_, times, rows), (_, same_times, same) in zip(
-        stream.sent[::2], stream.sent[1::2], strict=True
-    ):
+            singly.add(0.1 * k, **row)
+        (times, values), (same_times, same) = taken(together), taken(singly)
         assert times.equals(same_times)
-        assert [v.to_pylist() for v in rows.values()] == [v.to_pylist() for v in same.values()]
+        assert [v.to_pylist() for v in values.values()] == [v.to_pylist() for v in same.values()]
 
 
-def test_without_rows_nothing_is_sent():
-    stream = SimpleNamespace(keep=None)
-    Channel(stream, "/there", rr.Points3D.columns).flush()
+def test_without_rows_there_is_nothing_to_take():
+    assert Channel(Stream(), "/there", rr.Points3D.columns).take() is None

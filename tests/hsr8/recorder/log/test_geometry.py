@@ -3,9 +3,8 @@ import numpy as np
 import pytest
 
 from hsr8.recorder.log.geometry import (
-    _BOX,
     BASE,
-    batches,
+    batches_of,
     colors,
     multiply,
     rotate,
@@ -38,7 +37,7 @@ def robot(model):
 
 def test_every_visible_geom_of_the_robot_is_in_one_batch(model, robot):
     visible = robot & (model.geom_group == 2)
-    geoms = np.concatenate([batch.geoms for batch in batches(model, visible)])
+    geoms = np.concatenate([batch.geoms for batch in batches_of(model, visible)])
     assert sorted(geoms.tolist()) == np.flatnonzero(visible).tolist()
 
 
@@ -48,14 +47,14 @@ def test_poses_of_geoms_follow_their_bodies(model, robot):
     data.qpos[:] = np.random.default_rng(3).normal(size=model.nq)
     mujoco.mj_normalizeQuat(model, data.qpos)
     mujoco.mj_kinematics(model, data)
-    for batch in batches(model, robot & (model.geom_group == 2)):
+    for batch in batches_of(model, robot & (model.geom_group == 2)):
         turn = data.xquat[batch.bodies]
-        place = data.xpos[batch.bodies] + rotate(turn, batch.offset)
+        position = data.xpos[batch.bodies] + rotate(turn, batch.offset)
         if batch.kind == "capsules":
-            half = np.zeros_like(place)
+            half = np.zeros_like(position)
             half[:, 2] = model.geom_size[batch.geoms, 1]
-            place = place + rotate(multiply(turn, batch.rotation), half)
-        np.testing.assert_allclose(place, data.geom_xpos[batch.geoms], atol=1e-9)
+            position = position + rotate(multiply(turn, batch.rotation), half)
+        np.testing.assert_allclose(position, data.geom_xpos[batch.geoms], atol=1e-9)
 
 
 def test_colors_come_from_the_material(model):
@@ -66,13 +65,15 @@ def test_colors_come_from_the_material(model):
     assert colors(model, np.array([red]))[0].tolist() == expected
 
 
-def test_a_kind_that_does_not_occur_has_no_batch(model):
-    assert [b.kind for b in batches(model, model.geom_type == _BOX)] == ["boxes"]
-    assert batches(model, np.zeros(model.ngeom, bool)) == []
+def test_a_missing_kind_has_no_batch(model):
+    assert [b.kind for b in batches_of(model, model.geom_type == mujoco.mjtGeom.mjGEOM_BOX)] == [
+        "boxes"
+    ]
+    assert batches_of(model, np.zeros(model.ngeom, bool)) == []
 
 
 @pytest.mark.parametrize("side", ["l", "r"])
-def test_the_outline_of_a_sole_is_that_of_its_geom_seen_from_above(model, side):
+def test_the_outline_of_a_sole_is_that_of_its_geom_from_above(model, side):
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     outline = sole_outline(model, side)
@@ -81,7 +82,7 @@ def test_the_outline_of_a_sole_is_that_of_its_geom_seen_from_above(model, side):
     half = model.geom(f"{side}_sole").size[:2]
     signs = np.array([(u, v) for u in (-1.0, 1.0) for v in (-1.0, 1.0)])
     corners = sole.xpos[:2] + (signs * half) @ sole.xmat.reshape(3, 3)[:2, :2].T
-    apart = np.hypot(*(drawn[:, None] - corners[None]).transpose(2, 0, 1))
+    distance = np.hypot(*(drawn[:, None] - corners[None]).transpose(2, 0, 1))
     assert drawn[0].tolist() == drawn[-1].tolist()
-    assert sorted(apart[:-1].argmin(axis=1).tolist()) == [0, 1, 2, 3]
-    assert apart.min(axis=1) == pytest.approx(0.0, abs=1e-9)
+    assert sorted(distance[:-1].argmin(axis=1).tolist()) == [0, 1, 2, 3]
+    assert distance.min(axis=1) == pytest.approx(0.0, abs=1e-9)

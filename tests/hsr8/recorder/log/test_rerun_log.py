@@ -117,13 +117,13 @@ def test_the_field_is_shown_while_there_is_one(folder, model, layout, fake):
         records.append(fake.record(0.6 * k, frame=frame))
     path = _logged(folder, model, layout, records)
     arrows = _values(path, "/plan/field", "Arrows3D:vectors")
-    ways = _values(path, "/plan/way", "LineStrips3D:strips")
-    assert [time for time, _ in arrows] == [time for time, _ in ways] == [0.0, 0.6]
+    paths = _values(path, "/plan/path", "LineStrips3D:strips")
+    assert [time for time, _ in arrows] == [time for time, _ in paths] == [0.0, 0.6]
     assert np.array(arrows[0][1]) == pytest.approx(
         np.tile([0.13, 0.0, 0.0], (len(arrows[0][1]), 1))
     )
-    assert len(ways[0][1]) == 1
-    assert arrows[1][1] == ways[1][1] == []
+    assert len(paths[0][1]) == 1
+    assert arrows[1][1] == paths[1][1] == []
     assert len(_values(path, "/plan/decision", "Arrows3D:vectors")) == 3
 
 
@@ -228,8 +228,6 @@ stream.save(sys.argv[1])
 channel = Channel(stream, "/plots/x", rr.Scalars.columns)
 for k in range(100):
     channel.add(0.02 * k, scalars=[float(k)])
-    if k % 50 == 49:
-        channel.flush()
 stream.send()
 stream.flush()
 os.kill(os.getpid(), 9)

@@ -33,7 +33,7 @@ def test_round_trip_keeps_what_the_camera_saw_and_where_it_is_to_look(line):
     frame = from_line(line)
     assert frame.captured == 0.6
     assert frame.look == (0.3, -0.3)
-    assert [(b.label, b.box, b.distance) for b in frame.blobs] == [
+    assert [(b.label, b.box, b.distance) for b in frame.boxes] == [
         ("red", (100, 80, 140, 160), 1.0)
     ]
     image = frame.gaze_map.image()
