@@ -1,4 +1,4 @@
-"""What navigation decides: where to look and how to move."""
+"""Decisions of navigation: task, gaze and motion."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -14,12 +14,12 @@ Array = NDArray[np.float64]
 
 
 Situation = Literal["free", "accelerate", "brake", "escape", "path_change"]
-"""What velocity modification found."""
+"""Outcome of velocity modification."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimits:
-    """Speed envelope of the walking layer, in R.
+    """Speed limits of the walking layer, in R.
 
     Attributes:
         vx, vx_backward, vy: maximum speeds forward, backward and sideways, all positive [m/s].
@@ -43,15 +43,15 @@ class SpeedLimits:
 
 @value
 class Task:
-    """Where to go next.
+    """Next target of the mission.
 
     Attributes:
         target: destination in W (2,) [m].
         heading: heading to arrive with [rad].
-        is_goal: final goal rather than a via point.
-        index: number of via points passed so far.
-        aligning: the goal is reached, only the heading is left to turn to.
-        done: nothing is left to do.
+        is_goal: whether it is the final goal, not a via point.
+        index: number of via points passed.
+        aligning: whether the robot is at the goal and turns to its heading.
+        done: whether the mission is finished.
     """
 
     target: Array
@@ -64,12 +64,12 @@ class Task:
 
 @value
 class GazeDecision:
-    """Where to look, and why.
+    """Decision of the gaze.
 
     Attributes:
         pan, tilt: chosen gaze, left and up positive [rad].
         psi_lm, psi_sf, psi_ob, psi_way: partial evaluations in [0, 1]; psi_ob is the
-            largest over the obstacles.
+            maximum over the obstacles.
         gaze_map: GM over (tilt, pan) cells (m, n).
     """
 
@@ -89,7 +89,7 @@ class VirtualObstacle:
     Attributes:
         position: p_vo in W (2,) [m].
         radius: R_vo [m].
-        track_id: the mover it belongs to.
+        track_id: of its mover.
     """
 
     position: Array
@@ -98,27 +98,26 @@ class VirtualObstacle:
 
 
 class DirectionField(Protocol):
-    """Where a planner leads at any point; looking at it changes nothing."""
+    """Vector field of a planner; evaluation has no side effects."""
 
     def at(self, points: Array) -> Array:
-        """Directions at `points` (..., 2) in W [m]: (..., 2), of any length, zero for none."""
+        """Return directions at `points` (..., 2) in W [m]: (..., 2), any length, or zero."""
 
 
 @value
 class MotionDecision:
-    """How to move during the next footstep.
+    """Motion during the next footstep.
 
     Attributes:
-        velocity: forward, left, turn in R (3,) [m/s, m/s, rad/s].
+        velocity: vx, vy, wz in R (3,) [m/s, m/s, rad/s].
         direction: field direction u_T in W [rad].
         speed: speed along it after velocity modification [m/s].
-        situation: what velocity modification found, see `Situation`; another planner tells its
-            own.
-        virtual_obstacles: in force.
-        extended_radii: (track id, S_oe) of the obstacles the field uses.
-        look_request: direction in W of ground that the body turned aside for; None for none [rad].
-        field: what the direction was taken from, for those who watch; None for a planner that
-            has no field.
+        situation: outcome of velocity modification, see `Situation`, or a text of another
+            planner.
+        virtual_obstacles: active ones.
+        extended_radii: (track id, S_oe) of the obstacles in the field.
+        look_request: direction in W that the rear check turns to; None for none [rad].
+        field: vector field of the decision, for displays; None for a planner without one.
     """
 
     velocity: Array

@@ -13,12 +13,11 @@ Array = NDArray[np.float64]
 
 
 class Mission:
-    """Sequence of way points; the paper's planner "simply updates sequential waypoints".
+    """Sequence of waypoints; the paper's planner "simply updates sequential waypoints".
 
-    A via point is to be left towards the next one, so its heading points there. The last
-    way point is the goal: reach it, turn to its heading, done. Without a goal heading any
-    will do. An endless mission is a tour: every point is a via point, the first follows
-    the last.
+    The heading of a via point points to the next waypoint. The last waypoint is the goal: reach
+    it, turn to its heading, done. Without a goal heading any heading is accepted. An endless
+    mission is a tour: every waypoint is a via point, and the first follows the last.
     """
 
     def __init__(
@@ -28,22 +27,22 @@ class Mission:
         endless: bool,
         parameters: MissionParameters,
     ) -> None:
-        """Start at the first way point.
+        """Start at the first waypoint.
 
         Args:
             waypoints: in W (n, 2) [m], n >= 1.
-            goal_heading: heading to arrive with at the last [rad]; None for any.
-            endless: visit the points in a circle for ever.
+            goal_heading: heading at the goal [rad]; None for any.
+            endless: whether the waypoints are a tour.
             parameters: arrival distances and tolerance.
 
         Raises:
-            ValueError: there is no way point, or a tour of a single one.
+            ValueError: fewer than one waypoint, or than two of a tour.
         """
         points = np.asarray(waypoints, dtype=np.float64)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < (2 if endless else 1):
             raise ValueError(
-                f"a mission needs way points of shape (n, 2), n >= {2 if endless else 1}, "
-                f"not {points.shape}"
+                f"waypoints: wrong shape, got {points.shape}; "
+                f"expected (n, 2) with n >= {2 if endless else 1}"
             )
         self._points = points
         self._goal_heading = goal_heading
@@ -54,10 +53,10 @@ class Mission:
         self._done = False
 
     def update(self, pose: Array) -> Task:
-        """Advance the mission by the believed `pose` (3,) [m, m, rad] and say what to do."""
+        """Advance the mission to the believed `pose` (3,) [m, m, rad]; return the next task."""
         x, y, heading = pose.tolist()
         if not self._done:
-            # Each point once at most: a tour may lie within reach as a whole.
+            # Each waypoint at most once: a whole tour may be within r_via.
             for _ in self._points:
                 if not self._pass_via(x, y):
                     break

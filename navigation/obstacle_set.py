@@ -1,6 +1,7 @@
-"""The tracks as arrays, the form in which all decisions are computed."""
+"""Tracks as arrays, the input of all decisions."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +25,9 @@ class ObstacleSet:
         speed: its norm (n,) [m/s].
         radius: (n,) [m].
         sigma: square root of the largest eigenvalue of the position covariance (n,) [m].
-        speed_sigma: the same of the velocity (n,) [m/s].
-        static, moving: verdicts of the tracker (n,); neither means undecided.
-        age: time since last seen (n,) [s].
+        speed_sigma: square root of the largest eigenvalue of the velocity covariance (n,) [m/s].
+        static, moving: classification by the tracker (n,); neither means undecided.
+        age: time since the latest detection (n,) [s].
         turn_rate: of the velocity, left positive (n,) [rad/s].
     """
 
@@ -47,7 +48,7 @@ class ObstacleSet:
 
     @classmethod
     def from_tracks(cls, tracks: Sequence[Track]) -> "ObstacleSet":
-        """Stack `tracks`; a track classified static has speed 0."""
+        """Stack `tracks`; a static track has speed 0."""
         n = len(tracks)
         static = np.array([t.motion is Motion.STATIC for t in tracks], dtype=np.bool_)
         covariances = np.array([t.covariance for t in tracks], dtype=np.float64)
@@ -69,23 +70,11 @@ class ObstacleSet:
         )
 
     def where(self, mask: Mask) -> "ObstacleSet":
-        """The obstacles for which `mask` (n,) holds."""
-        return ObstacleSet(
-            self.ids[mask],
-            self.position[mask],
-            self.velocity[mask],
-            self.speed[mask],
-            self.radius[mask],
-            self.sigma[mask],
-            self.speed_sigma[mask],
-            self.static[mask],
-            self.moving[mask],
-            self.age[mask],
-            self.turn_rate[mask],
-        )
+        """Return the obstacles for which `mask` (n,) holds."""
+        return ObstacleSet(*(getattr(self, f.name)[mask] for f in fields(self)))
 
 
 def max_deviation(covariance: Array) -> float:
-    """sqrt(lambda_max) of a symmetric matrix (2, 2)."""
+    """Return sqrt(lambda_max) of a symmetric matrix (2, 2)."""
     (xx, xy), (_, yy) = covariance.tolist()
     return deviation(xx, xy, yy)

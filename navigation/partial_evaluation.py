@@ -1,7 +1,4 @@
-"""The four partial evaluations, Yoo & Kim, eqs. (1)-(4), and the set O they speak of.
-
-Each is a number in [0, 1] that says how much something deserves a look.
-"""
+"""Partial evaluations of the gaze in [0, 1], Yoo & Kim, eqs. (1)-(4), and their set O."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +28,7 @@ class SamplePoints:
 
     @classmethod
     def polar(cls, parameters: EvaluationParameters, max_pan: float) -> "SamplePoints":
-        """Rings from `d_nm` to `d_fm`, rays to `max_pan` [rad] on both sides of ahead."""
+        """Return rings from `d_nm` to `d_fm` and rays up to `max_pan` [rad] to either side."""
         p = parameters
         rings = np.arange(p.d_nm, p.d_fm + 1e-9, p.ring_step)
         count = int(max_pan / p.ray_step + 1e-9)
@@ -39,7 +36,7 @@ class SamplePoints:
 
     @classmethod
     def of(cls, rings: Array, rays: Array) -> "SamplePoints":
-        """Points at every distance (m,) [m] on every ray (l,) [rad], m l of them."""
+        """Return points at every distance (m,) [m] on every ray (l,) [rad], m l of them."""
         distance, bearing = (a.ravel() for a in np.meshgrid(rings, rays, indexing="ij"))
         points = distance[:, None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
         return cls(distance, bearing, points)
@@ -52,7 +49,7 @@ class MapEvaluation:
     Attributes:
         psi: psi_lm in [0, 1].
         counted: sample points outside the gaze region (n,).
-        under_confident: those of them with C < lambda_cf (n,).
+        under_confident: counted points with C < lambda_cf (n,).
     """
 
     psi: float
@@ -63,7 +60,7 @@ class MapEvaluation:
 def psi_local_map(
     confidence: Array, in_gaze: Mask, parameters: EvaluationParameters
 ) -> MapEvaluation:
-    """psi_lm, share of under-confident ground (Yoo & Kim, eq. (1)).
+    """Return psi_lm, the ratio of under-confident ground (Yoo & Kim, eq. (1)).
 
     Args:
         confidence: C of the sample points (n,).
@@ -74,12 +71,12 @@ def psi_local_map(
     under = counted & (confidence < parameters.lambda_cf)
     n_lp = int(np.count_nonzero(under))
     n_cp = int(np.count_nonzero(counted)) - n_lp
-    whole = n_cp if parameters.map_ratio == "printed" else n_lp + n_cp
-    return MapEvaluation(min(1.0, n_lp / max(1, whole)), counted, under)
+    divisor = n_cp if parameters.map_ratio == "printed" else n_lp + n_cp
+    return MapEvaluation(min(1.0, n_lp / max(1, divisor)), counted, under)
 
 
 def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:
-    """psi_sf, self-localization uncertainty (Yoo & Kim, eq. (2)).
+    """Return psi_sf, the self-localization uncertainty (Yoo & Kim, eq. (2)).
 
     Args:
         pose_covariance: of x, y, heading (3, 3).
@@ -94,7 +91,7 @@ def psi_self(pose_covariance: Array, parameters: EvaluationParameters) -> float:
 def psi_obstacle(
     obstacles: ObstacleSet, position: Array, velocity: Array, parameters: EvaluationParameters
 ) -> Array:
-    """psi_ob of every obstacle: uncertain, closing and near (Yoo & Kim, eq. (3)).
+    """Return psi_ob of every obstacle: uncertain, closing and near (Yoo & Kim, eq. (3)).
 
     Args:
         obstacles: n obstacles in W.
@@ -114,12 +111,12 @@ def psi_obstacle(
 
 
 def psi_way(free_distance: float, parameters: EvaluationParameters) -> float:
-    """psi_way, how far the ground is free of obstacles (Yoo & Kim, eq. (4))."""
+    """Return psi_way, the ratio of obstacle-free distance to d_nThres (Yoo & Kim, eq. (4))."""
     return min(1.0, max(0.0, free_distance) / parameters.d_n_thres)
 
 
 def obstacle_free_distance(position: Array, centres: Array, radii: Array, limit: float) -> float:
-    """d_of of eq. (4): distance to the nearest extended shape, bounded by `limit` [m].
+    """Return d_of of eq. (4), the distance to the nearest extended shape up to `limit` [m].
 
     Args:
         position: of the robot (2,) [m].
@@ -135,13 +132,13 @@ def obstacle_free_distance(position: Array, centres: Array, radii: Array, limit:
 
 
 def attended(obstacles: ObstacleSet, pose: Array, velocity: Array, reach: float) -> Mask:
-    """The set O of eqs. (2)-(6): detected obstacles, frontal or approaching from behind.
+    """Return the set O of eqs. (2)-(6): obstacles ahead, or approaching from behind.
 
     Args:
         obstacles: n obstacles in W.
         pose: of the robot (3,) [m, m, rad].
         velocity: of the robot in W (2,) [m/s].
-        reach: largest distance [m].
+        reach: maximum distance [m].
     """
     offset = obstacles.position - pose[:2]
     distance = np.hypot(offset[:, 0], offset[:, 1])

@@ -97,12 +97,8 @@ def _encounter(frame: FrameRecord, *, straight: bool) -> tuple[float, Encounter]
     direction = atan2(dy, dx) if straight else frame.motion.direction
     radii = dict(frame.motion.extended_radii)
     track = next(t for t in frame.belief.tracks if t.id in radii)
-    c, s = cos(direction), sin(direction)
-    x, y = (track.position - pose[:2]).tolist()
-    u, w = track.velocity.tolist()
-    return direction, Encounter(
-        c * x + s * y, c * y - s * x, c * u + s * w, c * w - s * u, radii[track.id]
-    )
+    offset = track.position - pose[:2]
+    return direction, Encounter.on_line(direction, offset, track.velocity, radii[track.id])
 
 
 def clearance(ran: RecordedRun) -> Array:

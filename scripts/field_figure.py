@@ -91,8 +91,7 @@ def panels() -> list[FieldPanel]:
                 )
             )
             made.append(_panel("avoid-obstacle, eq. (9)", p, lambda x, s=s_oe: avoid_obstacle(
-                x, TARGET, np.array([OBSTACLE]), s, d_e=paper.univector.d_e,
-                d_b=paper.univector.d_b, k_r=paper.univector.k_r, inside=paper.univector.inside,
+                x, TARGET, np.array([OBSTACLE]), s, paper.univector,
             )[..., 0, :]))  # fmt: skip
         made.append(_panel(name, p, lambda x, f=field, s=scene: f.at(x, 0.0, s, ())))
     return made

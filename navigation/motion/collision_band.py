@@ -4,16 +4,22 @@ from enum import StrEnum
 from itertools import pairwise
 from math import hypot, inf, isfinite, sqrt
 
+import numpy as np
+from numpy.typing import NDArray
+
+from navigation.transform import rotate
 from navigation.value import value
+
+Array = NDArray[np.float64]
 
 
 class CollisionCase(StrEnum):
-    """What a robot on a straight line has before it (letters of Fig. 4).
+    """Collision case of a robot on a straight line (letters of Fig. 4).
 
     CROSSING: (a) outside the band, the line crosses it.
     ESCAPE: (b) inside the band; a fast enough robot leaves it, perhaps faster than v_max.
-    DEFINITE: (c) inside the band and no speed up to the largest is free.
-    RECEDING: (d) outside the band, walking at the mover itself; to stop is safe.
+    DEFINITE: (c) inside the band and no speed up to v_max is free.
+    RECEDING: (d) outside the band, walking towards the mover; standing is safe.
     """
 
     CROSSING = "a"
@@ -24,9 +30,7 @@ class CollisionCase(StrEnum):
 
 @value
 class Encounter:
-    """One mover as seen from a robot that walks along a line.
-
-    Everything in axes of the line: x along the robot's motion.
+    """One mover in axes of the line of motion of the robot, x along the motion.
 
     Attributes:
         along, across: p_ro, from the robot to the mover [m].
@@ -40,8 +44,17 @@ class Encounter:
     left: float
     radius: float
 
+    @classmethod
+    def on_line(
+        cls, direction: float, offset: Array, velocity: Array, radius: float
+    ) -> "Encounter":
+        """Transform p_ro (2,) [m] and v_o (2,) [m/s] from W to a line in `direction` [rad]."""
+        x, y = offset.tolist()
+        vx, vy = velocity.tolist()
+        return cls(*rotate(-direction, (x, y)), *rotate(-direction, (vx, vy)), radius)
+
     def contact_time(self, speed: float) -> float:
-        """Time until contact at constant `speed` [m/s]; inf for none, 0 inside and closing [s]."""
+        """Return the time to collision at constant `speed` [m/s]: inf for none, 0 inside [s]."""
         u, w = self.forward - speed, self.left
         c = self.along**2 + self.across**2 - self.radius**2
         b = self.along * u + self.across * w
@@ -56,12 +69,12 @@ class Encounter:
         return max(0.0, (-b - sqrt(discriminant)) / a)
 
     def collides(self, speed: float, horizon: float) -> bool:
-        """Whether constant `speed` [m/s] leads to contact within `horizon` [s]."""
+        """Whether constant `speed` [m/s] leads to a collision within `horizon` [s]."""
         time = self.contact_time(speed)
         return isfinite(time) and time <= horizon
 
     def band(self) -> tuple[float, float]:
-        """(al, lat): the robot's place along and left of the mover's path [m]."""
+        """Return (al, lat), the robot's position along and left of the mover's path [m]."""
         speed = hypot(self.forward, self.left)
         if speed == 0.0:
             return 0.0, inf
@@ -69,12 +82,12 @@ class Encounter:
         return -(self.along * x + self.across * y), -(x * self.across - y * self.along)
 
     def in_band(self) -> bool:
-        """Whether the mover sweeps over the robot if that stands: R_coll of Fig. 4."""
+        """Whether the mover collides with a standing robot: R_coll of Fig. 4."""
         al, lat = self.band()
         return abs(lat) < self.radius and al > 0.0
 
     def crossing_speeds(self) -> tuple[float, ...]:
-        """v_c of Fig. 4, roots of A v² + B v + C: the robot just touches the mover.
+        """Return v_c of Fig. 4, roots of A v² + B v + C: the robot just touches the mover.
 
         A = b² - S², B = 2 (S² v_o.e - a b), C = a² - S² |v_o|², with a = cross(p_ro, v_o)
         and b = cross(p_ro, e).
@@ -95,10 +108,10 @@ class Encounter:
         return low, high
 
     def touch_time(self, speed: float) -> float:
-        """t_c = -p_ro.w/|w|² with w = v_o - v e, when `speed` [m/s] just touches the mover [s].
+        """Return t_c = -p_ro.w/|w|², w = v_o - v e, for a `speed` [m/s] that just touches [s].
 
-        The point of contact of Fig. 4 is p_oc = v t_c on the line of motion. Inf where
-        `speed` passes at a distance or cuts through.
+        The point of contact of Fig. 4 is p_oc = v t_c on the line of motion. Inf if `speed`
+        passes at a distance or cuts through.
         """
         u, w = self.forward - speed, self.left
         square = u * u + w * w
@@ -110,7 +123,7 @@ class Encounter:
         return time if touches and time > 0.0 else inf
 
     def breakpoints(self, horizon: float) -> tuple[float, ...]:
-        """Every speed at which the answer "contact before `horizon`" [s] can change [m/s]."""
+        """Return all speeds at which `collides` within `horizon` [s] can change [m/s]."""
         points = list(self.crossing_speeds())
         if self.along != 0.0:
             points.append(self.forward + self.across * self.left / self.along)
@@ -123,10 +136,10 @@ class Encounter:
         return tuple(points)
 
     def case(self, v_max: float) -> CollisionCase | None:
-        """Letter of Fig. 4 for speeds up to `v_max` [m/s]; None: nothing to do about it.
+        """Return the letter of Fig. 4 for speeds up to `v_max` [m/s]; None if no speed collides.
 
-        Case (c) of the paper contains slower movers from behind, of which some speeds are
-        free; those are treated like (b).
+        Case (c) of the paper contains slower movers from behind, for which some speeds are
+        free; they are case (b) here.
         """
         meets_line = abs(self.across) < self.radius
         if self.in_band():
@@ -145,10 +158,10 @@ class Encounter:
 def free_intervals(
     encounters: tuple[Encounter, ...], v_max: float, horizon: float
 ) -> list[tuple[float, float]]:
-    """Closed intervals of speeds in [0, v_max] without contact before `horizon` [s].
+    """Return the closed intervals of speeds in [0, v_max] without collision before `horizon` [s].
 
-    The answer changes only at the breakpoints of the encounters, so one test between two
-    of them decides; several movers give the union of their colliding intervals.
+    One test between two successive breakpoints decides the interval. Several movers give the
+    union of their colliding intervals.
     """
     cuts = _cuts(encounters, v_max, horizon)
     intervals: list[tuple[float, float]] = []

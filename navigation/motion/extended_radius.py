@@ -12,10 +12,10 @@ Array = NDArray[np.float64]
 def extended_radius(
     obstacles: ObstacleSet, psi_sf: float, psi_ob: Array, parameters: UnivectorParameters
 ) -> Array:
-    """S_oe = S_r + S_o + omega (eta_vo |v_o| + eta_imp (psi_sf + psi_ob)) (Yoo & Kim, eq. (7)).
+    """Return S_oe = S_r + S_o + omega (eta_vo |v_o| + eta_imp (psi_sf + psi_ob)), eq. (7).
 
-    |v_o| is the speed over ground: with a speed relative to the walking robot every static
-    obstacle would swell and close the gaps.
+    |v_o| is the speed over ground: a speed relative to the walking robot would inflate every
+    static obstacle and close the gaps.
 
     Args:
         obstacles: n obstacles.
@@ -26,10 +26,11 @@ def extended_radius(
     Returns:
         (n,) [m].
     """
-    swell = parameters.eta_vo * obstacles.speed + parameters.eta_imp * (psi_sf + psi_ob)
-    return physical_radius(obstacles, parameters) + parameters.margin + parameters.omega_soe * swell
+    inflation = parameters.eta_vo * obstacles.speed + parameters.eta_imp * (psi_sf + psi_ob)
+    s_phys = physical_radius(obstacles, parameters)
+    return s_phys + parameters.margin + parameters.omega_soe * inflation
 
 
 def physical_radius(obstacles: ObstacleSet, parameters: UnivectorParameters) -> Array:
-    """S_phys = S_robot + S_o, the distance at which the bodies touch (n,) [m]."""
+    """Return S_phys = S_robot + S_o, the distance at which the bodies touch (n,) [m]."""
     return parameters.s_robot + obstacles.radius

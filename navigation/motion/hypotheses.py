@@ -1,6 +1,7 @@
-"""What the collision filter must not touch: tracks, particles of lost movers, reversals."""
+"""Collision hypotheses of the safety filter: tracks, particles of lost movers, reversals."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,14 +21,14 @@ Array = NDArray[np.float64]
 
 @value
 class Hypotheses:
-    """m discs that may be where they say, moving at constant velocity.
+    """m discs at constant velocity.
 
     Attributes:
         position: in W (m, 2) [m].
         velocity: (m, 2) [m/s].
-        radius: distance from the robot's centre at which they count as touched (m,) [m].
-        horizon: time to contact below which they count (m,) [s].
-        weight: of their penalty (m,).
+        radius: distance of the robot's centre that counts as a collision (m,) [m].
+        horizon: maximum time to collision (m,) [s].
+        weight: of the penalty (m,).
     """
 
     position: Array
@@ -40,18 +41,12 @@ class Hypotheses:
         return len(self.radius)
 
     def within_reach(self, position: Array, speed: float) -> "Hypotheses":
-        """Those a robot at `position` (2,) [m] could touch in time at up to `speed` [m/s]."""
+        """Return those a robot at `position` (2,) [m] can reach in time at `speed` [m/s]."""
         offset = self.position - position
         gap = np.hypot(offset[:, 0], offset[:, 1]) - self.radius
         reach = (np.hypot(self.velocity[:, 0], self.velocity[:, 1]) + speed) * self.horizon
         near = gap < reach
-        return Hypotheses(
-            self.position[near],
-            self.velocity[near],
-            self.radius[near],
-            self.horizon[near],
-            self.weight[near],
-        )
+        return Hypotheses(*(getattr(self, f.name)[near] for f in fields(self)))
 
 
 def collision_hypotheses(
@@ -63,34 +58,34 @@ def collision_hypotheses(
 ) -> Hypotheses:
     """Build the hypotheses of all tracks.
 
-    A lost mover counts as its particles; a visible one also as its own reversal. What walks a
-    bend counts as going straight along its chord over `bend_time`, as fast as it gets on there.
+    A lost mover counts as its particles; a visible one also as its reversal. A turning mover
+    follows the chord of its arc over `bend_time`.
 
     Args:
         tracks: of the belief.
-        obstacles: the same tracks as arrays.
+        obstacles: the tracks as arrays.
         s_robot: radius of the robot [m].
         parameters: horizons, weights and margins.
-        local_map: when a place was last looked at.
+        local_map: ages of positions.
     """
-    unsure = np.array([t.radius_sigma for t in tracks], dtype=np.float64)
-    base = s_robot + obstacles.radius + unsure + parameters.margin
-    swollen = base + np.minimum(parameters.max_sigma, obstacles.sigma)
+    radius_sigma = np.array([t.radius_sigma for t in tracks], dtype=np.float64)
+    base = s_robot + obstacles.radius + radius_sigma + parameters.margin
+    inflated = base + np.minimum(parameters.max_sigma, obstacles.sigma)
     lost = np.array([t.particles is not None for t in tracks], dtype=np.bool_)
-    seen = ~lost
-    still = obstacles.static[seen]
+    known = ~lost
+    static = obstacles.static[known]
     time = parameters.bend_time
-    onward = mean_velocity(obstacles.velocity, obstacles.turn_rate, time)
+    forward = mean_velocity(obstacles.velocity, obstacles.turn_rate, time)
     parts = [
         Hypotheses(
-            obstacles.position[seen],
-            onward[seen],
-            np.where(still, base[seen], swollen[seen]),
-            np.where(still, parameters.static_horizon, parameters.moving_horizon),
-            np.ones(int(seen.sum())),
+            obstacles.position[known],
+            forward[known],
+            np.where(static, base[known], inflated[known]),
+            np.where(static, parameters.static_horizon, parameters.moving_horizon),
+            np.ones(int(known.sum())),
         )
     ]
-    reversing = seen & obstacles.moving
+    reversing = known & obstacles.moving
     if parameters.reversal_weight > 0.0 and reversing.any():
         n = int(reversing.sum())
         backward = mean_velocity(obstacles.velocity, -obstacles.turn_rate, time)
@@ -98,7 +93,7 @@ def collision_hypotheses(
             Hypotheses(
                 obstacles.position[reversing],
                 -backward[reversing],
-                swollen[reversing],
+                inflated[reversing],
                 np.full(n, parameters.reversal_horizon),
                 np.full(n, parameters.reversal_weight),
             )
@@ -119,11 +114,7 @@ def collision_hypotheses(
     if parameters.reachable:
         parts.append(reachable_discs(tracks, obstacles, base, parameters, local_map))
     return Hypotheses(
-        np.concatenate([p.position for p in parts]),
-        np.concatenate([p.velocity for p in parts]),
-        np.concatenate([p.radius for p in parts]),
-        np.concatenate([p.horizon for p in parts]),
-        np.concatenate([p.weight for p in parts]),
+        *(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Hypotheses))
     )
 
 
@@ -134,26 +125,26 @@ def reachable_discs(
     parameters: SafetyFilterParameters,
     local_map: "LocalMap",
 ) -> Hypotheses:
-    """All that unseen movers can have reached, as still discs about where they were seen last.
+    """Return the reachable sets of unseen movers, as static discs at their latest detections.
 
-    A disc lasts until its place is looked at or it is too old.
+    A disc lasts until its centre is seen or it is too old.
 
     Args:
         tracks: of the belief.
-        obstacles: the same tracks as arrays.
-        base: radii at which they count as touched when seen (n,) [m].
+        obstacles: the tracks as arrays.
+        base: collision distances of visible tracks (n,) [m].
         parameters: growth and age.
-        local_map: when a place was last looked at.
+        local_map: ages of positions.
     """
     p = parameters
-    place = np.array([t.last_seen for t in tracks], dtype=np.float64).reshape(-1, 2)
-    unseen = obstacles.age - local_map.age_at(place) < p.reachable_delay
+    centre = np.array([t.last_seen for t in tracks], dtype=np.float64).reshape(-1, 2)
+    unseen = obstacles.age - local_map.age_at(centre) < p.reachable_delay
     kept = obstacles.moving & (obstacles.age > p.reachable_delay) & unseen
     kept &= obstacles.age <= p.reachable_age
     grown = obstacles.speed * np.maximum(0.0, obstacles.age - p.reachable_delay)
     n = int(kept.sum())
     return Hypotheses(
-        place[kept],
+        centre[kept],
         np.zeros((n, 2)),
         base[kept] + np.minimum(p.reachable_radius, grown[kept]),
         np.full(n, p.static_horizon),

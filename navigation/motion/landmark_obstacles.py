@@ -1,4 +1,4 @@
-"""Known landmarks as what they also are: obstacles that stand."""
+"""Known landmarks as static obstacles."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,15 +11,14 @@ from navigation.parameters.motion import LandmarkParameters
 
 
 class LandmarkObstacles:
-    """Adds the landmarks near the robot to what its planner must avoid.
+    """Landmarks near the robot as static tracks of the belief.
 
-    They are where the robot's map has them, which is wrong for one that somebody moved, and
-    have ids below zero, which no track has.
+    Their positions are those of the robot's map; their ids are negative.
 
     Args:
-        known: place of every landmark in W by its name [m].
+        known: position of every landmark in W by its name [m].
         radius: of a landmark [m].
-        parameters: how near one matters, and how sure its place is.
+        parameters: attention range and standard deviation.
     """
 
     def __init__(
@@ -30,30 +29,27 @@ class LandmarkObstacles:
     ) -> None:
         self._range = parameters.attention_range
         self._tracks = tuple(
-            _standing(number - len(known), name, place, radius, parameters.sigma)
-            for number, (name, place) in enumerate(known.items())
+            _static_track(number - len(known), name, position, radius, parameters.sigma)
+            for number, (name, position) in enumerate(known.items())
         )
-        self._places = tuple(known.values())
 
     def added_to(self, belief: Belief) -> Belief:
-        """`belief` with a static track of every landmark near; itself where there is none."""
-        here_x, here_y, _ = belief.pose.tolist()
+        """Return `belief` with a static track of every landmark in range."""
         near = tuple(
             track
-            for track, (x, y) in zip(self._tracks, self._places, strict=True)
-            if hypot(x - here_x, y - here_y) < self._range
+            for track in self._tracks
+            if hypot(*(track.position - belief.pose[:2]).tolist()) < self._range
         )
         return replace(belief, tracks=near + belief.tracks) if near else belief
 
 
-def _standing(
-    number: int, name: str, place: tuple[float, float], radius: float, sigma: float
+def _static_track(
+    number: int, name: str, position: tuple[float, float], radius: float, sigma: float
 ) -> Track:
-    position = np.array(place)
     return Track(
         id=number,
         label=name,
-        position=position,
+        position=np.array(position),
         velocity=np.zeros(2),
         covariance=sigma**2 * np.eye(4),
         radius=radius,
@@ -61,6 +57,6 @@ def _standing(
         motion=Motion.STATIC,
         hits=0,
         age=0.0,
-        last_seen=position,
+        last_seen=np.array(position),
         visible=False,
     )

@@ -21,16 +21,16 @@ def move_to_goal(
     *,
     side: int = 0,
 ) -> Array:
-    """Direction phi_m of the move-to-goal field (Yoo & Kim, eq. (8)).
+    """Return the direction phi_m of the move-to-goal field (Yoo & Kim, eq. (8)).
 
-    The signs are plus and theta_c is counted from the robot's heading: as printed the
-    field leads away from the destination. Beyond d_con it points at the destination.
+    The signs are plus and theta_c is counted from the robot's heading: the printed field leads
+    away from the destination. Beyond d_con it points at the destination.
 
     Args:
         position: of the robot in W (..., 2) [m].
-        heading: of the robot (...) [rad]; matters only for k_alpha != 1.
+        heading: of the robot (...) [rad]; has an effect for k_alpha != 1 only.
         target: destination (2,) [m].
-        target_heading: heading to arrive with [rad].
+        target_heading: arrival heading [rad].
         parameters: gains, d_con and the form of the arrival.
         side: remembered sign of beta for |beta| near pi, 0 for none.
 
@@ -68,21 +68,21 @@ def muf(
     *,
     side: int = 0,
 ) -> Array:
-    """u_muf of eq. (8) with k_rho = 1: unit vectors (..., 2), zero at the destination.
+    """Return u_muf of eq. (8) with k_rho = 1: unit vectors (..., 2), zero at the destination.
 
-    k_rho scales the speed, see `arrival_gain`; the third component of the printed vector
-    is a heading, which the body turns to by itself. Arguments as for `move_to_goal`.
+    k_rho scales the speed, see `arrival_gain`. The third component of the printed vector is a
+    heading and is not part of the field. Arguments as for `move_to_goal`.
     """
     phi = move_to_goal(position, heading, target, target_heading, parameters, side=side)
-    there = np.all(np.asarray(position) == target, axis=-1)
+    arrived = np.all(np.asarray(position) == target, axis=-1)
     unit: Array = np.stack([np.cos(phi), np.sin(phi)], axis=-1)
-    return np.where(there[..., None], 0.0, unit)
+    return np.where(arrived[..., None], 0.0, unit)
 
 
 def _posture_turn(
     offset: Array, bearing: Array, target_heading: float, parameters: UnivectorParameters
 ) -> Array:
-    """Kim's posture field: turn against the bearing of a point beyond the destination."""
+    """Return the turn of Kim's posture field away from a point beyond the destination [rad]."""
     p = parameters
     beyond = p.posture_offset * np.array([np.cos(target_heading), np.sin(target_heading)])
     ahead = offset + beyond
@@ -90,10 +90,10 @@ def _posture_turn(
 
 
 class ArrivalSide:
-    """Remembers on which side to circle a destination that must be entered from beyond.
+    """Hysteresis of the side of a ramped arrival from beyond the destination.
 
     At |beta| = pi both sides are equal and noise would make the field chatter. Every leg of a
-    mission begins without a side; only the ramped arrival has one.
+    mission begins without a side.
     """
 
     def __init__(self, parameters: UnivectorParameters) -> None:
@@ -102,7 +102,7 @@ class ArrivalSide:
         self._leg = -1
 
     def update(self, position: Array, task: Task) -> int:
-        """Sign to give beta at `position` (2,) [m] on the way of `task`, 0 while it is free."""
+        """Return the sign of beta at `position` (2,) [m] for `task`, 0 for no side."""
         p = self._parameters
         if p.arrival != "ramped":
             return 0
@@ -118,7 +118,7 @@ class ArrivalSide:
 
 
 def arrival_gain(distance: float, is_goal: bool, parameters: UnivectorParameters) -> float:
-    """k_rho of eq. (8): one at via points, falling towards the goal; scales the speed only."""
+    """Return k_rho of eq. (8), the scale of the speed: 1 at via points, less near the goal."""
     if not is_goal:
         return 1.0
     slow = parameters.slow_fraction

@@ -1,8 +1,7 @@
-"""On which side to pass an obstacle, remembered and agreed upon with its neighbours.
+"""Passing side of obstacles: remembered, and common to a group.
 
-Eq. (9) takes the short way round each obstacle by itself. Between two obstacles that the
-robot cannot go through that sends it into the gap, and near the line to the destination
-the side may flip from step to step.
+Eq. (9) takes the shorter side of each obstacle. It leads the robot into a gap that is too narrow,
+and near the line to the destination the side may flip from step to step.
 """
 
 import numpy as np
@@ -17,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 def groups(obstacles: ObstacleSet, width: float) -> NDArray[np.int64]:
-    """Number of the group of each obstacle; gaps in a group are narrower than `width` [m] (n,)."""
+    """Return the group of each obstacle (n,); gaps in a group are narrower than `width` [m]."""
     if len(obstacles) == 0:
         return np.zeros(0, dtype=np.int64)
     offset = obstacles.position[:, None] - obstacles.position
@@ -27,18 +26,14 @@ def groups(obstacles: ObstacleSet, width: float) -> NDArray[np.int64]:
 
 
 class PassingSides:
-    """Signs of (9) for one robot, kept from step to step.
-
-    Args:
-        parameters: whether to group, whether to remember, and the ring of (9).
-    """
+    """Signs of (9), kept from step to step."""
 
     def __init__(self, parameters: UnivectorParameters) -> None:
         self._parameters = parameters
         self._signs: dict[int, float] = {}
 
     def signs(self, position: Array, target: Array, obstacles: ObstacleSet, s_oe: Array) -> Array:
-        """Sign with which to pass each obstacle (n,).
+        """Return the sign of (9) for each obstacle (n,).
 
         Args:
             position: of the robot (2,) [m].

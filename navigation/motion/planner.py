@@ -1,4 +1,4 @@
-"""How to move during the next footstep: field, speed, gate, filter, body."""
+"""Motion planner: univector field, velocity modification, safety filter, velocity mapping."""
 
 from dataclasses import replace
 from math import atan2, cos, hypot, sin
@@ -31,7 +31,7 @@ from navigation.motion.waypoint_search import search_waypoint
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import psi_obstacle, psi_self
-from navigation.transform import rotate, velocity_in_world
+from navigation.transform import velocity_in_world
 from navigation.value import value
 
 Array = NDArray[np.float64]
@@ -41,14 +41,14 @@ _NO_DIRECTION = 1e-9
 
 @value
 class _Wanted:
-    """What field and velocity modification ask for, before the filter.
+    """Result of field and velocity modification, before the safety filter.
 
     Attributes:
         direction: in W [rad].
         speed: along it [m/s].
-        situation: what velocity modification found.
-        virtual: virtual obstacles in force.
-        field: what the direction was taken from; None while only the heading is left to turn to.
+        situation: outcome of velocity modification.
+        virtual: active virtual obstacles.
+        field: vector field; None for a turn on the spot.
     """
 
     direction: float
@@ -61,7 +61,8 @@ class _Wanted:
 class Planner:
     """Modified univector field with velocity modification (Yoo & Kim, section III).
 
-    The profile `extended` adds a confidence gate and a time-to-contact filter.
+    The profile `extended` adds a speed limit towards unseen ground, a safety filter and a rear
+    check.
     """
 
     def __init__(self, parameters: NavigationParameters, limits: SpeedLimits) -> None:
@@ -69,7 +70,7 @@ class Planner:
 
         Args:
             parameters: profile.
-            limits: envelope of the walking layer.
+            limits: of the walking layer.
         """
         self._parameters = parameters
         self._limits = limits
@@ -80,7 +81,7 @@ class Planner:
         self._sides = PassingSides(parameters.univector)
         self._arrival = ArrivalSide(parameters.univector)
         self._rear_check: RearCheck | None = None
-        self._way: tuple[float, float] | None = None
+        self._path: tuple[float, float] | None = None
         self._body = np.zeros(3)
         self._direction: float | None = None
 
@@ -88,23 +89,23 @@ class Planner:
         """Decide the motion of the next footstep; call once per footstep.
 
         Args:
-            belief: what the robot believes now.
-            task: where it is to go.
+            belief: of the robot.
+            task: of the mission.
         """
         heading = float(belief.pose[2])
         if self._direction is None:
             self._direction = heading
         if task.done or belief.lost:
-            turn = self._parameters.velocity_mapping.lost_turn_rate
-            self._body = idle_velocity(not task.done, turn, self._limits)
-            return MotionDecision(self._body, self._direction)
+            turn_rate = self._parameters.velocity_mapping.lost_turn_rate
+            self._body = idle_velocity(not task.done, turn_rate, self._limits)
+            return MotionDecision(self._body.copy(), self._direction)
         obstacles = ObstacleSet.from_tracks(belief.tracks)
-        task = self._round_obstacles(belief, task, obstacles)
+        task = self._search_waypoint(belief, task, obstacles)
         scene, radii = self._scene(belief, task, obstacles)
         wanted = self._wanted(belief, task, scene)
         facing = self._facing(belief, task, wanted)
         course, speed = self._filtered(belief, wanted, facing, obstacles)
-        self._way = course, speed
+        self._path = course, speed
         self._body = body_velocity(
             course,
             speed,
@@ -114,7 +115,7 @@ class Planner:
             turn_gain=self._parameters.velocity_mapping.turn_gain,
         )
         return MotionDecision(
-            self._body,
+            self._body.copy(),
             wanted.direction,
             wanted.speed,
             wanted.situation,
@@ -124,37 +125,30 @@ class Planner:
             field=wanted.field,
         )
 
-    def _round_obstacles(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
-        """The task, or one on the way round still obstacles that block the straight way."""
+    def _search_waypoint(self, belief: Belief, task: Task, obstacles: ObstacleSet) -> Task:
+        """Return `task`, or one with a waypoint around static obstacles that block the path."""
         p = self._parameters
         if not p.waypoint_search.enabled or task.aligning:
             return task
-        still = obstacles.where(obstacles.static)
-        radii = physical_radius(still, p.univector) + p.univector.margin
-        here = belief.pose[:2]
-        point = search_waypoint(here, task.target, still.position, radii, p.waypoint_search)
-        if point is task.target:
+        static = obstacles.where(obstacles.static)
+        radii = physical_radius(static, p.univector) + p.univector.margin
+        waypoint = search_waypoint(
+            belief.pose[:2], task.target, static.position, radii, p.waypoint_search
+        )
+        if waypoint is task.target:
             return task
-        dx, dy = (task.target - point).tolist()
-        return replace(task, target=point, heading=atan2(dy, dx), is_goal=False)
+        dx, dy = (task.target - waypoint).tolist()
+        return replace(task, target=waypoint, heading=atan2(dy, dx), is_goal=False)
 
     def _filtered(
-        self,
-        belief: Belief,
-        wanted: _Wanted,
-        facing: Facing,
-        obstacles: ObstacleSet,
+        self, belief: Belief, wanted: _Wanted, facing: Facing, obstacles: ObstacleSet
     ) -> tuple[float, float]:
-        """Direction [rad] and speed [m/s] that touch nothing soon."""
+        """Return direction [rad] and speed [m/s] after the safety filter."""
         p = self._parameters
         if not p.safety_filter.enabled:
             return wanted.direction, wanted.speed
         discs = collision_hypotheses(
-            belief.tracks,
-            obstacles,
-            p.univector.s_robot,
-            p.safety_filter,
-            belief.local_map,
+            belief.tracks, obstacles, p.univector.s_robot, p.safety_filter, belief.local_map
         )
         velocity = self._safety_filter.choose(
             belief.pose,
@@ -169,17 +163,13 @@ class Planner:
     def _scene(
         self, belief: Belief, task: Task, obstacles: ObstacleSet
     ) -> tuple[FieldScene, tuple[tuple[int, float], ...]]:
-        """The field's obstacles with their extended radii."""
+        """Return the inputs of the field, and (track id, S_oe) of its obstacles."""
         p = self._parameters
         known = [t.particles is None or t.age <= p.univector.memory for t in belief.tracks]
         obstacles = obstacles.where(np.array(known, dtype=np.bool_))
         psi_sf = psi_self(belief.pose_covariance, p.evaluation)
-        psi_ob = psi_obstacle(
-            obstacles,
-            belief.pose[:2],
-            velocity_in_world(belief.pose, self._body),
-            p.evaluation,
-        )
+        velocity = velocity_in_world(belief.pose, self._body)
+        psi_ob = psi_obstacle(obstacles, belief.pose[:2], velocity, p.evaluation)
         s_oe = extended_radius(obstacles, psi_sf, psi_ob, p.univector)
         side = self._arrival.update(belief.pose[:2], task)
         signs = None
@@ -189,7 +179,7 @@ class Planner:
         return scene, tuple(zip(obstacles.ids.tolist(), s_oe.tolist(), strict=True))
 
     def _wanted(self, belief: Belief, task: Task, scene: FieldScene) -> _Wanted:
-        """Direction of the field and speed along it, before the filter."""
+        """Return direction of the field and speed, before the safety filter."""
         p = self._parameters
         pose = belief.pose
         if task.aligning:
@@ -202,14 +192,14 @@ class Planner:
         distance = hypot(*(task.target - pose[:2]).tolist())
         desired = self._limits.vx * arrival_gain(distance, task.is_goal, p.univector)
         encounters = self._encounters(pose, direction, scene)
-        speed = self._modified(encounters, direction, velocity, desired)
+        speed = self._modified_speed(encounters, direction, velocity, desired)
         if p.moving_obstacles.virtual_obstacle == "printed":
             blocked = self._blocking(encounters, speed)
             virtual = self._field.printed_obstacles(pose, velocity, scene, blocked)
             if virtual:
                 direction = self._steer(pose, scene, virtual)
         self._direction = direction
-        allowed = min(speed.speed, self._unseen_ground_speed(belief, direction))
+        allowed = min(speed.speed, self._max_speed(belief, direction))
         return _Wanted(
             direction,
             allowed,
@@ -219,20 +209,20 @@ class Planner:
         )
 
     def _facing(self, belief: Belief, task: Task, wanted: _Wanted) -> Facing:
-        """Where the body turns to: the task's heading at the goal, else to its way or aside."""
+        """Return the target heading: that of the goal, or the course with the rear check."""
         p = self._parameters
         if arriving(belief.pose[:2], task, p.univector.holonomic_distance):
             return Facing(task.heading)
-        # Only the deadline gaze hears what the body turned aside for.
+        # Only the deadline gaze answers look requests.
         if not p.rear_check.enabled or p.gaze.mode != "deadline":
             return Facing()
         if self._rear_check is None:
             reach = p.gaze.max_pan + p.gaze.box_fraction * belief.view.horizontal_fov
-            forward = self._limits.vx
-            self._rear_check = RearCheck(p.rear_check, reach, p.univector.s_robot, forward)
-        course, speed = self._way or (wanted.direction, wanted.speed)
-        aside = self._rear_check.aside(belief, course, speed)
-        return Facing(aside=aside, look_request=self._rear_check.look_request())
+            s_robot, v_max = p.univector.s_robot, self._limits.vx
+            self._rear_check = RearCheck(p.rear_check, reach, s_robot, v_max)
+        course, speed = self._path or (wanted.direction, wanted.speed)
+        angle = self._rear_check.body_angle(belief, course, speed)
+        return Facing(offset=angle, look_request=self._rear_check.look_request())
 
     def _steer(self, pose: Array, scene: FieldScene, virtual: ActiveVirtualObstacles) -> float:
         u_x, u_y = self._field.at(pose[:2], float(pose[2]), scene, virtual).tolist()
@@ -241,52 +231,31 @@ class Planner:
         return atan2(u_y, u_x)
 
     def _encounters(self, pose: Array, direction: float, scene: FieldScene) -> dict[int, Encounter]:
-        """The movers in axes of the line of motion, by their index in the scene."""
+        """Return the movers in axes of the line of motion, by their index in the scene."""
         p = self._parameters
         radii = scene.s_oe
         if p.moving_obstacles.radius == "physical":
             radii = physical_radius(scene.obstacles, p.univector) + p.moving_obstacles.margin
-        encounters = {}
-        for index in np.nonzero(scene.obstacles.speed >= p.moving_obstacles.min_speed)[0].tolist():
-            x, y = (scene.obstacles.position[index] - pose[:2]).tolist()
-            u, w = scene.obstacles.velocity[index].tolist()
-            position, velocity = rotate(-direction, (x, y)), rotate(-direction, (u, w))
-            encounters[index] = Encounter(*position, *velocity, float(radii[index]))
-        return encounters
+        o = scene.obstacles
+        return {
+            index: Encounter.on_line(
+                direction, o.position[index] - pose[:2], o.velocity[index], float(radii[index])
+            )
+            for index in np.nonzero(o.speed >= p.moving_obstacles.min_speed)[0].tolist()
+        }
 
-    def _modified(
+    def _modified_speed(
         self, encounters: dict[int, Encounter], direction: float, velocity: Array, desired: float
     ) -> ModifiedSpeed:
-        p, limits = self._parameters.moving_obstacles, self._limits
+        p = self._parameters.moving_obstacles
         now = max(0.0, float(velocity[0]) * cos(direction) + float(velocity[1]) * sin(direction))
-        movers = tuple(encounters.values())
-        if p.velocity_modification == "off" or not movers:
+        if p.velocity_modification == "off" or not encounters:
             return ModifiedSpeed(desired, "free")
-        if p.velocity_modification == "closed":
-            return modify_speed(
-                movers,
-                desired,
-                now,
-                v_max=limits.vx,
-                acceleration=limits.acceleration,
-                footstep=limits.footstep,
-                horizon=p.horizon,
-                wait_in_band=p.wait_in_band,
-            )
-        return sample_speed(
-            movers,
-            desired,
-            now,
-            v_max=limits.vx,
-            acceleration=limits.acceleration,
-            samples=p.samples,
-            horizon=p.horizon,
-            acceleration_time=p.acceleration_time,
-            wait_in_band=p.wait_in_band,
-        )
+        modify = modify_speed if p.velocity_modification == "closed" else sample_speed
+        return modify(tuple(encounters.values()), desired, now, self._limits, p)
 
     def _blocking(self, encounters: dict[int, Encounter], speed: ModifiedSpeed) -> tuple[int, ...]:
-        """Movers no speed avoids: case (c), and (b) with the escape out of reach."""
+        """Return movers that no speed avoids: case (c), and (b) without a reachable escape."""
         definite = {
             index
             for index, e in encounters.items()
@@ -296,9 +265,9 @@ class Planner:
             definite |= {i for i, e in encounters.items() if e.in_band()}
         return tuple(sorted(definite))
 
-    def _unseen_ground_speed(self, belief: Belief, direction: float) -> float:
-        """Largest speed towards ground the robot may never have seen [m/s]."""
+    def _max_speed(self, belief: Belief, direction: float) -> float:
+        """Return the maximum speed in `direction`, less towards unseen ground [m/s]."""
         p = self._parameters.unseen_ground
-        if not p.enabled:
+        if not p.enabled or ground_seen(belief, direction, p):
             return self._limits.vx
-        return self._limits.vx if ground_seen(belief, direction, p) else p.speed
+        return p.speed

@@ -1,8 +1,7 @@
-"""Looks over the shoulder: the body turns aside until the gaze has reached the ground behind.
+"""Rear check: the body turns until the gaze reaches the ground behind the robot.
 
-The head does not reach all around, so whatever comes up from behind stays unseen however the
-gaze is chosen. The planner therefore turns the body, a little while it walks on, more when the
-ground right behind is due, and tells the gaze what it turned for.
+The gaze does not reach all around. The planner therefore turns the body, a little while the robot
+walks on, more if a look at the ground right behind is overdue, and sends the gaze a look request.
 """
 
 from math import copysign, hypot
@@ -21,47 +20,47 @@ Array = NDArray[np.float64]
 
 @value
 class Sector:
-    """Ground that the gaze reaches only if the body turns aside.
+    """Ground out of reach of the gaze of a body that faces its course.
 
     Attributes:
-        aside: angle of the body to its way from which all of it is reached, left positive [rad].
-        bearing: of its rays from the way (n,) [rad].
+        body_angle: minimum angle from the course to the heading at which the gaze reaches the
+            whole sector, left positive [rad].
+        bearing: of its rays from the course (n,) [rad].
         weight: of its urgency.
     """
 
-    aside: float
+    body_angle: float
     bearing: Array
     weight: float
 
     @property
     def middle(self) -> float:
-        """Bearing of its middle from the way [rad]."""
+        """Bearing of its middle from the course [rad]."""
         return 0.5 * float(self.bearing[0] + self.bearing[-1])
 
     @property
-    def half(self) -> float:
-        """Half its width [rad]."""
+    def half_width(self) -> float:
+        """Half its angular width [rad]."""
         return 0.5 * abs(float(self.bearing[-1] - self.bearing[0]))
 
 
 class RearCheck:
-    """Chooses what to turn aside for, keeps to it until that was seen, and turns back."""
+    """State of the rear check: the sector that the body turns to, if any."""
 
     def __init__(
         self, parameters: RearCheckParameters, reach: float, s_robot: float, speed: float
     ) -> None:
-        """Start with nothing to look at.
+        """Start without a sector.
 
         Args:
-            parameters: angles and deadlines.
-            reach: largest bearing that the gaze sees, to either side [rad].
+            parameters: angles and urgencies.
+            reach: maximum bearing of the gaze to either side [rad].
             s_robot: radius of the robot [m].
-            speed: the robot's largest [m/s].
+            speed: maximum speed of the robot [m/s].
         """
-        self._parameters = parameters
+        p = self._parameters = parameters
         self._s_robot = s_robot
-        p = parameters
-        self._fear = (
+        self._threat = (
             p.mover_speed * speed,
             s_robot,
             p.min_approach,
@@ -73,66 +72,71 @@ class RearCheck:
         self._sectors = sectors(p, reach)
         self._weight = np.array([s.weight for s in self._sectors])
         self._bearing = np.concatenate([s.bearing for s in self._sectors])
-        self._extent = np.array([(s.middle, s.half) for s in self._sectors])
-        self._chosen: int | None = None
-        self._since = 0.0
+        self._extent = np.array([(s.middle, s.half_width) for s in self._sectors])
+        self._sector: int | None = None
+        self._start = 0.0
         self._course = 0.0
-        self._rest_until = 0.0
+        self._retry = 0.0
 
-    def aside(self, belief: Belief, course: float, speed: float) -> float:
-        """Angle of the body to its way for the next footstep, left positive [rad].
+    def body_angle(self, belief: Belief, course: float, speed: float) -> float:
+        """Return the angle from the course to the heading, left positive [rad].
 
-        What the body turned aside for stays where it is in W, also when the way turns.
+        The sector is fixed in W, even if the course changes.
 
         Args:
-            belief: what the robot believes.
-            course: direction of the way in W [rad].
-            speed: along it [m/s].
+            belief: of the robot.
+            course: direction of motion in W [rad].
+            speed: along the course [m/s].
         """
         p, now = self._parameters, belief.time
-        if self._must_leave(belief):
-            self._chosen = None
+        if self._mover_near(belief):
+            self._sector = None
             return 0.0
-        if self._chosen is not None:
-            late = now - self._since > p.max_turn_time
-            if late or self.urgency(belief, self._course, speed)[self._chosen] < p.stop_urgency:
-                self._chosen = None
-                self._rest_until = now + p.retry_delay if late else now
-        if self._chosen is None and now >= self._rest_until:
+        if self._sector is not None:
+            late = now - self._start > p.max_turn_time
+            if late or self.urgency(belief, self._course, speed)[self._sector] < p.stop_urgency:
+                self._sector = None
+                self._retry = now + p.retry_delay if late else now
+        if self._sector is None and now >= self._retry:
             weighted = self._weight * self.urgency(belief, course, speed)
             worst = int(np.argmax(weighted))
             if weighted[worst] > p.start_urgency:
-                self._chosen, self._since, self._course = worst, now, course
-        if self._chosen is None:
+                self._sector, self._start, self._course = worst, now, course
+        if self._sector is None:
             return 0.0
-        aside = self._sectors[self._chosen].aside
-        side = copysign(1.0, aside)
-        return side * min(max(side * wrap(self._course + aside - course), 0.0), p.far_angle)
+        angle = self._sectors[self._sector].body_angle
+        side = copysign(1.0, angle)
+        return side * min(max(side * wrap(self._course + angle - course), 0.0), p.far_angle)
 
     def look_request(self) -> float | None:
-        """Direction in W of what the body turns aside for, None for nothing [rad]."""
-        return None if self._chosen is None else self._course + self._sectors[self._chosen].middle
+        """Return the direction of the sector in W, None for none [rad]."""
+        return None if self._sector is None else self._course + self._sectors[self._sector].middle
 
     def urgency(self, belief: Belief, course: float, speed: float) -> Array:
-        """How overdue a look at each sector is (4,): at its ground, or for a lost mover.
+        """Return the urgency of a look at each sector (4,), for its ground or a lost mover.
 
         Args:
-            belief: what the robot believes.
-            course: direction of the way in W [rad].
-            speed: along it [m/s].
+            belief: of the robot.
+            course: direction of motion in W [rad].
+            speed: along the course [m/s].
         """
-        points = rear_check_kernel.places(belief.pose, course, self._rings, self._bearing)
-        age, count = belief.local_map.age_at(points), len(self._sectors)
-        most = rear_check_kernel.of_ground(
-            age, self._rings, self._bearing, speed, self._fear, count
+        points = rear_check_kernel.ray_points(belief.pose, course, self._rings, self._bearing)
+        urgency = rear_check_kernel.ground_urgency(
+            belief.local_map.age_at(points),
+            self._rings,
+            self._bearing,
+            speed,
+            self._threat,
+            len(self._sectors),
         )
         for track in belief.tracks:
             if track.particles is not None:
-                most = np.maximum(most, self._of_lost(track, belief.pose, course, speed))
-        return most
+                lost = self._lost_urgency(track, belief.pose, course, speed)
+                urgency = np.maximum(urgency, lost)
+        return urgency
 
-    def _must_leave(self, belief: Belief) -> bool:
-        """Whether something that may move is so near that there is no time to look round."""
+    def _mover_near(self, belief: Belief) -> bool:
+        """Whether a non-static track is too near for a rear check."""
         reach = self._parameters.clearance + self._s_robot
         x, y, _ = belief.pose.tolist()
         for track in belief.tracks:
@@ -142,11 +146,11 @@ class RearCheck:
                     return True
         return False
 
-    def _of_lost(self, track: Track, pose: Array, course: float, speed: float) -> Array:
-        """Urgency of a look at each sector for a lost track (4,)."""
+    def _lost_urgency(self, track: Track, pose: Array, course: float, speed: float) -> Array:
+        """Return the urgency of a look at each sector for a lost track (4,)."""
         cloud = track.particles
         assert cloud is not None
-        return rear_check_kernel.of_cloud(
+        return rear_check_kernel.cloud_urgency(
             cloud.positions,
             cloud.weights,
             (track.age, track.radius, max(self._parameters.rings)),
@@ -154,17 +158,17 @@ class RearCheck:
             course,
             self._extent,
             speed,
-            self._fear,
+            self._threat,
         )
 
 
 def sectors(parameters: RearCheckParameters, reach: float) -> tuple[Sector, ...]:
-    """What is just out of the gaze's `reach` [rad] and what is right behind, on both sides."""
+    """Return the sectors just beyond the gaze's `reach` [rad] and right behind, on both sides."""
     p = parameters
     return tuple(
-        Sector(side * aside, side * np.linspace(reach + start, reach + aside, p.rays), weight)
+        Sector(side * angle, side * np.linspace(reach + start, reach + angle, p.rays), weight)
         for side in (1.0, -1.0)
-        for start, aside, weight in (
+        for start, angle, weight in (
             (0.0, p.near_angle, 1.0),
             (p.near_angle, p.far_angle, p.far_weight),
         )

@@ -1,8 +1,8 @@
-"""Compiled part of the looks over the shoulder: how overdue each sector of the ground is.
+"""Compiled urgency of the rear check for each sector of the ground.
 
-A fear is (feared speed of what was not seen [m/s], radius of the robot [m], least speed at which
-it comes nearer [m/s], shortest time to contact counted [s], age from which nothing grows worse [s],
-largest urgency of a point [1]). Sectors are (middle, half width) from the way (n, 2) [rad].
+A threat is (assumed speed of an unseen mover [m/s], radius of the robot [m], and the bounds of the
+urgency: minimum closing speed [m/s], minimum time to collision [s], maximum age [s], maximum
+urgency [1]). Sectors are (middle, half width) from the course (n, 2) [rad].
 """
 
 from math import atan2, ceil, cos, hypot, pi, sin
@@ -12,34 +12,34 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Fear = tuple[float, float, float, float, float, float]
+Threat = tuple[float, float, float, float, float, float]
 
 
 @njit(cache=True)
-def urgency(age: float, gap: float, bearing: float, speed: float, fear: Fear) -> float:
-    """Age over the time in which what comes from somewhere is here, bounded.
+def urgency(age: float, gap: float, bearing: float, speed: float, threat: Threat) -> float:
+    """Return age over time to collision, bounded.
 
     Args:
-        age: since it was seen there [s].
-        gap: between the robot and what comes [m].
-        bearing: of it from the way [rad].
-        speed: of the robot along the way [m/s].
-        fear: of what was not seen.
+        age: since the latest look [s].
+        gap: to an unseen mover [m].
+        bearing: from the course [rad].
+        speed: of the robot along the course [m/s].
+        threat: unseen mover.
     """
-    approach = max(fear[2], fear[0] + speed * cos(bearing))
-    contact = max(fear[3], gap / approach)
-    return min(fear[5], min(fear[4], age) / contact)
+    approach = max(threat[2], threat[0] + speed * cos(bearing))
+    time = max(threat[3], gap / approach)
+    return min(threat[5], min(threat[4], age) / time)
 
 
 @njit(cache=True)
-def places(pose: Array, course: float, distance: Array, bearing: Array) -> Array:
-    """Points in W (n m, 2) [m] at distances (m,) on each of some rays.
+def ray_points(pose: Array, course: float, distance: Array, bearing: Array) -> Array:
+    """Return points in W (n m, 2) [m] at every distance on every ray.
 
     Args:
         pose: of the robot (3,) [m, m, rad].
-        course: direction of the way in W [rad].
-        distance: of the points on every ray (m,) [m].
-        bearing: of the rays from the way (n,) [rad].
+        course: direction of motion in W [rad].
+        distance: of the points on a ray (m,) [m].
+        bearing: of the rays from the course (n,) [rad].
     """
     m = len(distance)
     points = np.empty((len(bearing) * m, 2))
@@ -52,30 +52,30 @@ def places(pose: Array, course: float, distance: Array, bearing: Array) -> Array
 
 
 @njit(cache=True)
-def of_ground(
-    age: Array, distance: Array, bearing: Array, speed: float, fear: Fear, count: int
+def ground_urgency(
+    age: Array, distance: Array, bearing: Array, speed: float, threat: Threat, count: int
 ) -> Array:
-    """Mean urgency of a look at the ground of each of `count` sectors (count,).
+    """Return the mean urgency of the ground of each of `count` sectors (count,).
 
     Args:
-        age: of the ground at `places` (n m,) [s].
-        distance: of the points on every ray (m,) [m].
-        bearing: of the rays from the way, one sector's after the other's (n,) [rad].
-        speed: of the robot along the way [m/s].
-        fear: of what was not seen.
-        count: of the sectors.
+        age: of the ground at `ray_points` (n m,) [s].
+        distance: of the points on a ray (m,) [m].
+        bearing: of the rays from the course, sector by sector (n,) [rad].
+        speed: of the robot along the course [m/s].
+        threat: unseen mover.
+        count: number of sectors.
     """
     m, rays = len(distance), len(bearing) // count
     mean = np.zeros(count)
     for i in range(len(bearing)):
         for j in range(m):
-            gap = distance[j] - fear[1] - fear[1]
-            mean[i // rays] += urgency(age[i * m + j], gap, bearing[i], speed, fear)
+            gap = distance[j] - threat[1] - threat[1]
+            mean[i // rays] += urgency(age[i * m + j], gap, bearing[i], speed, threat)
     return mean / (rays * m)
 
 
 @njit(cache=True)
-def of_cloud(
+def cloud_urgency(
     positions: Array,
     weights: Array,
     body: tuple[float, float, float],
@@ -83,19 +83,19 @@ def of_cloud(
     course: float,
     sectors: Array,
     speed: float,
-    fear: Fear,
+    threat: Threat,
 ) -> Array:
-    """Urgency of a look at each sector for what may be in it (n,).
+    """Return the urgency of each sector for the particles of a lost mover (n,).
 
     Args:
-        positions: where it may be in W (k, 2) [m].
-        weights: of them, sum to one (k,).
-        body: its age [s] and radius [m], and the distance from which it is not asked for [m].
+        positions: of the particles in W (k, 2) [m].
+        weights: of the particles, sum to one (k,).
+        body: age [s] and radius [m] of the mover, and the maximum distance of a particle [m].
         pose: of the robot (3,) [m, m, rad].
-        course: direction of the way in W [rad].
-        sectors: to look at (n, 2).
-        speed: of the robot along the way [m/s].
-        fear: of what was not seen.
+        course: direction of motion in W [rad].
+        sectors: n sectors (n, 2).
+        speed: of the robot along the course [m/s].
+        threat: unseen mover.
     """
     age, radius, reach = body
     total = np.zeros(len(sectors))
@@ -105,10 +105,10 @@ def of_cloud(
         if distance > reach:
             continue
         bearing = atan2(y, x) - course
-        share = weights[k] * urgency(age, distance - radius - fear[1], bearing, speed, fear)
+        vote = weights[k] * urgency(age, distance - radius - threat[1], bearing, speed, threat)
         for i in range(len(sectors)):
             off = bearing - sectors[i, 0]
             off -= 2.0 * pi * ceil((off - pi) / (2.0 * pi))
             if abs(off) <= sectors[i, 1]:
-                total[i] += share
+                total[i] += vote
     return total

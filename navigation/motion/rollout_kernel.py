@@ -1,7 +1,7 @@
-"""Compiled part of the collision filter: where velocities lead, and when they touch a disc.
+"""Compiled rollout of the safety filter: paths of candidate velocities, times to collision.
 
-An envelope is (forward, backward, lateral, turn, turn gain): the largest speeds [m/s, rad/s]
-and the turn rate per heading error [1/s].
+An envelope is (vx, vx_backward, vy, wz, turn gain): the maximum speeds [m/s, rad/s] and the
+turn rate per heading error [1/s].
 """
 
 from math import atan2, ceil, cos, hypot, inf, isfinite, isnan, pi, sin, sqrt
@@ -17,39 +17,39 @@ Velocity = tuple[float, float, float]
 
 @njit(cache=True)
 def wrapped(a: float) -> float:
-    """An angle in (-pi, pi] [rad]."""
+    """Wrap an angle into (-pi, pi] [rad]."""
     return a - 2.0 * pi * ceil((a - pi) / (2.0 * pi))
 
 
 @njit(cache=True)
 def body_velocity(error: float, speed: float, turn: float, envelope: Envelope) -> Velocity:
-    """Velocity of the body, scaled into the envelope so that its direction is kept.
+    """Return the velocity of the body, scaled into the envelope without a change of direction.
 
     Args:
-        error: of the direction of motion from the heading [rad].
+        error: direction of motion relative to the heading [rad].
         speed: along that direction [m/s].
-        turn: to where it is to face, from the heading [rad].
+        turn: target heading relative to the heading [rad].
         envelope: of the walking layer.
 
     Returns:
-        forward, left, turn [m/s, m/s, rad/s].
+        vx, vy, wz [m/s, m/s, rad/s].
     """
-    forward, left = speed * cos(error), speed * sin(error)
-    reach = envelope[0] if forward >= 0.0 else envelope[1]
-    excess = max(abs(forward) / reach, abs(left) / envelope[2])
+    vx, vy = speed * cos(error), speed * sin(error)
+    v_max = envelope[0] if vx >= 0.0 else envelope[1]
+    excess = max(abs(vx) / v_max, abs(vy) / envelope[2])
     scale = 1.0 / max(1.0, excess)
     rate = envelope[4] * wrapped(turn)
-    return scale * forward, scale * left, min(max(rate, -envelope[3]), envelope[3])
+    return scale * vx, scale * vy, min(max(rate, -envelope[3]), envelope[3])
 
 
 @njit(cache=True)
-def body_velocities(asked: Array, envelope: Envelope) -> Array:
-    """`body_velocity` of course, speed, heading and facing (4, n): (n, 3)."""
-    velocities = np.empty((asked.shape[1], 3))
-    for i in range(asked.shape[1]):
-        error, turn = asked[0, i] - asked[2, i], asked[3, i] - asked[2, i]
+def body_velocities(inputs: Array, envelope: Envelope) -> Array:
+    """Return `body_velocity` of course, speed, heading and facing (4, n): (n, 3)."""
+    velocities = np.empty((inputs.shape[1], 3))
+    for i in range(inputs.shape[1]):
+        error, turn = inputs[0, i] - inputs[2, i], inputs[3, i] - inputs[2, i]
         velocities[i, 0], velocities[i, 1], velocities[i, 2] = body_velocity(
-            error, asked[1, i], turn, envelope
+            error, inputs[1, i], turn, envelope
         )
     return velocities
 
@@ -60,54 +60,54 @@ def roll_out(
     heading: float,
     course: float,
     facing: float,
-    aside: float,
+    offset: float,
     body_now: Array,
     envelope: Envelope,
     gait: tuple[float, float, float, float, float],
     steps: int,
 ) -> tuple[Array, Array]:
-    """Where the body would really go, footstep by footstep, for every candidate.
+    """Roll out every candidate velocity footstep by footstep.
 
     Args:
         candidates: velocities in W (n, 2) [m/s].
         heading: of the robot [rad].
         course: direction of a candidate that stands [rad].
-        facing: heading to turn to; not a number for the direction of motion [rad].
-        aside: angle of the body to that direction, if it turns to it [rad].
+        facing: target heading; NaN for the direction of motion [rad].
+        offset: angle from the direction of motion to the target heading, if that is NaN [rad].
         body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
         envelope: of the walking layer.
-        gait: duration of a footstep [s], largest change from one to the next of velocity [m/s]
-            and of turn rate [rad/s], heading error from which the robot turns first [rad], and
-            speed up to which it need not [m/s].
-        steps: footsteps rolled out before the straight path.
+        gait: duration of a footstep [s], maximum change between footsteps of velocity [m/s]
+            and of turn rate [rad/s], heading error above which a fast path starts with a turn
+            [rad], and the speed of a fast path [m/s].
+        steps: number of footsteps before the straight path.
 
     Returns:
-        Velocities (steps + 2, n, 2) [m/s] and durations (steps + 2, n) [s] of the pieces: the
-        footsteps, the turn, and the straight path for ever.
+        Velocities (steps + 2, n, 2) [m/s] and durations (steps + 2, n) [s] of the segments: the
+        footsteps, the turn, and the infinite straight path.
     """
-    footstep, change, turn_change, turn_first_angle, sidestep_ratio = gait
+    footstep, change, turn_change, turn_first_angle, fast = gait
     velocity = np.zeros((steps + 2, len(candidates), 2))
     duration = np.empty((steps + 2, len(candidates)))
     for i in range(len(candidates)):
         speed = hypot(candidates[i, 0], candidates[i, 1])
         direction = course if speed < 1e-9 else atan2(candidates[i, 1], candidates[i, 0])
-        to = direction + aside if isnan(facing) else facing
-        forward, left, turn, now = body_now[0], body_now[1], body_now[2], heading
+        target = direction + offset if isnan(facing) else facing
+        vx, vy, wz, now = body_now[0], body_now[1], body_now[2], heading
         for step in range(steps):
-            goal = body_velocity(direction - now, speed, to - now, envelope)
-            du, dw = goal[0] - forward, goal[1] - left
-            share = min(1.0, change / max(hypot(du, dw), 1e-9))
-            forward += share * du
-            left += share * dw
-            turn += min(max(goal[2] - turn, -turn_change), turn_change)
-            middle = now + 0.5 * turn * footstep
+            goal = body_velocity(direction - now, speed, target - now, envelope)
+            dx, dy = goal[0] - vx, goal[1] - vy
+            scale = min(1.0, change / max(hypot(dx, dy), 1e-9))
+            vx += scale * dx
+            vy += scale * dy
+            wz += min(max(goal[2] - wz, -turn_change), turn_change)
+            middle = now + 0.5 * wz * footstep
             c, s = cos(middle), sin(middle)
-            velocity[step, i, 0] = c * forward - s * left
-            velocity[step, i, 1] = s * forward + c * left
+            velocity[step, i, 0] = c * vx - s * vy
+            velocity[step, i, 1] = s * vx + c * vy
             duration[step, i] = footstep
-            now += turn * footstep
+            now += wz * footstep
         wait = max(0.0, abs(wrapped(direction - now)) - turn_first_angle) / envelope[3]
-        duration[steps, i] = wait if speed > sidestep_ratio else 0.0
+        duration[steps, i] = wait if speed > fast else 0.0
         velocity[steps + 1, i, 0], velocity[steps + 1, i, 1] = candidates[i, 0], candidates[i, 1]
         duration[steps + 1, i] = inf
     return velocity, duration
@@ -115,7 +115,7 @@ def roll_out(
 
 @njit(cache=True)
 def contact_time(rate: float, square: float, outside: float) -> float:
-    """Time until two discs that approach touch, infinite if they pass, zero inside [s].
+    """Return the time to collision of two closing discs, inf if they pass, 0 inside [s].
 
     Args:
         rate: offset times relative velocity, negative [m²/s].
@@ -137,62 +137,62 @@ def contact_times(
     motions: Array,
     radii: Array,
 ) -> tuple[Array, Array]:
-    """Time to first contact of every path with every disc.
+    """Return time to collision and closing speed of every path with every disc.
 
-    Inside a disc it is zero if closing, and nothing if leaving.
+    Inside a disc the time is zero if closing, and infinite if leaving.
 
     Args:
-        velocity: of the pieces of n paths (k, n, 2) [m/s].
-        duration: of them (k, n) [s].
-        position: where the paths start (2,) [m].
+        velocity: of the segments of n paths (k, n, 2) [m/s].
+        duration: of the segments (k, n) [s].
+        position: start of the paths (2,) [m].
         centres: of m discs (m, 2) [m].
-        motions: their velocities (m, 2) [m/s].
-        radii: (m,) [m].
+        motions: velocities of the discs (m, 2) [m/s].
+        radii: of the discs (m,) [m].
 
     Returns:
-        Time to contact (n, m) [s], infinite for none; closing speed at the start (n, m), of
-        discs out of reach of the first piece zero [m/s].
+        Time to collision (n, m) [s], infinite for none; closing speed at the start (n, m), zero
+        for discs out of reach of the first segment [m/s].
     """
     k, n = duration.shape
     m = len(radii)
     first, closing = np.empty((n, m)), np.zeros((n, m))
     first[:] = inf
-    # The latest end of a piece, and the fastest that any path is until then.
+    # Latest end of each segment, and maximum speed of all paths until then.
     latest, fastest = np.zeros(k), np.zeros(k)
     start, moved = np.zeros((k + 1, n)), np.zeros((k, n, 2))
-    for piece in range(k):
-        fastest[piece] = fastest[max(piece - 1, 0)]
+    for segment in range(k):
+        fastest[segment] = fastest[max(segment - 1, 0)]
         for i in range(n):
-            u, w = velocity[piece, i, 0], velocity[piece, i, 1]
-            start[piece + 1, i] = start[piece, i] + duration[piece, i]
-            latest[piece] = max(latest[piece], start[piece + 1, i])
-            fastest[piece] = max(fastest[piece], hypot(u, w))
-            if piece < k - 1:
-                moved[piece + 1, i, 0] = moved[piece, i, 0] + duration[piece, i] * u
-                moved[piece + 1, i, 1] = moved[piece, i, 1] + duration[piece, i] * w
+            u, w = velocity[segment, i, 0], velocity[segment, i, 1]
+            start[segment + 1, i] = start[segment, i] + duration[segment, i]
+            latest[segment] = max(latest[segment], start[segment + 1, i])
+            fastest[segment] = max(fastest[segment], hypot(u, w))
+            if segment < k - 1:
+                moved[segment + 1, i, 0] = moved[segment, i, 0] + duration[segment, i] * u
+                moved[segment + 1, i, 1] = moved[segment, i, 1] + duration[segment, i] * w
     for j in range(m):
         ox, oy = centres[j, 0] - position[0], centres[j, 1] - position[1]
         mx, my, radius2 = motions[j, 0], motions[j, 1], radii[j] * radii[j]
         distance, speed = hypot(ox, oy), hypot(mx, my)
-        for piece in range(k):
-            # Only some discs can be touched by then.
-            within = (speed + fastest[piece]) * latest[piece]
-            if isfinite(latest[piece]) and distance - radii[j] > within:
+        for segment in range(k):
+            # Skip discs out of reach.
+            within = (speed + fastest[segment]) * latest[segment]
+            if isfinite(latest[segment]) and distance - radii[j] > within:
                 continue
             for i in range(n):
                 if first[i, j] < inf:
                     continue
-                begin = start[piece, i]
-                u, w = mx - velocity[piece, i, 0], my - velocity[piece, i, 1]
-                dx = ox + begin * mx - moved[piece, i, 0]
-                dy = oy + begin * my - moved[piece, i, 1]
+                begin = start[segment, i]
+                u, w = mx - velocity[segment, i, 0], my - velocity[segment, i, 1]
+                dx = ox + begin * mx - moved[segment, i, 0]
+                dy = oy + begin * my - moved[segment, i, 1]
                 rate = dx * u + dy * w
                 if rate >= 0.0:
                     continue
-                if piece == 0:
+                if segment == 0:
                     closing[i, j] = -rate / max(distance, 1e-6)
                 time = contact_time(rate, u * u + w * w, dx * dx + dy * dy - radius2)
-                if time <= duration[piece, i] and time < inf:
+                if time <= duration[segment, i] and time < inf:
                     first[i, j] = begin + time
     return first, closing
 
@@ -207,16 +207,16 @@ def penalties(
     contact: tuple[float, float, float],
     inside: tuple[float, float, float],
 ) -> Array:
-    """Penalty for the contacts of every path (n,).
+    """Return the collision penalty of every path (n,).
 
     Args:
-        first: times to contact (n, m) [s].
+        first: times to collision (n, m) [s].
         closing: speeds (n, m) [m/s].
-        depth: how deep the start is in each disc, a share of its radius, below 0 outside (m,).
-        horizon: time to contact below which a disc counts (m,) [s].
+        depth: of the start in each disc as a fraction of its radius, negative outside (m,).
+        horizon: maximum time to collision of each disc (m,) [s].
         weight: of each disc (m,).
-        contact: time below which a contact is urgent [s], penalty of urgent and of others [1].
-        inside: penalty of standing in a disc, more by its depth, more by the closing speed.
+        contact: time below which a collision is urgent [s], penalty of urgent and of others [1].
+        inside: penalty of a start in a disc, per depth, per closing speed [1, 1, s/m].
     """
     n, m = first.shape
     total = np.zeros(n)

@@ -1,8 +1,7 @@
-"""Time-to-contact filter: the best of many velocities, rolled out over real footsteps.
+"""Safety filter: the best of many candidate velocities by the time to collision of a rollout.
 
-The robot cannot turn on the spot in no time, so a velocity is not judged by its straight
-line alone: each candidate is first walked for some footsteps with the body's own motion,
-then turns as long as it must, then goes straight.
+The rollout of a candidate starts with some footsteps within the acceleration limits of the body,
+then turns towards the direction of motion if necessary, then continues straight.
 """
 
 from math import atan2, hypot, nan, pi
@@ -24,11 +23,11 @@ Array = NDArray[np.float64]
 
 @value
 class Paths:
-    """n piecewise straight paths of k pieces from one point.
+    """n piecewise straight paths of k segments from one point.
 
     Attributes:
-        velocity: of each piece (k, n, 2) [m/s].
-        duration: of each piece (k, n) [s]; the last may be infinite.
+        velocity: of each segment (k, n, 2) [m/s].
+        duration: of each segment (k, n) [s]; the last may be infinite.
     """
 
     velocity: Array
@@ -36,18 +35,15 @@ class Paths:
 
 
 def contact_times(paths: Paths, position: Array, discs: Hypotheses) -> tuple[Array, Array]:
-    """Time to first contact of every path with every disc.
-
-    Inside a disc it is zero if closing, and nothing if leaving.
+    """Return time to collision and closing speed of every path with every disc.
 
     Args:
-        paths: of the robot.
-        position: where they start (2,) [m].
+        paths: n paths of the robot.
+        position: start of the paths (2,) [m].
         discs: m discs at constant velocity.
 
     Returns:
-        Time to contact (n, m) [s], infinite for none; closing speed at the start (n, m), of
-        discs out of reach of the first piece zero [m/s].
+        As `rollout_kernel.contact_times`: (n, m) [s], (n, m) [m/s].
     """
     return rollout_kernel.contact_times(
         paths.velocity, paths.duration, position, discs.position, discs.velocity, discs.radius
@@ -55,7 +51,7 @@ def contact_times(paths: Paths, position: Array, discs: Hypotheses) -> tuple[Arr
 
 
 class SafetyFilter:
-    """Chooses among many velocities the one that costs least and touches nothing soon."""
+    """Choice of the candidate velocity with minimum cost."""
 
     def __init__(
         self,
@@ -67,8 +63,8 @@ class SafetyFilter:
 
         Args:
             parameters: horizons and penalties.
-            body: mapping to the body.
-            limits: envelope of the walking layer.
+            body: velocity mapping.
+            limits: of the walking layer.
         """
         self._parameters = parameters
         self._body = body
@@ -88,15 +84,15 @@ class SafetyFilter:
         body_now: Array,
         discs: Hypotheses,
     ) -> Array:
-        """Velocity in W to walk with (2,) [m/s].
+        """Return the best velocity in W (2,) [m/s].
 
         Args:
             pose: of the robot (3,) [m, m, rad].
-            wanted: velocity asked for in W (2,) [m/s].
-            course: its direction, also when it is zero [rad].
-            facing: where the body turns to.
+            wanted: desired velocity in W (2,) [m/s].
+            course: direction of `wanted`, defined also if that is zero [rad].
+            facing: target heading of the body.
             body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
-            discs: what not to touch.
+            discs: collision hypotheses.
         """
         near = discs.within_reach(pose[:2], self._limits.vx)
         if len(near) == 0:
@@ -114,7 +110,7 @@ class SafetyFilter:
         return best
 
     def candidates(self, wanted: Array, course: float) -> Array:
-        """The wanted velocity, standing, and a fan of directions and speeds (n, 2) [m/s]."""
+        """Return `wanted`, zero, and a fan of directions and speeds (n, 2) [m/s]."""
         angles = course + self._turns
         fan = self._speeds[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         return np.concatenate([wanted[None], np.zeros((1, 2)), fan])
@@ -129,7 +125,7 @@ class SafetyFilter:
         body_now: Array,
         discs: Hypotheses,
     ) -> Array:
-        """Penalty for contacts of every candidate (n,); arguments as for `choose`."""
+        """Return the collision penalty of every candidate (n,); arguments as for `choose`."""
         p = self._parameters
         paths = self.paths(pose, candidates, course, facing, body_now)
         time, closing = contact_times(paths, pose[:2], discs)
@@ -148,14 +144,14 @@ class SafetyFilter:
     def paths(
         self, pose: Array, candidates: Array, course: float, facing: Facing, body_now: Array
     ) -> Paths:
-        """Where the body would really go, footstep by footstep, for every candidate."""
+        """Return the rollout of every candidate."""
         p, limits = self._parameters, self._limits
         velocity, duration = rollout_kernel.roll_out(
             candidates,
             float(pose[2]),
             course,
             nan if facing.heading is None else facing.heading,
-            facing.aside,
+            facing.offset,
             body_now,
             envelope(limits, self._body.turn_gain),
             (
@@ -171,7 +167,7 @@ class SafetyFilter:
 
 
 def direction_and_speed(velocity: Array, fallback: float) -> tuple[float, float]:
-    """Direction [rad] and norm [m/s] of `velocity` (2,); `fallback` if it is zero."""
+    """Return direction [rad] and norm [m/s] of `velocity` (2,); `fallback` if it is zero."""
     x, y = velocity.tolist()
     speed = hypot(x, y)
     return (atan2(y, x) if speed > 1e-9 else fallback), speed

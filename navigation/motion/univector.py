@@ -7,18 +7,18 @@ from navigation.parameters.motion import UnivectorParameters
 
 Array = NDArray[np.float64]
 
-_NOTHING = 1e-9
+_ZERO = 1e-9
 
 
 def normalized(v: Array) -> Array:
-    """v/|v| over the last axis, zero where v is zero."""
+    """Return v/|v| over the last axis, zero where v is zero."""
     norm = np.hypot(v[..., 0], v[..., 1])[..., None]
-    unit: Array = np.where(norm > _NOTHING, v / np.maximum(norm, _NOTHING), 0.0)
+    unit: Array = np.where(norm > _ZERO, v / np.maximum(norm, _ZERO), 0.0)
     return unit
 
 
 def weighted_sum(u_muf: Array, u_auf: Array, w_muf: float, w_auf: float) -> Array:
-    """u_T = w_muf u_muf + w_auf N(sum u_auf) (Yoo & Kim, eq. (10)), as printed.
+    """Return u_T = w_muf u_muf + w_auf N(sum u_auf) (Yoo & Kim, eq. (10)), as printed.
 
     Args:
         u_muf: unit vectors (..., 2).
@@ -27,14 +27,14 @@ def weighted_sum(u_muf: Array, u_auf: Array, w_muf: float, w_auf: float) -> Arra
         w_auf: weight of avoid-obstacle.
 
     Returns:
-        (..., 2); its norm is no speed.
+        (..., 2); its norm is not a speed.
     """
     total: Array = w_muf * u_muf + w_auf * normalized(u_auf.sum(axis=-2))
     return total
 
 
 def nearness(rho: Array, s_oe: Array, d_e: ArrayLike, d_b: float) -> Array:
-    """Ramp of an obstacle: 1 up to S_oe + d_e/2, falling to 0 at S_oe + d_e + d_b (..., n)."""
+    """Return the ramp of an obstacle: 1 up to S_oe + d_e/2, 0 from S_oe + d_e + d_b on (..., n)."""
     half = 0.5 * np.asarray(d_e)
     ramp: Array = np.clip(1.0 - (rho - s_oe - half) / (half + d_b), 0.0, 1.0)
     return ramp
@@ -49,18 +49,18 @@ def blended_sum(
     *,
     virtual_weight: float,
 ) -> Array:
-    """Sum that lets the nearest obstacle decide: W from 0 far away to 1 at the obstacle.
+    """Return the sum weighted by distance: 0 far from the nearest obstacle, 1 at the obstacle.
 
-    With fixed weights the field cannot turn more than asin(w_auf/w_muf) off the way to
-    the destination; here it can, and it stays continuous.
+    Fixed weights limit the turn of the field from the direction of the destination to
+    asin(w_auf/w_muf). This sum has no such limit and is continuous.
 
     Args:
         u_muf: unit vectors (..., 2).
         u_auf: of n obstacles (..., n, 2).
-        ramp: their nearness (..., n).
+        ramp: nearness of the obstacles (..., n).
         u_virtual: directions at m dynamic virtual obstacles (..., m, 2), or (m, 2) for all.
-        weight: their f in [0, 1] (..., m), or (m,) for all.
-        virtual_weight: weight of virtual against real obstacles.
+        weight: f of the virtual obstacles in [0, 1] (..., m), or (m,) for all.
+        virtual_weight: weight of virtual obstacles relative to real ones.
 
     Returns:
         (..., 2).
@@ -68,24 +68,22 @@ def blended_sum(
     active = ramp * (np.abs(u_auf).sum(axis=-1) > 0.0)
     avoid = (active[..., None] ** 2 * u_auf).sum(axis=-2)
     avoid = avoid + virtual_weight * (weight[..., None] ** 2 * u_virtual).sum(axis=-2)
-    share = np.maximum(active.max(axis=-1, initial=0.0), weight.max(axis=-1, initial=0.0))
-    total: Array = (1.0 - share)[..., None] * u_muf + share[..., None] * normalized(avoid)
-    vanishing = np.hypot(total[..., 0], total[..., 1])[..., None] < _NOTHING
+    w_auf = np.maximum(active.max(axis=-1, initial=0.0), weight.max(axis=-1, initial=0.0))
+    total: Array = (1.0 - w_auf)[..., None] * u_muf + w_auf[..., None] * normalized(avoid)
+    vanishing = np.hypot(total[..., 0], total[..., 1])[..., None] < _ZERO
     return np.where(vanishing, u_muf, total)
 
 
 def shrunk_for_goal(
     s_oe: Array, s_physical: Array, goal_distance: Array, parameters: UnivectorParameters
 ) -> tuple[Array, Array]:
-    """Extended radii and offsets small enough to let the robot reach the destination.
-
-    A destination inside S_oe + d_e of an obstacle could never be reached.
+    """Shrink radii and offsets so that the destination is outside S_oe + d_e of all obstacles.
 
     Args:
         s_oe: extended radii (n,) [m].
         s_physical: radii at which the bodies touch (n,) [m].
         goal_distance: rho_od (n,) [m].
-        parameters: radius offset and the room to leave.
+        parameters: radius offset and lower bounds.
 
     Returns:
         Radii and offsets (n,), (n,) [m].

@@ -1,4 +1,4 @@
-"""Ground ahead that must have been seen before the robot walks there fast."""
+"""Unseen ground: the robot walks fast only towards ground that it saw recently."""
 
 from functools import cache
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def ground_points(pose: Array, direction: float, parameters: UnseenGroundParameters) -> Array:
-    """Points asked for, three columns before a robot that moves in `direction` (3 rows, 2) [m].
+    """Return the checked points in W, three columns ahead of the robot (3 rows, 2) [m].
 
     Args:
         pose: of the robot (3,) [m, m, rad].
@@ -27,19 +27,13 @@ def ground_points(pose: Array, direction: float, parameters: UnseenGroundParamet
 
 
 def ground_seen(belief: Belief, direction: float, parameters: UnseenGroundParameters) -> bool:
-    """Whether the ground before a robot that moves in `direction` in W [rad] was seen of late.
-
-    Args:
-        belief: what the robot believes.
-        direction: of its motion in W [rad].
-        parameters: extent of the ground and the confidence asked for.
-    """
+    """Whether the ground in `direction` in W [rad] of the robot was seen recently."""
     points = ground_points(belief.pose, direction, parameters)
     return float(np.min(belief.local_map.confidence_at(points))) >= parameters.confidence
 
 
 @cache
 def _ground(near: float, far: float, half_width: float, rows: int) -> tuple[Array, Array]:
-    """The points along and across the motion, from the robot (3 rows,), (3 rows,) [m]."""
+    """Return coordinates along and across the motion (3 rows,), (3 rows,) [m]."""
     along, across = np.meshgrid(np.linspace(near, far, rows), (-half_width, 0.0, half_width))
     return along.ravel(), across.ravel()

@@ -2,8 +2,9 @@
 
 from math import inf
 
-from navigation.decision import Situation
+from navigation.decision import Situation, SpeedLimits
 from navigation.motion.collision_band import Encounter, free_intervals
+from navigation.parameters.motion import MovingObstacleParameters
 from navigation.value import value
 
 _TOUCH = 1e-9
@@ -14,8 +15,8 @@ class ModifiedSpeed:
     """Result of velocity modification.
 
     Attributes:
-        speed: to walk with [m/s].
-        situation: what was found.
+        speed: new speed [m/s].
+        situation: outcome.
     """
 
     speed: float
@@ -23,13 +24,13 @@ class ModifiedSpeed:
 
 
 def needed_acceleration(speed: float, wanted: float, contact_time: float, footstep: float) -> float:
-    """a_i = 2 (|p_oc| - |v_r| t_c)/t_c² of sec. III-2, with |p_oc| = v_c t_c [m/s²].
+    """Return a_i = 2 (|p_oc| - |v_r| t_c)/t_c² of sec. III-2, with |p_oc| = v_c t_c [m/s²].
 
     Args:
         speed: |v_r| now [m/s].
         wanted: v_c, the speed that just touches [m/s].
         contact_time: t_c [s].
-        footstep: the least time a speed can change in [s].
+        footstep: minimum duration of a change of speed [s].
     """
     return 2.0 * (wanted - speed) / max(contact_time, footstep)
 
@@ -38,83 +39,78 @@ def modify_speed(
     encounters: tuple[Encounter, ...],
     desired: float,
     now: float,
-    *,
-    v_max: float,
-    acceleration: float,
-    footstep: float,
-    horizon: float,
-    wait_in_band: bool,
+    limits: SpeedLimits,
+    parameters: MovingObstacleParameters,
 ) -> ModifiedSpeed:
     """Choose a free speed by the roots of the quadratic (Yoo & Kim, sec. III-2).
 
     Keep the desired speed if it is free; else the lowest free speed above that can be
-    reached in time; else the highest free speed below, standing included; else give up
-    and let the path change.
+    reached in time; else the highest free speed below, zero included; else the path changes.
 
     Args:
         encounters: the movers, in axes of the line of motion.
-        desired: speed asked for [m/s].
+        desired: speed [m/s].
         now: present speed [m/s].
-        v_max: largest speed [m/s].
-        acceleration: largest [m/s²].
-        footstep: duration of a footstep [s].
-        horizon: later contacts are ignored [s].
-        wait_in_band: whether a robot that is in a mover's way may also brake.
+        limits: of the robot.
+        parameters: horizon, and whether to brake inside the band.
     """
+    horizon = parameters.horizon
     if not any(e.collides(desired, horizon) for e in encounters):
         return ModifiedSpeed(desired, "free")
-    intervals = free_intervals(encounters, v_max, horizon)
-    standing_hits = any(e.collides(0.0, horizon) for e in encounters)
+    intervals = free_intervals(encounters, limits.vx, horizon)
+    standing_collides = any(e.collides(0.0, horizon) for e in encounters)
     above = [low for low, _ in intervals if low > desired]
     if above:
         time = min((e.touch_time(above[0]) for e in encounters), default=inf)
-        if needed_acceleration(now, above[0], time, footstep) <= acceleration:
-            situation: Situation = "escape" if standing_hits else "accelerate"
-            return ModifiedSpeed(min(v_max, above[0] + _TOUCH), situation)
+        if needed_acceleration(now, above[0], time, limits.footstep) <= limits.acceleration:
+            situation: Situation = "escape" if standing_collides else "accelerate"
+            return ModifiedSpeed(min(limits.vx, above[0] + _TOUCH), situation)
     below = [high for _, high in intervals if high < desired]
-    if below and (wait_in_band or not trapped(encounters, desired, horizon)):
+    if below and _may_brake(encounters, desired, parameters):
         return ModifiedSpeed(max(0.0, below[-1] - _TOUCH), "brake")
     return ModifiedSpeed(desired, "path_change")
-
-
-def trapped(encounters: tuple[Encounter, ...], desired: float, horizon: float) -> bool:
-    """Whether the robot is in the way of a mover that `desired` [m/s] meets within `horizon` [s].
-
-    Inside the collision band the only way out is ahead. A lower speed seems free there when
-    it puts the contact off beyond the horizon.
-    """
-    return any(e.in_band() and e.collides(desired, horizon) for e in encounters)
 
 
 def sample_speed(
     encounters: tuple[Encounter, ...],
     desired: float,
     now: float,
-    *,
-    v_max: float,
-    acceleration: float,
-    samples: int,
-    horizon: float,
-    acceleration_time: float,
-    wait_in_band: bool,
+    limits: SpeedLimits,
+    parameters: MovingObstacleParameters,
 ) -> ModifiedSpeed:
-    """The same choice among `samples` speeds from 0 to v_max.
+    """Choose as `modify_speed` among sampled speeds.
 
-    A higher speed counts as reachable if it is gained within `acceleration_time` [s].
-    The other arguments are those of `modify_speed`.
+    A higher speed is reachable if the robot gains it within the acceleration time.
     """
+    p = parameters
 
     def free(speed: float) -> bool:
-        return not any(e.collides(speed, horizon) for e in encounters)
+        return not any(e.collides(speed, p.horizon) for e in encounters)
 
     if free(desired):
         return ModifiedSpeed(desired, "free")
-    speeds = [v_max * k / (samples - 1) for k in range(samples)]
+    speeds = [limits.vx * k / (p.samples - 1) for k in range(p.samples)]
+    gain = limits.acceleration * p.acceleration_time
     for speed in speeds:
-        if speed > desired and speed - now <= acceleration * acceleration_time and free(speed):
+        if speed > desired and speed - now <= gain and free(speed):
             return ModifiedSpeed(speed, "accelerate" if free(0.0) else "escape")
-    if wait_in_band or not trapped(encounters, desired, horizon):
+    if _may_brake(encounters, desired, p):
         for speed in reversed(speeds):
             if speed < desired and free(speed):
                 return ModifiedSpeed(speed, "brake")
     return ModifiedSpeed(desired, "path_change")
+
+
+def _may_brake(
+    encounters: tuple[Encounter, ...], desired: float, parameters: MovingObstacleParameters
+) -> bool:
+    return parameters.wait_in_band or not trapped(encounters, desired, parameters.horizon)
+
+
+def trapped(encounters: tuple[Encounter, ...], desired: float, horizon: float) -> bool:
+    """Whether the robot is in the band of a mover that `desired` [m/s] meets within `horizon` [s].
+
+    Inside the collision band the only escape is ahead. A lower speed seems free there if it
+    delays the collision beyond the horizon.
+    """
+    return any(e.in_band() and e.collides(desired, horizon) for e in encounters)

@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 def oval(h: float, xi: float) -> float:
-    """Shape f = (rho^(1-h) - 1)/(rho - 1), rho = ((1 - xi)/xi)² (Yoo & Kim, eq. (11)).
+    """Return the shape f = (rho^(1-h) - 1)/(rho - 1), rho = ((1 - xi)/xi)² (Yoo & Kim, eq. (11)).
 
     Args:
         h: |p_vo - p_o|/delta_dist, clipped to [0, 1].
@@ -30,11 +30,11 @@ def oval(h: float, xi: float) -> float:
 
 @value
 class PathPoint:
-    """Foot of the robot on the path of a mover.
+    """Projection of the robot onto the path of a mover.
 
     Attributes:
         ux, uy: unit vector of the mover's velocity.
-        along: from the mover to the foot, along its velocity [m].
+        along: from the mover to the projection, along the velocity [m].
         lateral: of the robot, left of the path [m].
         x, y: p_vo in W [m].
     """
@@ -47,16 +47,16 @@ class PathPoint:
     y: float
 
     def normal(self, side: int) -> tuple[float, float]:
-        """n, from the path towards `side` (+1 left, -1 right)."""
+        """Return n, from the path towards `side` (+1 left, -1 right)."""
         return -side * self.uy, side * self.ux
 
     def left_of_path(self, direction: tuple[float, float]) -> float:
-        """Component of a `direction` in W across the path, left positive."""
+        """Return the component of a `direction` in W across the path, left positive."""
         return self.ux * direction[1] - self.uy * direction[0]
 
 
 def path_point(robot: Array, obstacle: Array, velocity: Array) -> PathPoint | None:
-    """p_vo, the projection of the robot on the path of the mover (Yoo & Kim, eq. (11)).
+    """Return p_vo, the projection of the robot onto the path of the mover (Yoo & Kim, eq. (11)).
 
     Args:
         robot: position (2,) [m].
@@ -64,7 +64,7 @@ def path_point(robot: Array, obstacle: Array, velocity: Array) -> PathPoint | No
         velocity: of the obstacle over ground, not zero (2,) [m/s].
 
     Returns:
-        None if the foot lies behind the mover.
+        None if the projection is behind the mover.
     """
     vx, vy = velocity.tolist()
     speed = hypot(vx, vy)
@@ -85,14 +85,14 @@ def printed_path_length(
     eta_vo: float,
     eta_imp: float,
 ) -> float:
-    """delta_dist = omega_dist (eta_vo |v_ro| + eta_imp (psi_sf + psi_ob)) (eq. (11)) [m]."""
+    """Return delta_dist = omega_dist (eta_vo |v_ro| + eta_imp (psi_sf + psi_ob)) (eq. (11)) [m]."""
     return omega_dist * (eta_vo * relative_speed + eta_imp * psi)
 
 
 def printed_radius(foot: PathPoint, s_oe: float, length: float, xi: float) -> float | None:
-    """R_vo = min(f S_oe, |p_vo - p_r|) (Yoo & Kim, eq. (11)) [m]; None beyond the length.
+    """Return R_vo = min(f S_oe, |p_vo - p_r|) (Yoo & Kim, eq. (11)) [m]; None beyond the length.
 
-    On the path itself it is zero: the robot is on the circle, which still turns it away.
+    On the path the radius is zero: the robot is on the circle, which still turns it away.
     """
     if foot.along >= length:
         return None
@@ -100,30 +100,30 @@ def printed_radius(foot: PathPoint, s_oe: float, length: float, xi: float) -> fl
 
 
 class VirtualSides:
-    """Side on which the robot leaves the path of each mover, kept until it is settled."""
+    """Side on which the robot leaves the path of each mover, with hysteresis."""
 
     def __init__(self, parameters: MovingObstacleParameters) -> None:
         self._parameters = parameters
         self._sides: dict[int, int] = {}
 
     def update(self, track: int, foot: PathPoint, u_muf: tuple[float, float]) -> int:
-        """Side (+1 left of the path, -1 right) for a mover in whose band the robot is.
+        """Return the side (+1 left of the path, -1 right) for a mover with the robot in its band.
 
         Args:
             track: number of the mover.
             foot: robot and path.
-            u_muf: move-to-goal direction, decides while the robot is near the path.
+            u_muf: move-to-goal direction, which decides near the path.
         """
         p = self._parameters
         side = self._sides.get(track)
-        here = 1 if foot.lateral >= 0.0 else -1
+        present = 1 if foot.lateral >= 0.0 else -1
         if side is None:
             goal_side = foot.left_of_path(u_muf)
-            side = here
+            side = present
             if abs(foot.lateral) < p.side_switch and abs(goal_side) > p.side_aligned:
                 side = 1 if goal_side > 0.0 else -1
-        elif side != here and abs(foot.lateral) > p.side_hold:
-            side = here
+        elif side != present and abs(foot.lateral) > p.side_hold:
+            side = present
         self._sides[track] = side
         return side
 

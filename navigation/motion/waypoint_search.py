@@ -1,7 +1,6 @@
-"""A way point on the way round still obstacles, where the straight way is blocked.
+"""Waypoint search around static obstacles: Dijkstra's algorithm on a grid.
 
-The paper's planner only updates way points; the field alone gets trapped before walls and
-clusters. The search is Dijkstra's on a grid of the static tracks.
+The univector field alone is trapped before walls and clusters.
 """
 
 from math import ceil, hypot
@@ -26,28 +25,27 @@ def search_waypoint(
     radii: Array,
     parameters: WaypointSearchParameters,
 ) -> Array:
-    """The farthest point of the shortest way that can be walked to straight (2,) [m].
+    """Return the farthest point of the shortest path with a free line of sight (2,) [m].
 
     Args:
         position: of the robot (2,) [m].
         target: destination (2,) [m].
-        centres: of the still obstacles (n, 2) [m].
-        radii: distance from each within which the robot does not fit (n,) [m].
-        parameters: cell, reach and margin around the search.
+        centres: of the static obstacles (n, 2) [m].
+        radii: minimum distances of the robot from them (n,) [m].
+        parameters: cell, reach and margin of the grid.
 
     Returns:
-        `target` if the straight way is free or there is no way at all.
+        `target` if the straight path is free or no path exists.
     """
     if _free(position, target, centres, radii):
         return target
-    way = shortest_path(position, target, centres, radii, parameters)
-    chosen = target
-    for point in way:
-        away = hypot(*(point - position).tolist())
-        if away > parameters.reach or not _free(position, point, centres, radii):
+    waypoint = target
+    for point in shortest_path(position, target, centres, radii, parameters):
+        distance = hypot(*(point - position).tolist())
+        if distance > parameters.reach or not _free(position, point, centres, radii):
             break
-        chosen = point
-    return chosen
+        waypoint = point
+    return waypoint
 
 
 def shortest_path(
@@ -57,16 +55,13 @@ def shortest_path(
     radii: Array,
     parameters: WaypointSearchParameters,
 ) -> Array:
-    """Cell centres from the robot to the destination (m, 2) [m].
-
-    None if there is no way, or both are in one cell.
-    """
+    """Return cell centres from the robot to the destination (m, 2) [m]; m = 0 without a path."""
     p = parameters
     low = np.minimum(position, target) - p.around
     shape = [ceil(side / p.cell) for side in (np.maximum(position, target) + p.around - low)]
     rows, columns = np.indices(shape)
     points = low + p.cell * (np.stack([rows.ravel(), columns.ravel()], axis=1) + 0.5)
-    start, end = (int(np.argmin(np.hypot(*(points - place).T))) for place in (position, target))
+    start, end = (int(np.argmin(np.hypot(*(points - q).T))) for q in (position, target))
     if start == end:
         return np.zeros((0, 2))
     offset = points[:, None] - centres
@@ -87,13 +82,13 @@ def shortest_path(
     while cell != end:
         cell = int(previous[0, cell])
         cells.append(cell)
-    way: Array = points[cells]
-    way[-1] = target
-    return way
+    path: Array = points[cells]
+    path[-1] = target
+    return path
 
 
 def _neighbours(number: Cells, step: tuple[int, int]) -> tuple[Cells, Cells]:
-    """Cells and the cells one `step` from them."""
+    """Return pairs of cells that are one `step` apart."""
     i, j = step
     rows, columns = number.shape
     here = number[: rows - i, max(0, -j) : columns - max(0, j)]
@@ -102,14 +97,11 @@ def _neighbours(number: Cells, step: tuple[int, int]) -> tuple[Cells, Cells]:
 
 
 def _free(start: Array, end: Array, centres: Array, radii: Array) -> bool:
-    """Whether the segment from `start` to `end` stays outside every radius.
-
-    From inside one it may lead straight out.
-    """
+    """Whether the segment from `start` to `end` stays outside every radius, or leads out of it."""
     along = end - start
     square = float(along @ along)
     offset = centres - start
-    share = np.clip(offset @ along / max(square, 1e-12), 0.0, 1.0)
-    gap = np.hypot(*(offset - share[:, None] * along).T)
+    fraction = np.clip(offset @ along / max(square, 1e-12), 0.0, 1.0)
+    gap = np.hypot(*(offset - fraction[:, None] * along).T)
     inside = np.hypot(*offset.T) < radii
-    return not bool(np.any((gap < radii) & ~(inside & (share == 0.0))))
+    return not bool(np.any((gap < radii) & ~(inside & (fraction == 0.0))))

@@ -1,4 +1,4 @@
-"""Fixtures that build what a camera would show of a simple world."""
+"""Fixtures: camera frames, beliefs and tasks of simple worlds."""
 
 from math import cos, sin
 
@@ -135,13 +135,13 @@ def _task(target=(2.0, 0.0), heading=0.0, *, is_goal=False, aligning=False, done
 
 @pytest.fixture(scope="session")
 def track():
-    """Builds a `Track` from a place, a velocity and a verdict."""
+    """Builds a `Track` from a position, a velocity and a classification."""
     return _track
 
 
 @pytest.fixture(scope="session")
 def belief():
-    """Builds a `Belief` from tracks and a pose; the local map is fresh unless told."""
+    """Builds a `Belief` from tracks and a pose; the local map is fresh by default."""
     return _belief
 
 
@@ -151,7 +151,39 @@ def task():
     return _task
 
 
+def _tracks(places, velocities):
+    return [_track(x, v, id=i) for i, (x, v) in enumerate(zip(places, velocities, strict=True))]
+
+
+@pytest.fixture(scope="session")
+def tracks():
+    """Builds a list of tracks from positions and velocities."""
+    return _tracks
+
+
+def _rotation(angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+@pytest.fixture(scope="session")
+def rotation():
+    """Builds a rotation matrix from an angle."""
+    return _rotation
+
+
+def _advance(pose, body, time=0.34):
+    middle = pose[2] + 0.5 * time * body[2]
+    return pose + time * np.array([*(_rotation(middle) @ body[:2]), body[2]])
+
+
+@pytest.fixture(scope="session")
+def advance():
+    """Moves a pose by a body velocity for one footstep."""
+    return _advance
+
+
 @pytest.fixture(scope="session")
 def limits():
-    """Envelope of the walking layer."""
+    """Speed limits of the walking layer."""
     return SpeedLimits(0.20, 0.10, 0.08, 0.8, 0.3, 0.34)

@@ -83,5 +83,5 @@ def test_endless_tour_cycles():
     [(np.zeros((0, 2)), False), (np.zeros((1, 2)), True), (np.ones(2), False)],
 )
 def test_too_few_points_are_refused(points, endless):
-    with pytest.raises(ValueError, match="way points"):
+    with pytest.raises(ValueError, match="waypoints"):
         Mission(points, None, endless, MissionParameters())

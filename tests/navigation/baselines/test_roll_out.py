@@ -62,7 +62,7 @@ def test_what_can_only_be_reached_sideways_counts_too(track, limits):
     wide = replace(limits, vy=0.5)
     s = scene([track((0.0, 1.4))], wide)
     aside = np.zeros((1, 6, 3))
-    aside[..., 1] = wide.lateral
+    aside[..., 1] = wide.vy
     position, _ = roll_out(s.pose, aside, DT)
     gap = gaps(position, s, np.array([0.2]), 0.3)
     assert gap[0, -1] == pytest.approx(1.4 - 6 * DT * 0.5 - 0.2)

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 
 from navigation.motion.avoid_obstacle import avoid_obstacle, spiral_turn
+from navigation.parameters.motion import UnivectorParameters
 
 S, D_E, D_B, K_R = np.array([0.3]), 0.2, 0.25, 0.3
 CENTRE, TARGET = np.zeros((1, 2)), np.array([2.0, 0.0])
 
 
 def field(points, centres=CENTRE, s=S, inside="zero", target=TARGET, **details):
-    return avoid_obstacle(
-        np.asarray(points, float), target, centres, s, d_e=D_E, d_b=D_B, k_r=K_R, inside=inside,
-        **details,
-    )  # fmt: skip
+    p = UnivectorParameters(d_e=D_E, d_b=D_B, k_r=K_R, inside=inside)
+    return avoid_obstacle(np.asarray(points, float), target, centres, s, p, **details)
 
 
 def test_outward_then_tangential_then_inward():
@@ -35,8 +34,8 @@ def test_k_r_bends_only_the_outer_part():
     assert np.array_equal(same, gaps <= D_E)
 
 
-def test_plus_circulates_counter_clockwise_and_takes_the_short_way():
-    # Left of the line to the target the short way leads past on the left: clockwise.
+def test_plus_circulates_counter_clockwise_on_the_shorter_side():
+    # Left of the line to the target the shorter side is the left one: clockwise.
     left, right = field([[-0.4, 0.1], [-0.4, -0.1]])[:, 0]
     for place, u, sense in (((-0.4, 0.1), left, -1), ((-0.4, -0.1), right, 1)):
         circulation = place[0] * u[1] - place[1] * u[0]
@@ -61,7 +60,7 @@ def test_it_acts_in_its_ring_before_the_target_and_ahead_only():
     assert not field([0.3, 0.0], centres=beyond, target=np.array([0.39, 0.0])).any()
 
 
-def test_inside_is_dead_as_printed_and_outward_in_extended():
+def test_inside_it_is_zero_as_printed_and_outward_in_extended():
     place = [-0.1, 0.05]
     assert not field(place).any()
     u = field(place, inside="outward")[0]
@@ -92,7 +91,7 @@ def test_the_spiral_has_the_printed_angles():
     assert spiral_turn(0.7, 0.3, 0.2, 0.3) == pytest.approx(0.5 * pi * (2.0 - 0.8 / 1.3))
 
 
-def test_a_given_sense_counts_whatever_the_short_way():
+def test_a_given_sign_overrides_the_shorter_side():
     for sign in (1, -1):
         place = np.array([-0.4, 0.1])
         u = field(place, signs=np.array([sign]))[0]
@@ -110,11 +109,11 @@ def test_an_obstacle_acts_as_far_as_its_radius_reaches_back_to_the_target():
         assert u.any() == acts
 
 
-def test_rigid_motion_moves_the_field_along():
+def test_rigid_motion_moves_the_field_along(rotation):
     rng = np.random.default_rng(3)
     points, centres = rng.uniform(-1, 1, (100, 2)), rng.uniform(-1, 1, (5, 2))
     s, a, shift = rng.uniform(0.1, 0.3, 5), 0.6, np.array([1.0, 4.0])
-    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    r = rotation(a)
     u = field(points, centres, s, "outward")
     moved = field(points @ r.T + shift, centres @ r.T + shift, s, "outward", r @ TARGET + shift)
     assert moved == pytest.approx(u @ r.T, abs=1e-9)

@@ -10,7 +10,6 @@ from navigation.motion.move_to_goal import muf
 from navigation.motion.univector import normalized, weighted_sum
 from navigation.motion.virtual_obstacle import oval
 from navigation.obstacle_set import ObstacleSet
-from navigation.parameters.motion import MovingObstacleParameters, UnivectorParameters
 from navigation.parameters.navigation import NavigationParameters
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
@@ -48,7 +47,7 @@ def test_fifteen_starts_pass_one_disc_on_their_line(p, track):
     assert least.min() >= 0.30 + (0.10 if p is EXTENDED else 0.0)
 
 
-def test_goals_beside_an_obstacle_are_reached(track):
+def test_goals_next_to_an_obstacle_are_reached(track):
     field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s_phys = EXTENDED.univector.s_robot + 0.1
     angle = np.arange(24) * np.pi / 12
@@ -96,7 +95,7 @@ def test_a_mover_in_whose_band_the_robot_stands_pushes_it_sideways(track):
     assert abs(u[1]) > 0.3
 
 
-def test_leaving_or_standing_obstacles_have_no_virtual_one(track):
+def test_receding_or_static_obstacles_have_no_virtual_obstacle(track):
     field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     for t in (track((1, 0), (0.1, 0)), track((1, 0)), track((1, 1), (-0.1, 0))):
         assert field.uncapped_obstacles(np.zeros(3), np.zeros(2), scene([t])) == ()
@@ -123,7 +122,7 @@ def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(t
         assert np.sin(printed.outward) * way[1] > 0.5 * abs(way[1]) > 0.1
 
 
-def test_many_points_give_what_single_points_give(track):
+def test_many_points_agree_with_single_points(track):
     rng = np.random.default_rng(1)
     for p in (EXTENDED, PAPER):
         field = MotionField(p.univector, p.moving_obstacles)
@@ -145,12 +144,10 @@ def test_mirror_symmetry(track):
         assert field.at(points, 0.0, s, ()) == pytest.approx(mirrored * [1, -1], abs=1e-9)
 
 
-def test_no_obstacles_leave_the_way_to_the_goal():
-    field = MotionField(UnivectorParameters(), MovingObstacleParameters())
-    s = scene([])
-    assert field.at(np.zeros(2), 0.0, replace(s, target=np.array([0.0, 3.0])), ()) == pytest.approx(
-        [0.0, 1.0]
-    )
+def test_without_obstacles_the_field_leads_to_the_goal():
+    field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
+    s = scene([], target=(0.0, 3.0))
+    assert field.at(np.zeros(2), 0.0, s, ()) == pytest.approx([0.0, 1.0])
 
 
 def test_against_the_printed_sign_every_start_enters_the_disc(track):
@@ -160,10 +157,7 @@ def test_against_the_printed_sign_every_start_enters_the_disc(track):
     least = np.full(15, np.inf)
     for _ in range(200):
         u_muf = muf(place, 0.0, s.target, 0.0, p)
-        u = avoid_obstacle(
-            place, s.target, s.obstacles.position, s.s_oe, d_e=p.d_e, d_b=p.d_b, k_r=p.k_r,
-            inside=p.inside,
-        )  # fmt: skip
+        u = avoid_obstacle(place, s.target, s.obstacles.position, s.s_oe, p)
         outward = normalized(place[:, None] - s.obstacles.position)
         other = 2.0 * (u * outward).sum(axis=-1, keepdims=True) * outward - u
         place = place + 0.01 * normalized(weighted_sum(u_muf, other, p.w_muf, p.w_auf))
@@ -184,9 +178,9 @@ def test_the_printed_virtual_obstacle_acts_before_a_mover_head_on(lateral, track
 
 
 @pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
-def test_rigid_motion_moves_field_and_forces_along(p, track):
+def test_rigid_motion_moves_field_and_virtual_obstacles_along(p, track, rotation):
     a, shift = 0.7, np.array([3.0, -1.0])
-    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    r = rotation(a)
     rng = np.random.default_rng(6)
     acting = 0
     for _ in range(40):
@@ -219,19 +213,15 @@ def test_rigid_motion_moves_field_and_forces_along(p, track):
     assert acting > 15
 
 
-def test_the_own_force_has_the_oval_of_its_relative_speed(track):
+def test_the_uncapped_radius_is_the_oval_of_the_relative_speed(track):
     p = EXTENDED
     s = scene([track((1.0, 0.1), (-0.1, 0.0))])
-    (active,) = MotionField(p.univector, p.moving_obstacles).uncapped_obstacles(
-        np.zeros(3), np.array([0.15, 0.0]), s
-    )
+    pose, velocity = np.zeros(3), np.array([0.15, 0.0])
+    field = MotionField(p.univector, p.moving_obstacles)
+    (active,) = field.uncapped_obstacles(pose, velocity, s)
     length = p.moving_obstacles.path_time * 0.25
     assert active.weight == pytest.approx(oval(1.0 / length, p.moving_obstacles.xi))
     assert active.obstacle.radius == pytest.approx(active.weight * s.s_oe[0])
-    unsure = replace(s, psi=np.ones(1))
-    (active,) = MotionField(p.univector, p.moving_obstacles).uncapped_obstacles(
-        np.zeros(3), np.array([0.15, 0.0]), unsure
-    )
-    assert active.weight == pytest.approx(
-        oval(1.0 / (length + p.univector.eta_imp), p.moving_obstacles.xi)
-    )
+    (active,) = field.uncapped_obstacles(pose, velocity, replace(s, psi=np.ones(1)))
+    length += p.univector.eta_imp
+    assert active.weight == pytest.approx(oval(1.0 / length, p.moving_obstacles.xi))

@@ -82,10 +82,10 @@ def test_mirror_symmetry(p):
 
 
 @pytest.mark.parametrize("p", ALL)
-def test_rigid_motion_moves_the_field_along(p):
+def test_rigid_motion_moves_the_field_along(p, rotation):
     rng = np.random.default_rng(2)
     places, a = rng.normal(0, 0.6, (100, 2)), 1.1
-    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    r = rotation(a)
     target, shift = np.array([0.2, -0.1]), np.array([5.0, 2.0])
     phi = move_to_goal(places, 0.4, target, 0.9, p)
     moved = move_to_goal(places @ r.T + shift, 0.4 + a, r @ target + shift, 0.9 + a, p)
@@ -116,7 +116,7 @@ def test_the_ramped_field_is_continuous_at_d_con():
 
 
 def leg(beta, index=0):
-    """The task that a robot at the origin must turn by `beta` for at the end of its way."""
+    """A task with `beta` at the origin."""
     return Task(np.array([1.0, 0.0]), beta, False, index, False, False)
 
 

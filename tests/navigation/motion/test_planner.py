@@ -9,11 +9,17 @@ from navigation.motion.planner import Planner
 from navigation.parameters.navigation import NavigationParameters
 
 EXTENDED, PAPER = NavigationParameters.extended(), NavigationParameters.paper()
+OFF = replace(
+    PAPER,
+    moving_obstacles=replace(
+        PAPER.moving_obstacles, virtual_obstacle="off", velocity_modification="off"
+    ),
+)
 BOTH = pytest.mark.parametrize("p", [EXTENDED, PAPER], ids=["extended", "paper"])
 
 
 @BOTH
-def test_a_free_way_is_walked_at_full_speed(p, belief, task, limits):
+def test_a_free_path_is_walked_at_full_speed(p, belief, task, limits):
     decision = Planner(p, limits).plan(belief(), task())
     assert decision.velocity == pytest.approx([limits.vx, 0.0, 0.0])
     assert decision.direction == pytest.approx(0.0)
@@ -69,19 +75,16 @@ def test_unseen_ground_ahead_is_walked_slowly(belief, task, limits):
     assert Planner(EXTENDED, limits).plan(behind, task()).speed == limits.vx
 
 
-def test_decisions_do_not_depend_on_the_frame(belief, task, track, limits):
+def test_decisions_do_not_depend_on_the_frame(belief, task, tracks, limits, rotation):
     rng = np.random.default_rng(0)
     a, shift = 1.2, np.array([0.7, -2.0])
-    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    r = rotation(a)
     for p in (EXTENDED, PAPER):
         for _ in range(10):
             places, speeds = rng.uniform(-1.5, 1.5, (8, 2)), rng.normal(0, 0.1, (8, 2))
             speeds[:5] = 0.0
-            here = [track(x, v, id=i) for i, (x, v) in enumerate(zip(places, speeds, strict=True))]
-            there = [
-                track(r @ x + shift, r @ v, id=i)
-                for i, (x, v) in enumerate(zip(places, speeds, strict=True))
-            ]
+            here = tracks(places, speeds)
+            there = tracks(places @ r.T + shift, speeds @ r.T)
             one = Planner(p, limits).plan(belief(here), task((1.0, 0.5), 0.3))
             pose = (*shift.tolist(), a)
             target = r @ [1.0, 0.5] + shift
@@ -99,7 +102,7 @@ def test_the_order_of_tracks_is_irrelevant(belief, task, track, limits):
     assert sorted(one.extended_radii) == sorted(other.extended_radii)
 
 
-def test_long_lost_movers_leave_the_field_to_the_filter(belief, task, track, limits):
+def test_movers_lost_for_long_are_left_to_the_safety_filter(belief, task, track, limits):
     cloud = ([[3.0, 3.0]], [[0.0, 0.0]], [1.0])
     lost = track((0.5, 0.0), (0.0, 0.05), age=4.0, particles=cloud)
     fresh = track((0.5, 0.0), (0.0, 0.05), age=0.2)
@@ -107,7 +110,7 @@ def test_long_lost_movers_leave_the_field_to_the_filter(belief, task, track, lim
     assert len(Planner(EXTENDED, limits).plan(belief([fresh]), task()).extended_radii) == 1
 
 
-def test_a_mover_crossing_the_way_is_answered_by_speed_in_the_paper(belief, task, track, limits):
+def test_a_crossing_mover_changes_the_speed_in_the_paper(belief, task, track, limits):
     mover = track((0.9, -0.8), (0.0, 0.12))
     decision = Planner(PAPER, limits).plan(belief([mover]), task())
     assert decision.situation in {"accelerate", "brake"}
@@ -123,17 +126,13 @@ def test_a_definite_collision_makes_a_virtual_obstacle_in_the_paper(belief, task
 
 
 @pytest.mark.parametrize("motion", [Motion.STATIC, Motion.UNKNOWN])
-def test_it_walks_around_what_stands_in_the_way(motion, belief, task, track, limits):
+def test_an_obstacle_on_the_path_is_passed(motion, belief, task, track, limits, advance):
     pose = np.array([0.0, 0.02, 0.0])
     planner = Planner(EXTENDED, limits)
     least = 9.0
     for _ in range(40):
         decision = planner.plan(belief([track((0.8, 0.0), motion=motion)], pose), task((1.6, 0.0)))
-        forward, left, turn = decision.velocity.tolist()
-        h = pose[2] + 0.17 * turn
-        pose = pose + 0.34 * np.array(
-            [np.cos(h) * forward - np.sin(h) * left, np.sin(h) * forward + np.cos(h) * left, turn]
-        )
+        pose = advance(pose, decision.velocity)
         least = min(least, float(np.hypot(pose[0] - 0.8, pose[1])))
         if np.hypot(*(pose[:2] - [1.6, 0.0])) < 0.1:
             break
@@ -142,18 +141,12 @@ def test_it_walks_around_what_stands_in_the_way(motion, belief, task, track, lim
 
 
 def test_switches_of_the_movers_can_be_turned_off(belief, task, track, limits):
-    off = replace(
-        PAPER,
-        moving_obstacles=replace(
-            PAPER.moving_obstacles, virtual_obstacle="off", velocity_modification="off"
-        ),
-    )
-    decision = Planner(off, limits).plan(belief([track((0.9, 0.1), (-0.12, 0.0))]), task())
+    decision = Planner(OFF, limits).plan(belief([track((0.9, 0.1), (-0.12, 0.0))]), task())
     assert decision.speed == limits.vx
     assert decision.virtual_obstacles == ()
 
 
-def test_a_wall_is_walked_round_with_the_search_and_not_without(belief, task, track, limits):
+def test_a_wall_is_passed_with_the_waypoint_search_and_not_without(belief, task, track, limits):
     wall = [track((1.0, y), id=k) for k, y in enumerate(np.arange(-0.6, 1.01, 0.2))]
     search = replace(EXTENDED, waypoint_search=replace(EXTENDED.waypoint_search, enabled=True))
     plain, round_it = (Planner(p, limits).plan(belief(wall), task()) for p in (EXTENDED, search))
@@ -172,44 +165,32 @@ def test_sides_are_chosen_once_for_the_whole_field(name, belief, task, track, li
 
 
 def test_a_mover_head_on_is_passed_with_the_printed_scheme_and_not_without(
-    belief, task, track, limits
+    belief, task, track, limits, advance
 ):
     """Fig. 4 (c) in closed loop: lateral room grows at full speed until the bodies clear."""
-    off = replace(
-        PAPER,
-        moving_obstacles=replace(
-            PAPER.moving_obstacles, virtual_obstacle="off", velocity_modification="off"
-        ),
-    )
-    least = {}
-    for p in (PAPER, off):
+    least = []
+    for p in (PAPER, OFF):
         planner, pose = Planner(p, limits), np.zeros(3)
         gaps = []
         for step in range(30):
             mover = track((2.4 - 0.034 * step, 0.02), (-0.1, 0.0), radius=0.1)
-            forward, left, turn = planner.plan(belief([mover], pose), task((3.8, 0.0))).velocity
-            h = pose[2] + 0.17 * turn
-            pose = pose + 0.34 * np.array(
-                [np.cos(h) * forward - np.sin(h) * left,
-                 np.sin(h) * forward + np.cos(h) * left, turn]
-            )  # fmt: skip
+            decision = planner.plan(belief([mover], pose), task((3.8, 0.0)))
+            pose = advance(pose, decision.velocity)
             gaps.append(np.hypot(*(mover.position - pose[:2])) - 0.1 - p.univector.s_robot)
-        least[p] = min(gaps)
-    assert least[PAPER] > 0.0
-    assert least[off] < least[PAPER]
+        least.append(min(gaps))
+    assert least[0] > 0.0
+    assert least[1] < least[0]
 
 
 @BOTH
-def test_the_field_of_a_decision_leads_at_the_robot_where_it_decided_to_go(
-    p, belief, task, track, limits
-):
+def test_the_field_of_a_decision_has_its_direction_at_the_robot(p, belief, task, track, limits):
     decision = Planner(p, limits).plan(belief([track((0.7, 0.15))]), task())
     u_x, u_y = decision.field.at(np.zeros(2))
     assert np.arctan2(u_y, u_x) == pytest.approx(decision.direction)
 
 
 @BOTH
-def test_looking_at_the_field_changes_no_decision(p, belief, task, track, limits):
+def test_evaluation_of_the_field_changes_no_decision(p, belief, task, track, limits):
     looked, blind = Planner(p, limits), Planner(p, limits)
     points = np.random.default_rng(0).uniform(-1.0, 2.0, (50, 2))
     for step in range(6):
@@ -221,6 +202,16 @@ def test_looking_at_the_field_changes_no_decision(p, belief, task, track, limits
         assert before.shape == points.shape
 
 
+def test_listeners_may_change_the_published_velocity(belief, task, track, limits):
+    """The acceleration limits of the next footstep start from the state of the planner."""
+    one, other = Planner(EXTENDED, limits), Planner(EXTENDED, limits)
+    for step in range(4):
+        b = belief([track((0.9 - 0.1 * step, 0.1), (-0.14, 0.0))])
+        published, expected = one.plan(b, task()).velocity, other.plan(b, task()).velocity
+        assert published.tolist() == expected.tolist()
+        published[:] = 9.0
+
+
 def test_a_robot_that_stands_has_no_field(belief, task, limits):
     assert Planner(EXTENDED, limits).plan(belief(), task(done=True)).field is None
 
@@ -229,9 +220,7 @@ def _stale_behind(x, y):
     return 9.0 if x < 0.0 else 0.0
 
 
-def test_a_body_that_walks_turns_aside_for_what_it_cannot_see_and_tells_the_gaze(
-    belief, task, limits
-):
+def test_the_rear_check_turns_the_body_and_requests_a_look(belief, task, limits):
     decision = Planner(EXTENDED, limits).plan(belief(age=_stale_behind), task())
     assert decision.velocity[2] != 0.0
     assert decision.look_request is not None
@@ -242,14 +231,14 @@ def test_a_body_that_walks_turns_aside_for_what_it_cannot_see_and_tells_the_gaze
 
 
 @pytest.mark.parametrize("mode", ["fixed", "sweep", "integrated"])
-def test_a_body_does_not_turn_aside_for_a_gaze_that_does_not_hear_of_it(mode, belief, task, limits):
+def test_there_is_no_rear_check_with_other_gazes(mode, belief, task, limits):
     p = replace(EXTENDED, gaze=replace(EXTENDED.gaze, mode=mode))
     decision = Planner(p, limits).plan(belief(age=_stale_behind), task())
     assert decision.look_request is None
     assert decision.velocity[2] == 0.0
 
 
-def test_at_the_goal_and_in_the_paper_nothing_is_turned_aside_for(belief, task, limits):
+def test_there_is_no_rear_check_at_the_goal_and_in_the_paper(belief, task, limits):
     near = task((0.2, 0.0), is_goal=True)
     for p, t in ((EXTENDED, near), (PAPER, task())):
         decision = Planner(p, limits).plan(belief(age=_stale_behind), t)

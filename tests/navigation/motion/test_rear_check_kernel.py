@@ -8,7 +8,7 @@ from navigation.motion import rear_check_kernel as kernel
 
 POSE = np.array([0.4, -1.2, 2.9])
 COURSE, SPEED = 2.6, 0.15
-FEAR = (0.22, 0.12, 0.1, 0.4, 8.0, 2.0)
+THREAT = (0.22, 0.12, 0.1, 0.4, 8.0, 2.0)
 BODY = (3.0, 0.08, 1.2)
 RINGS = np.array([0.4, 0.7, 1.2])
 RAYS = np.array([2.2, 2.4, 2.6, -2.2, -2.4, -2.6])
@@ -28,34 +28,34 @@ def age():
 
 
 def urgency(age, gap, bearing):
-    feared, _, min_approach, min_time, max_age, max_urgency = FEAR
-    approach = np.maximum(min_approach, feared + SPEED * np.cos(bearing))
+    assumed, _, min_approach, min_time, max_age, max_urgency = THREAT
+    approach = np.maximum(min_approach, assumed + SPEED * np.cos(bearing))
     contact = np.maximum(min_time, gap / approach)
     return np.minimum(max_urgency, np.minimum(max_age, age) / contact)
 
 
 def test_compiled_and_plain_agree(age, cloud):
     for function, arguments in (
-        (kernel.places, (POSE, COURSE, RINGS, RAYS)),
-        (kernel.of_ground, (age, RINGS, RAYS, SPEED, FEAR, 2)),
-        (kernel.of_cloud, (*cloud, BODY, POSE, COURSE, SECTORS, SPEED, FEAR)),
+        (kernel.ray_points, (POSE, COURSE, RINGS, RAYS)),
+        (kernel.ground_urgency, (age, RINGS, RAYS, SPEED, THREAT, 2)),
+        (kernel.cloud_urgency, (*cloud, BODY, POSE, COURSE, SECTORS, SPEED, THREAT)),
     ):
         found, plain = function(*arguments), function.py_func(*arguments)
         assert np.abs(found - plain).max() <= 1e-14
 
 
-def test_places_lie_on_the_rays(age):
-    offset = kernel.places(POSE, COURSE, RINGS, RAYS) - POSE[:2]
+def test_points_lie_on_the_rays(age):
+    offset = kernel.ray_points(POSE, COURSE, RINGS, RAYS) - POSE[:2]
     assert np.allclose(np.hypot(*offset.T), np.tile(RINGS, len(RAYS)))
     bearing = np.arctan2(offset[:, 1], offset[:, 0]) - COURSE
     assert np.allclose(wrap_array(bearing - np.repeat(RAYS, len(RINGS))), 0.0)
 
 
 def test_ground_agrees_with_the_formula_over_arrays(age):
-    each = urgency(age.reshape(6, 3), RINGS - 2.0 * FEAR[1], RAYS[:, None])
-    found = kernel.of_ground(age, RINGS, RAYS, SPEED, FEAR, 2)
+    each = urgency(age.reshape(6, 3), RINGS - 2.0 * THREAT[1], RAYS[:, None])
+    found = kernel.ground_urgency(age, RINGS, RAYS, SPEED, THREAT, 2)
     assert found == pytest.approx([each[:3].mean(), each[3:].mean()])
-    assert each.max() == FEAR[-1] > found.max()
+    assert each.max() == THREAT[-1] > found.max()
 
 
 def test_a_cloud_agrees_with_the_formula_over_arrays(cloud):
@@ -63,8 +63,8 @@ def test_a_cloud_agrees_with_the_formula_over_arrays(cloud):
     offset = positions - POSE[:2]
     distance, bearing = np.hypot(*offset.T), np.arctan2(offset[:, 1], offset[:, 0]) - COURSE
     inside = np.abs(wrap_array(bearing - SECTORS[:, :1])) <= SECTORS[:, 1:]
-    each = urgency(BODY[0], distance - BODY[1] - FEAR[1], bearing)
+    each = urgency(BODY[0], distance - BODY[1] - THREAT[1], bearing)
     wanted = (inside & (distance <= BODY[2])) @ (weights * each)
-    found = kernel.of_cloud(*cloud, BODY, POSE, COURSE, SECTORS, SPEED, FEAR)
+    found = kernel.cloud_urgency(*cloud, BODY, POSE, COURSE, SECTORS, SPEED, THREAT)
     assert found == pytest.approx(wanted)
     assert (found > 0.0).all()

@@ -32,14 +32,14 @@ def scene():
 
 def test_compiled_and_plain_agree(scene):
     candidates, now, centres, motions, radii = scene
-    asked = np.random.default_rng(1).uniform(-3, 3, (4, 20))
+    inputs = np.random.default_rng(1).uniform(-3, 3, (4, 20))
     paths = kernel.roll_out(candidates, 2.8, 0.3, nan, 0.2, now, ENVELOPE, GAIT, 4)
     discs = (np.zeros(2), centres, motions, radii)
     times = kernel.contact_times(*paths, *discs)
     depth = 1.0 - np.hypot(*centres.T) / radii
     weights = (depth, np.full(12, 3.0), radii, (1.5, 20.0, 6.0), (10.0, 40.0, 100.0))
     for function, arguments in (
-        (kernel.body_velocities, (asked, ENVELOPE)),
+        (kernel.body_velocities, (inputs, ENVELOPE)),
         (kernel.roll_out, (candidates, 2.8, 0.3, nan, 0.2, now, ENVELOPE, GAIT, 4)),
         (kernel.roll_out, (candidates, 2.8, 0.3, -1.0, 0.2, now, ENVELOPE, GAIT, 4)),
         (kernel.contact_times, (*paths, *discs)),
@@ -51,20 +51,20 @@ def test_compiled_and_plain_agree(scene):
 
 
 def test_bodies_obey_the_formula_over_arrays():
-    asked = np.random.default_rng(2).uniform(-4, 4, (4, 50))
-    assert kernel.body_velocities(asked, ENVELOPE) == pytest.approx(body_velocity(*asked))
+    inputs = np.random.default_rng(2).uniform(-4, 4, (4, 50))
+    assert kernel.body_velocities(inputs, ENVELOPE) == pytest.approx(body_velocity(*inputs))
 
 
-@pytest.mark.parametrize(("facing", "aside"), [(nan, 0.0), (nan, 0.4), (2.0, 0.4)])
-def test_footsteps_follow_one_another(scene, facing, aside):
+@pytest.mark.parametrize(("facing", "offset"), [(nan, 0.0), (nan, 0.4), (2.0, 0.4)])
+def test_footsteps_follow_one_another(scene, facing, offset):
     candidates, now, *_ = scene
-    footstep, change, turn_change, turn_first_angle, sidestep_ratio = GAIT
+    footstep, change, turn_change, turn_first_angle, fast = GAIT
     speed = np.hypot(*candidates.T)
     direction = np.where(speed < 1e-9, 0.3, np.arctan2(candidates[:, 1], candidates[:, 0]))
-    to = direction + aside if np.isnan(facing) else np.full(len(candidates), facing)
+    to = direction + offset if np.isnan(facing) else np.full(len(candidates), facing)
     heading, body = np.full(len(candidates), 2.8), np.tile(now, (len(candidates), 1))
     velocity, duration = kernel.roll_out(
-        candidates, 2.8, 0.3, facing, aside, now, ENVELOPE, GAIT, 4
+        candidates, 2.8, 0.3, facing, offset, now, ENVELOPE, GAIT, 4
     )
     for step in range(4):
         delta = body_velocity(direction, speed, heading, to) - body
@@ -78,7 +78,7 @@ def test_footsteps_follow_one_another(scene, facing, aside):
         assert velocity[step] == pytest.approx(np.stack(moved, axis=1))
         heading = heading + body[:, 2] * footstep
     wait = np.maximum(0.0, np.abs(wrap_array(direction - heading)) - turn_first_angle) / 0.8
-    assert duration[4] == pytest.approx(np.where(speed > sidestep_ratio, wait, 0.0))
+    assert duration[4] == pytest.approx(np.where(speed > fast, wait, 0.0))
     assert velocity[5] == pytest.approx(candidates)
     assert (duration[:4] == footstep).all()
     assert (duration[5] == inf).all()

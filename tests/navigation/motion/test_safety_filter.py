@@ -16,7 +16,7 @@ from navigation.parameters.motion import SafetyFilterParameters, VelocityMapping
 HERE = np.zeros(3)
 STANDING = np.zeros(3)
 AHEAD = np.array([0.2, 0.0])
-ON_THE_WAY = Facing()
+ON_COURSE = Facing()
 
 
 def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
@@ -32,7 +32,7 @@ def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
     )
 
 
-def choose(limits, wanted, hypotheses, pose=HERE, facing=ON_THE_WAY, body=STANDING, **changes):
+def choose(limits, wanted, hypotheses, pose=HERE, facing=ON_COURSE, body=STANDING, **changes):
     p = replace(SafetyFilterParameters(), **changes)
     return SafetyFilter(p, VelocityMappingParameters(), limits).choose(
         pose, np.asarray(wanted, float), float(np.arctan2(wanted[1], wanted[0])),
@@ -77,13 +77,12 @@ def test_inside_leaving_is_free_and_closing_is_now():
     assert closing[:, 0] == pytest.approx([0.0, 1.0])
 
 
-def test_nothing_near_leaves_the_wish(limits):
-    assert choose(limits, AHEAD, discs([5.0, 0.0])) is not None
+def test_without_near_obstacles_the_wanted_velocity_stays(limits):
     assert choose(limits, AHEAD, discs([5.0, 0.0])) == pytest.approx(AHEAD)
     assert choose(limits, AHEAD, discs([-0.6, 0.0], horizon=2.0)) == pytest.approx(AHEAD)
 
 
-def test_a_disc_in_the_way_changes_the_velocity(limits):
+def test_a_disc_on_the_path_changes_the_velocity(limits):
     v = choose(limits, AHEAD, discs([0.45, 0.02], horizon=2.0))
     assert v != pytest.approx(AHEAD)
     time, _ = contact_times(
@@ -97,12 +96,12 @@ def test_a_standing_robot_leaves_the_band_of_a_mover(limits):
     assert abs(v[1]) > 0.02
 
 
-def test_the_choice_turns_with_the_scene(limits):
+def test_the_choice_turns_with_the_scene(limits, rotation):
     rng = np.random.default_rng(1)
     for _ in range(20):
         places, velocities = rng.uniform(-1, 1, (8, 2)), rng.normal(0, 0.1, (8, 2))
         heading, a = float(rng.uniform(-3, 3)), float(rng.uniform(-3, 3))
-        r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+        r = rotation(a)
         wish, body = rng.normal(0, 0.1, 2), np.array([0.1, 0.0, 0.2])
         filter_ = SafetyFilter(SafetyFilterParameters(), VelocityMappingParameters(), limits)
         course = float(np.arctan2(wish[1], wish[0]))
@@ -111,7 +110,7 @@ def test_the_choice_turns_with_the_scene(limits):
                 np.array([0, 0, h]),
                 filter_.candidates(v, c),
                 c,
-                facing=ON_THE_WAY,
+                facing=ON_COURSE,
                 body_now=body,
                 discs=d,
             )
@@ -128,7 +127,7 @@ def test_without_rollout_the_path_is_turn_then_straight(limits):
         replace(SafetyFilterParameters(), steps=0), VelocityMappingParameters(), limits
     )
     paths = filter_.paths(
-        HERE, np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]]), 0.0, ON_THE_WAY, STANDING
+        HERE, np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]]), 0.0, ON_COURSE, STANDING
     )
     assert paths.duration[0] == pytest.approx([(np.pi - 0.5) / limits.wz, 0.0, 0.0])
     assert paths.velocity[0] == pytest.approx(np.zeros((3, 2)))
@@ -138,18 +137,18 @@ def test_without_rollout_the_path_is_turn_then_straight(limits):
 def test_the_rollout_obeys_the_envelope(limits):
     p = SafetyFilterParameters()
     filter_ = SafetyFilter(p, VelocityMappingParameters(), limits)
-    paths = filter_.paths(HERE, filter_.candidates(AHEAD, 0.0), 0.0, ON_THE_WAY, STANDING)
+    paths = filter_.paths(HERE, filter_.candidates(AHEAD, 0.0), 0.0, ON_COURSE, STANDING)
     speed = np.hypot(paths.velocity[..., 0], paths.velocity[..., 1])[: p.steps]
     assert speed.max() <= limits.vx + 1e-9
     change = limits.acceleration * limits.footstep
     assert speed[0].max() <= change + 1e-9
 
 
-def test_a_body_turned_aside_is_rolled_out_as_it_walks(limits):
-    """The way stays the way; what the turned body must walk sideways slows it down."""
+def test_a_turned_body_is_rolled_out_along_its_course(limits):
+    """The lateral speed limit slows the turned body down."""
     filter_ = SafetyFilter(SafetyFilterParameters(), VelocityMappingParameters(), limits)
     turned, straight = (
-        filter_.paths(np.array([0.0, 0.0, a]), AHEAD[None], 0.0, Facing(aside=a), body)
+        filter_.paths(np.array([0.0, 0.0, a]), AHEAD[None], 0.0, Facing(offset=a), body)
         for a, body in ((1.0, np.array([0.05, -0.08, 0.0])), (0.0, np.array([0.2, 0.0, 0.0])))
     )
     lateral = turned.velocity[-2 - 1, 0]

@@ -4,27 +4,24 @@ import numpy as np
 import pytest
 
 from navigation.belief.visibility import Viewpoint
-from navigation.gaze.unseen_ground_vote import unseen_ground_vote
 from navigation.motion.unseen_ground import ground_points, ground_seen
 from navigation.parameters.motion import UnseenGroundParameters
-from navigation.parameters.navigation import NavigationParameters
 
 P = UnseenGroundParameters()
 
 
-def test_the_points_lie_ahead_of_the_motion_in_any_frame():
+def test_the_points_lie_ahead_of_the_motion_in_any_frame(rotation):
     here = ground_points(np.zeros(3), 0.0, P)
     assert len(here) == 12
     assert here[:, 0].min() == pytest.approx(P.near)
     assert here[:, 0].max() == pytest.approx(P.far)
     assert np.abs(here[:, 1]).max() == pytest.approx(P.half_width)
     a, shift = 0.7, np.array([1.0, -2.0])
-    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
     there = ground_points(np.array([*shift, 3.0]), a, P)
-    assert there == pytest.approx(here @ r.T + shift)
+    assert there == pytest.approx(here @ rotation(a).T + shift)
 
 
-def test_a_look_20_deg_down_shows_all_the_ground_asked_for(view):
+def test_a_look_20_deg_down_shows_all_checked_ground(view):
     pose = np.array([1.0, -0.5, 0.7])
     eye = Viewpoint.of(view(tilt=-np.radians(20.0)), pose, 3.0)
     for near, shown in ((P.near, True), (0.25, False)):
@@ -35,18 +32,7 @@ def test_a_look_20_deg_down_shows_all_the_ground_asked_for(view):
         assert seen.all() == shown
 
 
-@pytest.mark.parametrize("way", [-2.5, -0.4, 0.0, 1.0])
-def test_ground_that_holds_the_robot_up_asks_for_a_look_within_the_pan_stop(way, belief):
-    p = NavigationParameters.extended()
-    unseen, seen = (belief(pose=(1.0, 0.5, 0.3), confidence=lambda x, y, c=c: c) for c in (0, 1))
-    (vote,) = unseen_ground_vote(unseen, way, 0.47, 0.8, p)
-    assert vote.value.tolist() == [0.8]
-    assert vote.pan == pytest.approx(np.clip(way, -p.gaze.max_pan, p.gaze.max_pan))
-    assert 0.47 / -np.tan(vote.tilt) == pytest.approx(0.5 * (P.near + P.far))
-    assert unseen_ground_vote(seen, way, 0.47, 0.8, p) == []
-
-
-def test_ground_is_seen_where_every_point_of_it_was(belief):
+def test_ground_is_seen_if_every_point_was_seen(belief):
     b = belief(pose=(0.0, 0.0, 2.0), confidence=lambda x, y: P.confidence - 1e-9 * (y > 0.05))
     assert ground_seen(b, -0.5 * np.pi, P)
     assert not ground_seen(b, 0.0, P)

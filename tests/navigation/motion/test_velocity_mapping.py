@@ -33,7 +33,7 @@ def test_standing_stands(limits):
     assert body_velocity(1.0, 0.0, 0.0, 0.0, limits=limits, turn_gain=1.5) == pytest.approx(0.0)
 
 
-def test_who_has_nowhere_to_go_stands_and_who_is_lost_turns_within_the_envelope(limits):
+def test_an_idle_robot_stands_and_a_lost_one_turns_within_the_limits(limits):
     assert idle_velocity(False, 0.5, limits).tolist() == [0.0, 0.0, 0.0]
     assert idle_velocity(True, 0.5, limits).tolist() == [0.0, 0.0, 0.5]
     assert idle_velocity(True, 9.0, limits).tolist() == [0.0, 0.0, limits.wz]

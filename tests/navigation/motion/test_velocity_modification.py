@@ -3,24 +3,28 @@ from math import inf
 import numpy as np
 import pytest
 
+from navigation.decision import SpeedLimits
 from navigation.motion.collision_band import Encounter
 from navigation.motion.velocity_modification import modify_speed, needed_acceleration, sample_speed
+from navigation.parameters.motion import MovingObstacleParameters
 
 V_MAX = 0.2
 
 
+def limited(acceleration):
+    return SpeedLimits(V_MAX, 0.1, 0.08, 0.8, acceleration, 0.34)
+
+
 def closed(encounters, desired=0.2, now=0.2, acceleration=0.3, horizon=6.0, wait=False):
-    return modify_speed(
-        encounters, desired, now, v_max=V_MAX, acceleration=acceleration, footstep=0.34,
-        horizon=horizon, wait_in_band=wait,
-    )  # fmt: skip
+    p = MovingObstacleParameters(horizon=horizon, wait_in_band=wait)
+    return modify_speed(encounters, desired, now, limited(acceleration), p)
 
 
-def sampled(encounters, desired=0.2, now=0.2, samples=21, horizon=6.0, wait=False):
-    return sample_speed(
-        encounters, desired, now, v_max=V_MAX, acceleration=10.0, samples=samples,
-        horizon=horizon, acceleration_time=0.8, wait_in_band=wait,
-    )  # fmt: skip
+def sampled(
+    encounters, desired=0.2, now=0.2, acceleration=10.0, horizon=6.0, wait=False, samples=21
+):
+    p = MovingObstacleParameters(horizon=horizon, wait_in_band=wait, samples=samples)
+    return sample_speed(encounters, desired, now, limited(acceleration), p)
 
 
 def scene(rng):
@@ -31,7 +35,7 @@ def scene(rng):
     )
 
 
-def test_nothing_near_keeps_the_speed():
+def test_without_movers_the_speed_stays():
     assert closed(()).speed == 0.2
     assert closed(()).situation == "free"
     assert sampled(()).speed == 0.2
@@ -69,7 +73,7 @@ def test_closed_form_and_samples_agree_within_one_sample(wait):
     assert same > 590
 
 
-def test_it_overtakes_if_it_can_and_waits_if_it_cannot():
+def test_the_robot_passes_first_if_it_can_and_waits_if_it_cannot():
     crossing = (Encounter(0.45, -0.7, 0.0, 0.1, 0.2),)
     fast = closed(crossing, desired=0.06, now=0.06, acceleration=inf)
     slow = closed(crossing, desired=0.06, now=0.06, acceleration=0.0)
@@ -83,7 +87,7 @@ def test_a_definite_collision_changes_the_path():
     assert closed((Encounter(0.6, 0.0, -0.1, 0.0, 0.3),)).situation == "path_change"
 
 
-def test_late_contacts_are_ignored():
+def test_collisions_beyond_the_horizon_are_ignored():
     far = (Encounter(1.9, 0.0, -0.05, 0.0, 0.3),)
     assert closed(far, horizon=6.0).situation == "free"
     assert closed(far, horizon=60.0).situation == "path_change"
@@ -113,7 +117,7 @@ def test_the_speed_that_passes_first_does_not_jump_where_the_robot_enters_the_ba
 
 
 @pytest.mark.parametrize("choose", [closed, sampled])
-def test_inside_the_band_nobody_waits_for_the_mover(choose):
+def test_inside_the_band_the_robot_does_not_wait(choose):
     """Slower is free only until the horizon: the contact is put off, not avoided."""
     head_on = (Encounter(1.4, 0.0, -0.1, 0.0, 0.3),)
     slow = head_on[0].contact_time(0.0)
@@ -128,15 +132,9 @@ def test_inside_the_band_nobody_waits_for_the_mover(choose):
 def test_a_speed_that_cannot_be_gained_in_time_is_not_chosen():
     crossing = (Encounter(0.45, -0.7, 0.0, 0.1, 0.2),)
     needed = sampled(crossing, desired=0.06, now=0.06).speed - 0.06
-
-    def choice(acceleration):
-        return sample_speed(
-            crossing, 0.06, 0.06, v_max=V_MAX, acceleration=acceleration, samples=21, horizon=6.0,
-            acceleration_time=0.8, wait_in_band=False,
-        )  # fmt: skip
-
-    assert choice(1.01 * needed / 0.8).situation == "accelerate"
-    assert choice(0.99 * needed / 0.8).situation == "brake"
+    for factor, situation in ((1.01, "accelerate"), (0.99, "brake")):
+        choice = sampled(crossing, desired=0.06, now=0.06, acceleration=factor * needed / 0.8)
+        assert choice.situation == situation
 
 
 def test_the_acceleration_limit_is_that_of_the_formula():

@@ -85,9 +85,9 @@ def test_near_the_path_the_goal_decides_the_side():
     assert sides.update(1, foot(1.0, -0.02), (0.0, -1.0)) == -1
 
 
-def test_the_foot_does_not_depend_on_the_frame():
+def test_the_foot_does_not_depend_on_the_frame(rotation):
     a, shift = 0.8, np.array([3.0, -1.0])
-    r = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    r = rotation(a)
     rng = np.random.default_rng(3)
     for robot in rng.uniform((0.1, -1.0), (1.0, 1.0), (20, 2)):
         here = foot(*robot, VELOCITY)
@@ -109,7 +109,7 @@ def test_the_printed_radius_is_the_oval_of_the_obstacle():
     assert printed_path_length(0.0, 0.5, 12.0, 0.5, 0.05) == pytest.approx(0.3)
 
 
-def test_on_its_own_side_of_the_path_the_robot_stays_whatever_the_goal():
+def test_far_from_the_path_the_present_side_decides():
     p = MovingObstacleParameters()
     far = p.side_switch + 0.01
     assert VirtualSides(p).update(1, foot(1.0, far), (0.0, -1.0)) == 1

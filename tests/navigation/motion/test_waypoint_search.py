@@ -12,22 +12,22 @@ WALL = np.array([[1.0, y] for y in np.arange(-0.6, 1.01, 0.2)])
 RADII = np.full(len(WALL), 0.25)
 
 
-def test_a_free_way_is_left_alone():
+def test_a_free_path_needs_no_waypoint():
     assert search_waypoint(START, GOAL, np.zeros((0, 2)), np.zeros(0), P) is GOAL
     aside = np.array([[1.0, 0.5]])
     assert search_waypoint(START, GOAL, aside, np.array([0.3]), P) is GOAL
 
 
-def test_round_a_wall_the_shorter_way_is_taken_and_every_step_of_it_is_free():
-    way = shortest_path(START, GOAL, WALL, RADII, P)
-    gaps = np.hypot(*(way[:-1, None] - WALL).transpose(2, 0, 1))
+def test_the_path_around_a_wall_is_the_shorter_one_and_free():
+    path = shortest_path(START, GOAL, WALL, RADII, P)
+    gaps = np.hypot(*(path[:-1, None] - WALL).transpose(2, 0, 1))
     assert np.all(gaps >= 0.25)
-    assert way[-1] == pytest.approx(GOAL)
-    assert way[:, 1].min() < -0.8
-    assert np.hypot(*np.diff(way, axis=0).T).max() < 2.5 * P.cell
+    assert path[-1] == pytest.approx(GOAL)
+    assert path[:, 1].min() < -0.8
+    assert np.hypot(*np.diff(path, axis=0).T).max() < 2.5 * P.cell
 
 
-def test_the_way_point_is_visible_in_reach_and_leads_round():
+def test_the_waypoint_is_visible_in_reach_and_leads_around():
     point = search_waypoint(START, GOAL, WALL, RADII, P)
     assert np.hypot(*point) <= P.reach
     assert point[1] < -0.3
@@ -47,14 +47,14 @@ def test_a_blocked_destination_in_the_robot_s_cell_leaves_the_task():
     assert search_waypoint(START, target, blocking, radius, p) is target
 
 
-def test_a_mirrored_wall_mirrors_the_length_of_the_way():
+def test_a_mirrored_wall_has_a_path_of_the_same_length():
     one = shortest_path(START, GOAL, WALL, RADII, P)
     other = shortest_path(START, GOAL, WALL * [1, -1], RADII, P)
     lengths = [np.hypot(*np.diff(w, axis=0).T).sum() for w in (one, other)]
     assert lengths[0] == pytest.approx(lengths[1], abs=2 * P.cell)
 
 
-def test_without_any_way_the_task_stays():
+def test_without_a_path_the_task_stays():
     ring = np.arange(24) * np.pi / 12
     around = GOAL + 0.6 * np.stack([np.cos(ring), np.sin(ring)], axis=1)
     assert search_waypoint(START, GOAL, around, np.full(24, 0.2), P) is GOAL
