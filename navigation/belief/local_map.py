@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class LocalMap:
-    """Square grid aligned with W that scrolls with the robot.
+    """Square grid of confidences C, eq. (1), aligned with W, that scrolls with the robot.
 
     Args:
         parameters: size, cell, rates.
