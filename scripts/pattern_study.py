@@ -27,7 +27,7 @@ from walking.gait.gait import Gait
 from walking.gait.transition import Transition
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
 from walking.pattern import zmp_kernel
-from walking.pattern.dcm_tracker import dcm_reference
+from walking.pattern.dcm_pattern import dcm_reference
 from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
@@ -136,19 +136,19 @@ class Walker:
         gait = self.gait
         self.transition.remember()
         self.steering.follow(command, 1.0, settled=True, balanced=True)
-        gait.retime(self.steering.pace(gait.timing, stepping=gait.stepping))
+        gait.retime(self.steering.next_timing(gait.timing, stepping=gait.stepping))
         if not gait.stepping and self.steering.moving:
             gait.start(0)
         begin = time.process_time()
         region = CountingRegion(support_region(self.sole, *gait.support_feet, self._margin))
-        wish, moving = self.steering.wish(STILL), self.steering.moving
+        wanted, moving = self.steering.strides(STILL), self.steering.moving
         if self.generator.selective:
-            ramps = self.transition.admit(self.state, region, wish, moving=moving)
+            ramps = self.transition.admit(self.state, region, wanted, moving=moving)
             moving, gait.landing = self.transition.moving, self.transition.landing
         else:
             if gait.adjustable:
-                gait.aim(gait.nominal(wish))
-            ramps = gait.plan(gait.landing, wish, moving=moving)
+                gait.aim(gait.nominal(wanted))
+            ramps = gait.plan(gait.landing, wanted, moving=moving)
         x, y = dcm_reference(self.lipm, ramps)
         p, w = self.state, self.lipm.omega
         own = (p.x + p.vx / w, p.y + p.vy / w)
@@ -244,8 +244,8 @@ def every_tick(name: str, sole: Sole, seeds: list[int], duration: float) -> Tall
             tally.outside += distance > OUTSIDE
             tally.worst = max(tally.worst, distance)
             tally.clipped += walker.clipped > OUTSIDE
-            tally.altered += walker.transition.share < 1.0
-            tally.refused += walker.transition.share == 0.0
+            tally.altered += walker.transition.fraction < 1.0
+            tally.refused += walker.transition.fraction == 0.0
             tally.missed = max(tally.missed, walker.missed)
             tally.cost.append(walker.cost)
             if walker.gait.completed > before:
@@ -278,7 +278,7 @@ def largest_change(name: str, sole: Sole, left: float, axis: str) -> tuple[float
             support, kept = walker.gait.support, True
             while kept and walker.gait.support == support:
                 walker.tick(command)
-                kept = walker.clipped <= steady + CLIPPED and walker.transition.share == 1.0
+                kept = walker.clipped <= steady + CLIPPED and walker.transition.fraction == 1.0
             if not kept or abs(walker.landed(axis) - moved[axis]) > CLIPPED:
                 break
             best = change

@@ -1,13 +1,12 @@
 """Walking: velocity commands become footsteps, footsteps become joint setpoints.
 
-The library knows the robot through one :class:`walking.body.robot_model.RobotModel` and the
-world through :class:`walking.sensing.BodySensors` alone, so it would run on the real
-robot unchanged.
+The library reads the robot from one :class:`walking.body.robot_model.RobotModel` and its sensors
+from :class:`walking.sensing.BodySensors` only, so it would run on the real robot unchanged.
 
-Another humanoid is another MJCF file; `RobotModel.from_mjcf` says what it has to name::
+Another humanoid is another MJCF file; `RobotModel.from_mjcf` lists the names it must contain::
 
     robot = RobotModel.from_mjcf(path)
     engine = WalkingEngine(robot, parameters_for(robot))
 
-The parameters are the choices made for HSR-VIII, carried over by the robot's own measures.
+The default parameters were tuned for HSR-VIII; `parameters_for` scales them to the robot.
 """

@@ -1,10 +1,18 @@
-"""A bound on a value: the counterpart of the dead zone, which is what it takes off."""
+"""Saturation and dead zone of a scalar."""
 
 
-def clamp(value: float, most: float) -> float:
-    """A value kept within ±`most`.
+def clamp(value: float, limit: float) -> float:
+    """Clip a value to ±`limit`.
 
-    Where many are bounded in a control tick, the expression is written out: a call costs as much
-    as all of it.
+    Loops over many values per control tick inline the expression: the call costs as much.
     """
-    return min(most, max(-most, value))
+    return min(limit, max(-limit, value))
+
+
+def dead_zone(value: float, zone: float) -> float:
+    """Return the excess of a value over a dead zone of ±`zone`, zero inside it."""
+    if value > zone:
+        return value - zone
+    if value < -zone:
+        return value + zone
+    return 0.0

@@ -1,4 +1,4 @@
-"""What walking is asked to do: a body velocity or footsteps, and a direction to look."""
+"""Commands to walking: a body velocity or footsteps, and a gaze direction."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -28,19 +28,19 @@ class VelocityCommand:
 
 @dataclass(frozen=True, slots=True)
 class CommandState:
-    """One footstep, given explicitly; it holds for every footstep until another comes.
+    """Explicit footstep, repeated until the next command.
 
-    The command state of the modifiable walking pattern (Lee et al., IEEE T-RO 2008). A robot
-    under a command state steps; a zero velocity command closes the stance and stops it. The
-    defaults are HSR-VIII's usual footstep in place; `walking.scaling.scale_parameters` scales them
-    to another robot.
+    The command state of the modifiable walking pattern (Lee et al., IEEE T-RO 2008). Under a
+    command state the robot steps; a zero velocity command closes the stance and stops it. The
+    defaults step in place with HSR-VIII's timing; `walking.scaling.scale_parameters` scales them to
+    another robot.
 
     Attributes:
-        single_support: time on one foot [s].
-        double_support: time on both feet before that [s].
+        single_support: duration of single support [s].
+        double_support: duration of the double support before it [s].
         forward: advance of the stance's middle per footstep [m].
-        side: distance between the feet at landing; the same command serves both feet [m].
-        direction: of the landing foot in the frame of the support foot [rad].
+        side: distance between the feet at touchdown, for either foot [m].
+        direction: yaw of the landing foot in the frame of the support foot [rad].
         swing_height: of the swing foot at mid-swing [m].
     """
 

@@ -1,4 +1,4 @@
-"""What became of a command: what was asked, what is given, and what stood in the way."""
+"""Commanded and applied velocity or footstep, and the limits that bound."""
 
 from enum import StrEnum
 
@@ -7,7 +7,7 @@ from walking.value import comparable_value
 
 
 class Limit(StrEnum):
-    """A reason to give less than was asked."""
+    """Constraint that limits a command."""
 
     SPEED = "speed"
     COMBINED_SPEED = "combined speed"
@@ -29,16 +29,15 @@ class Limit(StrEnum):
 
 @comparable_value
 class CommandLimits:
-    """One tick's answer to the command.
+    """Report of how one tick's command is limited.
 
     Attributes:
-        asked: the command.
-        given: what the footsteps to come obey; of the other kind only while it may not change
-            over.
-        limits: constraints that bound in this tick, in the order in which they are applied; for
-            the footstep under way, too, which may be past obeying what is given. None when the
-            command is obeyed: to the control tick in time, and to the millimetre (see
-            `FootstepPlanner.same`) in the landing under way.
+        commanded: the command.
+        applied: command that the next footsteps follow; a velocity for a command state, or the
+            reverse, only while switching is blocked.
+        limits: constraints that bind in this tick, in the order of application, including those on
+            the present footstep. Empty when the command is followed: exactly in control ticks,
+            and within the tolerance of `FootstepPlanner.same` in the present landing.
     """
 
     commanded: Command
@@ -47,5 +46,5 @@ class CommandLimits:
 
     @property
     def limited(self) -> bool:
-        """Whether anything but the command itself is given."""
+        """Whether any constraint binds."""
         return bool(self.limits)

@@ -1,6 +1,6 @@
-"""The walking engine: one control tick from sensors and commands to joint targets."""
+"""Walking engine: sensors and commands to joint targets, once per control tick."""
 
-from math import cos, hypot, sin
+from math import hypot
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
 from walking.command import Command, HeadTarget
 from walking.command_limits import CommandLimits, Limit
-from walking.footsteps.cycle import Cycle
+from walking.footsteps.cycle import GaitCycle
 from walking.footsteps.heading_hold import HeadingHold
 from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.slowdown import Slowdown
@@ -26,7 +26,8 @@ from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.generator import make_generator
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
-from walking.pattern.support import Footing, SupportRegion
+from walking.pattern.support import SupportPolygon, SupportRegion
+from walking.planar import rotate_back
 from walking.published_state import camera_pose, published_plan
 from walking.sensing import BodySensors
 from walking.servos.head import Head
@@ -36,19 +37,19 @@ from walking.servos.whole_body import WholeBody
 from walking.state import WalkingState
 from walking.targets import JointTargets
 
-SAME_HEIGHT = 1e-9  # difference of swing heights that is rounding [m]
+SAME_HEIGHT = 1e-9  # rounding error of swing heights [m]
 
 
 class WalkingEngine:
-    """Walks a humanoid: call `step` once per control tick of 5 ms.
+    """Walking engine of a humanoid: call `step` once per control tick of 5 ms.
 
-    The engine starts in the ready posture, stands until it is told to move, and stops with
-    the feet side by side when it is told to stand.
+    The engine starts in the ready posture, stands until a command moves it, and stops with the feet
+    side by side.
 
     Args:
-        robot: the robot's numbers.
+        robot: model of the robot.
         parameters: of the engine.
-        odometry: dead reckoning to go on with, from the origin if left out.
+        odometry: dead reckoning to continue; starts at the origin by default.
     """
 
     def __init__(
@@ -74,23 +75,19 @@ class WalkingEngine:
             lipm, generator, planner, gait, stabilizer=self._stabilizer, pendulum=self._capture
         )
         self._whole_body = WholeBody(
-            robot,
-            parameters,
-            lipm=lipm,
-            gait=gait,
-            pendulum=self._pendulum,
+            robot, parameters, lipm=lipm, gait=gait, pendulum=self._pendulum
         )
         self._touch = TouchdownDetector(parameters.estimator)
-        self._caution = Slowdown(parameters.stabilizer)
-        self._cycle = Cycle()
+        self._slowdown = Slowdown(parameters.stabilizer)
+        self._cycle = GaitCycle()
         self._heading = HeadingHold(parameters.stabilizer)
         self._speed = SpeedHold(parameters.stabilizer)
-        self._pressure = ComOffset(parameters.stabilizer)
+        self._com_offset = ComOffset(parameters.stabilizer)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._estimation = Estimation(robot, lipm.omega, parameters.estimator, self._odometry)
         ready = robot.ready[HEAD].tolist()
         self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
-        self._footing = Footing(robot.sole, gait.support_feet)
+        self._polygon = SupportPolygon(robot.sole, gait.support_feet)
         self._fall_tilt = parameters.estimator.fall_tilt
         self._zmp_shift = (0.0, 0.0)
         self._bound: list[Limit] = []
@@ -100,12 +97,12 @@ class WalkingEngine:
 
     @property
     def parameters(self) -> WalkingParameters:
-        """Parameters of the engine, its speed limits among them."""
+        """Parameters of the engine."""
         return self._parameters
 
     @property
     def command_limits(self) -> CommandLimits:
-        """What became of the last tick's command."""
+        """How the last command was limited."""
         placement = self._placement
         return self._steering.report(
             self._binding, placement.applied, placement.admitted, self._gait.timing
@@ -113,27 +110,26 @@ class WalkingEngine:
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """Constraints that altered the last tick's command, none if it is obeyed."""
+        """Constraints that limited the last command."""
         return (*self._steering.bound, *self._binding)
 
     @property
     def _binding(self) -> list[Limit]:
-        """Constraints that altered what the steering made of the last tick's command."""
+        """Constraints that limited the strides wanted by the steering."""
         return [*self._bound, *self._placement.bound]
 
     @property
     def zmp_depth(self) -> float:
-        """How far the last tick's planned ZMP lay inside the soles that carry it [m]."""
-        return self._footing.depth(self._pendulum.zmp_x, self._pendulum.zmp_y)
+        """Distance of the last planned ZMP from the edge of the support polygon [m]."""
+        return self._polygon.depth(self._pendulum.zmp_x, self._pendulum.zmp_y)
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
-        """One control tick.
+        """Run one control tick.
 
         Args:
             sensors: read at the start of the tick.
-            command: velocity or footsteps wanted, new in any tick; limited to what the legs
-                can do, see `command_limits`.
-            head: direction to look; limited to what the neck can do.
+            command: velocity or footsteps, new in any tick; limited, see `command_limits`.
+            head: gaze direction, limited by rate, acceleration and joint limits.
 
         Returns:
             setpoints of all joints.
@@ -141,21 +137,21 @@ class WalkingEngine:
         tilt = self._sense(sensors)
         error = self._estimation.dcm_error
         gait, steering, placement = self._gait, self._steering, self._placement
-        pendulum, whole_body, footing = self._pendulum, self._whole_body, self._footing
+        pendulum, whole_body, polygon = self._pendulum, self._whole_body, self._polygon
         placement.remember()
         self._command(command, error)
-        wish = self._wish()
+        wanted = self._wanted_strides()
         if not gait.stepping:
             self._maybe_start(error)
-        self._feel_floor()
-        footing.stand(gait.support_feet)
-        region = footing.region(self._parameters.pattern.sole_margin)
-        ramps = placement.decide(wish, steering.velocity, error, region, moving=steering.moving)
+        self._detect_touchdown()
+        polygon.update(gait.support_feet)
+        region = polygon.region(self._parameters.pattern.sole_margin)
+        ramps = placement.decide(wanted, steering.velocity, error, region, moving=steering.moving)
         self._capture.advance(ramps, placement.landing, region)
         zmp = (pendulum.zmp_x, pendulum.zmp_y)
         load = self._right_load(region, zmp)
-        footing.stand(gait.support_feet)
-        reachable = footing.region(self._parameters.stabilizer.sole_margin)
+        polygon.update(gait.support_feet)
+        reachable = polygon.region(self._parameters.stabilizer.sole_margin)
         self._zmp_shift = self._stabilizer.zmp_shift(zmp, error, reachable)
         gait.advance(moving=placement.moving)
         if not gait.double and abs(gait.swing_height - gait.timing.swing_height) > SAME_HEIGHT:
@@ -168,20 +164,20 @@ class WalkingEngine:
             self._zmp_shift,
             load,
             head=self._head.advance(head),
-            offset=self._pressure.offset,
+            offset=self._com_offset.offset,
         )
 
     def observe(self, sensors: BodySensors) -> None:
-        """A tick in which something else moves the joints: only the attitude is followed."""
+        """Update only the attitude in a tick in which something else moves the joints."""
         self._estimation.observe(sensors)
         self._sensors = sensors
         self._ticks += 1
 
     def state(self) -> WalkingState:
-        """Snapshot after the last tick; it changes nothing.
+        """Return the state after the last tick.
 
         Raises:
-            RuntimeError: no tick has been made yet.
+            RuntimeError: before the first tick.
         """
         body = self._estimation.body
         if self._sensors is None or body is None:
@@ -195,7 +191,7 @@ class WalkingEngine:
             odometry,
             error=self._estimation.com_error,
             omega=self._lipm.omega,
-            footing=self._footing,
+            polygon=self._polygon,
             capture=self._placement.moved,
         )
         return WalkingState(
@@ -217,12 +213,12 @@ class WalkingEngine:
 
     @property
     def fallen(self) -> bool:
-        """Whether the trunk is tilted so far that the robot must have fallen."""
+        """Whether the tilt of the trunk is that of a fallen robot."""
         tilt = self._estimation.tilt
         return tilt is not None and hypot(*tilt) > self._fall_tilt
 
     def _sense(self, sensors: BodySensors) -> tuple[float, float]:
-        """Follow the body; roll and pitch of its trunk [rad]."""
+        """Update the state estimate; return roll and pitch of the trunk [rad]."""
         gait, whole_body, pendulum = self._gait, self._whole_body, self._pendulum
         plan = (
             *whole_body.pelvis,
@@ -241,42 +237,39 @@ class WalkingEngine:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
         off = hypot(*error)
         balanced = off < self._parameters.stabilizer.max_slew_error
-        share = self._caution.update(off)
-        self._steering.follow(command, share, settled=settled, balanced=balanced)
+        speed_ratio = self._slowdown.update(off)
+        self._steering.follow(command, speed_ratio, settled=settled, balanced=balanced)
         gait = self._gait
-        retimed = gait.retime(self._steering.pace(gait.timing, stepping=gait.stepping))
+        retimed = gait.retime(self._steering.next_timing(gait.timing, stepping=gait.stepping))
         self._bound = [] if retimed else [Limit.TIMING]
 
-    def _wish(self) -> Strides:
-        """What the footsteps obey, making up for what the feet slip."""
+    def _wanted_strides(self) -> Strides:
+        """Return the wanted strides, corrected for slip of the feet."""
         estimation, gait, steering = self._estimation, self._gait, self._steering
         ahead = self._whole_body.pelvis[2] - estimation.pose[2]
         if not gait.stepping:
-            # Standing, the plan takes the heading as it is.
-            self._heading.rest(ahead)
-            self._cycle.rest()
+            # While standing the planned heading follows the measured one.
+            self._heading.reset(ahead)
+            self._cycle.reset()
         if not (gait.stepping and steering.moving):
             # The last footsteps only close the stance.
-            self._speed.rest()
-            self._pressure.rest()
-            return steering.wish(STILL)
+            self._speed.reset()
+            self._com_offset.reset()
+            return steering.strides(STILL)
         begins = self._cycle.begins(gait.support)
         moved = hypot(*self._placement.moved)
-        disturbed = gait.hurried or moved > self._parameters.stabilizer.max_steady_shift
-        self._pressure.update(estimation.pressure_error, begins=begins, disturbed=disturbed)
+        disturbed = gait.shortened or moved > self._parameters.stabilizer.max_steady_shift
+        self._com_offset.update(estimation.pressure_error, begins=begins, disturbed=disturbed)
         vx, vy = self._speed.correction(
-            estimation.pose,
-            steering.velocity,
-            begins=begins,
-            disturbed=disturbed,
+            estimation.pose, steering.velocity, begins=begins, disturbed=disturbed
         )
-        return steering.wish((vx, vy, self._heading.rate(ahead, renew=begins or disturbed)))
+        return steering.strides((vx, vy, self._heading.rate(ahead, renew=begins or disturbed)))
 
     def _maybe_start(self, error: tuple[float, float]) -> None:
-        """Take a first footstep if the command asks for it, or balance."""
+        """Take a first footstep if the command or balance requires it."""
         gait, foot = self._gait, self._gait.footholds[0]
-        share = self._parameters.stabilizer.step_error_ratio
-        pushed = self._stabilizer.exceeds(foot, error, share)
+        ratio = self._parameters.stabilizer.step_error_ratio
+        pushed = self._stabilizer.exceeds(foot, error, ratio)
         moving = self._steering.moving
         if self.fallen and moving:
             self._bound.append(Limit.FALLEN)
@@ -284,10 +277,10 @@ class WalkingEngine:
             return
         opening_left = self._planner.opening_left(self._steering.velocity)
         if pushed:
-            # The foot on the side of the fall is the one that can catch it.
+            # Only the foot on the side of the fall can make the capture step.
             if not moving:
                 self._bound.append(Limit.BALANCE)
-            opening_left = cos(foot.yaw) * error[1] - sin(foot.yaw) * error[0] > 0.0
+            opening_left = rotate_back(foot.yaw, *error)[1] > 0.0
         elif opening_left is None:
             opening_left = not self._last_opening_left
         self._last_opening_left = opening_left
@@ -295,16 +288,16 @@ class WalkingEngine:
         if not gait.retime(self._steering.timing):
             self._bound.append(Limit.TIMING)
 
-    def _feel_floor(self) -> None:
-        """Leave the swing foot where it has met the floor before its time."""
+    def _detect_touchdown(self) -> None:
+        """Stop the swing foot on early touchdown."""
         gait = self._gait
-        if gait.stepping and not gait.double and not gait.held:
+        if gait.stepping and not gait.double and not gait.landed_early:
             force = self._estimation.load(gait.swing)
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touchdown()
 
     def _right_load(self, region: SupportRegion, zmp: tuple[float, float]) -> float:
-        """Planned share of the weight on the right foot."""
+        """Return the planned load fraction of the right foot [1]."""
         gait = self._gait
-        loading = region.share(*zmp) if gait.double else 1.0
+        loading = region.load_fraction(*zmp) if gait.double else 1.0
         return loading if gait.support == 1 else 1.0 - loading

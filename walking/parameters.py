@@ -44,7 +44,7 @@ class GaitParameters:
     min_footstep_time: Annotated[float, Interval(ge=0.01, le=10.0), TIME] = 0.26
     """Duration of a footstep at the quickest [s]."""
     double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.15
-    """Share of the footstep in double support [1]."""
+    """Fraction of the footstep in double support [1]."""
     start_time: Annotated[float, Gt(0.0), TIME] = 0.3
     """Double support before the first footstep [s]."""
     stop_time: Annotated[float, Gt(0.0), TIME] = 0.3
@@ -58,11 +58,11 @@ class GaitParameters:
     swing_height_rate: Annotated[float, Gt(0.0), SPEED] = 0.2
     """Fastest change of that height while the foot is in the air [m/s]."""
     swing_start: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.05
-    """Share of single support after which the foot lifts [1]."""
+    """Fraction of single support after which the foot lifts [1]."""
     swing_end: Annotated[float, Interval(gt=0.0, le=1.0), NUMBER] = 0.97
-    """Share of single support after which the foot is down [1]."""
+    """Fraction of single support after which the foot is down [1]."""
     landing_freeze: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.8
-    """Share of the swing after which the landing no longer moves [1]."""
+    """Fraction of the swing after which the landing no longer moves [1]."""
     landing_speed: Annotated[float, Gt(0.0), SPEED] = 4.0
     """Fastest move of the landing while the foot is in the air [m/s]."""
     landing_turn: Annotated[float, Gt(0.0), RATE] = 5.0
@@ -131,7 +131,7 @@ class EstimatorParameters:
     contact_ticks: Annotated[int, Gt(0)] = 2
     """Control ticks that the load must last [1]."""
     contact_phase: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.55
-    """Share of the swing before which no touchdown is believed [1]."""
+    """Fraction of the swing before which no touchdown is believed [1]."""
     fall_tilt: Annotated[float, Gt(0.0), NUMBER] = 0.8
     """Tilt of the trunk at which the robot believes that it has fallen [rad]."""
 
@@ -162,27 +162,27 @@ class StabilizerParameters:
     gyro_gain: Annotated[float, Ge(0.0), ANKLE_TIME] = 0.02
     """Ankle setpoint per angular velocity of the trunk [s]."""
     load_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
-    """Share of the planned joint torques fed forward [1]."""
+    """Fraction of the planned joint torques fed forward [1]."""
     inertia_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
-    """Share of the joints' planned acceleration in those torques [1]."""
+    """Fraction of the joints' planned acceleration in those torques [1]."""
     max_inertia_acceleration: Annotated[float, Ge(0.0), RATE_CHANGE] = 300.0
     """Largest acceleration of a joint in those torques [rad/s²]."""
     velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 0.6
-    """Share of the servos' velocity lag fed forward, legs [1]."""
+    """Fraction of the servos' velocity lag fed forward, legs [1]."""
     upper_velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
-    """Share of the servos' velocity lag fed forward, head and arms [1]."""
+    """Fraction of the servos' velocity lag fed forward, head and arms [1]."""
     capture_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.3
-    """DCM error left to the ankles, as a share of the ZMP room they have [1]."""
+    """DCM error left to the ankles, as a fraction of the ZMP room they have [1]."""
     capture_forward: Annotated[float, Ge(0.0), LENGTH] = 0.19
     """Largest move of a landing forward or backward to catch a fall [m]."""
     capture_side: Annotated[float, Ge(0.0), LENGTH] = 0.13
     """Largest move of a landing sideways to catch a fall [m]."""
     tilt_gain: Annotated[float, Ge(0.0), NUMBER] = 0.7
-    """Share of the trunk's tilt taken out of the swing foot [1]."""
+    """Fraction of the trunk's tilt taken out of the swing foot [1]."""
     tilt_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.019
     """Tilt below which the swing foot ignores it [rad]."""
     tilt_pull: Annotated[float, Interval(gt=0.0, le=1.0), GAIN_PER_TICK] = 0.3
-    """Share of the way per tick on which the swing foot's compensation follows [1]."""
+    """Fraction of the way per tick on which the swing foot's compensation follows [1]."""
     tilt_decay: Annotated[float, Interval(ge=0.0, lt=1.0), DECAY_PER_TICK] = 0.85
     """What is left per tick of the foot's compensation after touchdown [1]."""
     contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0), DECAY_PER_TICK] = 0.965
@@ -194,24 +194,24 @@ class StabilizerParameters:
     slowdown_full_error: Annotated[float, Gt(0.0), LENGTH] = 0.04
     """DCM error at which it walks slowest [m]."""
     min_speed_ratio: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.3
-    """Share of the commanded velocity that is left then [1]."""
+    """Fraction of the commanded velocity that is left then [1]."""
     slowdown_time: Annotated[float, Gt(0.0), TIME] = 1.5
     """Time constant with which a DCM error is forgotten [s]."""
     step_error_ratio: Annotated[float, Gt(0.0), NUMBER] = 1.0
-    """DCM error, as a share of the ZMP room, at which a standing robot steps [1]."""
+    """DCM error, as a fraction of the ZMP room, at which a standing robot steps [1]."""
     heading_gain: Annotated[float, Ge(0.0), RATE] = 2.0
     """Turn rate per error of the heading [1/s]."""
     max_heading_rate: Annotated[float, Ge(0.0), RATE] = 0.3
     """Largest turn rate of the heading hold [rad/s]."""
     speed_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.5
-    """Share of what two footsteps of a steady walk miss of its velocity that is made up for [1]."""
+    """Fraction of what two footsteps of a steady walk miss of its velocity that is made up for [1]."""
     max_speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.06
     """Most that is made up for, forward and sideways [m/s]."""
     max_steady_shift: Annotated[float, Ge(0.0), LENGTH] = 0.010
     """Move of a landing for balance up to which a walk is steady: speed, heading and centre of
     pressure are held over two of its footsteps [m]."""
     com_offset_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
-    """Share of the centre of pressure's mean error over two footsteps by which the body moves
+    """Fraction of the centre of pressure's mean error over two footsteps by which the body moves
     against it [1]."""
     max_com_offset: Annotated[float, Ge(0.0), LENGTH] = 0.015
     """Farthest that the body moves for it, forward and sideways [m]."""

@@ -1,10 +1,10 @@
-"""Which feet carry the robot, or that none does."""
+"""Phases of the gait."""
 
 from enum import StrEnum
 
 
 class Phase(StrEnum):
-    """Phase of the gait, or of a fall: getting up, or given up."""
+    """Support phase, or getting up or fallen after a fall."""
 
     STANDING = "standing"
     DOUBLE_SUPPORT = "double"
@@ -15,5 +15,5 @@ class Phase(StrEnum):
 
     @property
     def down(self) -> bool:
-        """Whether the robot is off its feet, so that neither odometry nor camera pose hold."""
+        """Whether the robot is off its feet: odometry and camera pose are invalid."""
         return self in (Phase.GETTING_UP, Phase.FALLEN)

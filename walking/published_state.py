@@ -1,4 +1,4 @@
-"""The engine's state as others see it, in the odometry frame."""
+"""Published state of the engine, in the odometry frame."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from walking.body.robot_model import RobotModel
 from walking.foothold import Foothold
 from walking.gait.gait import Gait
 from walking.pattern.pendulum import PendulumState
-from walking.pattern.support import Footing
+from walking.pattern.support import SupportPolygon
 from walking.sensing import BodySensors
 from walking.state import Balance, HeadCameraPose
 from walking.value import value
@@ -22,14 +22,10 @@ Point = tuple[float, float]
 
 @value
 class PublishedPlan:
-    """What a snapshot tells of the plan, all of it in the odometry frame; see `WalkingState`.
+    """Plan in the odometry frame, see `WalkingState`.
 
     Attributes:
-        footsteps: planned footholds, the support foot first.
-        zmp: planned zero-moment point (2,) [m].
-        dcm: planned divergent component of motion (2,) [m].
-        com: measured centre of mass (2,) [m].
-        balance: planned and measured motion in detail.
+        footsteps, zmp, dcm, com, balance: see `WalkingState`.
     """
 
     footsteps: tuple[Foothold, ...]
@@ -40,7 +36,7 @@ class PublishedPlan:
 
 
 def camera_pose(robot: RobotModel, sensors: BodySensors, body: BodyMeasurement) -> HeadCameraPose:
-    """Head camera in the robot frame: tilt by IMU, height by the loaded leg."""
+    """Return the head camera in the robot frame: tilt by IMU, height by the loaded leg."""
     R_BC, p_BC = robot.camera_pose(sensors.joint_position)
     R_RB = np.empty((3, 3))
     published_state_kernel.incline(body.roll, body.pitch, R_RB)
@@ -60,22 +56,22 @@ def published_plan(
     *,
     error: tuple[float, float, float, float],
     omega: float,
-    footing: Footing,
+    polygon: SupportPolygon,
     capture: Point,
 ) -> PublishedPlan:
-    """The plan where the planned support foot stands as odometry sees it.
+    """Express the plan in the odometry frame: its support foot is where odometry measures it.
 
     Args:
-        gait: references of the feet, and the footsteps to come.
+        gait: references of the feet, and planned footsteps.
         pendulum: planned motion.
-        body: as measured.
+        body: measurement.
         odometry: pose of the robot frame.
         error: of the body against the plan, x, y [m], vx, vy [m/s].
         omega: of the pendulum [1/s].
-        footing: soles that carry.
-        capture: what balance adds to the landing, plan frame [m].
+        polygon: support polygon.
+        capture: shift of the landing by the capture step, plan frame [m].
     """
-    edges, footsteps = footing.edges(), gait.footsteps()
+    edges, footsteps = polygon.edges(), gait.footsteps()
     points, feet = np.empty((5 + len(edges), 2)), np.empty((2, 4))
     support, foot = gait.footholds[gait.support], body.feet[gait.support]
     turned = published_state_kernel.show(
@@ -102,7 +98,7 @@ def published_plan(
             com=points[2],
             dcm=points[3],
             support=points[5:],
-            zmp_depth=footing.depth(pendulum.zmp_x, pendulum.zmp_y),
+            zmp_depth=polygon.depth(pendulum.zmp_x, pendulum.zmp_y),
             feet=feet,
             capture=np.array(turned),
         ),

@@ -1,4 +1,4 @@
-"""Points and footholds of the plan seen from the odometry frame, compiled."""
+"""Transform of the plan into the odometry frame, compiled."""
 
 from math import cos, sin
 
@@ -31,12 +31,12 @@ def show(
     com: Vector,
     edges: Array,
     references: Array,
-    way: Point,
+    vector: Point,
     points: Array,
     feet: Array,
     footsteps: Array,
 ) -> Point:
-    """All that a snapshot shows of the plan, in the odometry frame.
+    """Express the plan in the odometry frame.
 
     Args:
         planned: see `frame_of`.
@@ -45,17 +45,17 @@ def show(
         pendulum: of the plan.
         error: of the body against it.
         omega: of the pendulum [1/s].
-        com: mass centre as measured, in the robot frame (3,) [m].
-        edges: of the soles that carry, see `walking.pattern.support_kernel` (n, 5).
+        com: measured centre of mass in the robot frame (3,) [m].
+        edges: of the support polygon, see `walking.pattern.support_kernel` (n, 5).
         references: of the feet, see `walking.gait.swing_foot_kernel` (2, 10).
-        way: a direction of the plan frame.
-        points: set to planned ZMP, DCM and mass centre, measured DCM and mass centre, and the
-            corners of the soles that carry, x, y (5 + n, 2) [m].
+        vector: of the plan frame.
+        points: set to planned ZMP, DCM and CoM, measured DCM and CoM, and the corners of the
+            support polygon, x, y (5 + n, 2) [m].
         feet: set to x, y, height [m], yaw [rad] of the references (2, 4).
-        footsteps: x, y [m], yaw [rad] first, brought over (m, 4).
+        footsteps: x, y [m], yaw [rad] first, transformed in place (m, 4).
 
     Returns:
-        the direction in the odometry frame.
+        the vector in the odometry frame.
     """
     x, y, vx, vy, zmp_x, zmp_y = pendulum
     ex, ey, evx, evy = error
@@ -71,18 +71,18 @@ def show(
         own = references[k]
         feet[k, 0], feet[k, 1], feet[k, 2], feet[k, 3] = own[0], own[1], own[3], own[2]
     frame = frame_of(planned, foot, odometry)
-    place(frame, points, -1)
-    place(frame, feet, 3)
-    place(frame, footsteps, 2)
+    transform(frame, points, -1)
+    transform(frame, feet, 3)
+    transform(frame, footsteps, 2)
     c, s = cos(odometry[2]), sin(odometry[2])
     points[4, 0] = odometry[0] + c * com[0] - s * com[1]
     points[4, 1] = odometry[1] + s * com[0] + c * com[1]
-    return turn(frame, way)
+    return turn(frame, vector)
 
 
 @njit(cache=True)
 def incline(roll: float, pitch: float, rotation: Array) -> None:
-    """Attitude R_RB of a trunk tilted by roll and pitch [rad], set (3, 3)."""
+    """Set the attitude R_RB (3, 3) of a trunk with roll and pitch [rad]."""
     cr, sr, cp, sp = cos(roll), sin(roll), cos(pitch), sin(pitch)
     rotation[0, 0], rotation[0, 1], rotation[0, 2] = cp, sp * sr, sp * cr
     rotation[1, 0], rotation[1, 1], rotation[1, 2] = 0.0, cr, -sr
@@ -91,11 +91,11 @@ def incline(roll: float, pitch: float, rotation: Array) -> None:
 
 @njit(cache=True)
 def frame_of(planned: Vector, foot: Vector, odometry: Vector) -> Frame:
-    """Where the plan frame is if the planned foot stands where odometry sees it.
+    """Return the plan frame, given a foot in the plan and as measured.
 
     Args:
         planned: x, y [m], yaw [rad] of the foot in the plan frame.
-        foot: the same in the robot frame, as measured.
+        foot: measured x, y [m], yaw [rad] of the foot in the robot frame.
         odometry: x, y [m], heading [rad] of the robot frame.
     """
     x, y, heading = odometry
@@ -112,13 +112,13 @@ def frame_of(planned: Vector, foot: Vector, odometry: Vector) -> Frame:
 
 
 @njit(cache=True)
-def place(frame: Frame, rows: Array, yaw: int) -> None:
-    """Put points of the plan frame into the odometry frame.
+def transform(frame: Frame, rows: Array, yaw: int) -> None:
+    """Transform points of the plan frame into the odometry frame.
 
     Args:
         frame: the plan frame.
-        rows: x, y [m] first, brought over (n, m).
-        yaw: column of a direction that is to be brought over too [rad], -1 for none.
+        rows: x, y [m] first, transformed in place (n, m).
+        yaw: column of a yaw angle to transform too [rad], -1 for none.
     """
     ox, oy, c, s, direction = frame
     for k in range(rows.shape[0]):
@@ -130,7 +130,7 @@ def place(frame: Frame, rows: Array, yaw: int) -> None:
 
 @njit(cache=True)
 def turn(frame: Frame, vector: Point) -> Point:
-    """A direction of the plan frame in the odometry frame."""
+    """Rotate a vector of the plan frame into the odometry frame."""
     _, _, c, s, _ = frame
     x, y = vector
     return c * x - s * y, s * x + c * y

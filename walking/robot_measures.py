@@ -1,4 +1,4 @@
-"""Measures of a robot, by which its walk scales, and those of HSR-VIII."""
+"""Measures of a robot that its walk scales with, and those of HSR-VIII."""
 
 from dataclasses import astuple, dataclass
 
@@ -11,10 +11,10 @@ class RobotMeasures:
         leg: hip to sole along the straight leg [m].
         hip: half the distance between the hips [m].
         sole: half the width of a sole [m].
-        time: √(height / g) of the pendulum that the robot is for its base [s].
+        time: √(height / g) of the equivalent pendulum, see `RobotModel.pendulum_height` [s].
         weight: of the robot [N].
-        ankle: compliance of an ankle's servo: what it gives way under the weight's moment
-            about the ankle, the pendulum as the lever [rad/rad].
+        ankle: relative compliance of an ankle servo, weight times pendulum height over
+            stiffness [rad/rad].
     """
 
     leg: float
@@ -25,11 +25,11 @@ class RobotMeasures:
     ankle: float
 
     def values(self) -> tuple[float, ...]:
-        """All of them, in order."""
+        """Return all measures in order."""
         return astuple(self)
 
 
 HSR_VIII = RobotMeasures(
     leg=0.245, hip=0.035, sole=0.03, time=0.146737, weight=53.955, ankle=0.0949724
 )
-"""The robot for which the defaults of the parameters were chosen."""
+"""Robot that the default parameters were tuned for."""

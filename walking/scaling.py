@@ -1,4 +1,4 @@
-"""Parameters of any robot, derived from its model and from the choices made for HSR-VIII."""
+"""Scaling of the default parameters from HSR-VIII to another robot."""
 
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
@@ -12,41 +12,41 @@ from walking.robot_measures import HSR_VIII, RobotMeasures
 Section = TypeVar("Section")
 
 
-def parameters_for(robot: RobotModel, given: WalkingParameters | None = None) -> WalkingParameters:
-    """Parameters of a robot; for HSR-VIII they are the defaults, bit for bit.
+def parameters_for(robot: RobotModel, chosen: WalkingParameters | None = None) -> WalkingParameters:
+    """Return the parameters of a robot; for HSR-VIII exactly the defaults.
 
     Args:
-        robot: the robot's numbers.
-        given: parameters some of which were chosen on purpose: what differs from the default
-            is kept, the rest is the robot's own.
+        robot: model of the robot.
+        chosen: parameters to keep where they differ from the defaults; the others are scaled.
     """
     defaults = WalkingParameters()
-    own = scale_parameters(defaults, HSR_VIII, robot.measures())
-    return own if given is None else _chosen(given, defaults, own)
+    scaled = scale_parameters(defaults, HSR_VIII, robot.measures())
+    return scaled if chosen is None else _override(scaled, chosen, defaults)
 
 
 def scale_parameters(parameters: Section, old: RobotMeasures, new: RobotMeasures) -> Section:
-    """Parameters of a robot with measures `old`, made those of one with measures `new`.
+    """Scale parameters from a robot with measures `old` to one with measures `new`.
 
     Args:
         parameters: of the engine, a section of them, or a command.
-        old: measures of the one robot.
-        new: measures of the other.
+        old: measures of the robot of the parameters.
+        new: measures of the other robot.
     """
     section: Any = type(parameters)
     rules = rules_of(section)
-    made: dict[str, Any] = {}
-    for name, value in _values(parameters).items():
+    scaled: dict[str, Any] = {}
+    for name in (field.name for field in fields(section)):
+        value = getattr(parameters, name)
         if is_dataclass(value):
-            made[name] = scale_parameters(value, old, new)
+            scaled[name] = scale_parameters(value, old, new)
         elif name in rules:
-            made[name] = rules[name].scale(value, old, new)
-    return replace(parameters, **made)  # type: ignore[type-var]
+            scaled[name] = rules[name].scale(value, old, new)
+    return replace(parameters, **scaled)  # type: ignore[type-var]
 
 
 @cache
 def rules_of(section: type) -> dict[str, Rule]:
-    """How the parameters of a section go over to another robot, by name."""
+    """Return the scaling rules of the parameters of a section by name."""
     rules = {}
     for name, hint in get_type_hints(section, include_extras=True).items():
         for mark in getattr(hint, "__metadata__", ()):
@@ -55,17 +55,13 @@ def rules_of(section: type) -> dict[str, Rule]:
     return rules
 
 
-def _chosen(given: Section, defaults: Section, own: Section) -> Section:
-    """`own` with everything in which `given` differs from `defaults`."""
-    made: dict[str, Any] = {}
-    others = zip(_values(defaults).values(), _values(own).values(), strict=True)
-    for (name, value), (default, derived) in zip(_values(given).items(), others, strict=True):
+def _override(scaled: Section, chosen: Section, defaults: Section) -> Section:
+    """Return `chosen` with the scaled value wherever it equals the default."""
+    values: dict[str, Any] = {}
+    for name in (field.name for field in fields(chosen)):  # type: ignore[arg-type]
+        value, default = getattr(chosen, name), getattr(defaults, name)
         if is_dataclass(value):
-            made[name] = _chosen(value, default, derived)
+            values[name] = _override(getattr(scaled, name), value, default)
         elif value == default:
-            made[name] = derived
-    return replace(given, **made)  # type: ignore[type-var]
-
-
-def _values(section: object) -> dict[str, Any]:
-    return {f.name: getattr(section, f.name) for f in fields(section)}  # type: ignore[arg-type]
+            values[name] = getattr(scaled, name)
+    return replace(chosen, **values)  # type: ignore[type-var]

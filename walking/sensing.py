@@ -1,4 +1,4 @@
-"""What the body feels: the only way the world reaches the walking library."""
+"""Sensor readings of the body, the only input of walking from the world."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,16 +10,16 @@ Array = NDArray[np.float64]
 
 @value
 class BodySensors:
-    """One reading of all body sensors, taken at the start of a control tick.
+    """Reading of all body sensors at the start of a control tick.
 
     Attributes:
         joint_position: encoder angles in the order of ``JOINT_NAMES`` (26,) [rad].
         joint_velocity: encoder rates in the same order (26,) [rad/s].
         gyro: angular velocity of the trunk in the IMU frame (3,) [rad/s].
-        accelerometer: specific force in the IMU frame (3,) [m/s²]; walking
-            leaves it to the filter of `orientation`.
-        orientation: attitude of the IMU as its own filter reports it, quaternion
-            w-x-y-z (4,); roll and pitch are absolute, yaw drifts.
+        accelerometer: specific force in the IMU frame (3,) [m/s²]; used by the filter of
+            `orientation` only.
+        orientation: attitude reported by the IMU's filter, quaternion w-x-y-z (4,); roll and
+            pitch are absolute, yaw drifts.
         foot_force: normal force under front-left, front-right, back-left and
             back-right pad of the left and the right foot (2, 4) [N].
     """

@@ -1,4 +1,4 @@
-"""What walking knows of itself after a tick: odometry, camera pose, gait."""
+"""State that walking publishes: odometry, camera pose, gait, balance."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,9 @@ class HeadCameraPose:
 
     Attributes:
         rotation: R_RC, columns are the camera's right, down and forward axes (3, 3).
-        position: p_RC (3,) [m]; its z is the height above the floor.
-        pan: measured pan of the head [rad].
-        tilt: measured tilt of the head joint [rad].
-        pan_rate: measured speed of the pan [rad/s].
-        tilt_rate: measured speed of the tilt [rad/s].
+        position: p_RC (3,) [m]; z is the height above the floor.
+        pan, tilt: measured head angles [rad].
+        pan_rate, tilt_rate: measured head rates [rad/s].
     """
 
     rotation: Array
@@ -35,16 +33,16 @@ class HeadCameraPose:
 
 @value
 class Balance:
-    """What balance is about, all of it in the odometry frame.
+    """Planned and measured balance in the odometry frame.
 
     Attributes:
-        com: planned centre of mass of the pendulum (2,) [m].
-        dcm: measured divergent component of motion, the planned one and its error (2,) [m].
+        com: planned centre of mass (2,) [m].
+        dcm: measured divergent component of motion (2,) [m].
         support: corners of the planned support polygon, counter-clockwise (n, 2) [m].
-        zmp_depth: how far inside that polygon the planned ZMP lies, negative outside [m].
-        feet: reference of the left and of the right foot: x, y, height above the floor [m]
-            and direction [rad] (2, 4).
-        capture: what balance adds to the landing of the swing foot (2,) [m].
+        zmp_depth: distance of the planned ZMP from its edge, negative outside [m].
+        feet: references of the left and right foot: x, y, height above the floor [m], yaw [rad]
+            (2, 4).
+        capture: shift of the landing by the capture step (2,) [m].
     """
 
     com: Array
@@ -57,7 +55,7 @@ class Balance:
 
 @value
 class WalkingState:
-    """Snapshot of the walking engine after a tick.
+    """State of the walking engine after a tick.
 
     Attributes:
         phase: gait phase.
@@ -65,14 +63,14 @@ class WalkingState:
         camera: estimated pose of the head camera.
         applied_velocity: velocity (vx, vy, wz) that the footsteps follow (3,) [m/s, m/s, rad/s].
         footsteps: planned footholds, the support foot first.
-        zmp: planned zero-moment point in the odometry frame (2,) [m].
-        dcm: planned divergent component of motion in the odometry frame (2,) [m].
-        com: measured centre of mass in the odometry frame (2,) [m].
+        zmp: planned zero-moment point, odometry frame (2,) [m].
+        dcm: planned divergent component of motion, odometry frame (2,) [m].
+        com: measured centre of mass, odometry frame (2,) [m].
         roll, pitch: measured attitude of the trunk [rad].
         step_count: number of completed steps.
         fallen: whether the robot believes that it has fallen.
         balance: planned and measured motion in detail.
-        command_limits: what became of the last command.
+        command_limits: how the last command was limited.
     """
 
     phase: Phase

@@ -1,4 +1,4 @@
-"""What walking asks of the servos."""
+"""Joint targets of the position servos."""
 
 import numpy as np
 from numpy.typing import NDArray

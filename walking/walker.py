@@ -1,4 +1,4 @@
-"""Walking that survives a fall: the engine, and getting up when it has failed."""
+"""Walker: the walking engine, and getting up after a fall."""
 
 from dataclasses import replace
 
@@ -19,17 +19,17 @@ from walking.warm_up import warm_up
 
 
 class Walker:
-    """Walks a humanoid and gets it up again: call `step` once per control tick of 5 ms.
+    """Walking engine with fall recovery: call `step` once per control tick of 5 ms.
 
-    After a fall a new engine begins from standing; it goes on with the odometry of the one
-    before, whose covariance grows by what the fall has hidden.
+    After a fall a new engine starts from standing. It keeps the odometry, whose covariance grows by
+    the unmeasured motion of the fall.
 
     Args:
-        robot: the robot's numbers.
+        robot: model of the robot.
         parameters: of walking and getting up.
 
     Attributes:
-        get_up: the fall that is under way, if one is.
+        get_up: recovery from the present fall, None while walking.
     """
 
     def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
@@ -49,33 +49,33 @@ class Walker:
 
     @property
     def command_limits(self) -> CommandLimits:
-        """What became of the last tick's command: nothing while the robot is down."""
+        """How the last command was limited; zero is applied while the robot is down."""
         if self.get_up is None:
             return self._engine.command_limits
         return CommandLimits(self._command, VelocityCommand(), self.limits)
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """Constraints that altered that command, none if it is obeyed."""
+        """Constraints that limited the last command."""
         return self._engine.limits if self.get_up is None else (Limit.FALLEN,)
 
     @property
     def zmp_depth(self) -> float:
-        """How far its planned ZMP lay inside the soles that carry it [m]."""
+        """Distance of the last planned ZMP from the edge of the support polygon [m]."""
         return self._engine.zmp_depth
 
     @property
     def down(self) -> bool:
-        """Whether the robot lies or gets up, and obeys no command."""
+        """Whether the robot lies or gets up, and ignores commands."""
         return self.get_up is not None
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
-        """One control tick.
+        """Run one control tick.
 
         Args:
             sensors: read at the start of the tick.
-            command: velocity or footsteps wanted; not obeyed while the robot is down.
-            head: direction to look; straight ahead while the robot is down.
+            command: velocity or footsteps; ignored while the robot is down.
+            head: gaze direction; ignored while the robot is down.
 
         Returns:
             setpoints of all joints.
@@ -95,10 +95,10 @@ class Walker:
         return self._engine.step(sensors, command, head)
 
     def state(self) -> WalkingState:
-        """Snapshot after the last tick; it changes nothing.
+        """Return the state after the last tick.
 
         Raises:
-            RuntimeError: no tick has been made yet.
+            RuntimeError: before the first tick.
         """
         state = self._engine.state()
         steps = self._steps + state.step_count
@@ -116,7 +116,7 @@ class Walker:
         )
 
     def _stand(self) -> None:
-        """Back to walking, from the ready posture where the robot now stands."""
+        """Start to walk again from the ready posture."""
         p = self._parameters
         self._steps = self.state().step_count
         self._odometry.interrupt(p.get_up.displacement_sigma, p.get_up.yaw_sigma)

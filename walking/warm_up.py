@@ -1,4 +1,4 @@
-"""A few steps walked in thought, so that the first real tick is as quick as any other."""
+"""Warm-up: run the engine for a few steps so that every kernel is compiled."""
 
 from dataclasses import replace
 
@@ -10,18 +10,13 @@ from walking.engine import WalkingEngine
 from walking.parameters import CONTROL_PERIOD, GRAVITY, WalkingParameters
 from walking.sensing import BodySensors
 
-START = 0.03  # time in double support before the first footstep [s]
-TICKS = 20
+START_TIME = 0.03  # double support before the first footstep [s]
+TICKS = 20  # enough for a double and a single support
 
 
 def warm_up(robot: RobotModel, parameters: WalkingParameters) -> None:
-    """Have everything compiled, or loaded, that a tick calls; the robot does not move.
-
-    Args:
-        robot: the robot's numbers.
-        parameters: of the engine.
-    """
-    at_once = replace(parameters.gait, settle_time=0.0, start_time=START)
+    """Compile or load every kernel that a control tick calls; the robot does not move."""
+    at_once = replace(parameters.gait, settle_time=0.0, start_time=START_TIME)
     engine = WalkingEngine(robot, replace(parameters, gait=at_once))
     sensors = BodySensors(
         joint_position=robot.ready,

@@ -36,9 +36,9 @@ class IdealBody:
         feet = self._feet()
         gap = feet[1 - self._stance].z - feet[self._stance].z
         force = np.zeros((2, 4))
-        share = 0.5 if gap < 1e-3 else 0.0
-        force[self._stance] = (1.0 - share) * self._robot.mass * 9.81 / 4.0
-        force[1 - self._stance] = share * self._robot.mass * 9.81 / 4.0
+        fraction = 0.5 if gap < 1e-3 else 0.0
+        force[self._stance] = (1.0 - fraction) * self._robot.mass * 9.81 / 4.0
+        force[1 - self._stance] = fraction * self._robot.mass * 9.81 / 4.0
         return BodySensors(
             joint_position=self._joints,
             joint_velocity=(self._joints - self._before) / CONTROL_PERIOD,

@@ -1,22 +1,22 @@
-"""Bounds of a value."""
+"""Saturation and dead zone."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.clamp import clamp
-from walking.dead_zone import dead_zone
+from walking.clamp import clamp, dead_zone
 
-VALUE, MOST = st.floats(-10.0, 10.0), st.floats(0.0, 5.0)
-
-
-@given(VALUE, MOST)
-def test_a_value_within_the_bound_is_kept_and_no_other(value, most):
-    assert (clamp(value, most) == value) == (abs(value) <= most)
-    assert abs(clamp(value, most)) <= most
-    assert clamp(-value, most) == -clamp(value, most)
+VALUE, LIMIT = st.floats(-10.0, 10.0), st.floats(0.0, 5.0)
 
 
-@given(VALUE, MOST)
-def test_a_dead_zone_leaves_what_the_bound_takes_off(value, most):
-    assert clamp(value, most) + dead_zone(value, most) == pytest.approx(value, abs=1e-12)
+@given(VALUE, LIMIT)
+def test_only_a_value_within_the_limit_is_kept(value, limit):
+    assert (clamp(value, limit) == value) == (abs(value) <= limit)
+    assert abs(clamp(value, limit)) <= limit
+    assert clamp(-value, limit) == -clamp(value, limit)
+
+
+@given(VALUE, LIMIT)
+def test_clamped_value_and_excess_add_up(value, limit):
+    assert clamp(value, limit) + dead_zone(value, limit) == pytest.approx(value, abs=1e-12)
+    assert dead_zone(-value, limit) == -dead_zone(value, limit)

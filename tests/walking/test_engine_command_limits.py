@@ -1,4 +1,4 @@
-"""The report against the footsteps themselves: altered if, and only if, they are not as asked."""
+"""Report of limits against the footsteps themselves: limited if, and only if, they differ."""
 
 from collections import Counter
 from dataclasses import replace
@@ -27,8 +27,8 @@ def commands(rng, every):
             command = STAND
         elif draw < 0.55:
             low, high = (-0.5, -0.15, -2.0), (0.6, 0.15, 2.0)
-            share = 1.0 if draw < 0.35 else 0.4
-            command = VelocityCommand(*(share * rng.uniform(low, high)).tolist())
+            fraction = 1.0 if draw < 0.35 else 0.4
+            command = VelocityCommand(*(fraction * rng.uniform(low, high)).tolist())
         else:
             low = (0.16, 0.02, -0.1, 0.06, -0.4, 0.01)
             high = (0.45, 0.2, 0.16, 0.2, 0.4, 0.042)

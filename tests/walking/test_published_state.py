@@ -14,7 +14,7 @@ from walking.footsteps.planner import FootstepPlanner
 from walking.gait.gait import Gait
 from walking.parameters import WalkingParameters
 from walking.pattern.pendulum import PendulumState
-from walking.pattern.support import Footing
+from walking.pattern.support import SupportPolygon
 from walking.published_state import camera_pose, published_plan
 
 PARAMETERS = WalkingParameters()
@@ -73,7 +73,7 @@ def seen(robot, gait, odometry):
         odometry,
         error=(0.001, -0.002, 0.01, 0.02),
         omega=7.2,
-        footing=Footing(robot.sole, gait.support_feet),
+        polygon=SupportPolygon(robot.sole, gait.support_feet),
         capture=(0.03, -0.01),
     )
 
@@ -117,7 +117,7 @@ def test_points_keep_their_places_about_the_pendulum(robot, gait):
     assert plan.zmp - plan.balance.com == pytest.approx(R @ [0.01, 0.005])
     assert plan.dcm - plan.balance.com == pytest.approx(R @ [0.1 / 7.2, -0.2 / 7.2])
     assert plan.balance.capture == pytest.approx(R @ [0.03, -0.01])
-    assert len(plan.balance.support) == len(Footing(robot.sole, gait.support_feet).polygon())
+    assert len(plan.balance.support) == len(SupportPolygon(robot.sole, gait.support_feet).edges())
 
 
 def test_the_measured_dcm_is_the_planned_one_and_its_error(robot, gait):

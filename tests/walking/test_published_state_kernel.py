@@ -88,9 +88,9 @@ def test_all_that_a_snapshot_shows_is_brought_over_alike(plainly, seed, corners)
 
 @given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
 def test_a_trunk_is_turned_about_its_axes(plainly, roll, pitch):
-    found, plain = np.empty((3, 3)), np.empty((3, 3))
-    kernel.incline(roll, pitch, found)
+    result, plain = np.empty((3, 3)), np.empty((3, 3))
+    kernel.incline(roll, pitch, result)
     plainly(kernel, "incline", roll, pitch, plain)
-    np.testing.assert_allclose(found, plain, atol=1e-15)
+    np.testing.assert_allclose(result, plain, atol=1e-15)
     expected = Rotation.from_euler("YX", [pitch, roll]).as_matrix()
-    np.testing.assert_allclose(found, expected, atol=1e-15)
+    np.testing.assert_allclose(result, expected, atol=1e-15)

@@ -16,11 +16,11 @@ from walking.warm_up import warm_up
     [
         (zmp_kernel, "plan"),
         (zmp_kernel, "follow"),
-        (foothold_kernel, "onwards"),
+        (foothold_kernel, "plan_walk"),
         (swing_kernel, "react"),
         (swing_foot_kernel, "advance"),
         (support_kernel, "clip"),
-        (support_kernel, "share"),
+        (support_kernel, "fraction"),
         (support_kernel, "depth"),
         (estimation_kernel, "estimate"),
         (leg_kernel, "pose"),

@@ -1,4 +1,4 @@
-"""Putting the mass centre where the floor says that it is not."""
+"""Slow correction of the CoM offset from the measured centre of pressure."""
 
 from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
@@ -7,11 +7,10 @@ Point = tuple[float, float]
 
 
 class ComOffset:
-    """Offset of the body that brings the centre of pressure, on the average, under the plan.
+    """Integral correction of the CoM: moves the body until the mean CoP is on the planned ZMP.
 
-    Over a cycle of two footsteps the floor pushes under the mass centre, wherever the model has
-    it. Within a cycle the ankles and the landing feet move the centre of pressure; that is not
-    followed.
+    Averaged over a gait cycle, the centre of pressure is below the true centre of mass. Within
+    a cycle the ankles and the landing feet move it, hence one update per cycle.
 
     Args:
         parameters: gain and limits.
@@ -29,17 +28,17 @@ class ComOffset:
         self._ticks = 0
         self.offset: Point = (0.0, 0.0)
 
-    def rest(self) -> None:
-        """No cycle is under way; the offset stays."""
+    def reset(self) -> None:
+        """Discard the present cycle; keep the offset."""
         self._ticks = -1
 
     def update(self, error: Point, *, begins: bool, disturbed: bool) -> None:
-        """One tick.
+        """Update the offset in a control tick.
 
         Args:
-            error: of the centre of pressure against the planned ZMP, forward and left [m].
-            begins: whether a cycle of two footsteps does.
-            disturbed: whether balance has a say in the footsteps.
+            error: centre of pressure minus planned ZMP, forward and left [m].
+            begins: whether a gait cycle begins.
+            disturbed: whether balance changes the footsteps.
         """
         if begins:
             if self._ticks > 0:
@@ -50,13 +49,13 @@ class ComOffset:
                 self._goal = x, y
             self._sum, self._ticks = [0.0, 0.0], 0
         if disturbed:
-            self.rest()
+            self.reset()
         elif self._ticks >= 0:
             self._sum[0] += error[0]
             self._sum[1] += error[1]
             self._ticks += 1
         if self.offset != self._goal:
-            most, (x, y), (goal_x, goal_y) = self._step, self.offset, self._goal
-            x += min(most, max(-most, goal_x - x))
-            y += min(most, max(-most, goal_y - y))
+            step, (x, y), (goal_x, goal_y) = self._step, self.offset, self._goal
+            x += min(step, max(-step, goal_x - x))
+            y += min(step, max(-step, goal_y - y))
             self.offset = x, y

@@ -1,4 +1,4 @@
-"""Foot placement: where the swing foot lands and when, by plan or to catch the body."""
+"""Foot placement: landing and timing of the swing foot, by plan or by capture step."""
 
 from walking.balance.capture_step import CapturePendulum
 from walking.balance.stabilizer import Capture, Stabilizer
@@ -8,7 +8,7 @@ from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL, Strides, Velocity
 from walking.gait.gait import Gait
 from walking.gait.transition import Transition
-from walking.pattern.dcm_tracker import dcm_reference
+from walking.pattern.dcm_pattern import dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.pattern import PatternGenerator
 from walking.pattern.ramps import Ramps
@@ -19,22 +19,21 @@ NOT_MOVED: Point = (0.0, 0.0)
 
 
 class FootPlacement:
-    """Decides in every tick on the landing of the swing foot and its time.
+    """Chooses landing and timing of the swing foot in every tick.
 
     Args:
         lipm: pendulum.
         generator: of the plan.
-        planner: knows what is in reach.
-        gait: holds footholds and times.
-        stabilizer: knows what the ankles cannot hold.
+        planner: limits landings to the reach of the leg.
+        gait: holds footholds and timing.
+        stabilizer: computes the capture step.
         pendulum: of the body, and that of the plan during a capture step.
 
     Attributes:
-        applied: velocity that the footsteps follow (vx, vy, wz)
-            [m/s, m/s, rad/s].
-        bound: constraints that altered the last tick's wish.
-        moved: by how much balance moves the landing [m].
-        moving: whether the plan goes on walking.
+        applied: velocity that the footsteps follow (vx, vy, wz) [m/s, m/s, rad/s].
+        bound: constraints that limited the last wanted strides.
+        moved: shift of the landing by the capture step [m].
+        moving: whether the walk goes on.
     """
 
     def __init__(
@@ -61,115 +60,117 @@ class FootPlacement:
 
     @property
     def landing(self) -> Foothold:
-        """Landing of the plan, without what balance adds."""
+        """Landing of the plan, without capture step."""
         return self._transition.landing
 
     @property
     def admitted(self) -> Strides | None:
-        """Strides of the plan if the generator did not admit the wanted ones in full."""
-        return self._transition.strides if self._transition.share < 1.0 else None
+        """Strides of the plan if the generator limited the wanted ones."""
+        return self._transition.strides if self._transition.fraction < 1.0 else None
 
     def remember(self) -> None:
-        """Keep the times of the last tick, before anything about them changes."""
+        """Store the timing of the last tick before it changes."""
         self._transition.remember()
 
     def decide(
         self,
-        wish: Strides,
+        wanted: Strides,
         velocity: Velocity,
         error: Point,
         region: SupportRegion,
         *,
         moving: bool,
     ) -> Ramps:
-        """One tick; the gait has the landing and the times decided on.
+        """Choose landing and timing of this tick and give them to the gait.
 
         Args:
-            wish: strides wanted.
-            velocity: that goes with them (vx, vy, wz) [m/s, m/s, rad/s].
+            wanted: strides.
+            velocity: of these strides (vx, vy, wz) [m/s, m/s, rad/s].
             error: of the DCM [m].
-            region: where the ZMP may be in this tick.
-            moving: whether to go on walking.
+            region: admissible ZMP in this tick.
+            moving: whether the walk is to go on.
 
         Returns:
             ZMP reference from now on.
         """
         gait, adjustable = self._gait, self._gait.adjustable
         self.bound, self.moved, self.moving = [], NOT_MOVED, moving
-        ramps, landing = self._reference(wish, velocity, region)
+        ramps, landing = self._reference(wanted, velocity, region)
         if not adjustable:
-            if gait.stepping and not self._planner.same(gait.nominal(wish), gait.landing):
+            if gait.stepping and not self._planner.same(gait.nominal(wanted), gait.landing):
                 self.bound.append(Limit.LANDING_FROZEN)
         else:
-            ramps = self._catch(landing, ramps, wish, error)
+            ramps = self._capture_step(landing, ramps, wanted, error)
         if self._selects:
             self.moving = self._transition.moving
         return ramps
 
     @property
     def _selects(self) -> bool:
-        """Whether the generator has a say in the footsteps; not if they have to be hurried."""
-        return self._generator.selective and not self._gait.hurried
+        """Whether the generator may limit the footsteps; not in a shortened footstep."""
+        return self._generator.selective and not self._gait.shortened
 
     def _reference(
-        self, wish: Strides, velocity: Velocity, region: SupportRegion
+        self, wanted: Strides, velocity: Velocity, region: SupportRegion
     ) -> tuple[Ramps, Foothold]:
-        """Reference of the plan that the generator admits, and the landing in it."""
+        """Return reference and landing of the plan that the generator admits."""
         gait, transition = self._gait, self._transition
         if not self._selects:
             self.applied = velocity
-            transition.skip(wish, moving=self.moving)
-            landing = gait.nominal(wish) if gait.adjustable else gait.landing
-            return gait.plan(landing, wish, moving=self.moving), landing
+            transition.skip(wanted, moving=self.moving)
+            landing = gait.nominal(wanted) if gait.adjustable else gait.landing
+            return gait.plan(landing, wanted, moving=self.moving), landing
         pendulum, clock = self._pendulum, gait.clock
         ramps = transition.admit(
-            pendulum.planned, region, wish, moving=self.moving, off_plan=pendulum.off_plan
+            pendulum.planned, region, wanted, moving=self.moving, off_plan=pendulum.off_plan
         )
-        share = transition.share
-        if share < 1.0:
-            if gait.clock != clock or self._differs(wish):
+        fraction = transition.fraction
+        if fraction < 1.0:
+            if gait.clock != clock or self._differs(wanted):
                 self.bound.append(Limit.ZMP_REGION)
-            a, b, c = (g + share * (v - g) for g, v in zip(self.applied, velocity, strict=True))
+            a, b, c = (g + fraction * (v - g) for g, v in zip(self.applied, velocity, strict=True))
             self.applied = (a, b, c)
         else:
             self.applied = velocity
         return ramps, transition.landing
 
-    def _differs(self, wish: Strides) -> bool:
-        """Whether the footsteps of the admitted plan are others than those wanted."""
+    def _differs(self, wanted: Strides) -> bool:
+        """Whether the footsteps of the admitted plan differ from the wanted ones."""
         gait, transition = self._gait, self._transition
-        if transition.strides != wish or transition.moving != self.moving:
+        if transition.strides != wanted or transition.moving != self.moving:
             return True
-        return gait.adjustable and not self._planner.same(gait.nominal(wish), transition.landing)
+        return gait.adjustable and not self._planner.same(gait.nominal(wanted), transition.landing)
 
-    def _catch(self, landing: Foothold, ramps: Ramps, wish: Strides, error: Point) -> Ramps:
-        """Aim at the landing that catches the body; the reference that goes with it."""
+    def _capture_step(
+        self, landing: Foothold, ramps: Ramps, wanted: Strides, error: Point
+    ) -> Ramps:
+        """Aim at the landing of a capture step if one is needed; return the ZMP reference."""
         gait, capture_landing = self._gait, landing
         capture = self._capture(landing, ramps, error)
-        if capture and gait.hasten(capture.ticks, capture.landing):
-            # The plan was made for other times.
+        if capture and gait.shorten(capture.ticks, capture.landing):
+            # The timing has changed: plan again.
             self._pendulum.reset_plan()
-            ramps = gait.plan(landing, wish, moving=self.moving)
+            ramps = gait.plan(landing, wanted, moving=self.moving)
             capture = self._capture(landing, ramps, error)
         if capture and not gait.double:
             capture_landing = capture.landing
             self.moved = (capture_landing.x - landing.x, capture_landing.y - landing.y)
         gait.aim(capture_landing)
         same = self._planner.same
-        if gait.hurried or not same(capture_landing, landing):
+        if gait.shortened or not same(capture_landing, landing):
             self.bound.append(Limit.BALANCE)
-        elif Limit.ZMP_REGION not in self.bound and not same(gait.nominal(wish), gait.landing):
+        elif Limit.ZMP_REGION not in self.bound and not same(gait.nominal(wanted), gait.landing):
             self.bound.append(Limit.LANDING_SPEED)
         if not self._selects and gait.landing != landing:
-            ramps = gait.plan(gait.landing, wish, moving=self.moving)
+            ramps = gait.plan(gait.landing, wanted, moving=self.moving)
         return ramps
 
     def _capture(self, landing: Foothold, ramps: Ramps, error: Point) -> Capture | None:
-        """What the footholds of the plan do not catch of the measured DCM, if anything."""
+        """Return the capture step for the measured DCM, None if the ankles suffice."""
         gait, w = self._gait, self._lipm.omega
         pendulum = self._pendulum.state
         support = gait.footholds[gait.support]
-        if gait.hurried:
+        if gait.shortened:
             x, y = dcm_reference(self._lipm, ramps)
         else:
             x, y = self._generator.planned_dcm(self._pendulum.planned, ramps)

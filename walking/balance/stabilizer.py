@@ -1,28 +1,28 @@
-"""Balance: what the ankles can do now and what only the next foothold can."""
+"""Balance feedback of the DCM error: ankle strategy and capture step."""
 
-from math import cos, exp, sin
+from math import exp
 
 from walking.balance.pole_placement import dcm_gain
 from walking.balance.step_timing import capture_time
 from walking.body.robot_model import RobotModel
-from walking.clamp import clamp
-from walking.dead_zone import dead_zone
+from walking.clamp import clamp, dead_zone
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 from walking.pattern.support import SupportRegion
+from walking.planar import rotate, rotate_back
 from walking.value import value
 
-ROUNDING = 1e-6  # ticks that a time divided into them may lack
+ROUNDING = 1e-6  # rounding error of a time in control ticks [1]
 
 
 @value
 class Capture:
-    """The foothold that catches the body, and when it is needed.
+    """Capture step.
 
     Attributes:
         landing: of the swing foot.
-        ticks: after which it has to carry [1].
+        ticks: control ticks until touchdown [1].
     """
 
     landing: Foothold
@@ -30,7 +30,7 @@ class Capture:
 
 
 class Stabilizer:
-    """Feedback of the DCM error on ZMP and footholds.
+    """Feedback of the DCM error to ZMP and footholds.
 
     Args:
         robot: mass, sole and ankle servos.
@@ -44,7 +44,7 @@ class Stabilizer:
         lag = float((robot.damping[4:6] / robot.stiffness[4:6]).max())
         self._gain = dcm_gain(omega, lag, parameters.dcm_rate)
         sole = robot.sole
-        self._room = (
+        self._margin = (
             sole.half_length - parameters.sole_margin,
             sole.half_width - parameters.sole_margin,
         )
@@ -52,18 +52,18 @@ class Stabilizer:
     def zmp_shift(
         self, zmp: tuple[float, float], error: tuple[float, float], region: SupportRegion
     ) -> tuple[float, float]:
-        """By how much the ankles move the ZMP against a DCM error, inside the region [m]."""
+        """Return the shift of the ZMP by the ankles against a DCM error [m]."""
         gain = self._gain
         x, y = region.clip(zmp[0] + gain * error[0], zmp[1] + gain * error[1])
         return x - zmp[0], y - zmp[1]
 
-    def exceeds(self, foot: Foothold, error: tuple[float, float], share: float) -> bool:
-        """Whether a DCM error [m] is more than a share [1] of the room that the ZMP has."""
-        x, y = self._in_foot(foot, error)
-        return abs(x) > share * self._room[0] or abs(y) > share * self._room[1]
+    def exceeds(self, foot: Foothold, error: tuple[float, float], ratio: float) -> bool:
+        """Whether a DCM error [m] exceeds a ratio [1] of the ZMP margins of the sole."""
+        x, y = rotate_back(foot.yaw, *error)
+        return abs(x) > ratio * self._margin[0] or abs(y) > ratio * self._margin[1]
 
     def holds(self, foot: Foothold, error: tuple[float, float]) -> bool:
-        """Whether the ankles hold a DCM error [m], so that no landing is moved."""
+        """Whether the ankles can balance a DCM error [m] without a capture step."""
         return not self.exceeds(foot, error, self._parameters.capture_dead_zone)
 
     def capture(
@@ -76,42 +76,36 @@ class Stabilizer:
         *,
         ticks_left: int,
     ) -> Capture:
-        """Landing and its time that catch what the ankles do not hold of a DCM error.
+        """Return the capture step for the DCM error beyond the dead zone of the ankles.
 
-        Left alone, the error grows by e^{ωt} until touchdown; moving the foothold by that
-        much puts the foot under it (Pratt et al., Humanoids 2006). Where that is out of reach
-        the foot has to be down sooner, see `capture_time`.
+        The error grows by e^{ωt} until touchdown; a landing shifted by as much is at the capture
+        point (Pratt et al., Humanoids 2006). If that is out of reach, touchdown must be earlier,
+        see `capture_time`.
 
         Args:
-            planner: knows what is in reach.
-            support: the foot on the floor.
-            landing: the nominal one.
+            planner: limits the landing to the reach of the leg.
+            support: support foot.
+            landing: nominal landing.
             error: of the measured DCM [m].
-            reference: DCM of the plan less the ZMP of the support foot [m].
-            ticks_left: until the end of single support.
+            reference: planned DCM minus ZMP of the support foot [m].
+            ticks_left: control ticks until the end of single support [1].
         """
         p = self._parameters
-        x, y = self._in_foot(support, error)
-        x = dead_zone(x, p.capture_dead_zone * self._room[0])
-        y = dead_zone(y, p.capture_dead_zone * self._room[1])
+        x, y = error_in_foot = rotate_back(support.yaw, *error)
+        x = dead_zone(x, p.capture_dead_zone * self._margin[0])
+        y = dead_zone(y, p.capture_dead_zone * self._margin[1])
         growth = exp(self._omega * ticks_left * CONTROL_PERIOD)
         dx = clamp(growth * x, p.capture_forward)
         dy = clamp(growth * y, p.capture_side)
-        c, s = cos(support.yaw), sin(support.yaw)
-        reached = planner.reachable(support, landing, c * dx - s * dy, s * dx + c * dy)
+        reached = planner.reachable(support, landing, *rotate(support.yaw, dx, dy))
         planned = time = ticks_left * CONTROL_PERIOD
-        for off, room, ahead, reach in zip(
-            self._in_foot(support, error),
-            self._room,
-            self._in_foot(support, reference),
-            self._in_foot(support, (reached.x - landing.x, reached.y - landing.y)),
+        for off, margin, ahead, reach in zip(
+            error_in_foot,
+            self._margin,
+            rotate_back(support.yaw, *reference),
+            rotate_back(support.yaw, reached.x - landing.x, reached.y - landing.y),
             strict=True,
         ):
-            missing = dead_zone(off, room)
+            missing = dead_zone(off, margin)
             time = min(time, capture_time(self._omega, planned, missing, ahead, reach))
         return Capture(reached, int(time / CONTROL_PERIOD + ROUNDING))
-
-    @staticmethod
-    def _in_foot(foot: Foothold, vector: tuple[float, float]) -> tuple[float, float]:
-        c, s = cos(foot.yaw), sin(foot.yaw)
-        return c * vector[0] + s * vector[1], c * vector[1] - s * vector[0]

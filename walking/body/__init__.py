@@ -1,1 +1,1 @@
-"""The body: its numbers, its kinematics, and what its sensors tell of it."""
+"""Body: robot model, kinematics and state estimation."""

@@ -1,10 +1,10 @@
-"""What the body really does: attitude, feet, odometry, and the error against the plan."""
+"""State estimation: attitude, feet, odometry, and the error against the plan."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from walking.body import estimation_kernel
-from walking.body.estimation_kernel import FOUND, LOAD, Plan
+from walking.body.estimation_kernel import LOAD, MEASURED, Plan
 from walking.body.measurement import BodyMeasurement, body_of
 from walking.body.odometry import LegOdometry
 from walking.body.robot_model import RobotModel
@@ -15,24 +15,23 @@ from walking.sensing import BodySensors
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
-LIGHT_LOAD = 0.074  # noise of a foot's pads stays below this share of the weight [1]
+LIGHT_LOAD = 0.074  # of the weight; the noise of unloaded foot pads stays below it [1]
 
 
 class Estimation:
-    """Filters the sensors, and compares the body with what it was meant to do.
+    """Filters the sensors and compares the body with the plan.
 
     Args:
         robot: dimensions and masses.
         omega: of the pendulum [1/s].
         parameters: noise levels.
-        odometry: dead reckoning, brought up to date.
+        odometry: dead reckoning, updated in place.
 
     Attributes:
-        seen: what the last tick has seen, see `estimation_kernel.observe` (24,).
-        tilt: roll and pitch of the trunk, filtered; None before the first tick [rad].
-        dcm_error: of the body against the plan [m].
-        pressure_error: centre of pressure less planned ZMP, forward and left [m]; zero in the
-            air.
+        measured: measurements of the last tick, see `estimation_kernel.observe` (24,).
+        tilt: filtered roll and pitch of the trunk; None before the first tick [rad].
+        dcm_error: measured minus planned DCM [m].
+        pressure_error: centre of pressure minus planned ZMP, forward and left; zero in the air [m].
         pose: by odometry (x, y, heading) [m, m, rad].
     """
 
@@ -52,7 +51,7 @@ class Estimation:
         body = parameters.tilt_gain, light, sole.centre, sole.half_length, sole.half_width
         self._body = np.array(body)
         self._gains = np.array([gains.position, gains.velocity, omega])
-        self.seen = np.zeros(FOUND)
+        self.measured = np.zeros(MEASURED)
         self.tilt: Point | None = None
         self.dcm_error: Point = (0.0, 0.0)
         self.pressure_error: Point = (0.0, 0.0)
@@ -60,21 +59,21 @@ class Estimation:
 
     @property
     def body(self) -> BodyMeasurement | None:
-        """Of the last tick, None before the first."""
-        return None if self.tilt is None else body_of(self.seen.tolist())
+        """Measurement of the last tick, None before the first."""
+        return None if self.tilt is None else body_of(self.measured.tolist())
 
     @property
     def com_error(self) -> tuple[float, float, float, float]:
-        """Measured less planned mass centre and its rate, x, y [m], vx, vy [m/s]."""
+        """Measured minus planned centre of mass: x, y [m], vx, vy [m/s]."""
         x, y, vx, vy, _ = self._error.tolist()
         return x, y, vx, vy
 
     def load(self, foot: int) -> float:
-        """Load under the left (0) or the right foot (1) [N]."""
-        return float(self.seen[LOAD + 5 * foot])
+        """Return the load on the left (0) or the right foot (1) [N]."""
+        return float(self.measured[LOAD + 5 * foot])
 
     def observe(self, sensors: BodySensors) -> None:
-        """A tick in which there is no plan: only the body is seen, and its tilt filtered."""
+        """Measure the body and filter its tilt in a tick without a plan."""
         robot = self._robot
         self.tilt = estimation_kernel.observe(
             sensors.joint_position,
@@ -86,17 +85,17 @@ class Estimation:
             robot.leg_rows,
             self._body,
             CONTROL_PERIOD,
-            self.seen,
+            self.measured,
         )
 
     def update(self, sensors: BodySensors, feet: Array, plan: Plan, *, stepping: bool) -> Point:
-        """One tick of a walk.
+        """Update the estimate in a tick of a walk.
 
         Args:
             sensors: read at its start.
-            feet: their references, see `walking.gait.swing_foot_kernel` (2, 10).
-            plan: of the tick before, see `estimation_kernel.Plan`.
-            stepping: whether the feet leave the floor.
+            feet: foot references, see `walking.gait.swing_foot_kernel` (2, 10).
+            plan: of the last tick, see `estimation_kernel.Plan`.
+            stepping: whether a footstep is under way.
 
         Returns:
             roll and pitch of the trunk [rad].
@@ -119,7 +118,7 @@ class Estimation:
             plan,
             stepping,
             CONTROL_PERIOD,
-            self.seen,
+            self.measured,
         )
         self.tilt = tilt
         return tilt

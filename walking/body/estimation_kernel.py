@@ -1,19 +1,16 @@
-"""What the sensors say of the body in every control tick, compiled.
+"""State estimation in every control tick, compiled.
 
-What is remembered from tick to tick is kept in arrays, booleans as 0 or 1:
+State arrays, booleans as 0 or 1:
 
-    tilt (3,)       whether it is known | roll, pitch [rad];
-    odometry (20,)  x, y [m], heading without jumps [rad] | whether the IMU has told one, and which
-                    [rad] | whether the vectors from foot to body are known, and which in the
-                    odometry frame: left x, y, right x, y [m] | index of the foot that counts |
-                    whether both feet carry, and how far apart they were when they began to,
-                    x, y [m] |
-                    xx, xy, xw, yy, yw, ww of the error's covariance;
-    error (5,)      x, y [m], vx, vy [m/s] | weight on the right foot [1], -1 before the first.
+    tilt (3,)       initialized | roll, pitch [rad];
+    odometry (20,)  x, y [m], unwrapped heading [rad] | IMU heading known, its value [rad] |
+                    vectors from foot to body known, their values in the odometry frame: left x, y,
+                    right x, y [m] | index of the stance foot | double support, distance of the feet
+                    at its begin x, y [m] | xx, xy, xw, yy, yw, ww of the error covariance;
+    error (5,)      x, y [m], vx, vy [m/s] | weight on the right foot [1], -1 before the first tick.
 
-Numbers that stay are arrays as well: a tuple is taken apart at every call. The legs' forward
-kinematics stands here and not beside its inverse in `leg_kernel`, because no kernel calls one of
-another file.
+Constant numbers are passed in arrays, too: tuples are unpacked at every call. The forward
+kinematics of the legs is here because kernels call no kernel of another file.
 """
 
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
@@ -27,11 +24,11 @@ from walking.body.leg_kernel import Angles, Leg, Point, Pose, Vector
 Array = NDArray[np.float64]
 
 Plan = tuple[float, float, float, float, float, float, float, float, float, float, float]
-"""Pelvis x, y [m], heading [rad]; mass centre in the base frame x, y; ZMP x, y; by how much the
-ankles moved it x, y [m]; turn rate [rad/s]; weight on the right foot [1]."""
+"""Pelvis x, y [m], heading [rad]; centre of mass in the base frame x, y; ZMP x, y; its shift by the
+ankles x, y [m]; yaw rate [rad/s]; weight on the right foot [1]."""
 
-RELEASED = 0.2  # share of the weight under which a foot no longer counts
-FOUND, LOAD = 24, 10  # numbers found in a tick; the first foot's load among them
+RELEASED = 0.2  # load fraction below which a foot is not the stance foot [1]
+MEASURED, LOAD = 24, 10  # number of measurements; index of the left foot's load
 
 
 @njit(cache=True)
@@ -52,9 +49,9 @@ def estimate(
     plan: Plan,
     stepping: bool,
     period: float,
-    found: Array,
+    measured: Array,
 ) -> tuple[Point, Point, Point, Vector]:
-    """One tick: `observe`, odometry, and what the body does against the plan.
+    """Run one tick: `observe`, odometry, and the error against the plan.
 
     Args:
         joints: see `observe`.
@@ -62,43 +59,43 @@ def estimate(
         orientation: see `observe`.
         gyro: see `observe`.
         com: see `observe`.
-        tilt: brought up to date.
-        odometry: brought up to date.
-        error: brought up to date.
+        tilt: updated.
+        odometry: updated.
+        error: updated.
         legs: see `observe`.
         body: see `observe`.
         growth: see `reckon`.
         gains: see `filter_error`.
-        feet: their references, see `walking.gait.swing_foot_kernel` (2, 10).
-        plan: of the tick before.
-        stepping: whether the feet leave the floor.
+        feet: foot references, see `walking.gait.swing_foot_kernel` (2, 10).
+        plan: of the last tick.
+        stepping: whether a footstep is under way.
         period: of control [s].
-        found: see `observe`.
+        measured: see `observe`.
 
     Returns:
-        roll and pitch [rad]; error of the DCM in the plan frame [m]; of the centre of pressure,
-        forward and left, zero in the air [m]; pose by odometry [m, m, rad].
+        roll and pitch [rad]; DCM error in the plan frame [m]; error of the centre of pressure,
+        forward and left, zero in the air [m]; odometry pose [m, m, rad].
     """
-    inclined = observe(joints, pads, orientation, gyro, com, tilt, legs, body, period, found)
-    left, right = (found[6], found[7]), (found[11], found[12])
-    reckon(odometry, found[2], (left, right), found[19], stepping, growth)
+    inclined = observe(joints, pads, orientation, gyro, com, tilt, legs, body, period, measured)
+    left, right = (measured[6], measured[7]), (measured[11], measured[12])
+    reckon(odometry, measured[2], (left, right), measured[19], stepping, growth)
     yaw, weight = plan[2], plan[10]
     c, s = cos(yaw), sin(yaw)
     planned = (plan[0] + c * plan[3] - s * plan[4], plan[1] + s * plan[3] + c * plan[4])
-    measured = (found[16], found[17])
-    lx, ly, lax, lay = com_error(measured, (left[0], left[1], found[9]), feet[0], planned)
-    rx, ry, rax, ray = com_error(measured, (right[0], right[1], found[14]), feet[1], planned)
+    com_now = (measured[16], measured[17])
+    lx, ly, lax, lay = com_error(com_now, (left[0], left[1], measured[9]), feet[0], planned)
+    rx, ry, rax, ray = com_error(com_now, (right[0], right[1], measured[14]), feet[1], planned)
     rest, before = 1.0 - weight, error[4]
     error[4] = weight
     if before >= 0.0 and weight != before:
-        # The plan jumped under the body: no velocity in that.
+        # A jump of the plan, not a velocity of the body.
         error[0] += (weight - before) * (rx - lx)
         error[1] += (weight - before) * (ry - ly)
-    slip = found[5] - plan[9]
+    slip = measured[5] - plan[9]
     off = (rest * lx + weight * rx, rest * ly + weight * ry)
     turned = (-slip * (rest * lay + weight * ray), slip * (rest * lax + weight * rax))
     filter_error(error, off, (plan[7], plan[8]), turned, gains, period)
-    x, y, load = pressure(found, feet)
+    x, y, load = pressure(measured, feet)
     if load > 0.0:
         x, y = x - plan[5], y - plan[6]
         x, y = c * x + s * y, c * y - s * x
@@ -118,25 +115,24 @@ def observe(
     legs: Array,
     body: Array,
     period: float,
-    found: Array,
+    measured: Array,
 ) -> Point:
-    """The body as the sensors have it, in the level frame of the trunk's heading.
+    """Measure the body in the level frame of the trunk's heading.
 
     Args:
-        joints: their angles (26,) [rad].
-        pads: load on front left, front right, back left and back right of either sole (2, 4) [N].
+        joints: joint angles (26,) [rad].
+        pads: load on front left, front right, back left and back right of each sole (2, 4) [N].
         orientation: attitude of the IMU, quaternion w-x-y-z (4,).
         gyro: angular velocity (3,) [rad/s].
-        com: mass centre for the measured joints in the base frame (3,) [m].
-        tilt: brought up to date.
+        com: centre of mass for the measured joints in the base frame (3,) [m].
+        tilt: updated.
         legs: left and right, see `Leg` (2, 6).
-        body: share of the IMU's attitude in the tilt per tick [1]; load of a foot that is none
-            [N]; middle of a sole ahead of the ankle, half of its length and width [m] (5,).
+        body: filter gain of the tilt per tick [1]; load below which a foot is unloaded [N]; centre
+            of a sole ahead of the ankle, half of its length and width [m] (5,).
         period: of control [s].
-        found: set to roll, pitch, heading [rad] | angular velocity (3,) [rad/s] | of either foot
-            x, y, z [m], yaw [rad], load [N] | mass centre (3,) [m] | share of the load on the right
-            foot, half in the air [1] | where in the foot frame either foot's load is, x, y [m]
-            (24,).
+        measured: set to roll, pitch, heading [rad] | angular velocity (3,) [rad/s] | of each foot
+            x, y, z [m], yaw [rad], load [N] | centre of mass (3,) [m] | load fraction of the right
+            foot, 0.5 in the air [1] | centre of pressure of each foot in its frame x, y [m] (24,).
 
     Returns:
         roll and pitch [rad].
@@ -144,8 +140,8 @@ def observe(
     quaternion = (orientation[0], orientation[1], orientation[2], orientation[3])
     roll, pitch, heading = roll_pitch_yaw(quaternion)
     follow_tilt(tilt, roll, pitch, gyro, body[0], period)
-    found[0], found[1], found[2] = tilt[1], tilt[2], heading
-    found[3], found[4], found[5] = gyro[0], gyro[1], gyro[2]
+    measured[0], measured[1], measured[2] = tilt[1], tilt[2], heading
+    measured[3], measured[4], measured[5] = gyro[0], gyro[1], gyro[2]
     inclined = (tilt[1], tilt[2])
     for side in range(2):
         leg, own = legs[side], joints[6 * side : 6 * side + 6]
@@ -154,19 +150,19 @@ def observe(
         x, y, z, _, _, yaw = foot_pose(build, angles)
         force, ahead, aside = load_of(pads[side], (body[2], body[3], body[4]))
         row = 6 + 5 * side
-        found[row], found[row + 1], found[row + 2] = level((x, y, z), inclined)
-        found[row + 3], found[row + 4] = yaw, force
-        found[20 + 2 * side], found[21 + 2 * side] = ahead, aside
-    found[16], found[17], found[18] = level((com[0], com[1], com[2]), inclined)
-    on_left, on_right = max(0.0, found[10] - body[1]), max(0.0, found[15] - body[1])
+        measured[row], measured[row + 1], measured[row + 2] = level((x, y, z), inclined)
+        measured[row + 3], measured[row + 4] = yaw, force
+        measured[20 + 2 * side], measured[21 + 2 * side] = ahead, aside
+    measured[16], measured[17], measured[18] = level((com[0], com[1], com[2]), inclined)
+    on_left, on_right = max(0.0, measured[10] - body[1]), max(0.0, measured[15] - body[1])
     both = on_left + on_right
-    found[19] = on_right / both if both > 0.0 else 0.5
+    measured[19] = on_right / both if both > 0.0 else 0.5
     return inclined
 
 
 @njit(cache=True)
 def roll_pitch_yaw(quaternion: tuple[float, float, float, float]) -> Vector:
-    """Roll, pitch and heading of an attitude R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
+    """Return roll, pitch and heading of an attitude R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
     w, x, y, z = quaternion
     sine = 2.0 * (w * y - x * z)
     cosine = sqrt(max(0.0, 1.0 - sine * sine))
@@ -181,17 +177,17 @@ def roll_pitch_yaw(quaternion: tuple[float, float, float, float]) -> Vector:
 def follow_tilt(
     tilt: Array, roll: float, pitch: float, gyro: Array, gain: float, period: float
 ) -> None:
-    """Complementary filter of roll and pitch.
+    """Update the complementary filter of roll and pitch.
 
-    The gyro is integrated with the coupling that a yawing trunk has (a roll becomes a pitch
-    as the body turns under it) and pulled towards the IMU's own attitude.
+    The gyro is integrated, with the coupling of roll and pitch by the yaw rate, and corrected
+    towards the attitude of the IMU.
 
     Args:
-        tilt: brought up to date.
+        tilt: updated.
         roll: of the IMU [rad].
         pitch: of the IMU [rad].
         gyro: angular velocity (3,) [rad/s].
-        gain: pull per tick [1].
+        gain: correction per tick [1].
         period: of control [s].
     """
     if tilt[0] == 0.0:
@@ -205,13 +201,13 @@ def follow_tilt(
 
 @njit(cache=True)
 def load_of(pads: Array, sole: Vector) -> Vector:
-    """Load under a sole [N], and where in the foot frame it is, x, y [m]."""
+    """Return the load on a sole [N] and its centre of pressure in the foot frame x, y [m]."""
     centre, half_length, half_width = sole
     front_left, front_right, back_left, back_right = pads[0], pads[1], pads[2], pads[3]
     force = front_left + front_right + back_left + back_right
     ahead, aside = centre, 0.0
     if force > 0.0:
-        # The floor pushes at the soles' corners.
+        # Contact forces act at the corners of the sole.
         length, width = half_length / force, half_width / force
         ahead = centre + length * (front_left + front_right - back_left - back_right)
         aside = width * (front_left + back_left - front_right - back_right)
@@ -219,15 +215,12 @@ def load_of(pads: Array, sole: Vector) -> Vector:
 
 
 @njit(cache=True)
-def pressure(found: Array, feet: Array) -> Vector:
-    """Centre of pressure under feet that stand where `feet` are, x, y [m], and the load [N].
-
-    In the air it is nowhere: at 0, 0.
-    """
+def pressure(measured: Array, feet: Array) -> Vector:
+    """Return centre of pressure (0, 0 in the air) x, y [m] and load [N] of feet at `feet`."""
     x = y = load = 0.0
     for side in range(2):
-        foot, force = feet[side], found[10 + 5 * side]
-        u, v = found[20 + 2 * side], found[21 + 2 * side]
+        foot, force = feet[side], measured[10 + 5 * side]
+        u, v = measured[20 + 2 * side], measured[21 + 2 * side]
         c, s = cos(foot[2]), sin(foot[2])
         x += force * (foot[0] + c * u - s * v)
         y += force * (foot[1] + s * u + c * v)
@@ -244,17 +237,16 @@ def reckon(
     stepping: bool,
     growth: Array,
 ) -> None:
-    """One tick of dead reckoning, see `LegOdometry`.
+    """Run one tick of dead reckoning, see `LegOdometry`.
 
     Args:
-        odometry: brought up to date.
+        odometry: updated.
         heading: of the IMU [rad].
         feet: horizontal position of the left and right foot in the robot frame [m].
-        load: share of the weight on the right foot [1].
-        stepping: whether the feet leave the floor.
-        growth: variance of what goes unseen in a tick, forward, to the left [m²], and turning
-            [rad²]; share of the feet's sliding against each other that is the foot's that counts
-            [1] (4,).
+        load: load fraction of the right foot [1].
+        stepping: whether a footstep is under way.
+        growth: unmeasured variance per tick forward, lateral [m²] and of the yaw [rad²]; slip of
+            the stance foot per relative slip of the feet [1] (4,).
     """
     if odometry[3] != 0.0:
         odometry[2] += (heading - odometry[4] + pi) % (2.0 * pi) - pi
@@ -287,7 +279,7 @@ def reckon(
 
 @njit(cache=True)
 def jump(odometry: Array, displacement: float, turn: float) -> None:
-    """An unseen move: standard deviation of it per axis [m] and of its turn [rad]."""
+    """Add an unmeasured motion: standard deviation per axis [m] and of the yaw [rad]."""
     _turn(odometry, turn * turn)
     odometry[14] += displacement * displacement
     odometry[17] += displacement * displacement
@@ -295,7 +287,7 @@ def jump(odometry: Array, displacement: float, turn: float) -> None:
 
 @njit(cache=True)
 def _turn(odometry: Array, variance: float) -> None:
-    """An unseen turn about where the robot is [rad²]."""
+    """Add an unmeasured turn about the present position [rad²]."""
     x, y = odometry[0], odometry[1]
     odometry[14] += y * y * variance
     odometry[15] -= x * y * variance
@@ -306,17 +298,17 @@ def _turn(odometry: Array, variance: float) -> None:
 
 
 @njit(cache=True)
-def _watch_slip(odometry: Array, x: float, y: float, load: float, share: float) -> None:
-    """Feet that both carry keep their distance (x, y) unless one of them slips.
+def _watch_slip(odometry: Array, x: float, y: float, load: float, ratio: float) -> None:
+    """Add the slip of a double support to the covariance.
 
-    Which of them did, nobody sees; but where feet slide against each other, the foot that
-    counts has slipped as well, by a share that was measured.
+    A change of the distance (x, y) between the feet is slip of either foot; the slip of the stance
+    foot is a fixed ratio of it, determined by experiment.
     """
     if RELEASED <= load <= 1.0 - RELEASED:
         if odometry[11] == 0.0:
             odometry[11], odometry[12], odometry[13] = 1.0, x, y
     elif odometry[11] != 0.0:
-        jump(odometry, share * hypot(x - odometry[12], y - odometry[13]), 0.0)
+        jump(odometry, ratio * hypot(x - odometry[12], y - odometry[13]), 0.0)
         odometry[11] = 0.0
 
 
@@ -324,14 +316,14 @@ def _watch_slip(odometry: Array, x: float, y: float, load: float, share: float) 
 def filter_error(
     error: Array, measured: Point, zmp_shift: Point, slip: Point, gains: Array, period: float
 ) -> None:
-    """Steady Kalman filter of e'' = ω² (e - d) + noise, e measured.
+    """Update the steady-state Kalman filter of e'' = ω² (e - d) + noise, e measured.
 
     Args:
-        error: brought up to date.
+        error: updated.
         measured: error of the centre of mass [m].
-        zmp_shift: d, by how much the ankles moved the ZMP [m].
-        slip: velocity that a foot turning on the floor gives the body unseen by the encoders
-            [m/s].
+        zmp_shift: d, shift of the ZMP by the ankles [m].
+        slip: velocity of the body from a stance foot that turns on the floor, not measured by the
+            encoders [m/s].
         gains: of position [1] and velocity [1/s]; ω [1/s] (3,).
         period: of control [s].
     """
@@ -349,16 +341,17 @@ def filter_error(
 def com_error(
     com: Point, foot: Vector, reference: Array, planned: Point
 ) -> tuple[float, float, float, float]:
-    """Where the mass centre is by a foot that is taken to stand where it is planned.
+    """Return the error of the centre of mass, given a foot at its planned position.
 
     Args:
-        com: measured mass centre in the level frame [m].
-        foot: measured x, y [m] and yaw [rad] of the foot in the same frame.
+        com: measured centre of mass in the level frame [m].
+        foot: measured x, y [m] and yaw [rad] of the foot in that frame.
         reference: of the foot (10,).
-        planned: mass centre [m].
+        planned: centre of mass [m].
 
     Returns:
-        the mass centre less the planned one, and less the foot, in the plan frame x, y, x, y [m].
+        measured minus planned centre of mass, and measured centre of mass minus foot, in the plan
+        frame x, y, x, y [m].
     """
     turned = reference[2] - foot[2]
     c, s = cos(turned), sin(turned)
@@ -369,7 +362,7 @@ def com_error(
 
 @njit(cache=True)
 def foot_pose(leg: Leg, angles: Angles) -> Pose:
-    """Pose of the foot for given joint angles; the inverse is `leg_kernel.leg_angles`."""
+    """Return the pose of the foot for joint angles; the inverse is `leg_kernel.leg_angles`."""
     hip_x, hip_y, hip_z, l1, l2, h = leg
     a, b, c, d, e, f = angles
     ca, sa, cb, sb, cf, sf = cos(a), sin(a), cos(b), sin(b), cos(f), sin(f)
@@ -393,7 +386,7 @@ def foot_pose(leg: Leg, angles: Angles) -> Pose:
 
 @njit(cache=True)
 def level(point: Vector, tilt: tuple[float, float]) -> Vector:
-    """A point of the base frame in the level frame under a tilt by roll and pitch [rad]."""
+    """Transform a point of the base frame to the level frame, given roll and pitch [rad]."""
     cr, sr, cp, sp = cos(tilt[0]), sin(tilt[0]), cos(tilt[1]), sin(tilt[1])
     x, y, z = point
     depth = sr * y + cr * z

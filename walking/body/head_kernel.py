@@ -1,4 +1,4 @@
-"""The head: how it follows its target, and where its camera is; compiled."""
+"""Head motion and pose of the head camera, compiled."""
 
 from math import cos, sin, sqrt
 
@@ -16,26 +16,26 @@ def advance(
     velocity: Array,
     target: Pair,
     limits: Array,
-    law: Array,
+    motion: Array,
 ) -> Pair:
-    """One tick: on either axis the fastest approach that can still stop at the target.
+    """Run one tick: time-optimal approach to the target on each axis, without overshoot.
 
     Args:
-        position: pan and tilt, brought up to date (2,) [rad].
-        velocity: their rates, brought up to date (2,) [rad/s].
+        position: pan and tilt, updated (2,) [rad].
+        velocity: their rates, updated (2,) [rad/s].
         target: pan and tilt [rad].
-        limits: lower and upper limit of either (2, 2) [rad].
-        law: rate [rad/s], acceleration [rad/s²], period of control [s] (3,).
+        limits: lower and upper joint limit of each (2, 2) [rad].
+        motion: maximum rate [rad/s] and acceleration [rad/s²], period of control [s] (3,).
 
     Returns:
         pan and tilt [rad].
     """
-    rate, acceleration, period = law[0], law[1], law[2]
+    rate, acceleration, period = motion[0], motion[1], motion[2]
     step = acceleration * period
     for axis in range(2):
         low, high = limits[axis, 0], limits[axis, 1]
         error = min(high, max(low, target[axis])) - position[axis]
-        # Largest speed from which whole ticks of braking still end at the target.
+        # Maximum speed from which whole ticks of braking end at the target.
         reach = step * (sqrt(0.25 + 2.0 * abs(error) / (step * period)) - 0.5)
         wanted = min(rate, reach, abs(error) / period)
         wanted = wanted if error >= 0.0 else -wanted
@@ -48,13 +48,13 @@ def advance(
 def camera_pose(
     pan: float, tilt: float, places: Array, mounted: Array, rotation: Array, position: Array
 ) -> None:
-    """Pose of the head camera in the base frame.
+    """Set the pose of the head camera in the base frame.
 
     Args:
-        pan: to the left [rad].
-        tilt: upwards [rad].
-        places: of the pan joint in the base, of the tilt joint on the neck, of the camera on the
-            head (3, 3) [m].
+        pan: left positive [rad].
+        tilt: up positive [rad].
+        places: positions of the pan joint in the base, of the tilt joint on the neck, of the
+            camera on the head (3, 3) [m].
         mounted: rotation of the camera on the head (3, 3).
         rotation: R_BC, set (3, 3).
         position: p_BC, set (3,) [m].

@@ -1,4 +1,4 @@
-"""Names and order of the 26 joints, the same in the model's actuators and in every array."""
+"""Names and order of the 26 joints, in the actuators of the model and in every array."""
 
 LEG_JOINTS = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
 ARM_JOINTS = ("shoulder_pitch", "shoulder_roll", "elbow_yaw", "elbow_pitch", "wrist_yaw", "gripper")

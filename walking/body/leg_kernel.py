@@ -1,6 +1,6 @@
-"""Kinematics of the legs and what is built on them in every control tick, compiled.
+"""Leg kinematics, whole-body posture and servo feed-forward of a control tick, compiled.
 
-A leg is given by the numbers of `LegDimensions`, in their order [m].
+Constant numbers are rows of arrays: tuples are unpacked at every call.
 """
 
 from math import acos, asin, atan2, cos, hypot, sin
@@ -14,31 +14,28 @@ Indices = NDArray[np.int64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
 Leg = tuple[float, float, float, float, float, float]
-"""Numbers of `LegDimensions` in their order [m]."""
+"""Fields of `LegDimensions` in order [m]."""
 
 Pose = tuple[float, float, float, float, float, float]
-"""Of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
+"""Pose of a foot in the base frame: x, y, z [m], roll, pitch, yaw [rad]."""
 
 Angles = tuple[float, float, float, float, float, float]
 """Hip yaw, roll, pitch, knee, ankle pitch, roll [rad]."""
 
 AnkleTask = tuple[Point, Point, Array]
-"""What the ankles are to do besides carrying: directions of the left and of the right foot [rad];
-by how much they are to move the ZMP, in the plan frame [m]; angular velocity of the trunk, which
-they damp (3,) [rad/s]."""
+"""Task of the ankles: yaw of the left and right foot [rad]; shift of the ZMP in the plan frame [m];
+angular velocity of the trunk to damp (3,) [rad/s]."""
 
-# Numbers that stay are rows of arrays: a tuple is taken apart at every call.
-
-STILL_TILT = 1e-6  # tilt of a foot that counts as none [rad]
+MIN_TILT = 1e-6  # smaller tilts of a foot are set to zero [rad]
 
 
 @njit(cache=True)
 def leg_angles(leg: Leg, foot: Pose) -> tuple[Angles, bool]:
-    """Joint angles that put the foot where it is asked to be, and whether it is in reach.
+    """Return the joint angles for a foot pose, and whether it is in reach (inverse kinematics).
 
-    The three hip axes meet in one point and so do the two ankle axes, hence the inverse is
-    analytic: the direction from ankle to hip in the foot's frame gives the ankle roll, the
-    distance gives the knee, the rest is an Euler decomposition at the hip.
+    The three hip axes meet in one point and so do the two ankle axes, hence the closed form: the
+    direction from ankle to hip in the foot frame gives the ankle roll, the distance gives the
+    knee, an Euler decomposition gives the hip.
     """
     hip_x, hip_y, hip_z, l1, l2, h = leg
     x, y, z, roll, pitch, yaw = foot
@@ -74,12 +71,12 @@ def leg_angles(leg: Leg, foot: Pose) -> tuple[Angles, bool]:
 
 @njit(cache=True)
 def support_torques(leg: Leg, angles: Angles, point: Vector, force: Vector) -> Angles:
-    """Torques [N m] by which a massless leg hands a force of the floor on to the base.
+    """Return the joint torques [N m] of a massless leg that transmits a contact force to the base.
 
     Args:
         leg: dimensions.
         angles: of its joints.
-        point: where the floor pushes, in the base frame [m].
+        point: of contact, in the base frame [m].
         force: of the floor on the foot, in the base frame [N].
     """
     hip_x, hip_y, hip_z, l1, l2, _ = leg
@@ -87,7 +84,7 @@ def support_torques(leg: Leg, angles: Angles, point: Vector, force: Vector) -> A
     ca, sa, cb, sb = cos(a), sin(a), cos(b), sin(b)
     sg, cg = sin(c + d + e), cos(c + d + e)
     fx, fy, fz = force
-    # Arms of the force about hip, knee and ankle.
+    # Lever arms of the force about hip, knee and ankle.
     hx, hy, hz = point[0] - hip_x, point[1] - hip_y, point[2] - hip_z
     along, down = -l1 * sin(c), -l1 * cos(c)
     kx, ky, kz = hx - ca * along - sa * sb * down, hy - sa * along + ca * sb * down, hz - cb * down
@@ -117,26 +114,25 @@ def pose(
     com: Point,
     head: Point,
     tilt: Point,
-    law: Array,
+    tilt_control: Array,
     build: Array,
     legs: Array,
 ) -> Vector:
-    """Set the joints of legs and head, and swing the arms.
+    """Set the joints of legs, head and arms.
 
-    A foot in the air stays level with the floor although the trunk is not.
+    A foot in the air is kept parallel to the floor against the tilt of the trunk.
 
     Args:
-        position: joint angles of the ready posture, to be those of this tick (26,) [rad].
-        tilts: roll and pitch by which either foot makes up for the trunk's, brought up to date
-            (2, 2) [rad].
-        feet: their references, see `walking.gait.swing_foot_kernel` (2, 10).
+        position: joint angles of the ready posture, set to those of this tick (26,) [rad].
+        tilts: roll and pitch of each foot against the tilt of the trunk, updated (2, 2) [rad].
+        feet: foot references, see `walking.gait.swing_foot_kernel` (2, 10).
         which: index of the support foot, and of the foot in the air, -1 for none.
-        com: where the body's mass centre is meant to be, x, y in the plan frame [m].
+        com: planned centre of mass, x, y in the plan frame [m].
         head: pan and tilt [rad].
         tilt: measured roll and pitch of the trunk [rad].
-        law: share of the tilt taken out of the foot [1], tilt that is ignored [rad], pull and
-            decay per tick [1], height of the base above the floor [m] (5,).
-        build: mass centre ahead of the base [m]; shoulder pitch per distance between the feet
+        tilt_control: gain from tilt to foot [1], dead zone [rad], filter gain and decay per tick
+            [1], height of the base above the floor [m] (5,).
+        build: centre of mass ahead of the base [m]; shoulder pitch per distance between the feet
             [rad/m] and its limit [rad] (3,).
         legs: left and right, see `Leg` (2, 6).
 
@@ -144,7 +140,7 @@ def pose(
         the pelvis: x, y [m], heading [rad] in the plan frame.
     """
     pelvis = pelvis_of(feet, com, build[0])
-    apart = _pose_legs(position, tilts, feet, which, pelvis, tilt, law, legs)
+    apart = _pose_legs(position, tilts, feet, which, pelvis, tilt, tilt_control, legs)
     swing = arm_swing(apart, build[1], build[2])
     position[12], position[13] = head
     position[14] += swing
@@ -154,24 +150,19 @@ def pose(
 
 @njit(cache=True)
 def pelvis_of(feet: Array, com: Point, ahead: float) -> Vector:
-    """Pelvis that has the mass centre `ahead` of it at `com`, between the feet's directions."""
+    """Return the pelvis for a centre of mass `com` ahead of it; its heading is between the feet."""
     yaw = 0.5 * (feet[0][2] + feet[1][2])
     return com[0] - ahead * cos(yaw), com[1] - ahead * sin(yaw), yaw
 
 
 @njit(cache=True)
 def arm_swing(apart: float, gain: float, limit: float) -> float:
-    """Shoulder pitch of the left arm away from the ready posture; the right one mirrors it.
-
-    The arms swing against the legs.
+    """Return the counter-swing of the left shoulder, backward positive; the right one mirrors it.
 
     Args:
         apart: left foot ahead of the right foot along the heading [m].
         gain: pitch per distance [rad/m].
-        limit: largest pitch [rad].
-
-    Returns:
-        backward positive [rad].
+        limit: maximum pitch [rad].
     """
     return min(limit, max(-limit, gain * apart))
 
@@ -184,12 +175,13 @@ def _pose_legs(
     which: tuple[int, int],
     pelvis: Vector,
     tilt: Point,
-    law: Array,
+    tilt_control: Array,
     legs: Array,
 ) -> float:
-    """Set the joints of the legs; how far the left foot is ahead of the right one [m]."""
+    """Set the joints of the legs; return the distance of the left foot ahead of the right [m]."""
     c, s = cos(pelvis[2]), sin(pelvis[2])
-    gain, zone, pull, decay, base = law[0], law[1], law[2], law[3], law[4]
+    gain, zone, pull, decay = tilt_control[0], tilt_control[1], tilt_control[2], tilt_control[3]
+    base = tilt_control[4]
     support = feet[which[0]]
     for index in range(2):
         own = tilts[index]
@@ -199,7 +191,7 @@ def _pose_legs(
                 own[axis] += pull * (gain * excess - own[axis])
             elif own[axis] != 0.0:
                 own[axis] *= decay
-                if abs(own[axis]) < STILL_TILT:
+                if abs(own[axis]) < MIN_TILT:
                     own[axis] = 0.0
         foot = feet[index]
         x, y, yaw, height = foot[0], foot[1], foot[2], foot[3]
@@ -236,25 +228,24 @@ def rates(
     in_v: Indices,
     pelvis: Vector,
     base: Point,
-    law: Array,
+    inertia: Array,
 ) -> None:
-    """Bring rates of the joints up to date and tell the robot's model of the motion.
+    """Differentiate the joint angles and set the motion of the dynamic model.
 
     Args:
         position: joint angles (26,) [rad].
-        before: those of the last tick, to be those of this one (26,) [rad].
-        velocity: their rates, of the last tick, then of this one (26,) [rad/s].
+        before: those of the last tick, updated (26,) [rad].
+        velocity: joint rates, updated (26,) [rad/s].
         q: position of the model, set.
-        v: its velocity, set.
-        a: its acceleration, set.
-        in_q: of the joints in its position (26,).
-        in_v: of the joints in its velocity (26,).
+        v: velocity of the model, set.
+        a: acceleration of the model, set.
+        in_q: indices of the joints in q (26,).
+        in_v: indices of the joints in v and a (26,).
         pelvis: x, y [m], heading [rad] in the plan frame.
         base: acceleration of the base in the plan frame [m/s²].
-        law: share of the joints' acceleration that is told [1], its limit [rad/s²], period of
-            control [s] (3,).
+        inertia: gain [1] and limit [rad/s²] of the joint accelerations, period of control [s] (3,).
     """
-    gain, limit, period = law[0], law[1], law[2]
+    gain, limit, period = inertia[0], inertia[1], inertia[2]
     c, s = cos(pelvis[2]), sin(pelvis[2])
     a[0], a[1] = c * base[0] + s * base[1], c * base[1] - s * base[0]
     for joint in range(position.size):
@@ -270,44 +261,44 @@ def rates(
 @njit(cache=True)
 def offsets(
     forces: Array,
-    where: Indices,
+    in_v: Indices,
     position: Array,
     velocity: Array,
     servos: Array,
     pelvis: Vector,
-    spots: tuple[Point, Point],
+    foot_zmps: tuple[Point, Point],
     right_load: float,
     base: float,
     legs: Array,
     task: AnkleTask,
     ankles: Array,
-    found: Array,
+    offset: Array,
 ) -> None:
-    """Setpoint offsets that make up for load and lag of the servos.
+    """Set the feed-forward offsets against load and lag of the servos.
 
     Args:
-        forces: generalised, that the motion takes with nothing touching the feet: force [N] and
-            moment [N m] at the base first.
-        where: of the joints in these (26,).
+        forces: generalised forces of the motion without contact, force [N] and moment [N m] at the
+            base first.
+        in_v: indices of the joints in these (26,).
         position: joint angles (26,) [rad].
-        velocity: their rates (26,) [rad/s].
+        velocity: joint rates (26,) [rad/s].
         servos: compliance [rad/(N m)] and velocity lag [s] (2, 26).
         pelvis: x, y [m], heading [rad] in the plan frame.
-        spots: where the ZMP is meant to be under either foot, in the plan frame [m].
-        right_load: share of the weight on the right foot [1].
-        base: its height above the floor [m].
+        foot_zmps: planned ZMP under each foot, in the plan frame [m].
+        right_load: load fraction of the right foot [1].
+        base: height of the base above the floor [m].
         legs: left and right, see `Leg` (2, 6).
-        task: what the ankles are to do besides.
+        task: of the ankles.
         ankles: see `ankle`.
-        found: the offsets, set (26,) [rad].
+        offset: set (26,) [rad].
     """
     for joint in range(position.size):
-        found[joint] = forces[where[joint]]
+        offset[joint] = forces[in_v[joint]]
     fx, fy, fz, nx, ny = forces[0], forces[1], forces[2], forces[3], forces[4]
-    lx, ly = _in_base(pelvis, spots[0])
-    rx, ry = _in_base(pelvis, spots[1])
+    lx, ly = _in_base(pelvis, foot_zmps[0])
+    rx, ry = _in_base(pelvis, foot_zmps[1])
     left_load = 1.0 - right_load
-    # The ZMP of the whole body, from where the feet alone would have it.
+    # ZMP of the whole body relative to the load-weighted mean of the foot ZMPs.
     dx = -(ny + base * fx) / fz - left_load * lx - right_load * rx
     dy = (nx - base * fy) / fz - left_load * ly - right_load * ry
     for index in range(2):
@@ -320,31 +311,28 @@ def offsets(
             force = (load * fx, load * fy, load * fz)
             added = support_torques(_leg(legs, index), angles, point, force)
             for joint in range(6):
-                found[6 * index + joint] += added[joint]
+                offset[6 * index + joint] += added[joint]
     compliance, lag = servos[0], servos[1]
     for joint in range(position.size):
-        found[joint] = found[joint] * compliance[joint] + velocity[joint] * lag[joint]
+        offset[joint] = offset[joint] * compliance[joint] + velocity[joint] * lag[joint]
     for index in range(2):
         load = right_load if index else left_load
         if load > 0.0:
             pitch, roll = ankle(task, index, load, ankles)
-            found[6 * index + 4] += pitch
-            found[6 * index + 5] += roll
+            offset[6 * index + 4] += pitch
+            offset[6 * index + 5] += roll
 
 
 @njit(cache=True)
 def ankle(task: AnkleTask, index: int, load: float, ankles: Array) -> Point:
-    """Setpoints of pitch and roll that move the ZMP of a foot.
+    """Return the ankle offsets, pitch and roll [rad], that shift the ZMP of a foot.
 
     Args:
-        task: what the ankles are to do.
+        task: of the ankles.
         index: of the foot.
-        load: share of the weight on it [1].
-        ankles: weight of the robot [N]; stiffness of pitch and of roll [N m/rad]; damping by the
-            gyro [s] (4,).
-
-    Returns:
-        both [rad].
+        load: load fraction of the foot [1].
+        ankles: weight of the robot [N]; stiffness of pitch and roll [N m/rad]; gyro damping [s]
+            (4,).
     """
     yaw, (dx, dy), gyro = task[0][index], task[1], task[2]
     c, s = cos(yaw), sin(yaw)
@@ -361,7 +349,7 @@ def _leg(legs: Array, index: int) -> Leg:
 
 @njit(cache=True)
 def _in_base(pelvis: Vector, point: Point) -> Point:
-    """A point of the plan frame in the frame of the base [m]."""
+    """Express a point of the plan frame in the base frame [m]."""
     c, s = cos(pelvis[2]), sin(pelvis[2])
     x, y = point[0] - pelvis[0], point[1] - pelvis[1]
     return c * x + s * y, c * y - s * x

@@ -1,10 +1,10 @@
-"""Closed-form kinematics of one leg: hip yaw-roll-pitch, knee, ankle pitch-roll."""
+"""Leg kinematics in closed form: hip yaw-roll-pitch, knee, ankle pitch-roll."""
 
 from dataclasses import dataclass
 
 from walking.body import estimation_kernel, leg_kernel
 from walking.body.leg_kernel import Angles as LegAngles
-from walking.body.leg_kernel import Leg, Vector
+from walking.body.leg_kernel import Leg
 from walking.value import value
 
 
@@ -33,7 +33,7 @@ class LegDimensions:
 
     @property
     def row(self) -> Leg:
-        """As compiled code has it."""
+        """Row for kernels."""
         return self.hip_x, self.hip_y, self.hip_z, self.thigh, self.shank, self.ankle_height
 
 
@@ -55,9 +55,9 @@ class FootPose:
 
 
 def leg_angles(leg: LegDimensions, foot: FootPose) -> tuple[LegAngles, bool]:
-    """Joint angles that put the foot where it is asked to be.
+    """Return the joint angles for a foot pose (inverse kinematics).
 
-    A foot out of reach is approached as far as the leg goes, its orientation kept.
+    For a foot out of reach the leg is straight and the orientation of the foot is kept.
 
     Args:
         leg: dimensions.
@@ -70,22 +70,5 @@ def leg_angles(leg: LegDimensions, foot: FootPose) -> tuple[LegAngles, bool]:
 
 
 def foot_pose(leg: LegDimensions, angles: LegAngles) -> FootPose:
-    """Pose of the foot frame in the base frame for given joint angles [rad]."""
+    """Return the pose of the foot for joint angles [rad] (forward kinematics)."""
     return FootPose(*estimation_kernel.foot_pose(leg.row, angles))
-
-
-def support_torques(
-    leg: LegDimensions, angles: LegAngles, point: Vector, force: Vector
-) -> LegAngles:
-    """Joint torques by which a massless leg hands a force of the floor on to the base.
-
-    Args:
-        leg: dimensions.
-        angles: joint angles [rad].
-        point: where the floor pushes, in the base frame [m].
-        force: of the floor on the foot, in the base frame [N].
-
-    Returns:
-        torque of each joint [N m].
-    """
-    return leg_kernel.support_torques(leg.row, angles, point, force)

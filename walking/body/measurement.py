@@ -1,4 +1,4 @@
-"""One reading of the sensors, put into the level frame of the trunk's heading."""
+"""Measured body in the level frame of the trunk's heading."""
 
 from walking.value import value
 
@@ -7,11 +7,11 @@ Vector = tuple[float, float, float]
 
 @value
 class FootMeasurement:
-    """A foot seen from the hips: origin in base_link, z up, x along the heading.
+    """Measured foot in the level frame.
 
     Attributes:
         x, y, z: position of the foot frame [m].
-        yaw: its direction [rad].
+        yaw: of the foot frame [rad].
     """
 
     x: float
@@ -22,13 +22,13 @@ class FootMeasurement:
 
 @value
 class BodyMeasurement:
-    """Body as measured, in the level frame at base_link, x along the heading.
+    """Measured body in the level frame: origin in base_link, z up, x along the heading.
 
     Attributes:
         roll, pitch: filtered tilt of the trunk [rad].
         feet: left and right foot.
         com: centre of mass [m].
-        right_load: share of the load on the right foot; half in the air [1].
+        right_load: load fraction of the right foot, 0.5 in the air [1].
     """
 
     roll: float
@@ -38,13 +38,13 @@ class BodyMeasurement:
     right_load: float
 
 
-def body_of(found: list[float]) -> BodyMeasurement:
-    """The body of the numbers that `estimation_kernel.observe` finds (24,)."""
-    (x, y, z), right_load = found[16:19], found[19]
+def body_of(measured: list[float]) -> BodyMeasurement:
+    """Unpack the measurements of `estimation_kernel.observe` (24,)."""
+    (x, y, z), right_load = measured[16:19], measured[19]
     return BodyMeasurement(
-        found[0],
-        found[1],
-        (FootMeasurement(*found[6:10]), FootMeasurement(*found[11:15])),
+        measured[0],
+        measured[1],
+        (FootMeasurement(*measured[6:10]), FootMeasurement(*measured[11:15])),
         (x, y, z),
         right_load,
     )

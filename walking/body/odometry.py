@@ -1,4 +1,4 @@
-"""Where the robot went: support-foot kinematics with the IMU's heading."""
+"""Dead reckoning from support-foot kinematics and the heading of the IMU."""
 
 from math import cos, sin
 
@@ -11,7 +11,7 @@ from walking.value import value
 
 Array = NDArray[np.float64]
 
-# Where xx, xy … of the covariance are in the state, see `walking.body.estimation_kernel`.
+# Indices of xx, xy … of the covariance in the state, see `walking.body.estimation_kernel`.
 COVARIANCE = np.array([[14, 15, 16], [15, 17, 18], [16, 18, 19]])
 
 
@@ -22,9 +22,9 @@ class Odometry:
     Attributes:
         x, y: position [m].
         yaw: heading [rad], unwrapped.
-        covariance: of the error since the start, as a displacement and a turn of the whole
-            odometry frame about its origin (3, 3) [m², m rad, rad²]. The errors of successive
-            stretches add up there; `increment` takes those of one stretch out again.
+        covariance: of the error since the start, as displacement and turn of the odometry frame
+            about its origin (3, 3) [m², m rad, rad²]. There the errors of successive intervals add
+            up; `increment` extracts that of one interval.
     """
 
     x: float
@@ -35,12 +35,12 @@ class Odometry:
 
 @value
 class Increment:
-    """Motion of the robot frame between two readings of the odometry.
+    """Motion of the robot frame between two odometry readings.
 
     Attributes:
         motion: displacement in the robot frame of the earlier reading, and turn
             (3,) [m, m, rad].
-        covariance: of its error (3, 3); independent of that of any other stretch.
+        covariance: of its error (3, 3), independent of other intervals.
     """
 
     motion: Array
@@ -48,11 +48,10 @@ class Increment:
 
 
 def increment(before: Odometry, after: Odometry) -> Increment:
-    """What the odometry says of the motion between two of its readings."""
+    """Return the motion between two odometry readings."""
     c, s = cos(before.yaw), sin(before.yaw)
     dx, dy = after.x - before.x, after.y - before.y
-    # A turn of the odometry frame moves the robot about the frame's origin; what counts is
-    # the robot's own displacement, seen from where it stood.
+    # From a turn of the odometry frame about its origin to the displacement of the robot itself.
     to_robot = np.array(
         [
             [c, s, s * after.x - c * after.y],
@@ -69,20 +68,20 @@ def increment(before: Odometry, after: Odometry) -> Increment:
 class LegOdometry:
     """Dead reckoning of the robot frame.
 
-    A foot on the floor stays where it is, so the body moves by the change of the vector
-    from that foot to the body. The foot that has carried counts until the other one has taken
-    over: a foot that has just landed slides while it is loaded, the one behind it does not.
-    Encoder noise does not add up within a support because the changes telescope.
+    The stance foot is fixed, so the body moves by the change of the vector from that foot to the
+    body. The old stance foot is used until the weight has shifted: a foot slides while it is loaded
+    after touchdown, the one behind it does not. Encoder noise does not accumulate within a support
+    because the changes telescope.
 
-    In every tick a displacement of the robot and a turn of its heading go unseen, both
-    independent of those before. As motions of the whole odometry frame they just add up.
+    Every tick adds an independent unmeasured displacement and turn. As motions of the odometry
+    frame they simply add up.
 
     Args:
-        parameters: how much of the motion goes unseen.
+        parameters: of the unmeasured motion.
 
     Attributes:
-        state: as `estimation_kernel` has it, whose `reckon` is a tick (20,).
-        growth: what goes unseen in a tick, see `estimation_kernel.reckon` (4,).
+        state: see `estimation_kernel` (20,).
+        growth: unmeasured motion per tick, see `estimation_kernel.reckon` (4,).
     """
 
     def __init__(self, parameters: OdometryParameters) -> None:
@@ -97,18 +96,16 @@ class LegOdometry:
         )
 
     def interrupt(self, displacement: float, turn: float) -> None:
-        """The robot has left its feet: what comes next starts from new footholds.
-
-        The IMU goes on to tell the heading; where the robot is now was not seen.
+        """Restart from new footholds after an unmeasured motion; the heading is that of the IMU.
 
         Args:
-            displacement: standard deviation of the unseen move per axis [m].
-            turn: standard deviation of the turn that the IMU misses [rad].
+            displacement: standard deviation of the motion per axis [m].
+            turn: standard deviation of the error of the IMU's yaw [rad].
         """
         self.state[5] = self.state[11] = 0.0
         estimation_kernel.jump(self.state, displacement, turn)
 
     def pose(self) -> Odometry:
-        """Pose of the robot frame in the odometry frame."""
+        """Return the pose of the robot frame in the odometry frame."""
         x, y, yaw = self.state[:3].tolist()
         return Odometry(x=x, y=y, yaw=yaw, covariance=self.state.take(COVARIANCE))

@@ -1,4 +1,4 @@
-"""The robot's numbers, read by Pinocchio from the same MJCF file as the simulator."""
+"""Robot model, read by Pinocchio from the MJCF file of the simulator."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from walking.robot_measures import RobotMeasures
 Array = NDArray[np.float64]
 
 READY = "walk_ready"
-BENT = 5.0 / 6.0  # height of the hips with the knees bent for a walk, as a share of the leg
-SMALL = 1e-5  # step of a difference quotient [m]
-SERVOS = ("position", "general")  # elements of MJCF that can be a position servo
-FITS = 1e-5  # error of a foot's pose that is rounding [m, rad]
-# Columns are the camera's right, down and forward in the frame of the head, which looks along x.
+BENT = 5.0 / 6.0  # walking height of the hips per length of the leg [1]
+SMALL = 1e-5  # step of finite differences [m]
+SERVOS = ("position", "general")  # MJCF elements of position servos
+TOLERANCE = 1e-5  # rounding error of a pose [m, rad]
+# Columns are the right, down and forward axes of the camera in the head frame.
 R_HC = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
@@ -40,19 +40,19 @@ class RobotModel:
     Attributes:
         mass: total mass [kg].
         legs: dimensions of the left and of the right leg.
-        leg_rows: the same as compiled code has it (2, 6).
-        sole: rectangle of either sole.
+        leg_rows: dimensions of the legs for kernels (2, 6).
+        sole: rectangle of each sole.
         ready: joint angles of the ready posture (26,) [rad].
-        motion: position, velocity and acceleration of the level base and the joints as Pinocchio
-            orders them, to be set for `forces`.
-        indices: of the joints in its position and in its velocity (26,).
+        motion: position, velocity and acceleration of level base and joints in Pinocchio's order,
+            input of `forces`.
+        indices: of the joints in that position and velocity (26,).
         lower, upper: joint limits (26,) [rad].
         stiffness: of each servo (26,) [N m/rad].
-        damping: of each servo with its joint (26,) [N m s/rad].
+        damping: of each servo and its joint (26,) [N m s/rad].
 
     Raises:
-        ValueError: a joint, frame or the ready posture is missing, the soles differ, or a leg
-            has other axes than `leg_kinematics`, or the head than `head_kernel`.
+        ValueError: a joint, frame or the ready posture is missing, the soles differ, or the axes of
+            a leg or the head differ from `leg_kinematics` or `head_kernel`.
     """
 
     def __init__(self, model: Any, stiffness: Array, servo_damping: Array) -> None:
@@ -87,27 +87,16 @@ class RobotModel:
         self._check_legs()
         self._check_head()
 
-    def __getstate__(self) -> dict[str, Any]:
-        """All but Pinocchio's work space, which holds nothing from one call to the next."""
-        state = self.__dict__.copy()
-        del state["_data"]
-        return state
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self._data = self._model.createData()
-
     @classmethod
     def from_mjcf(cls, path: str | PathLike[str]) -> RobotModel:
         """Read a robot from an MJCF file.
 
-        The file has, by their names, the joints of ``JOINT_NAMES``, each with a position
-        servo; sites ``l_foot`` and ``r_foot`` on the floor below the ankles,
-        ``l_sole_fl`` … ``r_sole_br`` in the middle of each quarter of a sole, and
-        ``camera``; and the keyframe ``walk_ready``. Everything else is its own choice.
+        The file must contain the joints of ``JOINT_NAMES``, each with a position servo; sites
+        ``l_foot`` and ``r_foot`` on the floor below the ankles, ``l_sole_fl`` … ``r_sole_br`` in
+        the middle of each quarter of a sole, and ``camera``; and the keyframe ``walk_ready``.
 
         Raises:
-            ValueError: something the library needs is missing in the file.
+            ValueError: a required element is missing in the file.
         """
         model = pin.buildModelFromMJCF(fspath(path))
         gains = _servo_gains(fspath(path))
@@ -118,7 +107,7 @@ class RobotModel:
         return cls(model, ordered[:, 0], ordered[:, 1])
 
     def com(self, joint_position: Array) -> Array:
-        """Centre of mass in the base frame (3,) [m] for joint angles (26,) [rad]."""
+        """Return the centre of mass in the base frame (3,) [m] for joint angles (26,) [rad]."""
         q = self._q
         q[self._q_index] = joint_position
         com: Array = pin.centerOfMass(self._model, self._data, q, False)
@@ -131,12 +120,12 @@ class RobotModel:
         acceleration: Array,
         base_acceleration: tuple[float, float],
     ) -> tuple[Array, Array]:
-        """What a motion of the joints asks of joints and base, nothing touching the feet.
+        """Return the forces of a motion of joints and base without contact (inverse dynamics).
 
         Args:
             position: joint angles (26,) [rad].
-            velocity: their rates (26,) [rad/s].
-            acceleration: their accelerations (26,) [rad/s²].
+            velocity: joint rates (26,) [rad/s].
+            acceleration: of the joints (26,) [rad/s²].
             base_acceleration: of the level base, forward and left [m/s²].
 
         Returns:
@@ -154,21 +143,20 @@ class RobotModel:
         return joints, base
 
     def forces(self) -> Array:
-        """Generalised forces that `motion` takes, nothing touching the feet; the base's first."""
+        """Return the generalised forces of `motion` without contact, those of the base first."""
         forces: Array = pin.rnea(self._model, self._data, *self.motion)
         return forces
 
     def moved_com(self) -> tuple[float, float]:
-        """Centre of mass in the base frame, x, y [m], for the joint angles of the last `forces`."""
+        """Return the centre of mass in the base frame, x, y [m], in the last call of `forces`."""
         x, y, _ = pin.centerOfMass(self._model, self._data, pin.POSITION, False).tolist()
         return x, y
 
     def pendulum_height(self) -> float:
-        """Height of the pendulum that the robot is for its base [m].
+        """Return the height of the equivalent pendulum [m].
 
-        Both feet on the floor and the knees bent, a base that accelerates by a takes the legs
-        along by part of that only; the floor's moment is that of the whole mass accelerated
-        by a at this height.
+        With bent knees and both feet on the floor, the legs follow an acceleration a of the base in
+        part; the moment about the floor is that of the whole mass at this height accelerated by a.
         """
         q = self.ready.copy()
         rest, motion = np.zeros_like(q), np.zeros_like(q)
@@ -177,8 +165,8 @@ class RobotModel:
             foot = FootPose(leg.hip_x, leg.hip_y, -height, 0.0, 0.0, 0.0)
             q[part] = leg_angles(leg, foot)[0]
             ahead, behind = (
-                leg_angles(leg, FootPose(foot.x + way, foot.y, foot.z, 0.0, 0.0, 0.0))[0]
-                for way in (-SMALL, SMALL)
+                leg_angles(leg, FootPose(foot.x + dx, foot.y, foot.z, 0.0, 0.0, 0.0))[0]
+                for dx in (-SMALL, SMALL)
             )
             motion[part] = (np.array(ahead) - behind) / (2.0 * SMALL)
         _, still = self.inverse_dynamics(q, rest, rest, (0.0, 0.0))
@@ -187,10 +175,9 @@ class RobotModel:
         return float((moment + height * force) / self.mass)
 
     def measures(self) -> RobotMeasures:
-        """The measures by which a walk scales.
+        """Return the measures that a walk scales with, to six digits.
 
-        They have six digits: no more is known of a robot, and the rounding of a file's reader
-        shall not alter a walk.
+        More digits are unknown, and the rounding of a file reader must not change a walk.
         """
         leg, height = self.legs[0], self.pendulum_height()
         weight = self.mass * GRAVITY
@@ -206,17 +193,17 @@ class RobotModel:
         return RobotMeasures(*(float(f"{measure:.6g}") for measure in exact))
 
     def camera_pose(self, joint_position: Array) -> tuple[Array, Array]:
-        """Rotation R_BC (3, 3) and position p_BC (3,) [m] of the head camera."""
+        """Return rotation R_BC (3, 3) and position p_BC (3,) [m] of the head camera."""
         pan, tilt = joint_position[HEAD].tolist()
         rotation, position = np.empty((3, 3)), np.empty(3)
         head_kernel.camera_pose(pan, tilt, *self._head, rotation, position)
         return rotation, position
 
     def frame_pose(self, name: str, joint_position: Array) -> tuple[Array, Array]:
-        """Rotation (3, 3) and position (3,) [m] of a named frame in the base frame.
+        """Return rotation (3, 3) and position (3,) [m] of a named frame in the base frame.
 
         Raises:
-            ValueError: there is no such frame.
+            ValueError: the model lacks the frame.
         """
         q = self._q
         q[self._q_index] = joint_position
@@ -225,7 +212,7 @@ class RobotModel:
         return placement.rotation.copy(), placement.translation.copy()
 
     def head_limits(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Lower and upper limit of pan and of tilt [rad]."""
+        """Return the joint limits of pan and of tilt [rad]."""
         (pan_low, tilt_low), (pan_high, tilt_high) = (
             self.lower[HEAD].tolist(),
             self.upper[HEAD].tolist(),
@@ -238,13 +225,12 @@ class RobotModel:
         return int(self._model.getFrameId(name))
 
     def _placement(self, joint: str) -> list[float]:
-        place: list[float] = self._model.jointPlacements[
-            self._model.getJointId(joint)
-        ].translation.tolist()
-        return place
+        index = self._model.getJointId(joint)
+        position: list[float] = self._model.jointPlacements[index].translation.tolist()
+        return position
 
     def _check_legs(self) -> None:
-        """The closed form of the legs must be what the model says."""
+        """Compare the closed form of the legs with the model."""
         q = np.zeros_like(self.ready)
         bend = np.array([0.2, 0.3, -0.5, 0.9, -0.4, 0.1])
         for leg, part, side in zip(self.legs, (LEFT_LEG, RIGHT_LEG), "lr", strict=True):
@@ -254,23 +240,23 @@ class RobotModel:
             R, p = self.frame_pose(f"{side}_foot", q)
             missed = [*(p - (foot.x, foot.y, foot.z)), atan2(R[1, 0], R[0, 0]) - foot.yaw]
             missed += [-asin(R[2, 0]) - foot.pitch, atan2(R[2, 1], R[2, 2]) - foot.roll]
-            if max(map(abs, missed)) > FITS:
+            if max(map(abs, missed)) > TOLERANCE:
                 raise ValueError(
-                    f"the leg {side!r} of the robot model is none with hip yaw, roll and pitch "
-                    "through one point, a knee and ankle pitch and roll through another one "
+                    f"robot model: unsupported axes of leg {side!r}; expected hip yaw, roll and "
+                    "pitch through one point, a knee, and ankle pitch and roll through a point "
                     "straight below"
                 )
 
     def _check_head(self) -> None:
-        """So must be that of the head."""
+        """Compare the closed form of the head with the model."""
         q = np.zeros_like(self.ready)
         q[HEAD] = 0.4, 0.3
         R, p = self.frame_pose("camera", q)
         R_BC, p_BC = self.camera_pose(q)
-        if max(abs(R @ R_HC - R_BC).max(), abs(p - p_BC).max()) > FITS:
+        if max(abs(R @ R_HC - R_BC).max(), abs(p - p_BC).max()) > TOLERANCE:
             raise ValueError(
-                "the head of the robot model is none that pans to the left on the base and then "
-                "tilts upwards"
+                "robot model: unsupported axes of the head; expected a pan joint to the left on "
+                "the base, then a tilt joint upwards"
             )
 
     def _leg(self, side: str) -> LegDimensions:
@@ -299,10 +285,9 @@ class RobotModel:
 
 
 def _servo_gains(path: str) -> dict[str, tuple[float, float]]:
-    """Stiffness and damping of every position servo, by joint; Pinocchio does not read them.
+    """Read stiffness and damping of every position servo, by joint, which Pinocchio ignores.
 
-    MuJoCo saves a position servo as a general actuator with affine bias; both are understood.
-    An actuator without stiffness holds no position.
+    MuJoCo saves a position servo as a general actuator with affine bias; both forms are read.
     """
     root = ElementTree.parse(path).getroot()
     defaults: dict[tuple[str, str], dict[str, str]] = {}
@@ -326,8 +311,8 @@ def _servo_gains(path: str) -> dict[str, tuple[float, float]]:
             if kind == "position":
                 gain = float(values.get("kp", "1")), float(values.get("kv", "0"))
             elif values.get("biastype") == "affine":
-                given = [float(value) for value in values.get("biasprm", "").split()]
-                _, stiffness, damping = (*given, 0.0, 0.0, 0.0)[:3]  # what is left out is zero
+                bias = [float(value) for value in values.get("biasprm", "").split()]
+                _, stiffness, damping = (*bias, 0.0, 0.0, 0.0)[:3]  # zero by default
                 gain = -stiffness, -damping
             else:
                 continue

@@ -1,4 +1,4 @@
-"""The sole of a foot."""
+"""Sole of a foot."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Steady Kalman gains of the filter that follows the error of the centre of mass."""
+"""Steady-state Kalman gains of the filter of the CoM error."""
 
 from dataclasses import dataclass
 from math import cosh, sinh
@@ -11,7 +11,7 @@ from walking.parameters import CONTROL_PERIOD, EstimatorParameters
 
 @dataclass(frozen=True, slots=True)
 class SteadyGains:
-    """Steady Kalman gains of the error filter.
+    """Steady-state Kalman gains.
 
     Attributes:
         position: correction of the position per innovation [1].
@@ -23,7 +23,7 @@ class SteadyGains:
 
 
 def steady_gains(omega: float, parameters: EstimatorParameters) -> SteadyGains:
-    """Gains of the filter e'' = ω² (e - d) + noise, e measured in every tick."""
+    """Return the gains of the filter e'' = ω² (e - d) + noise, e measured in every tick."""
     dt = CONTROL_PERIOD
     wh = omega * dt
     A = np.array([[cosh(wh), sinh(wh) / omega], [omega * sinh(wh), cosh(wh)]])

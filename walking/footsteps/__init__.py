@@ -1,1 +1,1 @@
-"""Footsteps: commands become footholds."""
+"""Footstep planning: commands to footholds."""

@@ -1,23 +1,23 @@
-"""Two footsteps, one of either foot: the period of a walk."""
+"""Gait cycle: two footsteps, one with each foot."""
 
 
-class Cycle:
-    """Tells when the foot that carried first carries again.
+class GaitCycle:
+    """Detects the begin of a gait cycle.
 
     A sideways walk or a turn opens the stance with one foot and closes it with the other one;
-    only over both does it go as it is told.
+    only the mean over both is the commanded velocity.
     """
 
     def __init__(self) -> None:
         self._first: int | None = None
         self._support: int | None = None
 
-    def rest(self) -> None:
-        """The robot stands; the foot that carries next is the first."""
+    def reset(self) -> None:
+        """Restart with the next support foot."""
         self._first = self._support = None
 
     def begins(self, support: int) -> bool:
-        """Whether a cycle begins in this tick, in which foot `support` carries or is about to."""
+        """Whether a cycle begins in this tick with support foot `support`."""
         if self._first is None:
             self._first = support
         begins = support == self._first and support != self._support

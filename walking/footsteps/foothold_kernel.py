@@ -1,6 +1,6 @@
-"""The footholds to come and the ZMP reference that follows from them, compiled.
+"""Planned footholds and their ZMP reference, compiled.
 
-A foothold is x, y [m], yaw [rad], and 1 if it is a left one, 0 if not.
+A foothold is a row x, y [m], yaw [rad], 1 for the left or 0 for the right foot.
 """
 
 from math import cos, sin
@@ -11,25 +11,24 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Row = tuple[float, float, float, float]
-"""A foothold, see `Foothold.row`."""
+"""Foothold, see `Foothold.row`."""
 
 Placement = tuple[float, float, float]
 Placements = tuple[Placement, Placement]
-"""Landing in the frame of the support foot, x, y [m] and direction [rad]: the right foot's and the
-left foot's."""
+"""Landings of the right and left foot in the frame of the support foot, x, y [m], yaw [rad]."""
 
-Spot = tuple[float, float]
-"""Where the ZMP is meant to be under a foot: forward and inward of its origin [m]."""
+ZmpOffset = tuple[float, float]
+"""ZMP of single support in the foot frame, forward and inward [m]."""
 
 Chain = tuple[Placements, Placements, tuple[float, float], int]
-"""Strides; those of stepping in place; distance along x and y [m] and angle [rad] at which a
-foothold is one of standing; most footholds to come."""
+"""Strides; strides of stepping in place; tolerances of a parallel stance in x and y [m] and yaw
+[rad]; maximum number of footholds."""
 
-RAMP = 13  # numbers of a ramp, see `Ramps`
+RAMP = 13  # columns of a ramp, see `Ramps`
 
 
 @njit(cache=True)
-def onwards(
+def plan_walk(
     unloading: Row,
     support: Row,
     landing: Row,
@@ -37,27 +36,27 @@ def onwards(
     moving: bool,
     zmp: tuple[float, float],
     ticks: tuple[int, int, int, int, int],
-    spot: Spot,
+    zmp_offset: ZmpOffset,
 ) -> tuple[Array, Array]:
-    """Footholds of a walk (n, 4), see `sequence`, and its ZMP (m, 13), see `ramps`."""
+    """Return the footholds of a walk (n, 4), see `sequence`, and its ZMP (m, 13), see `ramps`."""
     steps, ends = sequence(support, landing, chain, moving)
-    return steps, ramps(unloading, support, steps, zmp, ticks, spot, ends)
+    return steps, ramps(unloading, support, steps, zmp, ticks, zmp_offset, ends)
 
 
 @njit(cache=True)
 def sequence(support: Row, landing: Row, chain: Chain, moving: bool) -> tuple[Array, bool]:
-    """Footholds from `landing` on, and whether the walk ends after the last.
+    """Return the footholds from `landing` on, and whether the walk ends after the last.
 
     Args:
-        support: the foot on the floor.
-        landing: where the other foot is about to land.
-        chain: how they follow each other.
-        moving: whether more than closing the stance is wanted.
+        support: support foot.
+        landing: of the swing foot.
+        chain: rule of the following footholds.
+        moving: whether the walk goes on; if not, it ends as soon as the stance is parallel.
 
     Returns:
         the footholds (n, 4), and whether the walk ends after the last.
     """
-    wish, still, near, most = chain
+    wanted, still, near, most = chain
     steps = np.empty((most, 4))
     before, last = support, landing
     for k in range(most):
@@ -70,7 +69,7 @@ def sequence(support: Row, landing: Row, chain: Chain, moving: bool) -> tuple[Ar
                 and abs(last[2] - rest[2]) < near[1]
             ):
                 return steps[: k + 1], True
-        before, last = last, _landing(last, wish)
+        before, last = last, _landing(last, wanted)
     return steps, False
 
 
@@ -81,27 +80,28 @@ def ramps(
     steps: Array,
     zmp: tuple[float, float],
     ticks: tuple[int, int, int, int, int],
-    spot: Spot,
+    zmp_offset: ZmpOffset,
     ends: bool,
 ) -> Array:
-    """ZMP reference of a walk.
+    """Return the ZMP reference of a walk.
 
     Args:
-        unloading: where the foot stands that is about to swing.
-        support: the foot that carries in this footstep.
-        steps: footholds to come (n, 4).
-        zmp: of now, while the weight goes over to the support foot [m].
-        ticks: left of that double support, zero in single support; left of the single support
-            after it; of a double and a single support to come; of the last double support.
-        spot: of the ZMP under a foot.
-        ends: whether the walk ends with both feet carrying alike after the last foothold.
+        unloading: foot that swings next.
+        support: support foot of this footstep.
+        steps: planned footholds (n, 4).
+        zmp: present ZMP, in double support [m].
+        ticks: remaining ticks of the present double support, zero in single support; of the
+            single support after it; ticks of later double and single supports; of the last
+            double support.
+        zmp_offset: see `ZmpOffset`.
+        ends: whether the walk ends with equal loads after the last foothold.
 
     Returns:
         the reference, see `Ramps` (m, 13).
     """
     shift, carry, double, single, stop = ticks
     table = np.empty((2 * steps.shape[0] + 2, RAMP))
-    px, py = _under(support, spot)
+    px, py = _under(support, zmp_offset)
     row = 0
     if shift > 0:
         _ramp(table[row], shift, zmp[0], zmp[1], px, py, unloading, support)
@@ -111,9 +111,9 @@ def ramps(
     before = support
     for k in range(steps.shape[0]):
         step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
-        x, y = _under(step, spot)
+        x, y = _under(step, zmp_offset)
         if ends and k == steps.shape[0] - 1:
-            bx, by = _under(before, spot)
+            bx, by = _under(before, zmp_offset)
             _ramp(table[row], stop, px, py, 0.5 * (bx + x), 0.5 * (by + y), before, step)
             row += 1
         else:
@@ -126,7 +126,7 @@ def ramps(
 
 @njit(cache=True)
 def _landing(support: Row, strides: Placements) -> Row:
-    """Next foothold of the foot that is not `support`."""
+    """Return the next foothold of the swing foot."""
     x, y, turned = strides[0] if support[3] > 0.0 else strides[1]
     c, s = cos(support[2]), sin(support[2])
     return (
@@ -138,10 +138,10 @@ def _landing(support: Row, strides: Placements) -> Row:
 
 
 @njit(cache=True)
-def _under(foot: Row, spot: Spot) -> tuple[float, float]:
-    """ZMP under a foot that carries alone [m]."""
-    forward = spot[0]
-    inward = -spot[1] if foot[3] > 0.0 else spot[1]
+def _under(foot: Row, zmp_offset: ZmpOffset) -> tuple[float, float]:
+    """Return the ZMP of single support on a foot [m]."""
+    forward = zmp_offset[0]
+    inward = -zmp_offset[1] if foot[3] > 0.0 else zmp_offset[1]
     c, s = cos(foot[2]), sin(foot[2])
     return foot[0] + c * forward - s * inward, foot[1] + s * forward + c * inward
 

@@ -1,14 +1,13 @@
-"""Keeping the heading that the commands add up to, though the feet slip."""
+"""Heading control against yaw slip of the feet."""
 
 from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
 
 
 class HeadingHold:
-    """Turn rate that takes back what the body has turned against the plan.
+    """Proportional feedback of the heading error, constant over a gait cycle.
 
-    Of the two footsteps of a cycle one turns for both. The rate is decided on once a cycle, so
-    that what it adds up to is what they turn.
+    One footstep of a cycle makes the turn of both, so the rate changes only between cycles.
 
     Args:
         parameters: gain and limit.
@@ -20,20 +19,17 @@ class HeadingHold:
         self._held = 0.0
         self._rate = 0.0
 
-    def rest(self, ahead: float) -> None:
-        """Take the plan's heading `ahead` of the body's as it is [rad]."""
+    def reset(self, ahead: float) -> None:
+        """Set the present offset of the planned heading, `ahead` [rad], as reference."""
         self._held = ahead
 
     def rate(self, ahead: float, *, renew: bool) -> float:
-        """Turn rate of this tick.
+        """Return the yaw rate of this tick [rad/s].
 
         Args:
-            ahead: of the body's heading, that of the plan [rad].
-            renew: whether to decide anew: as a cycle of two footsteps begins, and at any time
-                while balance has a say in the footsteps.
-
-        Returns:
-            the rate [rad/s].
+            ahead: planned minus measured heading [rad].
+            renew: whether to update the rate: at the begin of a gait cycle, and in every tick while
+                balance changes the footsteps.
         """
         if renew:
             self._rate = clamp(self._gain * (ahead - self._held), self._limit)

@@ -1,4 +1,4 @@
-"""Walking as fast as told, though the feet slide and land short of the plan."""
+"""Speed control against slip and short landings of the feet."""
 
 from math import cos, sin
 
@@ -11,11 +11,10 @@ Correction = tuple[float, float]
 
 
 class SpeedHold:
-    """Velocity that makes up for what the odometry finds missing of a steady command.
+    """Integral correction of the velocity under a steady command, once per gait cycle.
 
-    Velocities are those along and across the heading of the moment: a robot that turns does so
-    in one of two footsteps, so its heading at the begin of a cycle is not the mean one, and the
-    way of a cycle seen from there leans to the side.
+    Displacements are summed in the present heading: a robot turns in one of two footsteps, so its
+    heading at the begin of a cycle differs from the mean.
 
     Args:
         parameters: gain and limit.
@@ -27,12 +26,12 @@ class SpeedHold:
         self._velocity: Velocity | None = None
         self._correction: Correction = (0.0, 0.0)
         self._pose: Pose | None = None
-        self._way = (0.0, 0.0)
+        self._displacement = (0.0, 0.0)
         self._ticks = 0
         self._whole = False
 
-    def rest(self) -> None:
-        """Forget everything."""
+    def reset(self) -> None:
+        """Discard the correction."""
         self._velocity = self._pose = None
         self._correction = (0.0, 0.0)
         self._whole = False
@@ -40,41 +39,43 @@ class SpeedHold:
     def correction(
         self, pose: Pose, velocity: Velocity, *, begins: bool, disturbed: bool
     ) -> Correction:
-        """Velocity to add, forward and left [m/s, m/s]: none until a command is steady.
+        """Return the correction of (vx, vy) [m/s, m/s], zero until a command is steady.
 
         Args:
-            pose: of the robot by odometry, its heading unwrapped [m, m, rad].
+            pose: by odometry, heading unwrapped [m, m, rad].
             velocity: wanted (vx, vy, wz) [m/s, m/s, rad/s].
-            begins: whether a cycle of two footsteps does.
-            disturbed: whether balance has a say in the footsteps.
+            begins: whether a gait cycle begins.
+            disturbed: whether balance changes the footsteps.
         """
         if velocity != self._velocity:
-            self.rest()
+            self.reset()
             self._velocity = velocity
         if self._pose is not None:
-            self._go(self._pose, pose)
+            self._integrate(self._pose, pose)
         self._pose = pose
         self._whole = self._whole and not disturbed
         if begins:
             if self._whole:
-                self._learn(velocity)
-            self._whole, self._ticks, self._way = True, 0, (0.0, 0.0)
+                self._correct(velocity)
+            self._whole, self._ticks, self._displacement = True, 0, (0.0, 0.0)
         return self._correction
 
-    def _go(self, start: Pose, end: Pose) -> None:
-        """One tick of the way, seen from the robot."""
+    def _integrate(self, start: Pose, end: Pose) -> None:
+        """Add the displacement of a tick in the mean heading."""
         (x, y, yaw), (then_x, then_y, then_yaw) = end, start
         dx, dy = x - then_x, y - then_y
         middle = 0.5 * (then_yaw + yaw)
         c, s = cos(middle), sin(middle)
-        forward, left = self._way
-        self._way = forward + c * dx + s * dy, left + c * dy - s * dx
+        forward, left = self._displacement
+        self._displacement = forward + c * dx + s * dy, left + c * dy - s * dx
         self._ticks += 1
 
-    def _learn(self, velocity: Velocity) -> None:
+    def _correct(self, velocity: Velocity) -> None:
         time = self._ticks * CONTROL_PERIOD
         forward, left = (
-            clamp(now - self._gain * (way / time - wanted), self._limit)
-            for now, way, wanted in zip(self._correction, self._way, velocity[:2], strict=True)
+            clamp(now - self._gain * (moved / time - wanted), self._limit)
+            for now, moved, wanted in zip(
+                self._correction, self._displacement, velocity[:2], strict=True
+            )
         )
         self._correction = forward, left

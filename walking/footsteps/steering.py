@@ -1,4 +1,4 @@
-"""From commands to what the footsteps obey: limits, slew, and the account of both."""
+"""Steering: commands to wanted strides and timing, within limits."""
 
 from walking.command import Command, CommandState, VelocityCommand
 from walking.command_limits import CommandLimits, Limit
@@ -8,37 +8,39 @@ from walking.footsteps.velocity import VelocitySlew, limited, speed_limits
 from walking.parameters import LimitParameters
 from walking.value import value
 
-SAME_SPEED = 1e-9  # difference of velocities that is rounding
+SAME_SPEED = 1e-9  # rounding error of velocities [m/s, rad/s]
 STRIDE_LIMITS = {Limit.STEP_LENGTH, Limit.STEP_SIDE, Limit.STEP_TURN, Limit.CLEARANCE}
 
 
 @value
 class Steady:
-    """A velocity command that asks for no change: the next tick does what this one did.
+    """Cached result of a velocity command that is reached.
 
     Attributes:
         command: the command.
-        share: of it to walk at [1].
-        bound: limits that alter it.
+        speed_ratio: of it to walk at [1].
+        bound: limits that bind.
     """
 
     command: VelocityCommand
-    share: float
+    speed_ratio: float
     bound: list[Limit]
 
-    def holds(self, command: VelocityCommand, share: float) -> bool:
-        """Whether this is what is asked."""
-        return share == self.share and (command is self.command or command == self.command)
+    def holds(self, command: VelocityCommand, speed_ratio: float) -> bool:
+        """Whether the inputs are unchanged."""
+        return speed_ratio == self.speed_ratio and (
+            command is self.command or command == self.command
+        )
 
 
 class Steering:
-    """Follows velocity commands and command states, one after the other in any order.
+    """Follows velocity commands and command states in any order.
 
     Args:
-        planner: makes strides of commands.
+        planner: computes strides and timing.
         limits: speed and acceleration limits.
-        selective: whether the pattern takes of a change only what the legs can do; then to
-            stand is a wish that needs no slew.
+        selective: whether the pattern generator limits changes itself; then a stop needs no rate
+            limit.
 
     Attributes:
         timing: wanted of the footsteps.
@@ -60,26 +62,28 @@ class Steering:
 
     @property
     def bound(self) -> tuple[Limit, ...]:
-        """Limits that altered the command before it became a wish."""
+        """Limits that bind on the command before the plan."""
         return tuple(self._bound)
 
     @property
     def moving(self) -> bool:
-        """Whether more than standing is wanted."""
+        """Whether a motion is wanted."""
         return self._state is not None or self._slew.moving
 
     @property
     def velocity(self) -> Velocity:
-        """Velocity that the robot is meant to have."""
+        """Wanted velocity (vx, vy, wz) [m/s, m/s, rad/s]."""
         return self._slew.velocity
 
-    def follow(self, command: Command, share: float, *, settled: bool, balanced: bool) -> None:
-        """Take in a command.
+    def follow(
+        self, command: Command, speed_ratio: float, *, settled: bool, balanced: bool
+    ) -> None:
+        """Follow the command of this tick.
 
         Args:
-            command: of this tick.
-            share: of a velocity command to walk at [1].
-            settled: whether the robot may move at all yet.
+            command: velocity or footsteps.
+            speed_ratio: of a velocity command to walk at [1].
+            settled: whether the robot may start to move.
             balanced: whether the motion may change.
         """
         self._command, self._bound = command, []
@@ -92,31 +96,30 @@ class Steering:
             self._slew.follow(VelocityCommand())
         elif isinstance(command, CommandState):
             self._follow_state(command)
-        elif steady is not None and steady.holds(command, share):
+        elif steady is not None and steady.holds(command, speed_ratio):
             self._steady, self._bound = steady, steady.bound
         else:
-            self._follow_velocity(command, share)
+            self._follow_velocity(command, speed_ratio)
 
-    def pace(self, before: Timing, *, stepping: bool) -> Timing:
-        """Timing of the footsteps to come.
+    def next_timing(self, before: Timing, *, stepping: bool) -> Timing:
+        """Return the timing of the next footsteps.
 
-        Those that only close the stance are no slower than the walk was: while a slow footstep
-        lasts, a body that is still fast gets too far on its way.
+        Footsteps that close the stance are at least as fast as the walk was: during a slow footstep
+        the moving body would go too far.
 
         Args:
-            before: timing of the footstep under way.
-            stepping: whether there is one.
+            before: timing of the present footstep.
+            stepping: whether a footstep is under way.
         """
         if stepping and not self.moving and before.duration < self.timing.duration:
             return before
         return self.timing
 
-    def wish(self, correction: Velocity) -> Strides:
-        """What the footsteps obey.
+    def strides(self, correction: Velocity) -> Strides:
+        """Return the wanted strides.
 
         Args:
-            correction: velocity that makes up for what the feet slip; of it, footsteps that are
-                commanded take only the turn.
+            correction: of the velocity (vx, vy, wz) [m/s, m/s, rad/s]; command states use only wz.
         """
         time = self.timing.duration
         if self._state is None:
@@ -128,13 +131,13 @@ class Steering:
     def report(
         self, binding: list[Limit], applied: Velocity, strides: Strides | None, timing: Timing
     ) -> CommandLimits:
-        """Account of this tick.
+        """Return the report of this tick.
 
         Args:
-            binding: limits met after the command had become a wish.
+            binding: limits that bind on the plan.
             applied: velocity that the footsteps follow.
-            strides: that the footsteps obey in place of the wished ones, if others.
-            timing: that the footsteps obey.
+            strides: that the footsteps follow instead of the wanted ones, if limited.
+            timing: that the footsteps follow.
         """
         bound, commanded = (*self._bound, *binding), self._command
         if not bound:
@@ -144,11 +147,11 @@ class Steering:
                 time = timing.duration
                 applied = self._planner.velocity(self._planner.strides(applied, time), time)
             return CommandLimits(commanded, VelocityCommand(*applied), bound)
-        obeyed = strides or self._planner.explicit(self._state, 0.0)[0]
-        return CommandLimits(commanded, self._planner.command_state(obeyed, timing), bound)
+        followed = strides or self._planner.explicit(self._state, 0.0)[0]
+        return CommandLimits(commanded, self._planner.command_state(followed, timing), bound)
 
     def _hold(self, command: Command) -> None:
-        """Nothing changes; that alters a command unless it is the one already obeyed."""
+        """Keep the present motion; balance limits any other command."""
         bound = self._bound
         if isinstance(command, CommandState):
             if command != self._state:
@@ -164,7 +167,7 @@ class Steering:
             bound.extend(self._planner.stride_limits(self.velocity, self.timing.duration))
 
     def _differs(self, wanted: Velocity) -> bool:
-        """Whether the robot is not meant to have a velocity; from standing any is another."""
+        """Whether a velocity differs from the wanted one; at rest any does."""
         if wanted == STILL:
             return self._slew.moving
         vx, vy, wz = self.velocity
@@ -175,30 +178,30 @@ class Steering:
         )
 
     def _speed_limits(self, command: VelocityCommand) -> list[Limit]:
-        """Limits that alter the speed of a command, which stays for many ticks."""
+        """Return the speed limits that bind on a command, cached for many ticks."""
         if command is not self._too_fast[0]:
             self._too_fast = (command, speed_limits(command, self._limits))
         return self._too_fast[1]
 
-    def _follow_velocity(self, command: VelocityCommand, share: float) -> None:
+    def _follow_velocity(self, command: VelocityCommand, speed_ratio: float) -> None:
         before, self._state = self._state, None
         was = self.velocity
-        bound, dared = self._bound, command
-        if share < 1.0 and command.velocity != STILL:
+        bound, wanted = self._bound, command
+        if speed_ratio < 1.0 and command.velocity != STILL:
             vx, vy, wz = limited(command, self._limits)
-            dared = VelocityCommand(share * vx, share * vy, share * wz)
+            wanted = VelocityCommand(speed_ratio * vx, speed_ratio * vy, speed_ratio * wz)
             bound.append(Limit.BALANCE)
         if self._selective and command.velocity == STILL:
             self._slew.start(STILL)
-        wanted = self._slew.follow(dared)
+        limit = self._slew.follow(wanted)
         bound.extend(self._speed_limits(command))
         velocity = self.velocity
         self.timing = self._planner.cadence(velocity)
-        if self._differs(wanted):
+        if self._differs(limit):
             bound.append(Limit.ACCELERATION)
         bound.extend(self._planner.stride_limits(velocity, self.timing.duration))
         if before is None and velocity == was:
-            self._steady = Steady(command, share, bound)
+            self._steady = Steady(command, speed_ratio, bound)
 
     def _follow_state(self, command: CommandState) -> None:
         self._state = command
@@ -207,6 +210,6 @@ class Steering:
         self._bound.extend(altered)
         self._bound.extend(late)
         time = self.timing.duration
-        # A velocity command that comes next sets out from here.
+        # A later velocity command starts from this velocity.
         start = self._planner.command_state(strides, self.timing)
         self._slew.start((start.forward / time, 0.0, start.direction / time))

@@ -1,4 +1,4 @@
-"""What a command makes of a footstep: where each foot goes, how long it takes, how high."""
+"""Strides and timing of footsteps."""
 
 from walking.parameters import CONTROL_PERIOD
 from walking.value import comparable_value
@@ -9,7 +9,7 @@ Velocity = tuple[float, float, float]
 STILL: Velocity = (0.0, 0.0, 0.0)
 
 Placement = tuple[float, float, float]
-"""Landing in the frame of the support foot: x [m], y [m], direction [rad]."""
+"""Landing in the frame of the support foot: x, y [m], yaw [rad]."""
 
 
 @comparable_value
@@ -23,11 +23,11 @@ class Strides:
     right: Placement
     left: Placement
 
-    def towards(self, other: "Strides", share: float) -> "Strides":
-        """Strides `share` of the way to others."""
+    def towards(self, other: "Strides", fraction: float) -> "Strides":
+        """Interpolate linearly to other strides."""
         return Strides(
-            right=_between(self.right, other.right, share),
-            left=_between(self.left, other.left, share),
+            right=_between(self.right, other.right, fraction),
+            left=_between(self.left, other.left, fraction),
         )
 
 
@@ -46,21 +46,21 @@ class Timing:
 
     @property
     def duration(self) -> float:
-        """Of the footstep [s]."""
+        """Duration of the footstep [s]."""
         return (self.double + self.single) * CONTROL_PERIOD
 
-    def towards(self, other: "Timing", share: float) -> "Timing":
-        """Timing `share` of the way to another, in whole ticks."""
+    def towards(self, other: "Timing", fraction: float) -> "Timing":
+        """Interpolate linearly to another timing, in whole ticks."""
         return Timing(
-            double=self.double + round(share * (other.double - self.double)),
-            single=self.single + round(share * (other.single - self.single)),
-            swing_height=self.swing_height + share * (other.swing_height - self.swing_height),
+            double=self.double + round(fraction * (other.double - self.double)),
+            single=self.single + round(fraction * (other.single - self.single)),
+            swing_height=self.swing_height + fraction * (other.swing_height - self.swing_height),
         )
 
 
-def _between(a: Placement, b: Placement, share: float) -> Placement:
+def _between(a: Placement, b: Placement, fraction: float) -> Placement:
     return (
-        a[0] + share * (b[0] - a[0]),
-        a[1] + share * (b[1] - a[1]),
-        a[2] + share * (b[2] - a[2]),
+        a[0] + fraction * (b[0] - a[0]),
+        a[1] + fraction * (b[1] - a[1]),
+        a[2] + fraction * (b[2] - a[2]),
     )

@@ -1,4 +1,4 @@
-"""Landings of a velocity in the frame of the support foot, compiled; see `FootstepPlanner`."""
+"""Strides of a velocity, compiled; see `FootstepPlanner`."""
 
 from math import cos, sin
 
@@ -8,27 +8,27 @@ Vector = tuple[float, float, float]
 Point = tuple[float, float]
 
 Placement = tuple[float, float, float]
-"""x, y [m] and direction [rad] of a landing in the frame of the support foot."""
+"""Landing in the frame of the support foot: x, y [m], yaw [rad]."""
 
 Build = tuple[float, float, float, float, float]
-"""Half the distance between the feet, gap that they keep; heel and toe ahead of the ankle, half of
-a sole's width [m]."""
+"""Half the distance between the feet, their clearance; heel and toe ahead of the ankle, half of the
+width of a sole [m]."""
 
 
 @njit(cache=True)
 def strides(
     velocity: Vector, time: float, limits: Vector, build: Build
 ) -> tuple[Placement, Placement, bool]:
-    """Landings of a velocity.
+    """Return the strides of a velocity.
 
     Args:
-        velocity: of the stance's middle (vx, vy, wz) [m/s, m/s, rad/s].
+        velocity: of the middle of the stance (vx, vy, wz) [m/s, m/s, rad/s].
         time: duration of a footstep [s].
-        limits: longest footstep forward and to the side [m], and turn [rad].
+        limits: maximum footstep forward and to the side [m], and turn [rad].
         build: of the feet.
 
     Returns:
-        landing of the right and of the left foot, and whether one is moved to clear the other foot.
+        landing of the right and left foot, and whether one is shifted to clear the other foot.
     """
     vx, vy, wz = velocity
     half, gap, heel, toe, width = build
@@ -46,13 +46,13 @@ def strides(
 
 @njit(cache=True)
 def stance_after(dx: float, dy: float, turned: float, stance: float) -> Point:
-    """Landing when the middle of the stance moves along the chord of the arc.
+    """Return the landing for a middle of the stance that moves along the chord of the arc.
 
     Args:
         dx: of the middle, forward [m].
-        dy: the same to the left [m].
-        turned: of the direction [rad].
-        stance: how far beside the middle the foot then stands in the new direction [m].
+        dy: of the middle, to the left [m].
+        turned: change of yaw [rad].
+        stance: lateral distance of the foot from the middle after the turn [m].
 
     Returns:
         x, y in the frame of the support foot [m].
@@ -66,27 +66,27 @@ def stance_after(dx: float, dy: float, turned: float, stance: float) -> Point:
 
 @njit(cache=True)
 def clear(y: float, turned: float, side: float, gap: float, sole: Vector) -> float:
-    """Lateral landing with every corner clear of the strip of the support foot.
+    """Return the lateral landing with every corner clear of the strip of the support foot.
 
     Args:
         y: wanted [m].
-        turned: direction of the landing [rad].
+        turned: yaw of the landing [rad].
         side: of the swing foot, left 1, right -1.
-        gap: that the feet keep [m].
+        gap: clearance [m].
         sole: heel and toe ahead of the ankle, half of the width [m].
     """
     heel, toe, width = sole
     s = side * sin(turned)
     inner = min(s * heel, s * toe) - width * cos(turned)
-    nearest = width + gap - inner
-    return side * max(side * y, nearest)
+    min_distance = width + gap - inner
+    return side * max(side * y, min_distance)
 
 
 @njit(cache=True)
 def _opened(
     dx: float, vy: float, wz: float, time: float, side: float, limits: Vector, half: float
 ) -> Placement:
-    """Landing of the foot on a side, which opens the stance if the motion is to that side."""
+    """Return the landing on a side; it opens the stance if the motion is to that side."""
     dy = 2.0 * vy * time if vy * side > 0.0 else 0.0
     dy = min(limits[1], max(-limits[1], dy))
     turned = 2.0 * wz * time if wz * side > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""What the legs make of a velocity command: limits and slew."""
+"""Speed and acceleration limits of velocity commands."""
 
 from math import sqrt
 
@@ -10,7 +10,7 @@ from walking.parameters import CONTROL_PERIOD, LimitParameters
 
 
 def limited(command: VelocityCommand, limits: LimitParameters) -> Velocity:
-    """The command with every component within its limit and all together in an ellipsoid.
+    """Clip a command to the limits of each component and to the ellipsoid of all.
 
     Returns:
         (vx, vy, wz) [m/s, m/s, rad/s]; the direction of the command is kept when the ellipsoid
@@ -26,7 +26,7 @@ def limited(command: VelocityCommand, limits: LimitParameters) -> Velocity:
 
 
 def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limit]:
-    """Which of the limits alter a command."""
+    """Return the speed limits that bind on a command."""
     within, bound = _within(command, limits), []
     if within != command.velocity:
         bound.append(Limit.SPEED)
@@ -36,7 +36,7 @@ def speed_limits(command: VelocityCommand, limits: LimitParameters) -> list[Limi
 
 
 def _within(command: VelocityCommand, limits: LimitParameters) -> Velocity:
-    """The command with every component within its limit."""
+    """Clip every component to its limit."""
     return (
         min(limits.vx, max(-limits.vx_backward, command.vx)),
         clamp(command.vy, limits.vy),
@@ -45,41 +45,41 @@ def _within(command: VelocityCommand, limits: LimitParameters) -> Velocity:
 
 
 class _Axis:
-    """Bounded change of one component: away from rest by so much a tick, to rest in a time.
+    """Rate limiter of one component.
 
     Args:
-        speeding: largest change per tick.
-        braking: share of the speed, when it last rose, that a tick may take away.
+        acceleration: maximum change per tick.
+        braking: maximum decrease per tick, as a fraction of the last peak speed [1].
     """
 
-    __slots__ = ("_braking", "_fastest", "_speeding")
+    __slots__ = ("_acceleration", "_braking", "_peak")
 
-    def __init__(self, speeding: float, braking: float) -> None:
-        self._speeding, self._braking = speeding, braking
-        self._fastest = 0.0
+    def __init__(self, acceleration: float, braking: float) -> None:
+        self._acceleration, self._braking = acceleration, braking
+        self._peak = 0.0
 
     def towards(self, now: float, wanted: float) -> float:
-        """The component a tick later."""
+        """Return the component a tick later."""
         change = wanted - now
         if now * change >= 0.0:
-            self._fastest = abs(now)
-            return now + min(self._speeding, max(-self._speeding, change))
-        self._fastest = max(self._fastest, abs(now))
-        most = max(self._speeding, self._braking * self._fastest)
-        if abs(now) < min(most, abs(change)):
+            self._peak = abs(now)
+            return now + min(self._acceleration, max(-self._acceleration, change))
+        self._peak = max(self._peak, abs(now))
+        step = max(self._acceleration, self._braking * self._peak)
+        if abs(now) < min(step, abs(change)):
             return 0.0  # a reversal passes through rest
-        return now + min(most, max(-most, change))
+        return now + min(step, max(-step, change))
 
 
 class VelocitySlew:
-    """Velocity that follows the command with bounded acceleration.
+    """Rate limiter of velocity commands.
 
     Args:
         limits: speed and acceleration limits.
 
     Attributes:
-        velocity: given to the footsteps (vx, vy, wz) [m/s, m/s, rad/s].
-        moving: whether any component differs from zero.
+        velocity: output (vx, vy, wz) [m/s, m/s, rad/s].
+        moving: whether it is not zero.
     """
 
     def __init__(self, limits: LimitParameters) -> None:
@@ -93,15 +93,11 @@ class VelocitySlew:
         self.start(STILL)
 
     def start(self, velocity: Velocity) -> None:
-        """Have a velocity at once (vx, vy, wz) [m/s, m/s, rad/s]."""
+        """Jump to a velocity (vx, vy, wz) [m/s, m/s, rad/s]."""
         self.velocity, self.moving = velocity, velocity != STILL
 
     def follow(self, command: VelocityCommand) -> Velocity:
-        """Approach the limited command by one tick's acceleration.
-
-        Returns:
-            the limited command [m/s, m/s, rad/s].
-        """
+        """Approach a command by one tick; return the command within the speed limits."""
         if command is not self._command:
             self._command, self._wanted = command, limited(command, self._limits)
         (vx, vy, wz), wanted = self.velocity, self._wanted

@@ -1,1 +1,1 @@
-"""The gait: which foot carries, and how the other swings."""
+"""Gait: support phases and swing foot."""

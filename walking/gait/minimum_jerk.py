@@ -1,9 +1,9 @@
-"""Motion of minimum jerk, at rest at both ends (Flash & Hogan 1985)."""
+"""Minimum-jerk motion from rest to rest (Flash & Hogan 1985)."""
 
-PEAK = 1.875  # its peak speed over its mean [1]
+PEAK = 1.875  # peak speed over mean speed [1]
 
 
-def minimum_jerk(share: float) -> float:
-    """Share of the way after a share of the time [1]."""
-    s = min(1.0, max(0.0, share))
+def minimum_jerk(time: float) -> float:
+    """Return the fraction of the distance at a fraction of the time [1]."""
+    s = min(1.0, max(0.0, time))
     return s * s * s * (10.0 + s * (6.0 * s - 15.0))

@@ -1,4 +1,4 @@
-"""Swing of a foot: where its reference rests, how long its way takes, how fast a landing moves."""
+"""Foot references at rest, minimum swing time, and rate limit of the landing."""
 
 from math import ceil, hypot
 
@@ -12,11 +12,11 @@ from walking.parameters import CONTROL_PERIOD
 
 Array = NDArray[np.float64]
 
-ROUNDING = 1e-7  # of a landing that another one is one move away from, of the move [1]
+ROUNDING = 1e-7  # rounding error, relative to the maximum change [1]
 
 
 def resting(stance: tuple[Foothold, Foothold]) -> Array:
-    """References of two feet on the floor, see `walking.gait.swing_foot_kernel` (2, 10)."""
+    """Return the references of two feet on the floor, see `swing_foot_kernel` (2, 10)."""
     feet = np.zeros((2, WIDTH))
     for foot, foothold in zip(feet, stance, strict=True):
         stand(foot, foothold)
@@ -24,38 +24,35 @@ def resting(stance: tuple[Foothold, Foothold]) -> Array:
 
 
 def stand(foot: Array, foothold: Foothold) -> None:
-    """Have a reference (10,) rest on a foothold, at the height it has."""
+    """Set a foot reference (10,) to rest at a foothold, at its present height."""
     foot[:HEIGHT] = foothold.x, foothold.y, foothold.yaw
     foot[RATE:] = 0.0
 
 
-def least_ticks(foot: Array, landing: Foothold, speed: float) -> int:
-    """Control ticks of a swing from rest to `landing` that peaks at `speed` [m/s].
+def min_ticks(foot: Array, landing: Foothold, speed: float) -> int:
+    """Return the control ticks of a swing to `landing` with a peak speed [m/s].
 
     Args:
-        foot: its reference (10,).
-        landing: where it goes.
-        speed: the peak.
+        foot: reference (10,).
+        landing: of the foot.
+        speed: peak [m/s].
     """
     x, y = foot[:2].tolist()
-    way = hypot(landing.x - x, landing.y - y)
-    return ceil(PEAK * way / (speed * CONTROL_PERIOD))
+    distance = hypot(landing.x - x, landing.y - y)
+    return ceil(PEAK * distance / (speed * CONTROL_PERIOD))
 
 
-def moved(landing: Foothold, wanted: Foothold, most: float, turn: float) -> Foothold:
-    """A landing moved towards another one.
+def moved(landing: Foothold, wanted: Foothold, max_shift: float, max_turn: float) -> Foothold:
+    """Move a landing towards another one by a limited change.
 
-    By no more than `most` along x and y [m], and by no more than `turn` [rad]; place and
-    direction change together, so that the foot stays clear of the other one.
+    Position and yaw change together, so that the foot stays clear of the other one.
+
+    Args:
+        landing: present.
+        wanted: goal.
+        max_shift: along x and along y [m].
+        max_turn: of the yaw [rad].
     """
     dx, dy, turned = wanted.x - landing.x, wanted.y - landing.y, wanted.yaw - landing.yaw
-    largest = max(abs(dx) / most, abs(dy) / most, abs(turned) / turn)
-    if largest <= 1.0 + ROUNDING:
-        return wanted
-    share = 1.0 / largest
-    return Foothold(
-        left=wanted.left,
-        x=landing.x + share * dx,
-        y=landing.y + share * dy,
-        yaw=landing.yaw + share * turned,
-    )
+    excess = max(abs(dx) / max_shift, abs(dy) / max_shift, abs(turned) / max_turn)
+    return wanted if excess <= 1.0 + ROUNDING else landing.towards(wanted, 1.0 / excess)

@@ -1,7 +1,7 @@
-"""References of both feet in the plan frame, on the floor or on their way, compiled.
+"""References of both feet in the plan frame, compiled.
 
-A row for the left and one for the right foot: x, y [m], yaw [rad], height above the floor [m];
-the rates of the first three; their accelerations (2, 10).
+Rows of the left and right foot: x, y [m], yaw [rad], height above the floor [m]; rates and
+accelerations of x, y and yaw (2, 10).
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
-HEIGHT, RATE, ACCELERATION, WIDTH = 3, 4, 7, 10  # columns after x, y, yaw; and how many there are
+HEIGHT, RATE, ACCELERATION, WIDTH = 3, 4, 7, 10  # columns, and their number
 
 
 @njit(cache=True)
@@ -24,15 +24,15 @@ def advance(
     lift: tuple[float, float],
     period: float,
 ) -> None:
-    """Move the feet one tick.
+    """Move the feet by one tick.
 
     Args:
-        feet: references, brought up to date (2, 10).
-        decay: per tick, of the height at which a foot was stopped [1].
-        swing: index of the foot that swings, -1 for none.
-        landing: where it is about to land, x, y [m], yaw [rad].
-        ticks_left: until it lands [1].
-        lift: height at mid-swing [m], and progress of the swing after this tick [1].
+        feet: references, updated (2, 10).
+        decay: per tick, of the height of a foot on the floor [1].
+        swing: index of the swing foot, -1 for none.
+        landing: of the swing foot, x, y [m], yaw [rad].
+        ticks_left: until touchdown [1].
+        lift: height at mid-swing [m], and phase of the swing after this tick [1].
         period: of control [s].
     """
     feet[0, HEIGHT] *= decay
@@ -46,18 +46,17 @@ def advance(
 
 @njit(cache=True)
 def lift_profile(phase: float) -> float:
-    """Height of the swing foot as a share of the lift, at rest at both ends [1]."""
+    """Return the height of the swing foot relative to mid-swing, at rest at both ends [1]."""
     bump = 4.0 * phase * (1.0 - phase)
     return bump * bump * bump
 
 
 @njit(cache=True)
 def _towards(foot: Array, axis: int, target: float, ticks_left: int, period: float) -> None:
-    """Move one coordinate to a target with rest at arrival, replanned every tick.
+    """Move one coordinate by a tick of the minimum-jerk motion to a target at rest.
 
     Flash & Hogan, J. Neurosci. 1985: the quintic from the present position, velocity and
-    acceleration; following it for one tick and replanning is the same motion while the
-    target stays.
+    acceleration, replanned in every tick.
     """
     if ticks_left <= 1:
         foot[axis], foot[RATE + axis], foot[ACCELERATION + axis] = target, 0.0, 0.0

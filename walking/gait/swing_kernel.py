@@ -1,4 +1,4 @@
-"""The reaction of the swinging legs on the pelvis, compiled; see `walking.gait.swing_reaction`."""
+"""Compensation of the swing leg's reaction, compiled; see `walking.gait.swing_reaction`."""
 
 from math import cos, exp, sin
 
@@ -10,32 +10,31 @@ Array = NDArray[np.float64]
 Point = tuple[float, float]
 Vector = tuple[float, float, float]
 Row = tuple[float, float, float, float]
-"""A foothold, see `Foothold.row`: x, y [m], yaw [rad], and 1 if it is a left one, 0 if not."""
+"""Foothold, see `Foothold.row`."""
 
 Feet = tuple[Row, Row, Row]
-"""The foot that carries in this footstep; where the other foot swings from; where it is about to
-land."""
+"""Support foot; lift-off and landing of the swing foot."""
 
-Spot = tuple[float, float]
-"""Where the ZMP is meant to be under a foot: forward and inward of its origin [m]."""
+ZmpOffset = tuple[float, float]
+"""ZMP of single support in the foot frame, forward and inward [m]."""
 
-SWING = 10  # numbers of a swing
+SWING = 10  # columns of a swing
 
 
 @njit(cache=True)
 def profile(ticks: int, ramp: tuple[float, float, float], period: float) -> Array:
-    """A swing over a unit distance and height, tick by tick.
+    """Return the accelerations of a swing over unit distance and height, and their preview sums.
 
     Args:
-        ticks: from lift to landing [1].
-        ramp: growth of the DCM over a tick, and weights of the ZMP at its start and its end, see
+        ticks: from lift-off to touchdown [1].
+        ramp: growth of the DCM over a tick, and weights of the ZMP at its start and end, see
             `RampCoefficients` [1].
         period: of control [s].
 
     Returns:
         at every tick ∫ ω e^{-ωs} over the rest of the swing of the accelerations forward, upward,
-        and upward times the share of the distance made, linear from tick to tick; then those three
-        themselves (ticks + 1, 6) [1/s²].
+        and upward times the distance covered, linear between ticks; then these accelerations
+        (ticks + 1, 6) [1/s²].
     """
     growth, first, last = ramp
     table = np.zeros((ticks + 1, 6))
@@ -62,31 +61,32 @@ def react(
     steps: Array,
     now: tuple[int, float, bool],
     later: tuple[int, int, float],
-    spot: Spot,
+    zmp_offset: ZmpOffset,
     first: Array,
     others: Array,
-    law: Array,
+    coefficients: Array,
     state: Array,
 ) -> tuple[Point, Point]:
-    """One tick of the pelvis.
+    """Run one tick of the compensation.
 
     Args:
         feet: see `swings`.
         steps: see `swings`.
         now: see `swings`.
         later: see `swings`.
-        spot: see `swings`.
+        zmp_offset: see `swings`.
         first: profile of the first swing (ticks + 1, 6).
         others: profile of the others (ticks + 1, 6).
-        law: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg; ω [1/s], control period [s]
-            (5,).
-        state: offset of the pelvis x, y, and ξ x, y, brought up to date (4,) [m].
+        coefficients: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg; ω [1/s], control
+            period [s] (5,).
+        state: offset of the pelvis x, y, and ξ x, y, updated (4,) [m].
 
     Returns:
         offset x, y [m], and its acceleration x, y [m/s²].
     """
-    table = swings(feet, steps, now, later, spot)
-    w, period, reaction = law[3], law[4], (law[0], law[1], law[2])
+    table = swings(feet, steps, now, later, zmp_offset)
+    w, period = coefficients[3], coefficients[4]
+    reaction = (coefficients[0], coefficients[1], coefficients[2])
     x = y = now_x = now_y = 0.0
     for k in range(table.shape[0]):
         swing = table[k]
@@ -99,9 +99,9 @@ def react(
         y -= decay * dy
         if k == 0 and swing[0] <= 0.0:
             now_x, now_y = _moved(swing, reaction, moment[3], moment[4], moment[5])
-    share = 1.0 - exp(-w * period)
-    cx = state[0] + share * (0.5 * (state[2] + x) - state[0])
-    cy = state[1] + share * (0.5 * (state[3] + y) - state[1])
+    gain = 1.0 - exp(-w * period)
+    cx = state[0] + gain * (0.5 * (state[2] + x) - state[0])
+    cy = state[1] + gain * (0.5 * (state[3] + y) - state[1])
     state[0], state[1], state[2], state[3] = cx, cy, x, y
     return (cx, cy), (w * w * (cx + now_x), w * w * (cy + now_y))
 
@@ -112,34 +112,33 @@ def swings(
     steps: Array,
     now: tuple[int, float, bool],
     later: tuple[int, int, float],
-    spot: Spot,
+    zmp_offset: ZmpOffset,
 ) -> Array:
-    """Swings under way and to come.
+    """Return the present and planned swings.
 
     Args:
         feet: see `Feet`.
-        steps: footholds to come, that of this footstep the first (n, 4).
-        now: begin in ticks from now and lift [m] of this footstep's swing, and whether there is
+        steps: planned footholds, first that of this footstep (n, 4).
+        now: begin in ticks from now and height [m] of this footstep's swing, and whether there is
             one.
-        later: begin in ticks from now of the swing after that, ticks from one to the next, lift
-            [m].
-        spot: of the ZMP under a foot.
+        later: begin in ticks from now of the next swing, ticks between swings, height [m].
+        zmp_offset: see `ZmpOffset`.
 
     Returns:
-        a row for each, the next one first: control ticks until the foot lifts, negative while it
-        is in the air | height at mid-swing [m] | x, y [m], yaw [rad] of where the foot comes from
-        | the same of where it goes to | ZMP of the support foot, x, y [m] (m, 10).
+        rows in order: control ticks until lift-off, negative in the air | height at mid-swing [m]
+        | lift-off x, y [m], yaw [rad] | landing x, y [m], yaw [rad] | ZMP of the support foot x, y
+        [m] (m, 10).
     """
     support, origin, landing = feet
     table = np.empty((steps.shape[0], SWING))
     row = 0
     if now[2]:
-        _swing(table[row], now[0], now[1], origin, landing, _under(support, spot))
+        _swing(table[row], now[0], now[1], origin, landing, _under(support, zmp_offset))
         row += 1
     begin = later[0]
     for k in range(1, steps.shape[0]):
         step = (steps[k, 0], steps[k, 1], steps[k, 2], steps[k, 3])
-        _swing(table[row], begin, later[2], support, step, _under(landing, spot))
+        _swing(table[row], begin, later[2], support, step, _under(landing, zmp_offset))
         support, landing = landing, step
         begin += later[1]
         row += 1
@@ -150,7 +149,7 @@ def swings(
 def _moved(
     swing: Array, reaction: Vector, forward: float, up: float, both: float
 ) -> tuple[float, float]:
-    """Move of the ZMP, `both` being the move upwards weighted by the way made [m]."""
+    """Return the shift of the ZMP [m]; `both` is `up` weighted by the distance covered."""
     thrust, weight, knee = reaction[0], reaction[1] * swing[1], reaction[2] * swing[1] * up
     yaw = 0.5 * (swing[4] + swing[7])
     dx, dy = swing[5] - swing[2], swing[6] - swing[3]
@@ -161,10 +160,10 @@ def _moved(
 
 
 @njit(cache=True)
-def _under(foot: Row, spot: Spot) -> tuple[float, float]:
-    """ZMP under a foot that carries alone [m]."""
-    forward = spot[0]
-    inward = -spot[1] if foot[3] > 0.0 else spot[1]
+def _under(foot: Row, zmp_offset: ZmpOffset) -> tuple[float, float]:
+    """Return the ZMP of single support on a foot [m]."""
+    forward = zmp_offset[0]
+    inward = -zmp_offset[1] if foot[3] > 0.0 else zmp_offset[1]
     c, s = cos(foot[2]), sin(foot[2])
     return foot[0] + c * forward - s * inward, foot[1] + s * forward + c * inward
 

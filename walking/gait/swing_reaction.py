@@ -1,20 +1,20 @@
-"""The swinging leg's reaction on the ZMP, and the motion of the pelvis that takes it out.
+"""Reaction of the swing leg on the ZMP, and its compensation by the pelvis.
 
-The pendulum stands for a body that carries its legs along; a leg that swings accelerates on
-its own account and moves the ZMP by
+The pendulum models a body with its legs at rest; the acceleration of the swing leg shifts the ZMP
+by
 
     d = -B x_f'' + K h'' (x_f - p) - N h'' e,
 
-x_f the foot's place, h its height, p the ZMP, e the heading: thrust of the leg forward, its
-weight lifted, its knee pushed ahead as it folds. All three numbers are read off the robot's
-model. A pelvis that moves by c more than the pendulum, c'' = ω² (c + d), puts the ZMP back to
-where it was planned: of all solutions the one that neither grows nor has grown,
+x_f the position of the foot, h its height, p the ZMP, e the heading: forward thrust of the leg,
+lifted weight, forward motion of the folding knee. The three coefficients follow from the robot
+model. A pelvis offset c from the pendulum, c'' = ω² (c + d), restores the planned ZMP. Its bounded
+solution is
 
     c' = ω (ξ - c),   ξ = - ∫ ω e^{-ωs} d(t + s) ds,
 
-which looks as far ahead as preview control does and is closed form in the footholds. Kajita
-et al. (ICRA 2003) get the same correction from a second preview controller on the multibody
-ZMP, Takenaka et al. (IROS 2009) from a pendulum with three masses.
+a closed form in the footholds with the look-ahead of preview control. Kajita et al. (ICRA 2003)
+compute this correction by a second preview controller on the multibody ZMP, Takenaka et al.
+(IROS 2009) by a pendulum with three masses.
 """
 
 from dataclasses import dataclass
@@ -26,24 +26,24 @@ from walking.body.joints import LEFT_LEG, RIGHT_LEG
 from walking.body.leg_kinematics import FootPose, leg_angles
 from walking.body.robot_model import RobotModel
 from walking.gait import swing_kernel
-from walking.gait.swing_kernel import Feet, Spot
+from walking.gait.swing_kernel import Feet, ZmpOffset
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.pattern.lipm import Lipm
 from walking.value import value
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
-SMALL = 1e-4  # of a foot's move in finite differences [m]
+SMALL = 1e-4  # step of finite differences [m]
 
 
 @dataclass(frozen=True, slots=True)
 class LegReaction:
-    """How an acceleration of the swing foot moves the ZMP.
+    """Shift of the ZMP by accelerations of the swing foot.
 
     Attributes:
         thrust: B, backward shift of the ZMP per forward acceleration of the foot [s²].
-        weight: K, shift towards the foot per upward acceleration of it and distance of it from
-            the ZMP [s²/m].
+        weight: K, shift towards the foot per upward acceleration and distance of the foot from the
+            ZMP [s²/m].
         knee: N, backward shift per upward acceleration of the foot [s²].
     """
 
@@ -53,12 +53,12 @@ class LegReaction:
 
 
 def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
-    """Reaction of a leg at mid-swing.
+    """Return the reaction of a leg at mid-swing.
 
     Args:
         robot: masses and dimensions.
         height: of the base above the floor [m].
-        lift: of the foot [m]; half of it counts.
+        lift: swing height; the reaction is that at half of it [m].
     """
     ahead = float(robot.com(robot.ready)[0])
     leg = robot.legs[0]
@@ -79,7 +79,7 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
     rest, load = np.zeros_like(q), robot.mass * GRAVITY
 
     def moment(acceleration: np.ndarray) -> tuple[float, float]:
-        """About x and y through the floor under the foot, beyond that of the posture."""
+        """Return the moment of an acceleration about x and y at the floor under the foot [N m]."""
         _, moved = robot.inverse_dynamics(q, rest, acceleration, (0.0, 0.0))
         _, still = robot.inverse_dynamics(q, rest, rest, (0.0, 0.0))
         fx, fy, fz, nx, ny, _ = (moved - still).tolist()
@@ -94,23 +94,20 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
 
 @value
 class Swings:
-    """The swings of a plan, the next one first; only that one may be under way.
+    """Swings of a plan, arguments of `swing_kernel.swings`.
 
     Attributes:
-        feet: the support foot, and where the other one comes from and goes to, see
-            `swing_kernel.Feet`.
-        steps: footholds to come, see `swing_kernel.swings` (n, 4).
-        now: see `swing_kernel.swings`.
-        later: see `swing_kernel.swings`.
-        spot: see `swing_kernel.Spot`.
-        ticks: from lift to landing, of the first and of all others [1].
+        feet: see `swing_kernel.Feet`.
+        steps, now, later: see `swing_kernel.swings`.
+        zmp_offset: see `swing_kernel.ZmpOffset`.
+        ticks: from lift-off to touchdown, of the first and of later swings [1].
     """
 
     feet: Feet
     steps: Array
     now: tuple[int, float, bool]
     later: tuple[int, int, float]
-    spot: Spot
+    zmp_offset: ZmpOffset
     ticks: tuple[int, int]
 
 
@@ -118,49 +115,48 @@ ORIGIN = (0.0, 0.0, 0.0, 0.0)
 NO_SWINGS = Swings(
     (ORIGIN, ORIGIN, ORIGIN), np.empty((0, 4)), (0, 0.0, False), (0, 0, 0.0), (0.0, 0.0), (0, 0)
 )
-"""While the robot stands."""
+"""Swings while standing."""
 
 
 class SwingCompensation:
-    """Moves the pelvis against the swinging legs.
+    """Compensation of the swing leg's reaction by the pelvis.
 
     Args:
         lipm: pendulum.
         reaction: of a leg.
 
     Attributes:
-        offset: of the pelvis from the pendulum's plan (2,) [m].
+        offset: of the pelvis from the pendulum (2,) [m].
         acceleration: of that offset (2,) [m/s²].
     """
 
     def __init__(self, lipm: Lipm, reaction: LegReaction) -> None:
         self._lipm = lipm
-        law = reaction.thrust, reaction.weight, reaction.knee, lipm.omega, CONTROL_PERIOD
-        self._law = np.array(law)
+        leg = reaction.thrust, reaction.weight, reaction.knee
+        self._coefficients = np.array([*leg, lipm.omega, CONTROL_PERIOD])
         self._profiles: dict[int, Array] = {0: np.zeros((1, 6))}
         self._state = np.zeros(4)
         self.offset: Point = (0.0, 0.0)
         self.acceleration: Point = (0.0, 0.0)
 
     def advance(self, swings: Swings) -> None:
-        """One tick along a plan."""
+        """Run one tick along a plan."""
         first, others = swings.ticks
         self.offset, self.acceleration = swing_kernel.react(
             swings.feet,
             swings.steps,
             swings.now,
             swings.later,
-            swings.spot,
+            swings.zmp_offset,
             self._profile(first),
             self._profile(others),
-            self._law,
+            self._coefficients,
             self._state,
         )
 
     def _profile(self, ticks: int) -> Array:
-        found = self._profiles.get(ticks)
-        if found is None:
+        if ticks not in self._profiles:
             c = self._lipm.ramp(1)
             ramp = (c.growth, c.first, c.last)
-            found = self._profiles[ticks] = swing_kernel.profile(ticks, ramp, CONTROL_PERIOD)
-        return found
+            self._profiles[ticks] = swing_kernel.profile(ticks, ramp, CONTROL_PERIOD)
+        return self._profiles[ticks]

@@ -1,4 +1,4 @@
-"""From the plan of the last tick to the one now wanted, as far as the ZMP allows."""
+"""Transition from the last plan to the wanted one, as far as the ZMP constraints allow."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,18 +13,18 @@ from walking.pattern.ramps import Ramps
 from walking.pattern.support import SupportRegion
 from walking.value import value
 
-BISECTIONS = 4  # halvings: at most 1/16 short of the largest change that is admissible
+BISECTIONS = 4  # at most 1/16 short of the maximum admissible change
 
 
 @value
-class Course:
-    """All that a plan is made of.
+class StepPlan:
+    """Footsteps of a plan.
 
     Attributes:
         landing: of the swing foot.
-        strides: after it.
+        strides: of the footsteps after it.
         clock: of the gait.
-        moving: whether it goes on walking.
+        moving: whether the walk goes on.
     """
 
     landing: Foothold
@@ -34,25 +34,24 @@ class Course:
 
 
 class Transition:
-    """Replaces a change that the generator does not admit by the largest share that it does.
+    """Limits a change of plan to the maximum fraction that the pattern generator admits.
 
-    The share is found by bisection between the plan of the last tick, which the generator
-    can always carry on, and the wanted one: landing, later strides and times change together
-    (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a disturbance the generator may have
-    no plan to carry on; then the wanted one is taken for the generator to come as near to it as
-    it can.
+    Bisection between the last plan, which stays feasible, and the wanted one; landing, later
+    strides and timing change together (Lee & Kim, J. Electr. Eng. Technol. 9(1), 2014). After a
+    disturbance the last plan may be infeasible, too; then the generator approximates the wanted
+    one.
 
-    A walk that is to end takes the shortest footstep after which the next one can close the
-    stance: whatever else bends, the body would get farther on its way and take more footsteps.
+    A walk that ends takes the shortest footstep after which the next one can close the stance:
+    any other compromise takes the body farther and costs more footsteps.
 
     Args:
-        gait: holds the times.
-        generator: judges the plans.
+        gait: holds the timing.
+        generator: checks the plans.
 
     Attributes:
-        share: of the wanted change made in this tick, 0 … 1 [1].
+        fraction: of the wanted change admitted in this tick, 0 to 1 [1].
         landing: of the admitted plan.
-        moving: whether the admitted plan goes on walking.
+        moving: whether the walk goes on in the admitted plan.
         strides: of the admitted plan.
     """
 
@@ -62,128 +61,118 @@ class Transition:
         self._stepping = gait.stepping
         self._footstep = gait.completed
         self._clock = gait.clock
-        self.share = 1.0
+        self.fraction = 1.0
         self.landing = gait.landing
         self.moving = False
         self.strides: Strides | None = None
 
     def remember(self) -> None:
-        """Keep the times of the last tick, before anything about them changes."""
+        """Store the timing of the last tick before it changes."""
         self._stepping, self._clock = self._gait.stepping, self._gait.clock
 
     def skip(self, strides: Strides, *, moving: bool) -> None:
-        """Strides of a plan that nobody has to admit."""
-        self.share, self.strides, self.moving = 1.0, strides, moving
+        """Take a plan that needs no admission."""
+        self.fraction, self.strides, self.moving = 1.0, strides, moving
 
     def admit(
         self,
         state: PendulumState,
         region: SupportRegion,
-        wish: Strides,
+        wanted: Strides,
         *,
         moving: bool,
         off_plan: bool = False,
     ) -> Ramps:
-        """Reference of the admitted plan; the gait has its times.
+        """Return the ZMP reference of the admitted plan and give the gait its timing.
 
         Args:
             state: of the pendulum.
-            region: where the ZMP may be in this tick.
-            wish: strides of the wanted plan.
-            moving: whether the wanted plan goes on walking.
+            region: admissible ZMP in this tick.
+            wanted: strides of the wanted plan.
+            moving: whether the walk goes on in the wanted plan.
             off_plan: whether the swing foot makes a capture step that leaves this plan.
         """
         gait = self._gait
         continues = self._stepping and gait.stepping and gait.completed == self._footstep
         self._footstep = gait.completed
-        if not continues or (gait.held and not off_plan):
+        if not continues or (gait.landed_early and not off_plan):
             self.landing = gait.landing
-        aimed = gait.aimed(self.landing, gait.nominal(wish)) if gait.adjustable else self.landing
-        ramps = gait.plan(aimed, wish, moving=moving)
+        aimed = gait.aimed(self.landing, gait.nominal(wanted)) if gait.adjustable else self.landing
+        ramps = gait.plan(aimed, wanted, moving=moving)
         before = self.strides
         changes = self._stepping and gait.stepping
         if before is None or not changes or self._generator.admits(state, ramps, region):
-            self.share, self.landing, self.moving, self.strides = 1.0, aimed, moving, wish
+            self.fraction, self.landing, self.moving, self.strides = 1.0, aimed, moving, wanted
             return ramps
-        wanted = Course(aimed, wish, gait.clock, moving)
-        old = Course(self.landing, before, self._clock, self.moving)
-        ending = None if moving else self._end(state, region, old, wanted)
+        goal = StepPlan(aimed, wanted, gait.clock, moving)
+        old = StepPlan(self.landing, before, self._clock, self.moving)
+        ending = None if moving else self._end(state, region, old, goal)
         if ending is not None:
             return ending
         kept = self._plan(old)
         if self._generator.holds(kept):
-            return self._bisect(state, region, old, wanted)
-        return self._take(wanted, self._plan(wanted), 1.0)
+            return self._bisect(state, region, old, goal)
+        return self._take(goal, self._plan(goal), 1.0)
 
     def _end(
-        self, state: PendulumState, region: SupportRegion, old: Course, wanted: Course
+        self, state: PendulumState, region: SupportRegion, old: StepPlan, goal: StepPlan
     ) -> Ramps | None:
-        """Reference of a walk that ends after the next footstep, None if it cannot yet."""
+        """Return the reference of a walk that ends after the next footstep, None if infeasible."""
 
-        def course(share: float) -> Course:
-            return replace(wanted, landing=_landing(old.landing, wanted.landing, share))
+        def step_plan(fraction: float) -> StepPlan:
+            return replace(goal, landing=old.landing.towards(goal.landing, fraction))
 
-        longest = course(0.0)
-        ramps = self._plan(longest)
+        shortest = step_plan(0.0)
+        ramps = self._plan(shortest)
         if not self._generator.admits(state, ramps, region):
             return None
-        found = self._largest(state, region, course)
-        if found is None:
-            self._plan(longest)
-            found = self._take(longest, ramps, 0.0)
-        return found
+        admitted = self._max_change(state, region, step_plan)
+        if admitted is None:
+            self._plan(shortest)
+            admitted = self._take(shortest, ramps, 0.0)
+        return admitted
 
     def _bisect(
-        self, state: PendulumState, region: SupportRegion, old: Course, wanted: Course
+        self, state: PendulumState, region: SupportRegion, old: StepPlan, goal: StepPlan
     ) -> Ramps:
         gait = self._gait
 
-        def course(share: float) -> Course:
+        def step_plan(fraction: float) -> StepPlan:
             gait.set_clock(old.clock)
-            gait.retime(old.clock.timing.towards(wanted.clock.timing, share))
-            return Course(
-                _landing(old.landing, wanted.landing, share),
-                old.strides.towards(wanted.strides, share),
+            gait.retime(old.clock.timing.towards(goal.clock.timing, fraction))
+            return StepPlan(
+                old.landing.towards(goal.landing, fraction),
+                old.strides.towards(goal.strides, fraction),
                 gait.clock,
                 old.moving,
             )
 
-        return self._largest(state, region, course) or self._take(old, self._plan(old), 0.0)
+        return self._max_change(state, region, step_plan) or self._take(old, self._plan(old), 0.0)
 
-    def _largest(
-        self, state: PendulumState, region: SupportRegion, course: Callable[[float], Course]
+    def _max_change(
+        self, state: PendulumState, region: SupportRegion, step_plan: Callable[[float], StepPlan]
     ) -> Ramps | None:
-        """Reference of the course with the largest share that the generator admits, if any."""
+        """Return the reference of the plan with the maximum admitted fraction, if any."""
         low, high = 0.0, 1.0
         best = None
         for _ in range(BISECTIONS):
-            share = 0.5 * (low + high)
-            tried = course(share)
-            trial = self._plan(tried)
-            if self._generator.admits(state, trial, region):
-                low, best = share, (tried, trial)
+            fraction = 0.5 * (low + high)
+            candidate = step_plan(fraction)
+            ramps = self._plan(candidate)
+            if self._generator.admits(state, ramps, region):
+                low, best = fraction, (candidate, ramps)
             else:
-                high = share
+                high = fraction
         if best is None:
             return None
         self._plan(best[0])
         return self._take(*best, low)
 
-    def _plan(self, course: Course) -> Ramps:
-        self._gait.set_clock(course.clock)
-        return self._gait.plan(course.landing, course.strides, moving=course.moving)
+    def _plan(self, plan: StepPlan) -> Ramps:
+        self._gait.set_clock(plan.clock)
+        return self._gait.plan(plan.landing, plan.strides, moving=plan.moving)
 
-    def _take(self, course: Course, ramps: Ramps, share: float) -> Ramps:
-        self.share, self.landing = share, course.landing
-        self.moving, self.strides = course.moving, course.strides
+    def _take(self, plan: StepPlan, ramps: Ramps, fraction: float) -> Ramps:
+        self.fraction, self.landing = fraction, plan.landing
+        self.moving, self.strides = plan.moving, plan.strides
         return ramps
-
-
-def _landing(a: Foothold, b: Foothold, share: float) -> Foothold:
-    """A landing `share` of the way from `a` to `b`."""
-    return Foothold(
-        left=b.left,
-        x=a.x + share * (b.x - a.x),
-        y=a.y + share * (b.y - a.y),
-        yaw=a.yaw + share * (b.yaw - a.yaw),
-    )

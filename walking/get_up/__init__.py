@@ -1,1 +1,1 @@
-"""Getting up: from lying to standing."""
+"""Getting up after a fall."""

@@ -1,14 +1,13 @@
-"""The motions that bring HSR-VIII from lying to a squat, chosen in full physics.
+"""Motions of HSR-VIII from lying to a squat, tuned in full physics.
 
-From the front. The arms reach out overhead and push the chest up while the legs fold; the hip
-flexes by no more than 97°, so that folded legs alone hold the trunk up: the robot sits on its
-heels with the mass centre 60 mm behind the knees, steady without the arms. Leaning back it tucks
-the toes under, rolls back over them onto its soles and catches itself in a squat. Only the push
-asks all of the arms, 1.5 N·m in the shoulders.
+From the front. The arms reach overhead and push the chest up while the legs fold. The hip flexes to
+97° only, so the robot sits on its heels with the centre of mass 60 mm behind the knees, stable
+without the arms. It leans back, tucks the toes under, rolls over them onto its soles and stops in
+a squat. Only the push needs the full torque of the shoulders, 1.5 N·m.
 
-From the back. A leg swings across and takes the trunk over to the front.
+From the back. A leg swings across and turns the trunk over to the front.
 
-``scripts/getup_study.py`` measures what they are worth.
+``scripts/getup_study.py`` measures their success rate.
 """
 
 from dataclasses import dataclass
@@ -17,18 +16,18 @@ from walking.get_up.key_posture import KeyPosture, arm, leg, symmetric
 
 POINTED = 0.9  # ankle with the instep on the floor [rad]
 TUCKED = -1.2  # ankle with the toes under the heel [rad]
-FLEXED = -1.7  # hip, all the way [rad]
-FOLDED = 2.3  # knee, all the way [rad]
+FLEXED = -1.7  # hip, fully flexed [rad]
+FOLDED = 2.3  # knee, fully flexed [rad]
 
 
 @dataclass(frozen=True, slots=True)
 class Motions:
-    """Key postures one after the other.
+    """Sequences of key postures.
 
     Attributes:
         rise: from the front to a squat.
         roll: from the back over the left side to the front.
-        from_side: index of the posture of `roll` with which it begins on the left side.
+        from_side: index of the first posture of `roll` when lying on the left side.
     """
 
     rise: tuple[KeyPosture, ...]

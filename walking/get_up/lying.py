@@ -1,4 +1,4 @@
-"""How the robot lies: the side of the trunk that is turned to the floor."""
+"""Lying side and rest of a fallen robot."""
 
 from enum import StrEnum
 
@@ -17,10 +17,9 @@ class Lying(StrEnum):
 
 
 def up_in_trunk(quaternion: tuple[float, float, float, float]) -> Vector:
-    """Upward vertical seen from the trunk: forward, left and headward component [1].
+    """Return the vertical in the trunk frame: forward, left and headward component [1].
 
-    Unlike roll and pitch it knows no attitude in which it breaks down; a lying trunk is pitched
-    by a right angle.
+    Unlike roll and pitch it has no singularity at the pitch of a lying trunk, 90°.
 
     Args:
         quaternion: attitude of the trunk, w-x-y-z.
@@ -30,18 +29,18 @@ def up_in_trunk(quaternion: tuple[float, float, float, float]) -> Vector:
 
 
 def lying_on(up: Vector) -> Lying:
-    """Side on which a trunk with the upward vertical `up` lies."""
+    """Return the lying side of a trunk with vertical `up`."""
     forward, left, _ = up
     if abs(forward) >= abs(left):
         return Lying.BACK if forward > 0.0 else Lying.FRONT
     return Lying.RIGHT if left > 0.0 else Lying.LEFT
 
 
-class Rest:
-    """Decides that the trunk has come to rest.
+class RestDetector:
+    """Detects that the trunk is at rest.
 
     Args:
-        parameters: rate and duration.
+        parameters: maximum rate and its duration.
     """
 
     def __init__(self, parameters: GetUpParameters) -> None:
@@ -50,6 +49,6 @@ class Rest:
         self._count = 0
 
     def update(self, gyro: Vector) -> bool:
-        """Whether it has turned slowly for long enough, with this tick's rate [rad/s]."""
+        """Whether the trunk is at rest, given this tick's angular velocity [rad/s]."""
         self._count = self._count + 1 if max(map(abs, gyro)) < self._rate else 0
         return self._count >= self._ticks

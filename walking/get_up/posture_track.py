@@ -1,4 +1,4 @@
-"""Joint setpoints on their way from one posture to the next."""
+"""Joint trajectories between postures."""
 
 from math import ceil
 
@@ -13,12 +13,12 @@ Array = NDArray[np.float64]
 
 
 class PostureTrack:
-    """Moves all joints together, within their limits and no faster than a servo turns.
+    """Minimum-jerk motion of all joints within limits of angle and rate.
 
     Args:
-        robot: limits of the joints.
-        speed: fastest turn of any joint [rad/s].
-        angles: where the joints start (26,) [rad].
+        robot: joint limits.
+        speed: maximum joint rate [rad/s].
+        angles: initial joint angles (26,) [rad].
 
     Attributes:
         angles: present setpoints (26,) [rad].
@@ -37,24 +37,24 @@ class PostureTrack:
         return self._tick >= self._last
 
     def aim(self, angles: Array, time: float, hold: float = 0.0) -> None:
-        """Set out for a posture.
+        """Start a motion to a posture.
 
         Args:
-            angles: of it (26,); cut off at the joints' limits [rad].
-            time: of the motion, longer if a joint would turn too fast [s].
-            hold: time to stay in it [s].
+            angles: of the posture, clipped to the joint limits (26,) [rad].
+            time: of the motion, extended if a joint would be too fast [s].
+            hold: time in the posture [s].
         """
         self._origin, self._goal = self.angles, self._within(angles)
-        farthest = float(np.abs(self._goal - self._origin).max())
-        time = max(time, PEAK * farthest / self._speed, CONTROL_PERIOD)
+        max_change = float(np.abs(self._goal - self._origin).max())
+        time = max(time, PEAK * max_change / self._speed, CONTROL_PERIOD)
         self._ticks, self._tick = ceil(time / CONTROL_PERIOD), 0
         self._last = self._ticks + round(hold / CONTROL_PERIOD)
 
     def advance(self) -> Array:
-        """Setpoints of the next tick (26,) [rad]."""
+        """Return the setpoints of the next tick (26,) [rad]."""
         self._tick += 1
-        share = minimum_jerk(self._tick / self._ticks)
-        self.angles = self._origin + share * (self._goal - self._origin)
+        fraction = minimum_jerk(self._tick / self._ticks)
+        self.angles = self._origin + fraction * (self._goal - self._origin)
         return self.angles
 
     def _within(self, angles: Array) -> Array:

@@ -1,1 +1,1 @@
-"""The walking pattern: footholds become a ZMP, and the ZMP a motion of the mass centre."""
+"""Walking pattern: ZMP and motion of the centre of mass from footholds."""

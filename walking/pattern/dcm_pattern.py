@@ -1,43 +1,65 @@
-"""A pattern that tracks the DCM of the footholds."""
+"""DCM of a ZMP reference, and the pattern generator that tracks it."""
 
 from collections.abc import Sequence
 
-from walking.parameters import PatternParameters
-from walking.pattern.dcm_tracker import DcmTracker, dcm_reference
+from walking.parameters import CONTROL_PERIOD
+from walking.pattern import zmp_kernel
 from walking.pattern.lipm import Lipm
 from walking.pattern.pattern import TrackingGenerator
 from walking.pattern.pendulum import PendulumState
-from walking.pattern.ramps import ZmpRamp
+from walking.pattern.ramps import ZmpRamp, table_of
 from walking.pattern.support import SupportRegion
 
 
+def dcm_reference(lipm: Lipm, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+    """Return the DCM from which a reference can be walked for ever: the backward recursion [m].
+
+    Beyond the last ramp the ZMP stays and the DCM rests on it. A reference s seconds ahead has the
+    weight ω e^{-ωs}: preview control in the limit of zero weight on the jerk.
+    """
+    return zmp_kernel.dcm(table_of(ramps), lipm.omega * CONTROL_PERIOD)
+
+
 class DcmGenerator(TrackingGenerator):
-    """Tracks the DCM of the reference by the ZMP.
+    """Pattern generator that tracks the DCM of the reference by the ZMP.
 
     Args:
         lipm: pendulum.
-        parameters: gain of the DCM error.
+        gain: ZMP shift per DCM error, above one [1].
     """
 
-    def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
+    def __init__(self, lipm: Lipm, gain: float) -> None:
         self._lipm = lipm
-        self._tracker = DcmTracker(lipm, parameters.dcm_gain)
+        self._gain = gain
 
     def advance(
+        self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion
+    ) -> None:
+        first = ramps[0]
+        middle = 0.5 / first.ticks
+        x = first.ax + (first.bx - first.ax) * middle
+        y = first.ay + (first.by - first.ay) * middle
+        self.track(state, dcm_reference(self._lipm, ramps), (x, y), region)
+
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+        return dcm_reference(self._lipm, ramps)
+
+    def track(
         self,
         state: PendulumState,
-        ramps: Sequence[ZmpRamp],
+        dcm: tuple[float, float],
+        zmp: tuple[float, float],
         region: SupportRegion,
     ) -> None:
-        """Advance `state` in place; its ZMP never leaves `region`.
+        """Advance `state` in place towards a DCM.
 
         Args:
             state: of the pendulum.
-            ramps: ZMP reference from now on.
-            region: where the ZMP may be.
+            dcm: reference [m].
+            zmp: of the reference [m].
+            region: admissible ZMP.
         """
-        self._tracker.follow(state, ramps, region)
-
-    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
-        """The DCM of the footholds: the pendulum is late only after a disturbance."""
-        return dcm_reference(self._lipm, ramps)
+        lipm, gain = self._lipm, self._gain
+        px = zmp[0] + gain * (state.x + state.vx / lipm.omega - dcm[0])
+        py = zmp[1] + gain * (state.y + state.vy / lipm.omega - dcm[1])
+        state.step(lipm, (px, py), region)

@@ -1,4 +1,4 @@
-"""The choice of the pattern generator."""
+"""Choice of the pattern generator."""
 
 from walking.body.sole import Sole
 from walking.parameters import PatternParameters
@@ -11,11 +11,11 @@ from walking.pattern.robust_pattern import RobustGenerator
 
 
 def make_generator(lipm: Lipm, parameters: PatternParameters, sole: Sole) -> PatternGenerator:
-    """The generator that the parameters name."""
+    """Return the pattern generator named by the parameters."""
     if parameters.generator == "preview":
         return PreviewGenerator(lipm, parameters)
     if parameters.generator == "paper":
         return PaperGenerator(lipm, parameters)
     if parameters.generator == "robust":
         return RobustGenerator(lipm, parameters, sole)
-    return DcmGenerator(lipm, parameters)
+    return DcmGenerator(lipm, parameters.dcm_gain)

@@ -1,7 +1,6 @@
-"""Closed forms of the linear inverted pendulum: x'' = ω² (x - p).
+"""Linear inverted pendulum in closed form: x'' = ω² (x - p).
 
-Kajita et al., IROS 2001; the divergent component of motion ξ = x + x'/ω is that of
-Takenaka et al., IROS 2009.
+Kajita et al., IROS 2001; divergent component of motion ξ = x + x'/ω: Takenaka et al., IROS 2009.
 """
 
 from dataclasses import dataclass
@@ -32,7 +31,7 @@ class Lipm:
 
     Attributes:
         omega: ω = √(g / height) [1/s].
-        tick: ω [1/s], cosh ωT and sinh ωT [1], T [s] of a control tick T, as compiled code has it.
+        tick: ω [1/s], cosh ωT and sinh ωT [1], control period T [s], for kernels.
     """
 
     def __init__(self, height: float) -> None:
@@ -43,7 +42,7 @@ class Lipm:
         self._ramps: dict[int, RampCoefficients] = {}
 
     def step(self, position: float, velocity: float, zmp: float) -> tuple[float, float]:
-        """Position [m] and velocity [m/s] one tick later under a constant ZMP."""
+        """Return position [m] and velocity [m/s] one tick later under a constant ZMP."""
         d, w = position - zmp, self.omega
         return (
             zmp + d * self._cosh + velocity / w * self._sinh,
@@ -53,18 +52,16 @@ class Lipm:
     def hold(
         self, position: float, velocity: float, zmp: float, time: float
     ) -> tuple[float, float]:
-        """Position [m] and velocity [m/s] a `time` [s] later under a constant ZMP."""
+        """Return position [m] and velocity [m/s] a `time` [s] later under a constant ZMP."""
         w = self.omega
         c, s, d = cosh(w * time), sinh(w * time), position - zmp
         return zmp + d * c + velocity / w * s, d * w * s + velocity * c
 
     def ramp(self, ticks: int) -> RampCoefficients:
-        """How the DCM moves over `ticks` of a ZMP that moves linearly."""
-        found = self._ramps.get(ticks)
-        if found is None:
+        """Return the coefficients of the DCM over `ticks` of a linearly moving ZMP."""
+        if ticks not in self._ramps:
             wh = self.omega * CONTROL_PERIOD * ticks
             growth = exp(wh)
             last = (growth - 1.0) / wh - 1.0 if ticks else 0.0
-            found = RampCoefficients(growth, growth - 1.0 - last, last)
-            self._ramps[ticks] = found
-        return found
+            self._ramps[ticks] = RampCoefficients(growth, growth - 1.0 - last, last)
+        return self._ramps[ticks]

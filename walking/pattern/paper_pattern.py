@@ -1,42 +1,42 @@
-"""The modifiable walking pattern: ZMP functions that bring the mass centre to a walking state.
+"""Modifiable walking pattern: ZMP functions that lead to a walking state.
 
 Lee et al., "Modifiable Walking Pattern of a Humanoid Robot by Using Allowable ZMP Variation",
 IEEE T-RO 2008; the formulas are derived here from the pendulum. In the frame of the support
-foot and with τ left of single support, the divergent component ξ = x + x'/ω and the
-convergent one ζ = x - x'/ω obey
+foot, with remaining single support τ, the divergent component ξ = x + x'/ω and the convergent one
+ζ = x - x'/ω obey
 
     ξ(τ) = e^{ωτ} ξ(0) - A,    A = ∫ ω e^{ω(τ-s)} p(s) ds
     ζ(τ) = e^{-ωτ} ζ(0) + B,   B = ∫ ω e^{-ω(τ-s)} p(s) ds
 
-so a walking state wanted at touchdown is two linear equations in the ZMP function p. For
-|p| ≤ P the set of reachable (A, B) is convex and its boundary is reached by one switch from
-+P to -P or back; the function of least peak for given (A, B) is therefore that boundary
-function scaled down, and the command is feasible exactly if the scale is at most one.
+so a walking state at touchdown is two linear equations in the ZMP function p. For |p| ≤ P the set
+of reachable (A, B) is convex and its boundary is reached by one switch from +P to -P or back; the
+function of minimum peak for (A, B) is therefore that boundary function scaled down, and the command
+is feasible exactly if the scale is at most one.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, exp, inf, log, sin, sqrt
+from math import exp, inf, log, sqrt
 
 from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, PatternParameters
-from walking.pattern.dcm_pattern import DcmGenerator
-from walking.pattern.dcm_tracker import dcm_reference
+from walking.pattern.dcm_pattern import DcmGenerator, dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
 from walking.pattern.support import SupportRegion
+from walking.planar import rotate
 
-SAME_TARGET = 1e-7  # change of a walking state that is rounding [m]
+SAME_TARGET = 1e-7  # rounding error of a walking state [m]
 
 
 @dataclass(frozen=True, slots=True)
 class ZmpFunction:
-    """`level` until `switch` before the end of single support, minus `level` from then on.
+    """Two-level ZMP function: `level` until the switch, then -`level`.
 
     Attributes:
-        level: ZMP in the frame of the support foot, from its nominal point [m].
-        switch: time left when the sign changes [s].
+        level: ZMP relative to its nominal point, in the frame of the support foot [m].
+        switch: time of the switch before the end of single support [s].
     """
 
     level: float
@@ -44,11 +44,10 @@ class ZmpFunction:
 
 
 def zmp_function(omega: float, time: float, a: float, b: float) -> ZmpFunction:
-    """The two-level function of least peak with given A and B [m].
+    """Return the two-level function of minimum peak for A and B [m].
 
-    With z = e^{ω · switch} and E = e^{ωτ} the boundary function of peak one has
-    A = 1 + E - 2z and B = 2/z - 1/E - 1; that (A, B) lies on its ray is a quadratic in z
-    with one root in [1, E].
+    With z = e^{ω · switch} and E = e^{ωτ} the boundary function of peak one has A = 1 + E - 2z and
+    B = 2/z - 1/E - 1; (A, B) on its ray is a quadratic in z with one root in [1, E].
 
     Args:
         omega: of the pendulum [1/s].
@@ -66,25 +65,25 @@ def zmp_function(omega: float, time: float, a: float, b: float) -> ZmpFunction:
     z = min(roots, key=lambda root: max(1.0 - root, root - growth))
     z = min(growth, max(1.0, z))
     unit_a, unit_b = 1.0 + growth - 2.0 * z, 2.0 / z - 1.0 / growth - 1.0
-    # Least squares of the ray: the two ratios agree but for rounding.
+    # Least squares of the two ratios, which differ by rounding only.
     level = (a * unit_a + b * unit_b) / (unit_a**2 + unit_b**2)
     return ZmpFunction(level, log(z) / omega)
 
 
 @dataclass(frozen=True, slots=True)
 class WalkingTarget:
-    """Walking state wanted at the end of single support, in the frame of the support foot.
+    """Walking state at the end of single support, in the frame of the support foot.
 
     Attributes:
-        xi: divergent component from the nominal ZMP, along and across the foot [m].
-        zeta: convergent component likewise; None leaves it free [m].
+        xi: divergent component relative to the nominal ZMP, along and across the foot [m].
+        zeta: convergent component relative to the nominal ZMP; None leaves it free [m].
     """
 
     xi: tuple[float, float]
     zeta: tuple[float, float] | None
 
     def near(self, other: "WalkingTarget | None") -> bool:
-        """Whether another target is the same but for rounding."""
+        """Whether another target differs by rounding only."""
         if other is None or (self.zeta is None) != (other.zeta is None):
             return False
         gap = max(abs(a - b) for a, b in zip(self.xi, other.xi, strict=True))
@@ -94,24 +93,23 @@ class WalkingTarget:
 
 
 class PaperGenerator:
-    """Moves the pendulum by ZMP functions in single support, by its DCM in double support.
+    """Pattern generator with ZMP functions in single and DCM tracking in double support.
 
     Args:
         lipm: pendulum.
-        parameters: gain of the DCM error in double support.
+        parameters: gain of DCM tracking.
     """
 
     selective = True
 
     def __init__(self, lipm: Lipm, parameters: PatternParameters) -> None:
         self._lipm = lipm
-        self._double = DcmGenerator(lipm, parameters)
+        self._double = DcmGenerator(lipm, parameters.dcm_gain)
         self._target: WalkingTarget | None = None
         self._functions = (ZmpFunction(0.0, 0.0), ZmpFunction(0.0, 0.0))
         self._residual = (0.0, 0.0)
 
     def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
-        """Whether ZMP functions inside the sole lead to the walking state of a reference."""
         ramp = ramps[0]
         if ramp.feet[0] is not ramp.feet[1]:
             return True
@@ -127,18 +125,8 @@ class PaperGenerator:
         return True
 
     def advance(
-        self,
-        state: PendulumState,
-        ramps: Sequence[ZmpRamp],
-        region: SupportRegion,
+        self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion
     ) -> None:
-        """Advance `state` in place; its ZMP never leaves `region`.
-
-        Args:
-            state: of the pendulum.
-            ramps: ZMP reference from now on.
-            region: where the ZMP may be.
-        """
         ramp = ramps[0]
         if ramp.feet[0] is not ramp.feet[1]:
             self._target = None
@@ -146,45 +134,42 @@ class PaperGenerator:
             self._double.advance(state, ramps, region)
             return
         if not self.admits(state, ramps, region):
-            self._catch(state, ramps, region)
+            self._approximate(state, ramps, region)
         self._follow(state, ramp)
 
     def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
-        """The pendulum's own DCM, less what the ZMP functions could not bring about."""
         w = self._lipm.omega
         rx, ry = self._residual
         return state.x + state.vx / w - rx, state.y + state.vy / w - ry
 
     def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
-        """Whether the ZMP functions under way lead to a walking state."""
         return self._residual == (0.0, 0.0)
 
     def forget(self) -> None:
-        """Give up the ZMP functions under way."""
         self._target, self._residual = None, (0.0, 0.0)
 
     def _walking_target(self, ramps: Sequence[ZmpRamp]) -> WalkingTarget:
-        """DCM that walks the footholds to come, and ζ of the periodic walk they lead to."""
+        """Return the DCM of the planned footholds, and ζ of the periodic walk they lead to."""
         first = ramps[0]
         if len(ramps) == 1:
             return WalkingTarget((0.0, 0.0), None)
         x, y = dcm_reference(self._lipm, ramps[1:])
-        xi = _turned(-first.feet[0].yaw, x - first.bx, y - first.by)
+        xi = rotate(-first.feet[0].yaw, x - first.bx, y - first.by)
         return WalkingTarget(xi, self._periodic(ramps))
 
     def _periodic(self, ramps: Sequence[ZmpRamp]) -> tuple[float, float] | None:
-        """ζ at the end of the last single support on the same side, in the frame of its foot."""
+        """Return ζ at the end of the last single support on this side, in the frame of its foot."""
         x, y = ramps[0].bx, ramps[0].by
-        side, found = ramps[0].feet[0].left, None
+        side, zeta = ramps[0].feet[0].left, None
         for ramp in ramps[1:]:
             c = self._lipm.ramp(ramp.ticks)
-            # Backward in time ζ is a DCM.
+            # ζ is the DCM of reversed time.
             x = (x + c.first * ramp.bx + c.last * ramp.ax) / c.growth
             y = (y + c.first * ramp.by + c.last * ramp.ay) / c.growth
             foot = ramp.feet[1]
             if ramp.feet[0] is foot and foot.left is side:
-                found = _turned(-foot.yaw, x - ramp.bx, y - ramp.by)
-        return found
+                zeta = rotate(-foot.yaw, x - ramp.bx, y - ramp.by)
+        return zeta
 
     def _solve(
         self, state: PendulumState, ramp: ZmpRamp, target: WalkingTarget
@@ -192,8 +177,8 @@ class PaperGenerator:
         w, time = self._lipm.omega, ramp.ticks * CONTROL_PERIOD
         growth = exp(w * time)
         yaw = ramp.feet[0].yaw
-        position = _turned(-yaw, state.x - ramp.ax, state.y - ramp.ay)
-        speed = _turned(-yaw, state.vx / w, state.vy / w)
+        position = rotate(-yaw, state.x - ramp.ax, state.y - ramp.ay)
+        speed = rotate(-yaw, state.vx / w, state.vy / w)
         functions = []
         for axis in (0, 1):
             x, v = position[axis], speed[axis]
@@ -205,8 +190,10 @@ class PaperGenerator:
                 functions.append(zmp_function(w, time, a, b))
         return functions[0], functions[1]
 
-    def _catch(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> None:
-        """A reference that cannot be had: its DCM as nearly as a constant ZMP can."""
+    def _approximate(
+        self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion
+    ) -> None:
+        """Approximate the DCM of an infeasible reference by a constant ZMP."""
         ramp = ramps[0]
         target = WalkingTarget(self._walking_target(ramps).xi, None)
         growth = exp(self._lipm.omega * ramp.ticks * CONTROL_PERIOD)
@@ -217,10 +204,10 @@ class PaperGenerator:
             functions.append(ZmpFunction(level, 0.0))
             missed.append((function.level - level) * (growth - 1.0) / growth)
         self._target, self._functions = target, (functions[0], functions[1])
-        self._residual = _turned(ramp.feet[0].yaw, missed[0], missed[1])
+        self._residual = rotate(ramp.feet[0].yaw, missed[0], missed[1])
 
     def _follow(self, state: PendulumState, ramp: ZmpRamp) -> None:
-        """One tick under the ZMP functions, a switch within the tick included."""
+        """Advance by a tick under the ZMP functions, with a switch within the tick if needed."""
         lipm, yaw = self._lipm, ramp.feet[0].yaw
         left = ramp.ticks * CONTROL_PERIOD
         along, across = self._functions
@@ -229,7 +216,7 @@ class PaperGenerator:
             middle = 0.5 * (left + until)
             u = along.level if middle > along.switch else -along.level
             v = across.level if middle > across.switch else -across.level
-            dx, dy = _turned(yaw, u, v)
+            dx, dy = rotate(yaw, u, v)
             px, py = ramp.ax + dx, ramp.ay + dy
             state.x, state.vx = lipm.hold(state.x, state.vx, px, left - until)
             state.y, state.vy = lipm.hold(state.y, state.vy, py, left - until)
@@ -238,13 +225,8 @@ class PaperGenerator:
 
 
 def _room(ramp: ZmpRamp, region: SupportRegion) -> tuple[float, float]:
-    """How far the ZMP may go from its nominal point along and across the sole [m]."""
+    """Return the range of the ZMP about its nominal point along and across the sole [m]."""
     foot = ramp.feet[0]
     x, y, _, _, length, width = region.row[4:].tolist()
-    u, v = _turned(-foot.yaw, ramp.ax - x, ramp.ay - y)
+    u, v = rotate(-foot.yaw, ramp.ax - x, ramp.ay - y)
     return max(0.0, length - abs(u)), max(0.0, width - abs(v))
-
-
-def _turned(angle: float, x: float, y: float) -> tuple[float, float]:
-    c, s = cos(angle), sin(angle)
-    return c * x - s * y, s * x + c * y

@@ -1,9 +1,8 @@
-"""What a pattern generator does: it moves the pendulum as the footholds ask.
+"""Protocol of the pattern generators.
 
-All of them are given the same piecewise-linear reference of the ZMP, anew in every control tick,
-so a foothold may move at any time. Two track any reference, late where they must; the others, of
-`paper_pattern` and `robust_pattern`, are selective: they tell which references they can follow
-with the ZMP in the soles.
+All receive a piecewise-linear ZMP reference in every control tick, so footholds may change at any
+time. Two track any reference, with delay if necessary. Those of `paper_pattern` and
+`robust_pattern` are selective: they admit only references that keep the ZMP inside the soles.
 """
 
 from collections.abc import Sequence
@@ -15,59 +14,56 @@ from walking.pattern.support import SupportRegion
 
 
 class PatternGenerator(Protocol):
-    """Moves the pendulum one tick along the reference.
+    """Moves the pendulum along a ZMP reference.
 
     Attributes:
-        selective: whether there are references that `admits` turns down.
+        selective: whether `admits` rejects some references.
     """
 
     selective: bool
 
     def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
-        """Whether the pendulum can go over to a reference with the ZMP in the soles.
+        """Whether the pendulum can follow a reference with the ZMP inside the soles.
 
         Args:
             state: of the pendulum.
             ramps: ZMP reference from now on.
-            region: where the ZMP may be in this tick.
+            region: admissible ZMP in this tick.
         """
 
     def advance(
-        self,
-        state: PendulumState,
-        ramps: Sequence[ZmpRamp],
-        region: SupportRegion,
+        self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion
     ) -> None:
-        """Advance `state` in place; its ZMP never leaves `region`.
+        """Advance `state` in place by a tick; its ZMP stays in `region`.
 
         Args:
             state: of the pendulum.
             ramps: ZMP reference from now on.
-            region: where the ZMP may be.
+            region: admissible ZMP.
         """
 
     def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
-        """DCM [m] that the generator holds for right in the tick of a reference."""
+        """Return the reference of the DCM [m] for balance feedback."""
 
     def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
-        """Whether the plan under way can be carried on under a reference."""
+        """Whether the present plan stays feasible under a reference."""
 
     def forget(self) -> None:
-        """Give up the plan under way: the pendulum has been moved."""
+        """Drop the present plan after a jump of the pendulum."""
 
 
 class TrackingGenerator:
-    """What generators have in common that take any reference and are late where they must."""
+    """Base of generators that track any reference."""
 
     selective = False
 
     def admits(self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion) -> bool:
-        """Always: a reference that asks too much is tracked late."""
+        """Return True: an infeasible reference is tracked with delay."""
         return True
 
     def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
-        """Always: there is no plan but the reference."""
+        """Return True."""
         return True
 
     def forget(self) -> None:
-        """Nothing is remembered."""
+        """Do nothing: there is no plan."""

@@ -1,4 +1,4 @@
-"""The pendulum of a plan: where it is and how fast, and the ZMP that it is under."""
+"""State of the linear inverted pendulum."""
 
 from dataclasses import dataclass
 
@@ -24,13 +24,7 @@ class PendulumState:
     zmp_y: float = 0.0
 
     def step(self, lipm: Lipm, zmp: tuple[float, float], region: SupportRegion) -> None:
-        """One tick under a constant ZMP.
-
-        Args:
-            lipm: pendulum.
-            zmp: wanted [m].
-            region: where it may be.
-        """
+        """Advance by a tick under a constant ZMP [m], clipped to a region."""
         px, py = region.clip(*zmp)
         self.x, self.vx = lipm.step(self.x, self.vx, px)
         self.y, self.vy = lipm.step(self.y, self.vy, py)

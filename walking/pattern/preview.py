@@ -1,4 +1,4 @@
-"""Kajita's preview regulator, its jerk written as the change of the ZMP in a tick.
+"""Gains of Kajita's preview control, with the change of the ZMP per tick as input.
 
 Kajita et al., ICRA 2003. With the state z = (x, x', p) the cart-table is
 z⁺ = A z + B u, p⁺ = p + u, discretized exactly; the cost is Σ (p - p_ref)² + R u².
@@ -21,7 +21,7 @@ class PreviewGains:
         position, velocity, zmp: the row K.
         sums: F_n = Σ_{j ≤ n} f_j for n = 0 … N.
         moments: Σ_{j ≤ n} j f_j for n = 0 … N.
-        total: Σ of all f_j to infinity: what a reference at rest weighs.
+        total: Σ of all f_j to infinity: gain of a constant reference.
     """
 
     position: float
@@ -33,7 +33,7 @@ class PreviewGains:
 
 
 def preview_gains(lipm: Lipm, parameters: PatternParameters) -> PreviewGains:
-    """Solve the regulator once."""
+    """Solve the linear-quadratic regulator."""
     columns = [lipm.step(1.0, 0.0, 0.0), lipm.step(0.0, 1.0, 0.0), lipm.step(0.0, 0.0, 1.0)]
     A = np.eye(3)
     A[:2] = np.array(columns).T

@@ -1,4 +1,4 @@
-"""A pattern by preview control."""
+"""Pattern generator by preview control."""
 
 from collections.abc import Sequence
 
@@ -12,10 +12,10 @@ from walking.pattern.support import SupportRegion
 
 
 class PreviewGenerator(TrackingGenerator):
-    """Kajita's preview regulator on the same reference.
+    """Kajita's preview controller.
 
-    The preview sum over a piecewise-linear reference is closed form in running sums of the
-    gains, so no reference is ever sampled.
+    The preview sum over a piecewise-linear reference is closed form in running sums of the gains:
+    the reference is not sampled.
 
     Args:
         lipm: pendulum.
@@ -27,18 +27,8 @@ class PreviewGenerator(TrackingGenerator):
         self._gains = preview_gains(lipm, parameters)
 
     def advance(
-        self,
-        state: PendulumState,
-        ramps: Sequence[ZmpRamp],
-        region: SupportRegion,
+        self, state: PendulumState, ramps: Sequence[ZmpRamp], region: SupportRegion
     ) -> None:
-        """Advance `state` in place; its ZMP never leaves `region`.
-
-        Args:
-            state: of the pendulum.
-            ramps: ZMP reference from now on.
-            region: where the ZMP may be.
-        """
         lipm, gains = self._lipm, self._gains
         ahead_x, ahead_y = self._preview(ramps)
         px = state.zmp_x * (1.0 - gains.zmp) + ahead_x
@@ -48,12 +38,12 @@ class PreviewGenerator(TrackingGenerator):
         state.step(lipm, (px, py), region)
 
     def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
-        """The pendulum's own DCM: weighing the ZMP's change, it keeps off that of the footholds."""
+        # With a weight on the ZMP rate, preview control deviates from the DCM of the footholds.
         w = self._lipm.omega
         return state.x + state.vx / w, state.y + state.vy / w
 
     def _preview(self, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
-        """Σ_j f_j p_ref(j) over the horizon; the rest weighs on its last point."""
+        """Return Σ_j f_j p_ref(j) over the horizon, and with its last point beyond."""
         sums, moments = self._gains.sums, self._gains.moments
         horizon = len(sums) - 1
         x = y = 0.0

@@ -1,4 +1,4 @@
-"""The ZMP reference as a table that compiled code reads."""
+"""ZMP reference: piecewise linear, as a table for kernels."""
 
 from collections.abc import Sequence
 from typing import overload
@@ -14,13 +14,13 @@ Array = NDArray[np.float64]
 
 @comparable_value
 class ZmpRamp:
-    """A stretch of the ZMP reference, linear in time.
+    """Linear segment of the ZMP reference.
 
     Attributes:
-        ticks: its duration in control ticks.
-        ax, ay: ZMP at its start [m].
-        bx, by: ZMP at its end [m].
-        feet: the unloading and the loading foot, the same foot twice in single support.
+        ticks: duration in control ticks [1].
+        ax, ay: ZMP at the start [m].
+        bx, by: ZMP at the end [m].
+        feet: unloading and loading foot, in single support twice the support foot.
     """
 
     ticks: int
@@ -32,11 +32,11 @@ class ZmpRamp:
 
 
 class Ramps(Sequence[ZmpRamp]):
-    """A ZMP reference, one ramp after the other.
+    """ZMP reference: sequence of ramps.
 
     Args:
-        table: a row for each: ticks | ax, ay, bx, by [m] | of the unloading and of the loading
-            foot x, y [m], yaw [rad], 1 if it is the left one, 0 if not (n, 13).
+        table: rows of ticks | ax, ay, bx, by [m] | unloading and loading foot, see `Foothold.row`
+            (n, 13).
     """
 
     __slots__ = ("table",)
@@ -68,7 +68,7 @@ class Ramps(Sequence[ZmpRamp]):
 
 
 def table_of(ramps: Sequence[ZmpRamp]) -> Array:
-    """The table of a reference, see `Ramps` (n, 13)."""
+    """Return the table of a reference, see `Ramps` (n, 13)."""
     if isinstance(ramps, Ramps):
         return ramps.table
     rows = []

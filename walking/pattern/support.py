@@ -1,4 +1,4 @@
-"""The region where the floor can push: the convex hull of one or two soles."""
+"""Support region and support polygon of one or two soles."""
 
 from math import cos, dist, hypot, sin
 
@@ -8,22 +8,23 @@ from numpy.typing import NDArray
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.pattern import support_kernel
+from walking.planar import from_frame
 
 Array = NDArray[np.float64]
 Polygon = tuple[tuple[float, float], ...]
 """Corners of a convex polygon, counter-clockwise [m]."""
 
-SAME = 1e-9  # distance within which two corners are one [m]
+SAME = 1e-9  # distance of equal corners [m]
 
 
 class SupportRegion:
-    """Convex family of rectangles between two soles; with equal ends, one sole.
+    """Admissible ZMP: convex family of rectangles between two soles, or one sole.
 
-    The rectangle at share s has the corners (1 - s) A + s B of the two soles, so it lies in
-    their hull whatever their directions.
+    The rectangle at load fraction s has the corners (1 - s) A + s B of the two soles, so it is
+    within their hull.
 
     Args:
-        row: centres, directions and half sides, see `walking.pattern.support_kernel` (10,).
+        row: see `walking.pattern.support_kernel` (10,).
     """
 
     __slots__ = ("row",)
@@ -31,17 +32,17 @@ class SupportRegion:
     def __init__(self, row: Array) -> None:
         self.row = row
 
-    def share(self, x: float, y: float) -> float:
-        """Load share of the second sole under a ZMP at x, y [m], in [0, 1]."""
-        return support_kernel.share(self.row, x, y)
+    def load_fraction(self, x: float, y: float) -> float:
+        """Return the load fraction of the second sole for a ZMP at x, y [m], in [0, 1]."""
+        return support_kernel.load_fraction(self.row, x, y)
 
     def clip(self, x: float, y: float) -> tuple[float, float]:
-        """A point of the region near x, y: in the rectangle at its load share [m]."""
+        """Clip a point to the region: to the rectangle at its load fraction [m]."""
         return support_kernel.clip(self.row, x, y)
 
 
 def support_region(sole: Sole, first: Foothold, second: Foothold, margin: float) -> SupportRegion:
-    """Region of two feet on the floor, or of one when both arguments are the same foot."""
+    """Return the region of two feet, or of one foot passed twice."""
     ac, as_ = cos(first.yaw), sin(first.yaw)
     bc, bs = (ac, as_) if second is first else (cos(second.yaw), sin(second.yaw))
     centre = sole.centre
@@ -56,12 +57,12 @@ def support_region(sole: Sole, first: Foothold, second: Foothold, margin: float)
     )
 
 
-class Footing:
-    """The soles that carry, what can be said of them computed only when they change.
+class SupportPolygon:
+    """Support polygon of the feet in contact, cached until they change.
 
     Args:
-        sole: rectangle of either sole.
-        feet: the unloading and the loading foot, the same foot twice in single support.
+        sole: rectangle of each sole.
+        feet: unloading and loading foot, in single support twice the support foot.
 
     Attributes:
         feet: these feet.
@@ -70,48 +71,40 @@ class Footing:
     def __init__(self, sole: Sole, feet: tuple[Foothold, Foothold]) -> None:
         self._sole = sole
         self.feet = feet
-        self._polygon: Polygon | None = None
         self._edges: Array | None = None
         self._regions: dict[float, SupportRegion] = {}
 
-    def stand(self, feet: tuple[Foothold, Foothold]) -> None:
-        """Have the feet there."""
+    def update(self, feet: tuple[Foothold, Foothold]) -> None:
+        """Replace the feet in contact."""
         if feet[0] is not self.feet[0] or feet[1] is not self.feet[1]:
-            self.feet, self._polygon, self._edges = feet, None, None
+            self.feet, self._edges = feet, None
             self._regions.clear()
 
-    def polygon(self) -> Polygon:
-        """Hull of the soles."""
-        if self._polygon is None:
-            self._polygon = support_polygon(self._sole, *self.feet)
-        return self._polygon
-
     def edges(self) -> Array:
-        """Its edges, see `walking.pattern.support_kernel` (n, 5) [m]."""
+        """Return the edges of the polygon, see `walking.pattern.support_kernel` (n, 5) [m]."""
         if self._edges is None:
-            self._edges = edges(self.polygon())
+            self._edges = edges(support_polygon(self._sole, *self.feet))
         return self._edges
 
     def depth(self, x: float, y: float) -> float:
-        """How far inside that hull a point lies; negative outside [m]."""
+        """Return the distance of a point from the edge of the polygon, negative outside [m]."""
         return support_kernel.depth(self.edges(), x, y)
 
     def region(self, margin: float) -> SupportRegion:
-        """Region that keeps a margin from the edges of the soles [m]."""
-        found = self._regions.get(margin)
-        if found is None:
-            found = self._regions[margin] = support_region(self._sole, *self.feet, margin)
-        return found
+        """Return the region with a margin from the edges of the soles [m]."""
+        if margin not in self._regions:
+            self._regions[margin] = support_region(self._sole, *self.feet, margin)
+        return self._regions[margin]
 
 
 def support_polygon(sole: Sole, first: Foothold, second: Foothold) -> Polygon:
-    """Convex hull of two soles on the floor, or one sole when both are the same foot."""
+    """Return the convex hull of two soles, or of one foot passed twice."""
     corners = _corners(sole, second)
     return corners if second is first else _hull([*_corners(sole, first), *corners])
 
 
 def edges(polygon: Polygon) -> Array:
-    """Edges of a polygon, see `walking.pattern.support_kernel` (n, 5) [m]."""
+    """Return the edges of a polygon, see `walking.pattern.support_kernel` (n, 5) [m]."""
     rows = []
     ax, ay = polygon[-1]
     for bx, by in polygon:
@@ -122,20 +115,19 @@ def edges(polygon: Polygon) -> Array:
 
 
 def _corners(sole: Sole, foot: Foothold) -> Polygon:
-    c, s = cos(foot.yaw), sin(foot.yaw)
     front, back = sole.centre + sole.half_length, sole.centre - sole.half_length
     side = sole.half_width
     return tuple(
-        (foot.x + c * u - s * v, foot.y + s * u + c * v)
+        from_frame(foot.frame, u, v)
         for u, v in ((front, -side), (front, side), (back, side), (back, -side))
     )
 
 
 def _hull(points: list[tuple[float, float]]) -> Polygon:
-    """Convex hull, counter-clockwise: Andrew's monotone chain.
+    """Return the convex hull, counter-clockwise: Andrew's monotone chain.
 
-    Points that coincide have no direction between them and count once. Beyond that the sign alone
-    decides: on an edge along y, a tolerance could take the corner for a point between others.
+    Equal points count once. The test of the turn has no tolerance, which could drop a corner of an
+    edge along y.
     """
     points = sorted(p for i, p in enumerate(points) if all(dist(p, q) > SAME for q in points[:i]))
     halves = []

@@ -1,8 +1,8 @@
-"""Where the floor can push, compiled; see `walking.pattern.support`.
+"""Support region and polygon, compiled; see `walking.pattern.support`.
 
-A region is a row: centre x, y [m] and direction (cosine, sine) of one sole; the same of the other;
-half of the length and of the width of either, a margin taken off [m] (10,). A polygon is given by
-its edges, counter-clockwise: where each begins, x, y; its way x, y; its length [m] (n, 5).
+A region is a row: centre x, y [m] and direction (cosine, sine) of each sole; half of length and
+width minus a margin [m] (10,). A polygon is a table of edges, counter-clockwise: start x, y,
+vector x, y, length [m] (n, 5).
 """
 
 from math import inf
@@ -16,8 +16,8 @@ Point = tuple[float, float]
 
 
 @njit(cache=True)
-def share(region: Array, x: float, y: float) -> float:
-    """Load share of the second sole under a ZMP at x, y [m], in [0, 1]."""
+def load_fraction(region: Array, x: float, y: float) -> float:
+    """Return the load fraction of the second sole for a ZMP at x, y [m], in [0, 1]."""
     dx, dy = region[4] - region[0], region[5] - region[1]
     square = dx * dx + dy * dy
     if square == 0.0:
@@ -28,8 +28,8 @@ def share(region: Array, x: float, y: float) -> float:
 
 @njit(cache=True)
 def clip(region: Array, x: float, y: float) -> Point:
-    """A point of a region near x, y: in the rectangle at its load share [m]."""
-    s = share(region, x, y)
+    """Clip a point to the region: to the rectangle at its load fraction [m]."""
+    s = load_fraction(region, x, y)
     r = 1.0 - s
     cx, cy = r * region[0] + s * region[4], r * region[1] + s * region[5]
     c, n = r * region[2] + s * region[6], r * region[3] + s * region[7]
@@ -47,9 +47,9 @@ def clip(region: Array, x: float, y: float) -> Point:
 
 @njit(cache=True)
 def depth(edges: Array, x: float, y: float) -> float:
-    """How far inside a polygon a point lies; negative outside [m]."""
-    least = inf
+    """Return the distance of a point from the edge of a polygon, negative outside [m]."""
+    distance = inf
     for k in range(edges.shape[0]):
         edge = edges[k]
-        least = min(least, (edge[2] * (y - edge[1]) - edge[3] * (x - edge[0])) / edge[4])
-    return least
+        distance = min(distance, (edge[2] * (y - edge[1]) - edge[3] * (x - edge[0])) / edge[4])
+    return distance

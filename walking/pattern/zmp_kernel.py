@@ -1,25 +1,24 @@
-"""Plans of the ZMP: knots as near to a reference as its DCM allows, compiled.
+"""ZMP planning: knots nearest to a reference under a DCM constraint, compiled.
 
-The ZMP is linear between knots at absolute times, so that they stay where they are as time goes
-by. A knot of a single support lies in the sole, one of a double support in a parallelogram within
-the hull of the two, its last one on the sole that carries next. With the weights w_j of the knots
-in the DCM of now the program is
+The ZMP is linear between knots at absolute times. A knot of a single support is in the sole, one of
+a double support in a parallelogram within the hull of the soles, the last one on the next support
+sole. With the weights w_j of the knots in the present DCM the program is
 
     minimize Σ |u_j - û_j|²  subject to  Σ w_j (centre_j + M_j u_j) = DCM,  u_j in its box.
 
 The dual has one unknown per axis, λ, with u_j = clip(û_j + w_j M_jᵀ λ); its gradient is piecewise
-linear and solved by Newton's method with step halving. That there is no solution shows early: the
-boxes do not reach as far as the DCM in the direction that is missing.
+linear and solved by Newton's method with step halving. An infeasible program is detected early: the
+boxes do not reach the DCM in the direction of the residual.
 
-Knots that share a parallelogram are a *cell*, a row of
+Knots that fraction a parallelogram are a *cell*, a row of
 
     centre x, y [m] | sides ax, ay, bx, by, the columns of M [1] | nominal u, v |
     low u, high u, low v, high v [m] | Σ w, Σ w², max w of its knots [1];
 
 `starts` (n + 1,) holds the index of the first knot of every cell, `weights` those of all knots.
 
-`plan` is `lay_out` (cells, knots' times and weights), `solve` (λ) and `place` (the knots' points);
-`follow` walks what it has made.
+`plan` calls `lay_out` (cells, times and weights of knots), `solve` (λ) and `set_points` (knot
+positions); `follow` advances the pendulum along the plan.
 """
 
 from math import cos, exp, hypot, sin
@@ -33,24 +32,22 @@ Indices = NDArray[np.int64]
 Point = tuple[float, float]
 
 Pendulum = tuple[float, float, float, float, float, float]
-"""Position x, y [m], velocity x, y, divided by ω where a plan is made of it [m/s or m], ZMP of the
-last tick x, y [m]."""
+"""Position x, y [m], velocity x, y [m/s], ZMP of the last tick x, y [m]."""
 
 Sole = tuple[float, float, float]
-"""Its middle ahead of the ankle, and half of its length and width less the margin that the knots
-keep [m]."""
+"""Centre ahead of the ankle, half of length and width minus the margin of the knots [m]."""
 
 Tick = tuple[float, float, float, float]
-"""A control tick of the pendulum, see `Lipm`."""
+"""Control tick of the pendulum, see `Lipm.tick`."""
 
-SOLVED = 1e-10  # DCM not accounted for that is rounding [m]
+SOLVED = 1e-10  # maximum residual of the DCM [m]
 ITERATIONS = 20
 HALVINGS = 6
 SINGLE_SPACING = 9  # ticks between knots in single support
 LATER_SPACING = 27  # ticks between knots in the single support after that
 DOUBLE_SPACING = 18  # ticks between knots in a long double support
-REST = 72  # ticks that a plan that ends goes on standing
-CELL = 15  # numbers of a cell
+REST = 72  # ticks of standing at the end of a plan
+CELL = 15  # columns of a cell
 
 
 @njit(cache=True)
@@ -58,42 +55,42 @@ def plan(
     ramps: Array,
     pendulum: Pendulum,
     sole: Sole,
-    wh: float,
+    tick: Tick,
     rate: float,
     dual: Point,
 ) -> tuple[bool, Point, int, Array]:
-    """Lay out the program of a plan near a reference, and solve it.
+    """Set up and solve the program of a plan near a reference.
 
     Args:
         ramps: see `lay_out`.
         pendulum: see `lay_out`.
         sole: see `lay_out`.
-        wh: see `lay_out`.
+        tick: see `lay_out`.
         rate: see `lay_out`.
-        dual: λ to begin with [1/m].
+        dual: initial guess of λ [1/m].
 
     Returns:
-        whether there is a solution, its λ [1/m], how often the gradient was evaluated, and the
+        whether the program is feasible, λ [1/m], number of evaluations of the gradient, and the
         knots, see `lay_out` (m, 3).
     """
-    cells, starts, weights, dcm_now, knots = lay_out(ramps, pendulum, sole, wh, rate)
+    cells, starts, weights, dcm_now, knots = lay_out(ramps, pendulum, sole, tick, rate)
     feasible, lx, ly, evaluations = solve(cells, starts, weights, dcm_now[0], dcm_now[1], dual)
-    place(cells, starts, weights, (lx, ly), knots)
+    set_points(cells, starts, weights, (lx, ly), knots)
     return feasible, (lx, ly), evaluations, knots
 
 
 @njit(cache=True)
 def follow(knots: Array, begin: int, pendulum: Pendulum, tick: Tick) -> tuple[Pendulum, int]:
-    """One tick along a plan.
+    """Advance the pendulum by a tick along a plan.
 
     Args:
-        knots: ticks since the one before, of that at `begin` those still to go; x, y [m] (n, 3).
-        begin: index of the first knot to come; beyond the last the ZMP stays.
-        pendulum: of now.
+        knots: ticks since the previous knot, at `begin` the remaining ticks; x, y [m] (n, 3).
+        begin: index of the next knot; beyond the last the ZMP stays.
+        pendulum: present.
         tick: of the pendulum.
 
     Returns:
-        the pendulum, and the first knot to come, a tick later.
+        the pendulum and the index of the next knot, a tick later.
     """
     x, y, vx, vy, zmp_x, zmp_y = pendulum
     px, py = zmp_x, zmp_y
@@ -118,31 +115,32 @@ def _slide(
     after: float,
     tick: Tick,
 ) -> Point:
-    """Position [m] and velocity [m/s] one tick later under a ZMP moving linearly."""
+    """Return position [m] and velocity [m/s] one tick later under a linearly moving ZMP."""
     w, c, s, period = tick
     rate = (after - before) / period
-    # The ZMP itself solves the equation of motion; what is left is free.
+    # The ZMP is a particular solution of the equation of motion.
     d, v = position - before, velocity - rate
     return after + d * c + v / w * s, rate + d * w * s + v * c
 
 
 @njit(cache=True)
 def lay_out(
-    ramps: Array, pendulum: Pendulum, sole: Sole, wh: float, rate: float
+    ramps: Array, pendulum: Pendulum, sole: Sole, tick: Tick, rate: float
 ) -> tuple[Array, Indices, Array, Point, Array]:
-    """The program of a plan near a reference.
+    """Set up the program of a plan near a reference.
 
     Args:
         ramps: reference, see `walking.pattern.ramps` (n, 13).
-        pendulum: of now.
-        sole: of either foot.
-        wh: ω times the control period [1].
-        rate: largest move of the ZMP per tick in single support [m].
+        pendulum: present.
+        sole: of each foot.
+        tick: of the pendulum.
+        rate: maximum change of the ZMP per tick in single support [m].
 
     Returns:
-        cells, their `starts`, `weights`, the DCM that the knots have to bring about [m], and the
-        knots: ticks since the knot before; x, y of the last, where the plan ends [m] (m, 3).
+        cells, their `starts`, `weights`, the DCM of the constraint [m], and the knots: ticks since
+        the previous knot; x, y of the last, the end of the plan [m] (m, 3).
     """
+    wh = tick[0] * tick[3]
     near = _near(ramps)
     ends = near > ramps.shape[0]
     last = ramps[min(near, ramps.shape[0]) - 1]
@@ -152,7 +150,7 @@ def lay_out(
         rest_x, rest_y = dcm(ramps[near:], wh)
     table = ramps[:near]
     if ends:
-        # Drawn out by a time of standing on its last point, with the feet of the last ramp.
+        # Extended by standing at its end, with the feet of the last ramp.
         table = np.empty((near, ramps.shape[1]))
         for column in range(ramps.shape[1]):
             for k in range(near):
@@ -174,14 +172,14 @@ def lay_out(
     for knot in range(number):
         left -= knots[knot, 0]
     knots[number, 0], knots[number, 1], knots[number, 2] = left, end_x, end_y
-    x, y = _weigh(knots[: number + 1], weights, pendulum, rest_x, rest_y, wh)
+    x, y = _weigh(knots[: number + 1], weights, pendulum, rest_x, rest_y, tick)
     _sum_up(cells, starts, count, weights)
     return cells[:count], starts[: count + 1], weights[:number], (x, y), knots[: number + 1]
 
 
 @njit(cache=True)
 def dcm(ramps: Array, wh: float) -> Point:
-    """DCM from which a reference is walked for ever: the recursion run backward [m].
+    """Return the DCM from which a reference can be walked for ever: the backward recursion [m].
 
     Args:
         ramps: reference (n, 13).
@@ -197,7 +195,7 @@ def dcm(ramps: Array, wh: float) -> Point:
 
 @njit(cache=True)
 def limit(cell: Array, x: float, y: float, reach: float) -> None:
-    """Keep the box of a cell within `reach` of a point in it along both of its sides [m]."""
+    """Limit the box of a cell to within `reach` of a point along both sides [m]."""
     u, v = sides(cell, x - cell[0], y - cell[1])
     u, v = min(cell[9], max(cell[8], u)), min(cell[11], max(cell[10], v))
     cell[8], cell[9] = max(cell[8], u - reach), min(cell[9], u + reach)
@@ -206,7 +204,7 @@ def limit(cell: Array, x: float, y: float, reach: float) -> None:
 
 @njit(cache=True)
 def sides(cell: Array, x: float, y: float) -> Point:
-    """Coordinates of a vector along the sides of a cell."""
+    """Return the coordinates of a vector along the sides of a cell."""
     ax, ay, bx, by = cell[2], cell[3], cell[4], cell[5]
     scale = ax * by - ay * bx
     return (x * by - y * bx) / scale, (y * ax - x * ay) / scale
@@ -224,11 +222,10 @@ def _ramp(wh: float, ticks: float) -> tuple[float, float, float]:
 
 @njit(cache=True)
 def _near(ramps: Array) -> int:
-    """Number of the ramps whose ZMP is planned.
+    """Return the number of ramps whose ZMP is planned.
 
-    Planned is the ZMP up to the end of the second single support and through the double
-    support after it. Where the reference ends before, it is one more than there are: `lay_out` adds
-    a time of standing.
+    They end with the double support after the second single support. For a shorter reference the
+    number is one more than its ramps: `lay_out` appends standing.
     """
     singles = 0
     for k in range(ramps.shape[0] - 1):
@@ -241,19 +238,19 @@ def _near(ramps: Array) -> int:
 
 @njit(cache=True)
 def _lay_cells(ramps: Array, sole: Sole, cells: Array, starts: Indices, knots: Array) -> int:
-    """Cells and times of the knots; returns the number of cells.
+    """Set cells and times of the knots; return the number of cells.
 
-    A single support has one cell, for the last knot of the double support before it as well; every
-    other knot of a double support has a cell of its own.
+    A single support has one cell, shared with the last knot of the double support before it; every
+    other knot of a double support has a separate cell.
 
     Args:
         ramps: whose ZMP is planned (n, 13).
-        sole: of either foot.
-        cells: set, but for the sums of their weights.
+        sole: of each foot.
+        cells: set, except for the sums of weights.
         starts: set.
-        knots: their ticks since the knot before are set.
+        knots: ticks since the previous knot are set.
     """
-    # Ticks from the last knot to the ramp's begin; knots that wait for the cell of the next sole.
+    # Ticks from the last knot to the begin of the ramp; knots pending for the next sole's cell.
     since, carried = 0, 0
     every, count, knot = SINGLE_SPACING, 0, 0
     starts[0] = 0
@@ -261,10 +258,10 @@ def _lay_cells(ramps: Array, sole: Sole, cells: Array, starts: Indices, knots: A
         ramp, ticks = ramps[k], int(ramps[k, 0])
         final = k == ramps.shape[0] - 1
         single = ramp[8] == ramp[12]
-        # Its last knot is on the next sole, with those of the single support there.
+        # The last knot is on the next sole, in the cell of the single support there.
         lands = not (single or final) and _stands_on(ramps[k + 1], ramp)
         spacing = every if single else DOUBLE_SPACING
-        # Counted from the end, so that the knots keep their times.
+        # Counted from the end: the times of knots are the same in every tick.
         left = (ticks - 1) // spacing * spacing
         here = left // spacing + (0 if final or lands else 1)
         if single:
@@ -293,7 +290,7 @@ def _lay_cells(ramps: Array, sole: Sole, cells: Array, starts: Indices, knots: A
 
 @njit(cache=True)
 def _stands_on(ramp: Array, before: Array) -> bool:
-    """Whether a ramp is the single support on the foot that the one before loads."""
+    """Whether a ramp is the single support on the loading foot of the previous ramp."""
     same = True
     for k in range(4):
         same = same and ramp[5 + k] == before[9 + k] and ramp[9 + k] == before[9 + k]
@@ -302,7 +299,7 @@ def _stands_on(ramp: Array, before: Array) -> bool:
 
 @njit(cache=True)
 def _on_sole(ramp: Array, sole: Sole, cell: Array) -> None:
-    """The rectangle of the sole that carries."""
+    """Set a cell to the rectangle of the support sole."""
     centre, length, width = sole
     c, s = cos(ramp[7]), sin(ramp[7])
     cx, cy = ramp[5] + centre * c, ramp[6] + centre * s
@@ -315,11 +312,11 @@ def _on_sole(ramp: Array, sole: Sole, cell: Array) -> None:
 
 @njit(cache=True)
 def _between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
-    """A parallelogram between the outer edges of two soles."""
+    """Set a cell to a parallelogram between the outer edges of two soles."""
     centre, length, width = sole
     first, second = ramp[5:9], ramp[9:13]
     middle = 0.5 * (first[2] + second[2])
-    # Turned by as much as the soles are apart, an edge as long as they stays in them.
+    # With soles at an angle, shortened so that the edges stay in the soles.
     slant = abs(sin(0.5 * (first[2] - second[2])))
     length = min(length, width / slant) if slant > 0.0 else length
     ax, ay = _edge(first, centre, width - length * slant)
@@ -337,7 +334,7 @@ def _between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
 
 @njit(cache=True)
 def _edge(foot: Array, centre: float, outward: float) -> Point:
-    """A point of the sole on the side away from the other one [m]."""
+    """Return a point on the outer side of a sole [m]."""
     c, s = cos(foot[2]), sin(foot[2])
     across = outward if foot[3] > 0.0 else -outward
     return foot[0] + centre * c - s * across, foot[1] + centre * s + c * across
@@ -347,9 +344,9 @@ def _edge(foot: Array, centre: float, outward: float) -> Point:
 def _limit_first(
     cells: Array, starts: Indices, count: int, x: float, y: float, reach: float
 ) -> int:
-    """Give the first knot a cell of its own, within reach of the ZMP; returns how many there are.
+    """Limit the first knot to within reach of the ZMP, in a separate cell; return the cell count.
 
-    Room for one more cell is needed.
+    `cells` must have capacity for one more cell.
     """
     if starts[1] > 1:
         for k in range(count, 0, -1):
@@ -364,19 +361,20 @@ def _limit_first(
 
 @njit(cache=True)
 def _weigh(
-    knots: Array, weights: Array, pendulum: Pendulum, rest_x: float, rest_y: float, wh: float
+    knots: Array, weights: Array, pendulum: Pendulum, rest_x: float, rest_y: float, tick: Tick
 ) -> Point:
-    """Set the weights of the knots but the last; the DCM that those have to bring about [m].
+    """Set the weights of all knots except the last; return the DCM of their constraint [m].
 
     Args:
-        knots: the last is where the plan ends.
-        weights: to set.
-        pendulum: of now; its velocity divided by ω [m].
-        rest_x: DCM that walks the rest of the reference [m].
-        rest_y: the same [m].
-        wh: ω times the control period [1].
+        knots: the last is the end of the plan.
+        weights: set.
+        pendulum: present.
+        rest_x: x of the DCM of the rest of the reference [m].
+        rest_y: y of the DCM of the rest of the reference [m].
+        tick: of the pendulum.
     """
     x, y, vx, vy, zmp_x, zmp_y = pendulum
+    omega, wh = tick[0], tick[0] * tick[3]
     growth, first, last = _ramp(wh, knots[0, 0])
     decay = 1.0 / growth
     now, weight = decay * first, decay * last
@@ -387,21 +385,21 @@ def _weigh(
         weight = decay * last
     end = knots[-1]
     return (
-        x + vx - now * zmp_x - weight * end[1] - decay * rest_x,
-        y + vy - now * zmp_y - weight * end[2] - decay * rest_y,
+        x + vx / omega - now * zmp_x - weight * end[1] - decay * rest_x,
+        y + vy / omega - now * zmp_y - weight * end[2] - decay * rest_y,
     )
 
 
 @njit(cache=True)
 def _sum_up(cells: Array, starts: Indices, count: int, weights: Array) -> None:
     for k in range(count):
-        total = squares = largest = 0.0
+        total = squares = max_weight = 0.0
         for knot in range(starts[k], starts[k + 1]):
             w = weights[knot]
             total += w
             squares += w * w
-            largest = max(largest, w)
-        cells[k, 12], cells[k, 13], cells[k, 14] = total, squares, largest
+            max_weight = max(max_weight, w)
+        cells[k, 12], cells[k, 13], cells[k, 14] = total, squares, max_weight
 
 
 @njit(cache=True)
@@ -413,33 +411,33 @@ def solve(
     y: float,
     start: Point,
 ) -> tuple[bool, float, float, int]:
-    """Find λ, beginning at `start`.
+    """Solve for λ.
 
     Args:
         cells: of the knots.
-        starts: of the cells' knots.
+        starts: of the knots in the cells.
         weights: of the knots.
-        x: DCM that they bring about [m].
-        y: the same [m].
-        start: λ to begin with [1/m].
+        x: x of the DCM constraint [m].
+        y: y of the DCM constraint [m].
+        start: initial guess of λ [1/m].
 
     Returns:
-        whether the program is feasible, λ [1/m], and how often the gradient was evaluated.
+        whether the program is feasible, λ [1/m], and number of evaluations of the gradient.
     """
     for k in range(starts.size - 1):
         x -= cells[k, 12] * cells[k, 0]
         y -= cells[k, 12] * cells[k, 1]
     outcome, lx, ly, evaluations = _newton(cells, starts, weights, x, y, start[0], start[1])
     if outcome == 0 and (start[0] != 0.0 or start[1] != 0.0):
-        # Where all knots are at their bounds Newton's method has nothing to go by.
+        # With all knots at their bounds the derivative is zero.
         outcome, lx, ly, more = _newton(cells, starts, weights, x, y, 0.0, 0.0)
         evaluations += more
     return outcome == 1, lx, ly, evaluations
 
 
 @njit(cache=True)
-def place(cells: Array, starts: Indices, weights: Array, dual: Point, knots: Array) -> None:
-    """Write x, y [m] of the knots of a solution into the last two columns of `knots`."""
+def set_points(cells: Array, starts: Indices, weights: Array, dual: Point, knots: Array) -> None:
+    """Set x, y [m] of the knots of a solution, the last two columns of `knots`."""
     lx, ly = dual
     for k in range(starts.size - 1):
         cell = cells[k]
@@ -455,7 +453,7 @@ def place(cells: Array, starts: Indices, weights: Array, dual: Point, knots: Arr
 def _newton(
     cells: Array, starts: Indices, weights: Array, x: float, y: float, lx: float, ly: float
 ) -> tuple[int, float, float, int]:
-    """Solved (1), certainly infeasible (-1), or given up (0); λ; evaluations."""
+    """Return 1 for solved, -1 for infeasible, 0 for not converged; λ; evaluations."""
     gx, gy, xx, xy, yy = _gradient(cells, starts, weights, lx, ly)
     gx, gy = gx - x, gy - y
     outcome, evaluations = 0, 1
@@ -467,7 +465,7 @@ def _newton(
         if _beyond(cells, starts, x, y, -gx, -gy):
             outcome = -1
             break
-        # Directions in which all knots are at their bounds stay where they are.
+        # Regularized in directions in which all knots are at their bounds.
         small = 1e-9 * (xx + yy) + 1e-12
         xx, yy = xx + small, yy + small
         det = xx * yy - xy * xy
@@ -489,7 +487,7 @@ def _newton(
 
 @njit(cache=True)
 def _beyond(cells: Array, starts: Indices, x: float, y: float, dx: float, dy: float) -> bool:
-    """Whether the DCM is out of reach of the boxes in a direction."""
+    """Whether the boxes do not reach the DCM in a direction."""
     reach = 0.0
     for k in range(starts.size - 1):
         cell = cells[k]
@@ -503,7 +501,7 @@ def _beyond(cells: Array, starts: Indices, x: float, y: float, dx: float, dy: fl
 def _gradient(
     cells: Array, starts: Indices, weights: Array, lx: float, ly: float
 ) -> tuple[float, float, float, float, float]:
-    """Σ w M u, x, y [m], and its derivative xx, xy, yy by λ."""
+    """Return Σ w M u, x, y [m], and its derivative xx, xy, yy by λ."""
     gx = gy = xx = xy = yy = 0.0
     for k in range(starts.size - 1):
         cell = cells[k]
@@ -523,7 +521,7 @@ def _gradient(
 def _along(
     cell: Array, weights: Array, nominal: float, slope: float, low: float, high: float
 ) -> Point:
-    """Σ w clip(nominal + w slope) of a cell's knots, and its derivative by the slope."""
+    """Return Σ w clip(nominal + w slope) over the knots of a cell, and its derivative."""
     if low <= nominal <= high and low <= nominal + cell[14] * slope <= high:
         return cell[12] * nominal + cell[13] * slope, cell[13]
     moved = change = 0.0

@@ -1,6 +1,4 @@
-"""What footholds ask of the ZMP."""
-
-from math import cos, sin
+"""ZMP reference of footholds."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,44 +10,40 @@ from walking.footsteps.foothold_kernel import Chain
 from walking.footsteps.stride import Timing
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.ramps import Ramps
+from walking.planar import from_frame
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 
 class ZmpReference:
-    """Places the ZMP under the feet that carry, and moves it from one to the other.
+    """Computes the ZMP reference of footholds.
 
     Args:
-        parameters: where the ZMP is meant to be in a sole, and how long a walk takes to end.
+        parameters: ZMP in the sole, and duration of the last double support.
         sole: rectangle of the soles.
 
     Attributes:
-        spot: of the ZMP under a foot that carries alone, forward and inward [m].
+        zmp_offset: ZMP of single support in the foot frame, forward and inward [m].
         stop: control ticks of the last double support [1].
     """
 
     def __init__(self, parameters: WalkingParameters, sole: Sole) -> None:
         pattern = parameters.pattern
-        self.spot = (sole.centre + pattern.zmp_forward, pattern.zmp_inward)
+        self.zmp_offset = (sole.centre + pattern.zmp_forward, pattern.zmp_inward)
         self.stop = max(1, round(parameters.gait.stop_time / CONTROL_PERIOD))
 
     def under(self, foot: Foothold) -> Point:
-        """ZMP under a foot that carries alone [m]."""
-        forward, inward = self.spot
-        inward = -inward if foot.left else inward
-        c, s = cos(foot.yaw), sin(foot.yaw)
-        return (
-            foot.x + c * forward - s * inward,
-            foot.y + s * forward + c * inward,
-        )
+        """Return the ZMP of single support on a foot [m]."""
+        forward, inward = self.zmp_offset
+        return from_frame(foot.frame, forward, -inward if foot.left else inward)
 
     def between(self, one: Foothold, other: Foothold) -> Point:
-        """ZMP while both feet carry alike [m]."""
+        """Return the ZMP of equal loads on two feet [m]."""
         (ax, ay), (bx, by) = self.under(one), self.under(other)
         return 0.5 * (ax + bx), 0.5 * (ay + by)
 
-    def onwards(
+    def plan_walk(
         self,
         feet: tuple[Foothold, Foothold],
         landing: Foothold,
@@ -60,23 +54,22 @@ class ZmpReference:
         left: tuple[int, int],
         moving: bool,
     ) -> tuple[Array, Ramps]:
-        """Footholds of a walk from now on, and its reference.
+        """Return the footholds of a walk from now on, and its ZMP reference.
 
         Args:
-            feet: the foot that is about to swing and the one that carries in this footstep.
-            landing: where the first is about to land.
-            chain: how the footholds follow each other.
-            timing: of every footstep to come.
-            zmp: of now, while the weight goes over to the foot that carries [m].
-            left: control ticks of that double support, none in single support, and of the
+            feet: swing foot and support foot of this footstep.
+            landing: of the swing foot.
+            chain: rule of the following footholds.
+            timing: of later footsteps.
+            zmp: present ZMP in double support [m].
+            left: remaining control ticks of the double support, zero in single support, and of the
                 single support after it [1].
-            moving: whether more than closing the stance is wanted.
+            moving: whether the walk goes on.
 
         Returns:
-            x, y [m], yaw [rad] of each foothold from `landing` on, and 1 if it is a left one, 0 if
-            not (n, 4); the reference.
+            footholds from `landing` on, rows of `Foothold.row` (n, 4); the reference.
         """
-        steps, table = foothold_kernel.onwards(
+        steps, table = foothold_kernel.plan_walk(
             feet[0].row,
             feet[1].row,
             landing.row,
@@ -84,6 +77,6 @@ class ZmpReference:
             moving,
             zmp,
             (*left, timing.double, timing.single, self.stop),
-            self.spot,
+            self.zmp_offset,
         )
         return steps, Ramps(table)

@@ -1,1 +1,1 @@
-"""Setpoints: pattern and feet become joint angles."""
+"""Servo setpoints: inverse kinematics and feed-forward."""

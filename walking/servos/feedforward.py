@@ -1,4 +1,4 @@
-"""Setpoint offsets that make up for the compliance of the position servos."""
+"""Feed-forward offsets of the setpoints against the compliance of the position servos."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,26 +13,26 @@ Array = NDArray[np.float64]
 
 
 class FeedForward:
-    """Load and velocity lag, both divided by the servos' stiffness, and the task of the ankles.
+    """Feed-forward of load torques and velocity lag, and the ankle strategy.
 
     Args:
         robot: masses and servo gains.
-        parameters: shares fed forward.
+        parameters: feed-forward gains.
         height: of the base above the floor [m].
     """
 
     def __init__(self, robot: RobotModel, parameters: StabilizerParameters, height: float) -> None:
         self._robot = robot
         self._height = height
-        share = np.full(robot.damping.size, parameters.upper_velocity_gain)
-        share[LEFT_LEG] = share[RIGHT_LEG] = parameters.velocity_gain
+        gain = np.full(robot.damping.size, parameters.upper_velocity_gain)
+        gain[LEFT_LEG] = gain[RIGHT_LEG] = parameters.velocity_gain
         self._servos = np.array(
-            [parameters.load_gain / robot.stiffness, share * robot.damping / robot.stiffness]
+            [parameters.load_gain / robot.stiffness, gain * robot.damping / robot.stiffness]
         )
         pitch, roll = robot.stiffness[4:6].tolist()
         self._ankles = np.array([robot.mass * GRAVITY, pitch, roll, parameters.gyro_gain])
-        law = parameters.inertia_gain, parameters.max_inertia_acceleration, CONTROL_PERIOD
-        self._law = np.array(law)
+        inertia = parameters.inertia_gain, parameters.max_inertia_acceleration, CONTROL_PERIOD
+        self._inertia = np.array(inertia)
         self._started = False
         self._position = np.zeros(robot.damping.size)
         self._velocity = np.zeros(robot.damping.size)
@@ -41,24 +41,24 @@ class FeedForward:
         self,
         position: Array,
         pelvis: Vector,
-        spots: tuple[Point, Point],
+        foot_zmps: tuple[Point, Point],
         right_load: float,
         acceleration: Point,
         *,
         task: AnkleTask,
     ) -> Array:
-        """Offsets of all setpoints (26,) [rad].
+        """Return the offsets of all setpoints (26,) [rad].
 
-        The floor gives all that the motion of the whole body takes, by inverse dynamics; the
-        legs share it, and each foot has it under its own sole as far as the ZMP allows.
+        Inverse dynamics gives the contact wrench of the whole-body motion; the legs share it by
+        load, with the force under each sole at the planned ZMP.
 
         Args:
             position: joint angles of this tick (26,) [rad].
             pelvis: x, y [m], heading [rad] in the plan frame.
-            spots: where the ZMP is meant to be under either foot, in the plan frame [m].
-            right_load: planned share of the weight on the right foot [1].
+            foot_zmps: planned ZMP under each foot, in the plan frame [m].
+            right_load: planned load fraction of the right foot [1].
             acceleration: planned, of the base, in the plan frame [m/s²].
-            task: what the ankles are to do besides.
+            task: of the ankles.
         """
         if not self._started:
             self._started = True
@@ -72,9 +72,9 @@ class FeedForward:
             *robot.indices,
             pelvis,
             acceleration,
-            self._law,
+            self._inertia,
         )
-        found = np.empty(position.size)
+        offset = np.empty(position.size)
         leg_kernel.offsets(
             robot.forces(),
             robot.indices[1],
@@ -82,12 +82,12 @@ class FeedForward:
             self._velocity,
             self._servos,
             pelvis,
-            spots,
+            foot_zmps,
             right_load,
             self._height,
             robot.leg_rows,
             task,
             self._ankles,
-            found,
+            offset,
         )
-        return found
+        return offset

@@ -1,4 +1,4 @@
-"""The head follows its target as fast as its rate and acceleration limits allow."""
+"""Head motion within limits of rate and acceleration."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from walking.parameters import CONTROL_PERIOD, HeadParameters
 
 
 class Head:
-    """Pan and tilt.
+    """Time-optimal motion of pan and tilt.
 
     Args:
-        pan, tilt: starting angles [rad].
-        limits: lower and upper limit of pan and of tilt [rad].
+        pan, tilt: initial angles [rad].
+        limits: joint limits of pan and of tilt [rad].
         parameters: rate and acceleration limits.
     """
 
@@ -25,10 +25,11 @@ class Head:
     ) -> None:
         self._position, self._velocity = np.array([pan, tilt]), np.zeros(2)
         self._limits = np.array(limits)
-        self._law = np.array([parameters.max_rate, parameters.max_acceleration, CONTROL_PERIOD])
+        motion = parameters.max_rate, parameters.max_acceleration, CONTROL_PERIOD
+        self._motion = np.array(motion)
 
     def advance(self, target: HeadTarget) -> tuple[float, float]:
-        """Setpoints of pan and tilt of this tick [rad]."""
+        """Return the setpoints of pan and tilt of this tick [rad]."""
         return head_kernel.advance(
-            self._position, self._velocity, (target.pan, target.tilt), self._limits, self._law
+            self._position, self._velocity, (target.pan, target.tilt), self._limits, self._motion
         )

@@ -1,4 +1,4 @@
-"""From references of pelvis and feet to joint angles and feed-forward."""
+"""Inverse kinematics of the whole body from pelvis and foot references."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,11 @@ Point = tuple[float, float]
 
 
 class Posture:
-    """Joint angles of the whole body.
+    """Inverse kinematics of the whole body.
 
     Args:
         robot: dimensions.
-        parameters: heights, arms, tilt compensation.
+        parameters: heights, arms, tilt compensation of the swing foot.
 
     Attributes:
         height: of the base above the floor [m].
@@ -34,12 +34,12 @@ class Posture:
         self._legs = robot.leg_rows
         p = parameters.stabilizer
         self.height = parameters.pattern.pelvis_height - robot.legs[0].hip_z
-        law = p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, self.height
-        self._law = np.array(law)
+        tilt_control = p.tilt_gain, p.tilt_dead_zone, p.tilt_pull, p.tilt_decay, self.height
+        self._tilt_control = np.array(tilt_control)
         self._tilt = np.zeros((2, 2))
 
     def pelvis(self, gait: Gait, com: Point) -> Vector:
-        """Pelvis whose nominal mass centre, a fixed distance ahead of the base, is at `com`.
+        """Return the pelvis with the nominal centre of mass, fixed ahead of the base, at `com`.
 
         Args:
             gait: feet.
@@ -51,11 +51,11 @@ class Posture:
         return leg_kernel.pelvis_of(gait.feet, com, self._ahead)
 
     def joints(self, gait: Gait, com: Point, tilt: Point, head: Point) -> tuple[Array, Vector]:
-        """Joint angles (26,) [rad], and the pelvis that goes with them, x, y [m], heading [rad].
+        """Return the joint angles (26,) [rad] and the pelvis, x, y [m], heading [rad].
 
         Args:
             gait: feet.
-            com: where the nominal mass centre is meant to be, in the plan frame [m].
+            com: planned centre of mass, in the plan frame [m].
             tilt: measured roll and pitch of the trunk [rad].
             head: pan and tilt [rad].
         """
@@ -64,11 +64,11 @@ class Posture:
             position,
             self._tilt,
             gait.feet,
-            (gait.support, gait.swing if gait.flying else -1),
+            (gait.support, gait.swing if gait.airborne else -1),
             com,
             head,
             tilt,
-            self._law,
+            self._tilt_control,
             self._build,
             self._legs,
         )
@@ -76,7 +76,7 @@ class Posture:
 
 
 def ready_stance(robot: RobotModel) -> tuple[Foothold, Foothold]:
-    """Feet of the ready posture; the plan frame has its origin under the hips."""
+    """Return the feet in the ready posture; the plan frame has its origin under the hips."""
     a, b, c, d, e, f = robot.ready[:6].tolist()
     left = foot_pose(robot.legs[0], (a, b, c, d, e, f))
     a, b, c, d, e, f = robot.ready[6:12].tolist()

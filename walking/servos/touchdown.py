@@ -1,13 +1,13 @@
-"""Touchdown of a swinging foot."""
+"""Touchdown detection."""
 
 from walking.parameters import EstimatorParameters
 
 
 class TouchdownDetector:
-    """Decides that a swinging foot has met the floor.
+    """Detects touchdown of the swing foot.
 
     Args:
-        parameters: phase, force and duration from which on it is sure.
+        parameters: minimum phase, force and duration of contact.
     """
 
     def __init__(self, parameters: EstimatorParameters) -> None:
@@ -17,6 +17,6 @@ class TouchdownDetector:
         self._count = 0
 
     def update(self, phase: float, force: float) -> bool:
-        """Whether the foot is down at `phase` of its swing under `force` [N]."""
+        """Whether the foot is down, given the phase of its swing [1] and its load [N]."""
         self._count = self._count + 1 if phase >= self._phase and force > self._force else 0
         return self._count >= self._ticks

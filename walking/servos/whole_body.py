@@ -1,6 +1,4 @@
-"""The whole body: the joint targets that make it follow pendulum and feet."""
-
-from math import cos, sin
+"""Joint targets of the whole body from pendulum and feet."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +9,7 @@ from walking.gait.swing_reaction import SwingCompensation, leg_reaction
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
+from walking.planar import rotate
 from walking.servos.feedforward import FeedForward
 from walking.servos.posture import Posture
 from walking.targets import JointTargets
@@ -20,20 +19,20 @@ Point = tuple[float, float]
 
 
 class WholeBody:
-    """Carries the pelvis with the pendulum and makes joint targets of it.
+    """Moves the pelvis with the pendulum and computes the joint targets.
 
     Args:
-        robot: the robot's numbers.
+        robot: model of the robot.
         parameters: of the engine.
         lipm: pendulum.
-        gait: where the feet are meant to be.
-        pendulum: where the mass centre is meant to be.
+        gait: foot references.
+        pendulum: planned centre of mass.
 
     Attributes:
         pelvis: of the last tick, x, y [m], heading [rad] in the plan frame.
         turn_rate: planned, of the trunk [rad/s].
-        com: mass centre of the last tick's posture in the base frame, x, y [m].
-        compensation: motion of the pelvis against the swinging legs.
+        com: centre of mass of the last posture in the base frame, x, y [m].
+        compensation: motion of the pelvis against the reaction of the swing leg.
     """
 
     def __init__(
@@ -71,14 +70,14 @@ class WholeBody:
         head: Point,
         offset: Point,
     ) -> JointTargets:
-        """One tick.
+        """Return the joint targets of a tick.
 
         Args:
             tilt: measured roll and pitch of the trunk [rad].
-            gyro: its angular velocity (3,) [rad/s].
+            gyro: angular velocity of the trunk (3,) [rad/s].
             zmp: planned [m].
-            zmp_shift: by how much the ankles move the ZMP [m].
-            right_load: planned share of the weight on the right foot [1].
+            zmp_shift: of the ankles [m].
+            right_load: planned load fraction of the right foot [1].
             head: pan and tilt [rad].
             offset: of the body from the pendulum, forward and left [m].
         """
@@ -87,18 +86,15 @@ class WholeBody:
         compensation = self.compensation
         compensation.advance(gait.swings())
         (ox, oy), (ex, ey) = compensation.offset, compensation.acceleration
-        c, s = cos(before), sin(before)
-        ox += c * offset[0] - s * offset[1]
-        oy += s * offset[0] + c * offset[1]
-        position, pelvis = self._posture.joints(
-            gait, (pendulum.x + ox, pendulum.y + oy), tilt, head
-        )
+        dx, dy = rotate(before, *offset)
+        com = pendulum.x + (ox + dx), pendulum.y + (oy + dy)
+        position, pelvis = self._posture.joints(gait, com, tilt, head)
         self.pelvis, self.turn_rate = pelvis, (pelvis[2] - before) / CONTROL_PERIOD
         w2, (left, right) = self._w2, gait.footholds
         offsets = self._feedforward.offsets(
             position,
             pelvis,
-            gait.spots,
+            gait.foot_zmps,
             right_load,
             (w2 * (pendulum.x - zmp[0]) + ex, w2 * (pendulum.y - zmp[1]) + ey),
             task=((left.yaw, right.yaw), zmp_shift, gyro),

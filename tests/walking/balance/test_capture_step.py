@@ -9,7 +9,7 @@ from walking.balance.capture_step import CapturePendulum
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.footsteps.stride import Timing
-from walking.pattern.dcm_tracker import dcm_reference
+from walking.pattern.dcm_pattern import dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.pattern import TrackingGenerator
 from walking.pattern.pendulum import PendulumState
@@ -54,7 +54,7 @@ def beyond(dx, dy):
 
 def capture(state, landing, **changes):
     timing = Timing(DOUBLE, 54, 0.025)
-    usual = {"hurried": False, "double": False, "stepping": True, "ticks_left": LEFT}
+    usual = {"shortened": False, "double": False, "stepping": True, "ticks_left": LEFT}
     gait = SimpleNamespace(**(usual | {"landing": landing, "timing": timing} | changes))
     return CapturePendulum(LIPM, Plan(), gait, 2.5, state), gait
 
@@ -91,7 +91,7 @@ def test_the_plan_goes_on_and_the_body_is_led_to_the_other_foothold(move):
 
 def test_a_footstep_in_a_hurry_has_no_plan():
     state = PendulumState(*dcm_reference(LIPM, reference(LANDING)))
-    pendulum, _ = capture(state, LANDING, hurried=True)
+    pendulum, _ = capture(state, LANDING, shortened=True)
     pendulum.advance(reference(LANDING), LANDING, REGION)
     assert not pendulum.off_plan
     # On the DCM of the footholds, its ZMP is theirs.

@@ -17,13 +17,13 @@ offs = st.floats(-0.012, 0.012)
 
 def walk(off, *, cycles=30, sway=0.02, disturbed=lambda tick: False):
     """Offsets tick by tick; the centre of pressure sways about the mass centre."""
-    hold, found = ComOffset(PARAMETERS), []
+    hold, result = ComOffset(PARAMETERS), []
     for tick in range(cycles * CYCLE):
         swayed = sway * sin(2.0 * pi * tick / CYCLE)
         error = off[0] + hold.offset[0] + swayed, off[1] + hold.offset[1] - swayed
         hold.update(error, begins=tick % CYCLE == 0, disturbed=disturbed(tick))
-        found.append(hold.offset)
-    return found
+        result.append(hold.offset)
+    return result
 
 
 @given(offs, offs)
@@ -36,15 +36,15 @@ def test_a_sway_within_the_cycle_is_left_alone():
 
 
 def test_it_moves_slowly_and_not_too_far():
-    found = walk((-0.1, 0.1))
-    assert found[-1] == pytest.approx((PARAMETERS.max_com_offset, -PARAMETERS.max_com_offset))
-    fastest = max(abs(b[0] - a[0]) for a, b in pairwise(found))
+    result = walk((-0.1, 0.1))
+    assert result[-1] == pytest.approx((PARAMETERS.max_com_offset, -PARAMETERS.max_com_offset))
+    fastest = max(abs(b[0] - a[0]) for a, b in pairwise(result))
     assert fastest <= PARAMETERS.max_com_offset_rate * CONTROL_PERIOD + 1e-12
 
 
 def test_footsteps_that_balance_are_not_learned_from():
-    found = walk((0.01, 0.0), disturbed=lambda tick: tick % CYCLE == 7)
-    assert set(found) == {(0.0, 0.0)}
+    result = walk((0.01, 0.0), disturbed=lambda tick: tick % CYCLE == 7)
+    assert set(result) == {(0.0, 0.0)}
 
 
 def test_the_offset_outlasts_a_rest():
@@ -53,6 +53,6 @@ def test_the_offset_outlasts_a_rest():
         hold.update((0.01, 0.0), begins=tick % CYCLE == 0, disturbed=False)
     before = hold.offset
     assert before[0] < 0.0
-    hold.rest()
+    hold.reset()
     hold.update((-0.3, 0.0), begins=False, disturbed=False)
     assert hold.offset[0] <= before[0]

@@ -50,12 +50,12 @@ class Pendulum:
         gait, steering, placement = self.gait, self.steering, self.placement
         placement.remember()
         steering.follow(command, 1.0, settled=True, balanced=True)
-        gait.retime(steering.pace(gait.timing, stepping=gait.stepping))
+        gait.retime(steering.next_timing(gait.timing, stepping=gait.stepping))
         if not gait.stepping and steering.moving:
             gait.start(self._first)
         region = support_region(self.sole, *gait.support_feet, self.parameters.pattern.sole_margin)
         ramps = placement.decide(
-            steering.wish(STILL), steering.velocity, error, region, moving=steering.moving
+            steering.strides(STILL), steering.velocity, error, region, moving=steering.moving
         )
         self.capture.advance(ramps, placement.landing, region)
         gait.advance(moving=placement.moving)
@@ -143,11 +143,11 @@ def test_mirrored_errors_move_mirrored_landings(robot, generator, velocity, erro
 def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, monkeypatch):
     walk = Pendulum(robot, "robust").to_swing(VelocityCommand(0.1))
     slow, before = walk.gait.landing.x, walk.placement.applied
-    generator, asked = walk.placement._generator, []
+    generator, arguments = walk.placement._generator, []
 
     def admits(*_):
-        asked.append(None)
-        return len(asked) == 2  # half of the change, no more
+        arguments.append(None)
+        return len(arguments) == 2  # half of the change, no more
 
     monkeypatch.setattr(generator, "admits", admits)
     fast = VelocityCommand(0.1 + 5 * walk.parameters.limits.forward_acceleration * CONTROL_PERIOD)
@@ -158,7 +158,7 @@ def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, mon
     assert walk.placement.applied == pytest.approx(half)
     assert Limit.ZMP_REGION in walk.placement.bound
     assert walk.placement.admitted is not None
-    assert slow < walk.placement.landing.x < walk.gait.nominal(walk.steering.wish(STILL)).x
+    assert slow < walk.placement.landing.x < walk.gait.nominal(walk.steering.strides(STILL)).x
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

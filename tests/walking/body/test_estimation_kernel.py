@@ -51,7 +51,7 @@ def test_compiled_it_is_what_it_says(plainly, seed):
         rng = np.random.default_rng(seed)
         tilt, odometry, error = np.zeros(3), np.zeros(20), np.zeros(5)
         error[4] = -1.0
-        found, rows = np.zeros(24), []
+        result, rows = np.zeros(24), []
         for _ in range(4):
             orientation = np.array([1.0, *rng.normal(0.0, 0.05, 3)])
             reading = (
@@ -65,8 +65,8 @@ def test_compiled_it_is_what_it_says(plainly, seed):
             com, states = rng.normal(0.0, 0.05, 3), (tilt, odometry, error)
             stepping = bool(rng.integers(2))
             rest = (*states, LEGS, BODY, GROWTH, FILTER, feet, plan, stepping, CONTROL_PERIOD)
-            told = call(*reading, com, *rest, found)
-            rows += [*found, *odometry, *error, *(v for part in told for v in part)]
+            expected = call(*reading, com, *rest, result)
+            rows += [*result, *odometry, *error, *(v for part in expected for v in part)]
         outcomes.append(rows)
     np.testing.assert_allclose(*outcomes, rtol=1e-10, atol=1e-12)
 
@@ -85,14 +85,14 @@ def quaternion(roll, pitch, yaw):
 
 @given(st.floats(-3.0, 3.0), st.floats(-1.5, 1.5), st.floats(-3.0, 3.0))
 def test_an_attitude_there_and_back(roll, pitch, yaw):
-    found = estimation_kernel.roll_pitch_yaw(quaternion(roll, pitch, yaw))
-    assert found == pytest.approx((roll, pitch, yaw), abs=1e-6)
+    result = estimation_kernel.roll_pitch_yaw(quaternion(roll, pitch, yaw))
+    assert result == pytest.approx((roll, pitch, yaw), abs=1e-6)
 
 
 def test_both_signs_of_a_quaternion_mean_the_same():
     q = quaternion(0.1, -0.2, 2.0)
-    found = estimation_kernel.roll_pitch_yaw(tuple(-v for v in q))
-    assert found == pytest.approx(estimation_kernel.roll_pitch_yaw(q))
+    result = estimation_kernel.roll_pitch_yaw(tuple(-v for v in q))
+    assert result == pytest.approx(estimation_kernel.roll_pitch_yaw(q))
 
 
 def test_straight_up_pitch_is_a_right_angle():
@@ -119,8 +119,8 @@ def test_tilt_settles_on_the_imu_and_starts_there():
     tilt = Tilt()
     assert tilt.update(0.1, -0.05, [0.0, 0.0, 0.0]) == [0.1, -0.05]
     for _ in range(400):
-        found = tilt.update(0.02, 0.03, [0.0, 0.0, 0.0])
-    assert found == pytest.approx((0.02, 0.03), abs=1e-4)
+        result = tilt.update(0.02, 0.03, [0.0, 0.0, 0.0])
+    assert result == pytest.approx((0.02, 0.03), abs=1e-4)
 
 
 def test_tilt_of_a_trunk_that_yaws_under_a_constant_lean():
@@ -128,9 +128,9 @@ def test_tilt_of_a_trunk_that_yaws_under_a_constant_lean():
     rate, lean, ticks = 3.0, 0.1, 300
     tilt = Tilt(1e-9)
     for _ in range(ticks):
-        found = tilt.update(lean, 0.0, [0.0, 0.0, rate])
+        result = tilt.update(lean, 0.0, [0.0, 0.0, rate])
     angle = rate * (ticks - 1) * CONTROL_PERIOD
-    assert found == pytest.approx((lean * np.cos(angle), -lean * np.sin(angle)), abs=0.01)
+    assert result == pytest.approx((lean * np.cos(angle), -lean * np.sin(angle)), abs=0.01)
 
 
 def test_tilt_noise_is_reduced():
@@ -146,9 +146,9 @@ def test_rates_of_a_trunk_that_does_not_yaw_are_integrated():
     tilt = Tilt(1e-12)
     tilt.update(0.05, -0.02, [9.0, 9.0, 9.0])  # the first only says where it is
     for _ in range(100):
-        found = tilt.update(0.0, 0.0, [0.1, -0.3, 0.0])
+        result = tilt.update(0.0, 0.0, [0.1, -0.3, 0.0])
     time = 100 * CONTROL_PERIOD
-    assert found == pytest.approx((0.05 + 0.1 * time, -0.02 - 0.3 * time))
+    assert result == pytest.approx((0.05 + 0.1 * time, -0.02 - 0.3 * time))
 
 
 def test_the_error_filter_finds_a_diverging_body():
@@ -207,5 +207,5 @@ def test_a_body_as_planned_is_off_by_nothing(seed):
     planned = (x + c * arm[0] - s * arm[1], y + s * arm[0] + c * arm[1])
     reference = (x, y, yaw + turned, 0.0)
     com = (0.3 + arm[0], -0.2 + arm[1])
-    found = estimation_kernel.com_error(com, (0.3, -0.2, yaw), reference, planned)
-    assert found == pytest.approx((0.0, 0.0, planned[0] - x, planned[1] - y), abs=1e-12)
+    result = estimation_kernel.com_error(com, (0.3, -0.2, yaw), reference, planned)
+    assert result == pytest.approx((0.0, 0.0, planned[0] - x, planned[1] - y), abs=1e-12)

@@ -72,25 +72,25 @@ def test_offsets_are_torques_and_rates_over_stiffness(plainly, seed, load):
     soles = ((0.01, 0.04), (0.02, -0.04))
     pelvis = tuple(rng.uniform(-0.1, 0.1, 3).tolist())
     rest = (pelvis, soles, load, 0.22, LEGS)
-    task, (found, plain) = ((0.1, -0.2), (0.0, 0.0), np.zeros(3)), np.empty((2, 26))
-    asked = (forces, where, position, velocity, servos, *rest, task, ANKLES)
-    leg_kernel.offsets(*asked, found)
-    plainly(leg_kernel, "offsets", *asked, plain)
-    np.testing.assert_allclose(found, plain, rtol=0.0, atol=1e-12)
+    task, (result, plain) = ((0.1, -0.2), (0.0, 0.0), np.zeros(3)), np.empty((2, 26))
+    arguments = (forces, where, position, velocity, servos, *rest, task, ANKLES)
+    leg_kernel.offsets(*arguments, result)
+    plainly(leg_kernel, "offsets", *arguments, plain)
+    np.testing.assert_allclose(result, plain, rtol=0.0, atol=1e-12)
     unloaded = slice(0, 6) if load == 1.0 else slice(12, 26)
     expected = forces[where] * servos[0] + velocity * servos[1]
-    np.testing.assert_allclose(found[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
-    shares = [abs(found - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
-    assert [share > 1e-6 for share in shares] == [load < 1.0, load > 0.0]
+    np.testing.assert_allclose(result[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
+    fractions = [abs(result - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
+    assert [fraction > 1e-6 for fraction in fractions] == [load < 1.0, load > 0.0]
 
 
 @settings(max_examples=20)
 @given(SEEDS)
 def test_compiled_an_ankle_is_what_it_says(plainly, seed):
     a, b, c, d, *gyro, load = np.random.default_rng(seed).uniform(-0.2, 0.2, 8).tolist()
-    asked = ((a, b), (c, d), tuple(gyro)), seed % 2, abs(load), ANKLES
-    plain = plainly(leg_kernel, "ankle", *asked)
-    assert leg_kernel.ankle(*asked) == pytest.approx(plain, abs=1e-15)
+    arguments = ((a, b), (c, d), tuple(gyro)), seed % 2, abs(load), ANKLES
+    plain = plainly(leg_kernel, "ankle", *arguments)
+    assert leg_kernel.ankle(*arguments) == pytest.approx(plain, abs=1e-15)
 
 
 @given(st.floats(-1.0, 1.0))

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from walking.body.joints import LEFT_LEG, RIGHT_LEG
-from walking.body.leg_kinematics import FootPose, foot_pose, leg_angles, support_torques
+from walking.body.leg_kernel import support_torques
+from walking.body.leg_kinematics import FootPose, foot_pose, leg_angles
 
 LEGS = [(0, LEFT_LEG, "l_foot"), (1, RIGHT_LEG, "r_foot")]
 
@@ -78,7 +79,7 @@ def test_support_torques_are_the_virtual_work_of_the_force(robot, force):
     # The joints do as much work on the foot as the floor takes, the base held still.
     leg, angles, step = robot.legs[0], (0.2, -0.1, -0.6, 1.2, -0.5, 0.08), 1e-6
     foot = foot_pose(leg, angles)
-    torques = support_torques(leg, angles, (foot.x, foot.y, foot.z), force)
+    torques = support_torques(leg.row, angles, (foot.x, foot.y, foot.z), force)
     for k in range(6):
         ends = []
         for sign in (1.0, -1.0):
@@ -93,6 +94,6 @@ def test_support_torques_are_the_virtual_work_of_the_force(robot, force):
 def test_load_ahead_of_the_ankle_asks_for_a_pitch_torque(robot):
     leg = robot.legs[0]
     angles, _ = leg_angles(leg, FootPose(0.0, leg.hip_y, -0.2, 0.0, 0.0, 0.0))
-    torques = support_torques(leg, angles, (0.03, leg.hip_y, -0.2), (0.0, 0.0, 54.0))
+    torques = support_torques(leg.row, angles, (0.03, leg.hip_y, -0.2), (0.0, 0.0, 54.0))
     assert torques[4] == pytest.approx(54.0 * 0.03)
     assert torques[5] == pytest.approx(0.0, abs=1e-9)

@@ -127,11 +127,11 @@ def test_covariance_is_that_of_a_walk_with_unseen_motions():
         pose += np.column_stack(
             [c * moved[:, 0] - s * moved[:, 1], s * moved[:, 0] + c * moved[:, 1], moved[:, 2]]
         )
-    found = increment(readings[0], readings[-1])
+    result = increment(readings[0], readings[-1])
     assert np.cov(pose.T) == pytest.approx(
-        found.covariance, abs=0.1 * np.diag(found.covariance).max()
+        result.covariance, abs=0.1 * np.diag(result.covariance).max()
     )
-    ratio = np.linalg.solve(found.covariance, np.cov(pose.T))
+    ratio = np.linalg.solve(result.covariance, np.cov(pose.T))
     assert np.trace(ratio) / 3.0 == pytest.approx(1.0, abs=0.08)
 
 

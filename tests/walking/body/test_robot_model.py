@@ -92,10 +92,10 @@ def test_the_camera_is_where_pinocchio_has_it(robot, plainly):
         R_BC, p_BC = robot.camera_pose(q)
         np.testing.assert_allclose(R_BC, R @ R_HC, atol=1e-15)
         np.testing.assert_allclose(p_BC, p, atol=1e-15)
-        told = q[HEAD].tolist(), np.zeros((3, 3)), np.zeros(3)
-        plainly(head_kernel, "camera_pose", *told[0], *robot._head, *told[1:])
-        np.testing.assert_array_equal(told[1], R_BC)
-        np.testing.assert_array_equal(told[2], p_BC)
+        expected = q[HEAD].tolist(), np.zeros((3, 3)), np.zeros(3)
+        plainly(head_kernel, "camera_pose", *expected[0], *robot._head, *expected[1:])
+        np.testing.assert_array_equal(expected[1], R_BC)
+        np.testing.assert_array_equal(expected[2], p_BC)
 
 
 def test_a_head_that_looks_elsewhere_is_refused(tmp_path):

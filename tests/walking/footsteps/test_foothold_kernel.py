@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.footsteps import foothold_kernel
-from walking.footsteps.planner import TURN_TOLERANCE, FootstepPlanner
+from walking.footsteps.planner import YAW_TOLERANCE, FootstepPlanner
 from walking.footsteps.stride import STILL
 from walking.parameters import WalkingParameters
 
 PARAMETERS = WalkingParameters()
 SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
 PLANNER = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, SOLE)
-SPOT = (0.01, 0.003)
+ZMP_OFFSET = (0.01, 0.003)
 
 
 def draw(seed):
@@ -34,7 +34,7 @@ def draw(seed):
 def arguments(support, landing, strides, moving):
     wish, still, _, most = PLANNER.chain(strides)
     assert (wish, most) == ((strides.right, strides.left), 4)
-    return support.row, landing.row, (wish, still, (0.001, TURN_TOLERANCE), 4), moving
+    return support.row, landing.row, (wish, still, (0.001, YAW_TOLERANCE), 4), moving
 
 
 @given(st.integers(0, 10**6), st.booleans())
@@ -56,16 +56,24 @@ def test_each_foothold_is_the_stride_of_the_one_before(seed, moving):
 @given(st.integers(0, 10**6), st.booleans())
 def test_compiled_they_are_what_they_say(plainly, seed, ends):
     rng, support, landing, strides = draw(seed)
-    asked = arguments(support, landing, strides, not ends)
-    steps, over = foothold_kernel.sequence(*asked)
-    plain, plainly_over = plainly(foothold_kernel, "sequence", *asked)
+    arguments = arguments(support, landing, strides, not ends)
+    steps, over = foothold_kernel.sequence(*arguments)
+    plain, plainly_over = plainly(foothold_kernel, "sequence", *arguments)
     np.testing.assert_array_equal(steps, plain)
     assert over == plainly_over
     swing = Foothold(not support.left, *rng.uniform(-1.0, 1.0, 3).tolist())
-    asked = (swing.row, support.row, steps, (0.1, 0.2), (int(seed % 2), 30, 10, 58, 60), SPOT, over)
-    found = foothold_kernel.ramps(*asked)
-    np.testing.assert_array_equal(found, plainly(foothold_kernel, "ramps", *asked))
+    arguments = (
+        swing.row,
+        support.row,
+        steps,
+        (0.1, 0.2),
+        (int(seed % 2), 30, 10, 58, 60),
+        ZMP_OFFSET,
+        over,
+    )
+    result = foothold_kernel.ramps(*arguments)
+    np.testing.assert_array_equal(result, plainly(foothold_kernel, "ramps", *arguments))
     chain = arguments(support, landing, strides, not ends)[1:]
-    both = foothold_kernel.onwards(swing.row, support.row, *chain, (0.1, 0.2), *asked[4:6])
+    both = foothold_kernel.plan_walk(swing.row, support.row, *chain, (0.1, 0.2), *arguments[4:6])
     np.testing.assert_array_equal(both[0], steps)
-    np.testing.assert_array_equal(both[1], found)
+    np.testing.assert_array_equal(both[1], result)

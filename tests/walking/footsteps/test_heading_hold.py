@@ -13,7 +13,7 @@ CYCLE = 136  # control ticks of two footsteps
 
 def test_a_slip_of_the_body_is_turned_back():
     hold, plan, body = HeadingHold(PARAMETERS), 0.4, 0.3
-    hold.rest(plan - body)
+    hold.reset(plan - body)
     body -= 0.05
     for tick in range(1000):
         turned = hold.rate(plan - body, renew=tick % CYCLE == 0) * CONTROL_PERIOD
@@ -24,7 +24,7 @@ def test_a_slip_of_the_body_is_turned_back():
 def test_a_steady_slip_is_held_although_one_footstep_turns_for_two_and_the_body_sways():
     """The opening foot turns by the rate of that moment for both footsteps."""
     hold, plan, slip, settled = HeadingHold(PARAMETERS), 0.0, 0.0, []
-    hold.rest(0.0)
+    hold.reset(0.0)
     for tick in range(30 * CYCLE):
         slip -= 0.05 * CONTROL_PERIOD
         phase = tick % CYCLE
@@ -39,13 +39,13 @@ def test_a_steady_slip_is_held_although_one_footstep_turns_for_two_and_the_body_
 
 def test_it_holds_what_it_was_told_to_rest_at():
     hold = HeadingHold(PARAMETERS)
-    hold.rest(0.2)
+    hold.reset(0.2)
     assert hold.rate(0.2, renew=True) == 0.0
 
 
 def test_one_rate_serves_a_cycle():
     hold = HeadingHold(PARAMETERS)
-    hold.rest(0.0)
+    hold.reset(0.0)
     rates = [hold.rate(1e-4 * k, renew=k % CYCLE == 0) for k in range(2 * CYCLE)]
     assert len(set(rates[:CYCLE])) == len(set(rates[CYCLE:])) == 1
     assert rates[0] != rates[-1]

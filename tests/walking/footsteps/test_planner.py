@@ -155,9 +155,9 @@ def test_a_slow_walk_keeps_the_usual_time():
 
 
 @pytest.mark.parametrize("time", [1e-9, 0.008, 0.34])
-@pytest.mark.parametrize("share", [1e-9, 0.5, 1.0 - 1e-9])
-def test_the_shortest_footstep_has_a_tick_of_either_support(time, share):
-    gait = GaitParameters(footstep_time=time, min_footstep_time=time, double_support=share)
+@pytest.mark.parametrize("fraction", [1e-9, 0.5, 1.0 - 1e-9])
+def test_the_shortest_footstep_has_a_tick_of_either_support(time, fraction):
+    gait = GaitParameters(footstep_time=time, min_footstep_time=time, double_support=fraction)
     timing = FootstepPlanner(gait, LIMITS, SOLE).cadence((0.1, 0.0, 0.0))
     assert timing.double >= 1
     assert timing.single >= 1

@@ -21,21 +21,21 @@ def test_errors_of_an_even_floor_slow_nothing():
 
 
 def test_the_share_falls_with_the_error_down_to_the_least():
-    shares = [Slowdown(PARAMETERS).update(0.001 * k) for k in range(100)]
-    assert shares == sorted(shares, reverse=True)
-    assert shares[-1] == pytest.approx(PARAMETERS.min_speed_ratio)
+    fractions = [Slowdown(PARAMETERS).update(0.001 * k) for k in range(100)]
+    assert fractions == sorted(fractions, reverse=True)
+    assert fractions[-1] == pytest.approx(PARAMETERS.min_speed_ratio)
 
 
 def test_an_error_is_forgotten_with_its_time_constant():
     caution, error = Slowdown(PARAMETERS), 0.03
     caution.update(error)
     for _ in range(round(0.5 / CONTROL_PERIOD)):
-        share = caution.update(0.0)
+        fraction = caution.update(0.0)
     left = error * exp(-0.5 / PARAMETERS.slowdown_time)
-    assert share == pytest.approx(Slowdown(PARAMETERS).update(left))
+    assert fraction == pytest.approx(Slowdown(PARAMETERS).update(left))
     for _ in range(round(5.0 / CONTROL_PERIOD)):
-        share = caution.update(0.0)
-    assert share == 1.0
+        fraction = caution.update(0.0)
+    assert fraction == 1.0
 
 
 def test_a_cautious_walk_keeps_the_direction_of_the_command_and_says_why():

@@ -25,29 +25,29 @@ def walk(velocity, slip, *, cycles=25, disturbed=lambda tick: False, hold=None, 
     def heading(tick):
         return velocity[2] * tick * CONTROL_PERIOD + sway * cos(2.0 * pi * tick / CYCLE)
 
-    found = []
+    result = []
     for tick in range(cycles * CYCLE):
         forward, left = hold.correction(
             (x, y, heading(tick)), velocity, begins=tick % CYCLE == 0, disturbed=disturbed(tick)
         )
-        found.append((forward, left))
+        result.append((forward, left))
         middle = 0.5 * (heading(tick) + heading(tick + 1))
         vx, vy = velocity[0] + slip[0] + forward, velocity[1] + slip[1] + left
         x += CONTROL_PERIOD * (cos(middle) * vx - sin(middle) * vy)
         y += CONTROL_PERIOD * (sin(middle) * vx + cos(middle) * vy)
-    return found
+    return result
 
 
 @given(st.floats(-0.4, 0.4), st.floats(-0.15, 0.15), st.floats(-1.5, 1.5), slips, slips)
 def test_a_steady_walk_on_any_arc_gets_its_velocity(vx, vy, wz, ahead, aside):
-    found = walk((vx, vy, wz), (ahead, aside))
-    assert found[-1] == pytest.approx((-ahead, -aside), abs=1e-4)
+    result = walk((vx, vy, wz), (ahead, aside))
+    assert result[-1] == pytest.approx((-ahead, -aside), abs=1e-4)
 
 
 @given(st.floats(-0.4, 0.4), st.floats(-1.5, 1.5), st.floats(-0.2, 0.2))
 def test_sway_of_the_heading_is_no_error(forward, turn, sway):
-    found = walk((forward, 0.0, turn), (0.0, 0.0), cycles=4, sway=sway)
-    assert found[-1] == pytest.approx((0.0, 0.0), abs=1e-9)
+    result = walk((forward, 0.0, turn), (0.0, 0.0), cycles=4, sway=sway)
+    assert result[-1] == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def test_nothing_is_made_up_for_before_two_footsteps_of_a_steady_walk():

@@ -28,9 +28,9 @@ def steer(*, selective=False):
     return Steering(PLANNER, LIMITS, selective=selective)
 
 
-def follow(steering, command, *, ticks=1, share=1.0):
+def follow(steering, command, *, ticks=1, fraction=1.0):
     for _ in range(ticks):
-        steering.follow(command, share, settled=True, balanced=True)
+        steering.follow(command, fraction, settled=True, balanced=True)
 
 
 def mirrored(placement):
@@ -44,7 +44,7 @@ def test_a_wish_within_the_limits_comes_through_unaltered(vx, vy, wz, selective)
     follow(steering, VelocityCommand(vx, vy, wz), ticks=LONG)
     assert steering.velocity == (vx, vy, wz)
     assert set(steering.bound) <= STRIDE_LIMITS
-    wish, time = steering.wish(STILL), steering.timing.duration
+    wish, time = steering.strides(STILL), steering.timing.duration
     assert wish == PLANNER.strides((vx, vy, wz), time)
     if not steering.bound:
         assert PLANNER.velocity(wish, time) == pytest.approx((vx, vy, wz), abs=1e-9)
@@ -92,7 +92,7 @@ def test_mirrored_commands_give_the_mirrored_wish(walk, selective):
     for command, ticks in walk:
         follow(one, command, ticks=ticks)
         follow(other, VelocityCommand(command.vx, -command.vy, -command.wz), ticks=ticks)
-        right, left = one.wish(STILL), other.wish(STILL)
+        right, left = one.strides(STILL), other.strides(STILL)
         assert right.right == pytest.approx(mirrored(left.left), abs=1e-12)
         assert right.left == pytest.approx(mirrored(left.right), abs=1e-12)
         assert one.bound == other.bound
@@ -120,9 +120,9 @@ def test_footsteps_that_close_the_stance_keep_the_time_of_the_walk():
     steering = steer(selective=True)
     follow(steering, VelocityCommand(LIMITS.vx), ticks=LONG)
     quick = steering.timing
-    assert steering.pace(PLANNER.cadence(STILL), stepping=True) == quick
+    assert steering.next_timing(PLANNER.cadence(STILL), stepping=True) == quick
     follow(steering, VelocityCommand())
     usual = PLANNER.cadence(STILL)
     assert quick.duration < usual.duration
-    assert steering.pace(quick, stepping=True) == quick
-    assert steering.pace(quick, stepping=False) == usual
+    assert steering.next_timing(quick, stepping=True) == quick
+    assert steering.next_timing(quick, stepping=False) == usual

@@ -17,8 +17,8 @@ velocities = st.tuples(st.floats(-0.5, 0.5), st.floats(-0.3, 0.3), st.floats(-2.
 
 @given(velocities)
 def test_compiled_it_is_what_it_says(plainly, velocity):
-    asked = (velocity, TIME, LIMITS, BUILD)
-    assert stride_kernel.strides(*asked) == plainly(stride_kernel, "strides", *asked)
+    arguments = (velocity, TIME, LIMITS, BUILD)
+    assert stride_kernel.strides(*arguments) == plainly(stride_kernel, "strides", *arguments)
 
 
 @given(velocities)
@@ -48,11 +48,11 @@ def test_two_footsteps_move_the_stance_by_the_velocity_where_no_limit_binds(velo
 
 @given(st.floats(-0.2, 0.2), st.floats(-0.5, 0.5), st.sampled_from((-1.0, 1.0)))
 def test_a_clear_landing_has_every_corner_beside_the_other_sole(y, turned, side):
-    found = stride_kernel.clear(y, turned, side, GAP, (HEEL, TOE, WIDTH))
+    result = stride_kernel.clear(y, turned, side, GAP, (HEEL, TOE, WIDTH))
     inner = min(
-        side * (found + sin(turned) * u + cos(turned) * v)
+        side * (result + sin(turned) * u + cos(turned) * v)
         for u in (HEEL, TOE)
         for v in (-WIDTH, WIDTH)
     )
     assert inner >= WIDTH + GAP - 1e-12
-    assert found == y or inner == pytest.approx(WIDTH + GAP, abs=1e-12)
+    assert result == y or inner == pytest.approx(WIDTH + GAP, abs=1e-12)

@@ -137,8 +137,8 @@ def test_a_hurried_footstep_is_down_in_time_and_the_next_takes_its_own(gait, lea
     for _ in range(START + STEP - round(GAIT.double_support * STEP) + lead):
         tick(gait, FORWARD)
     completed, foot, lift = gait.completed, gait.feet[gait.swing], []
-    assert gait.hasten(5, gait.landing)
-    assert gait.hurried
+    assert gait.shorten(5, gait.landing)
+    assert gait.shortened
     left = gait.ticks_left
     assert left <= STEP - lead - 10
     while gait.completed == completed:
@@ -150,7 +150,7 @@ def test_a_hurried_footstep_is_down_in_time_and_the_next_takes_its_own(gait, lea
     assert lift[-1] == pytest.approx(0.0, abs=1e-9)
     assert gait.footholds[swing] == landing
     assert np.abs(np.diff(lift)).max() < 0.01
-    assert not gait.hurried
+    assert not gait.shortened
     assert gait.ticks_left == STEP
 
 
@@ -159,7 +159,7 @@ def test_a_footstep_never_hurries_into_a_later_end(gait):
     for _ in range(START + STEP):
         tick(gait, FORWARD)
     before = gait.ticks_left
-    assert not gait.hasten(before + 5, gait.landing)
+    assert not gait.shorten(before + 5, gait.landing)
     assert gait.ticks_left == before
 
 
@@ -169,7 +169,7 @@ def test_a_hurried_footstep_leaves_the_foot_time_for_its_way(gait):
         tick(gait, FORWARD)
     landing = gait.landing
     far = Foothold(landing.left, landing.x + 0.2, landing.y, landing.yaw)
-    assert gait.hasten(0, far)
+    assert gait.shorten(0, far)
     way = far.x - gait.feet[gait.swing, 0]
     assert gait.ticks_left * CONTROL_PERIOD >= 1.875 * way / GAIT.swing_speed
 
@@ -179,10 +179,10 @@ def test_the_reference_of_a_tick_is_the_same_as_if_made_anew(gait):
     wishes = [PLANNER.strides(velocity, GAIT.footstep_time) for velocity in (FORWARD, SLOWER)]
     for k in range(START + 3 * STEP):
         wish = wishes[k // 50 % 2]
-        found = gait.plan(gait.landing, wish, moving=True)
+        result = gait.plan(gait.landing, wish, moving=True)
         gait._walk = None
         anew = gait.plan(gait.landing, wish, moving=True)
-        np.testing.assert_array_equal(found.table, anew.table)
+        np.testing.assert_array_equal(result.table, anew.table)
         tick(gait, (FORWARD, SLOWER)[k // 50 % 2])
 
 

@@ -36,9 +36,9 @@ def walk(velocity, stop_at, *, selective):
         command = VelocityCommand(*velocity) if tick < stop_at else VelocityCommand()
         if tick == stop_at:
             at_stop = gait.completed
-        steering.follow(command, settled=True, balanced=True, share=1.0)
-        gait.retime(steering.pace(gait.timing, stepping=gait.stepping))
-        wish = steering.wish(STILL)
+        steering.follow(command, settled=True, balanced=True, fraction=1.0)
+        gait.retime(steering.next_timing(gait.timing, stepping=gait.stepping))
+        wish = steering.strides(STILL)
         if gait.adjustable:
             gait.aim(gait.nominal(wish))
         gait.plan(gait.landing, wish, moving=steering.moving)

@@ -9,14 +9,14 @@ from walking.gait.minimum_jerk import PEAK, minimum_jerk
 
 
 @given(st.floats(0.0, 1.0))
-def test_minimum_jerk_is_symmetric_in_time(share):
-    assert minimum_jerk(share) + minimum_jerk(1.0 - share) == pytest.approx(1.0)
+def test_minimum_jerk_is_symmetric_in_time(fraction):
+    assert minimum_jerk(fraction) + minimum_jerk(1.0 - fraction) == pytest.approx(1.0)
 
 
 def test_minimum_jerk_starts_and_ends_at_rest_and_peaks_in_the_middle():
-    shares = np.linspace(0.0, 1.0, 2001)
-    way = np.array([minimum_jerk(s) for s in shares])
-    speed, force = np.gradient(way, shares), np.gradient(np.gradient(way, shares), shares)
+    fractions = np.linspace(0.0, 1.0, 2001)
+    way = np.array([minimum_jerk(s) for s in fractions])
+    speed, force = np.gradient(way, fractions), np.gradient(np.gradient(way, fractions), fractions)
     assert way[0] == 0.0
     assert way[-1] == 1.0
     assert speed.max() == pytest.approx(PEAK, rel=1e-4)

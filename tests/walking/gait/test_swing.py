@@ -5,7 +5,7 @@ import pytest
 
 from walking.foothold import Foothold
 from walking.gait.minimum_jerk import PEAK
-from walking.gait.swing import least_ticks, moved, resting, stand
+from walking.gait.swing import min_ticks, moved, resting, stand
 from walking.gait.swing_foot_kernel import HEIGHT
 from walking.parameters import CONTROL_PERIOD
 
@@ -24,7 +24,7 @@ def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
 
 def test_a_way_takes_its_time():
     foot = resting(STANCE)[0]
-    ticks = least_ticks(foot, Foothold(True, 0.13, 0.08, 0.0), 0.5)
+    ticks = min_ticks(foot, Foothold(True, 0.13, 0.08, 0.0), 0.5)
     assert (ticks - 1) * CONTROL_PERIOD < PEAK * 0.05 / 0.5 <= ticks * CONTROL_PERIOD
 
 

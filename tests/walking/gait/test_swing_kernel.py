@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from walking.gait import swing_kernel
 
-SPOT = (0.01, 0.003)
+ZMP_OFFSET = (0.01, 0.003)
 
 
 def draw(seed, count):
@@ -17,7 +17,7 @@ def draw(seed, count):
     feet[:, 3] = np.arange(3 + count) % 2
     support, origin, landing = map(tuple, feet[:3].tolist())
     now, later = (int(rng.integers(-40, 20)), 0.02, count > 0), (40, 68, 0.025)
-    return rng, ((support, origin, landing), feet[3:], now, later, SPOT)
+    return rng, ((support, origin, landing), feet[3:], now, later, ZMP_OFFSET)
 
 
 @settings(max_examples=30)
@@ -29,39 +29,41 @@ def test_compiled_it_is_what_it_says(plainly, seed, count):
     state, outcomes = rng.normal(0.0, 0.01, 4), []
     for call in (swing_kernel.react, lambda *a: plainly(swing_kernel, "react", *a)):
         own = state.copy()
-        found = call(*swings, *profiles, law, own)
-        outcomes.append([*np.ravel(found), *own])
+        result = call(*swings, *profiles, law, own)
+        outcomes.append([*np.ravel(result), *own])
     np.testing.assert_allclose(*outcomes, rtol=1e-12, atol=1e-15)
 
 
 @settings(max_examples=20)
 @given(st.integers(0, 10**6), st.integers(1, 4))
 def test_compiled_the_swings_are_what_they_say(plainly, seed, count):
-    asked = draw(seed, count)[1]
-    found = swing_kernel.swings(*asked)
-    np.testing.assert_allclose(found, plainly(swing_kernel, "swings", *asked), atol=1e-15)
+    arguments = draw(seed, count)[1]
+    result = swing_kernel.swings(*arguments)
+    np.testing.assert_allclose(result, plainly(swing_kernel, "swings", *arguments), atol=1e-15)
 
 
 def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
-    feet, steps, _, later, spot = draw(4, 4)[1]
+    feet, steps, _, later, zmp_offset = draw(4, 4)[1]
     support, origin, landing = feet
-    table = swing_kernel.swings(feet, steps, (-3, 0.02, True), later, spot)
+    table = swing_kernel.swings(feet, steps, (-3, 0.02, True), later, zmp_offset)
     assert table[:, 0].tolist() == [-3.0, 40.0, 108.0, 176.0]
     assert table[:, 1].tolist() == [0.02, 0.025, 0.025, 0.025]
     starts, goals = [origin, support, landing, *steps[1:]], [landing, *steps[1:]]
     np.testing.assert_array_equal(table[:, 2:5], np.array(starts)[:4, :3])
     np.testing.assert_array_equal(table[:, 5:8], np.array(goals)[:, :3])
     for row, (x, y, yaw, left) in zip(table, [support, landing, *steps[1:]], strict=False):
-        under = complex(x, y) + np.exp(1j * yaw) * complex(SPOT[0], SPOT[1] * (1.0 - 2.0 * left))
+        under = complex(x, y) + np.exp(1j * yaw) * complex(
+            ZMP_OFFSET[0], ZMP_OFFSET[1] * (1.0 - 2.0 * left)
+        )
         assert complex(*row[8:]) == pytest.approx(under, abs=1e-15)
-    held = swing_kernel.swings(feet, steps, (-3, 0.02, False), later, spot)
+    held = swing_kernel.swings(feet, steps, (-3, 0.02, False), later, zmp_offset)
     np.testing.assert_array_equal(held, table[1:])
 
 
 def test_compiled_a_profile_is_what_it_says(plainly):
-    asked = (44, (1.04, 0.02, 0.02), 0.005)
-    found, plain = swing_kernel.profile(*asked), plainly(swing_kernel, "profile", *asked)
-    np.testing.assert_allclose(found, plain, rtol=1e-12, atol=1e-12)
+    arguments = (44, (1.04, 0.02, 0.02), 0.005)
+    result, plain = swing_kernel.profile(*arguments), plainly(swing_kernel, "profile", *arguments)
+    np.testing.assert_allclose(result, plain, rtol=1e-12, atol=1e-12)
 
 
 def test_a_profile_is_that_of_minimum_jerk_and_a_smooth_bump():

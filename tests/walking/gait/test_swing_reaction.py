@@ -82,9 +82,9 @@ def test_the_offset_cancels_the_reaction(stride):
 
 def test_the_acceleration_is_that_of_the_offset():
     rows = track(0.07)
-    found = np.diff(rows[:, :2], n=2, axis=0) / CONTROL_PERIOD**2
+    result = np.diff(rows[:, :2], n=2, axis=0) / CONTROL_PERIOD**2
     expected = rows[1:-1, 2:]
-    error = (found - expected)[300:]
+    error = (result - expected)[300:]
     assert np.sqrt((error**2).mean()) < 0.05 * np.sqrt((expected**2).mean())
 
 

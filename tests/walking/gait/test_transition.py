@@ -26,10 +26,10 @@ class UpTo:
     selective = True
 
     def __init__(self, gait):
-        self.gait, self.reach, self.asked, self.lost = gait, np.inf, [], False
+        self.gait, self.reach, self.arguments, self.lost = gait, np.inf, [], False
 
     def admits(self, state, ramps, region):
-        self.asked.append(ramps)
+        self.arguments.append(ramps)
         return self.landing(ramps) <= self.reach
 
     def holds(self, ramps):
@@ -65,7 +65,7 @@ def test_an_admitted_change_is_made_at_once(setting):
     tick(setting, SLOW)
     tick(setting, FAST)
     _, _, transition, _ = setting
-    assert transition.share == 1.0
+    assert transition.fraction == 1.0
     assert transition.landing.x == pytest.approx(0.3 * TIME)
 
 
@@ -76,9 +76,9 @@ def test_the_largest_admitted_share_is_found(setting):
     fast = 3.0 * slow
     generator.reach = slow + 0.6 * (fast - slow)
     ramps = tick(setting, FAST)
-    assert 0.6 - 0.5**BISECTIONS <= transition.share <= 0.6
-    assert transition.landing.x == pytest.approx(slow + transition.share * (fast - slow))
-    assert any(ramps is one for one in generator.asked)
+    assert 0.6 - 0.5**BISECTIONS <= transition.fraction <= 0.6
+    assert transition.landing.x == pytest.approx(slow + transition.fraction * (fast - slow))
+    assert any(ramps is one for one in generator.arguments)
     assert transition.strides.right[0] == pytest.approx(transition.landing.x)
 
 
@@ -88,7 +88,7 @@ def test_if_nothing_is_admitted_the_old_plan_goes_on(setting):
     before, clock = tick(setting, SLOW), gait.clock
     generator.reach = -1.0
     after = tick(setting, FAST, timing=Timing(20, 80, 0.03))
-    assert transition.share == 0.0
+    assert transition.fraction == 0.0
     assert list(after) == list(before)
     assert gait.clock == clock
 
@@ -99,7 +99,7 @@ def test_times_change_by_the_same_share(setting):
     generator.reach = 0.5 * (transition.landing.x + 3.0 * transition.landing.x) + 1e-9
     usual = gait.timing
     tick(setting, FAST, timing=Timing(14, 74, 0.025))
-    assert transition.share == 0.5
+    assert transition.fraction == 0.5
     assert gait.timing.single == round(0.5 * (usual.single + 74))
 
 
@@ -127,7 +127,7 @@ def test_a_walk_ends_by_the_shortest_footstep_from_which_it_can(setting):
     assert not transition.moving
     assert transition.strides == still
     assert 0.3 * fast <= transition.landing.x <= (0.3 + 0.5**BISECTIONS) * fast
-    assert any(ramps is one for one in generator.asked)
+    assert any(ramps is one for one in generator.arguments)
 
 
 def test_a_walk_that_cannot_end_yet_goes_on(setting):
@@ -146,7 +146,7 @@ def test_without_a_plan_to_carry_on_the_wanted_one_is_taken(setting):
     tick(setting, SLOW)
     generator.reach, generator.lost = -1.0, True
     tick(setting, FAST, timing=Timing(20, 80, 0.03))
-    assert transition.share == 1.0
+    assert transition.fraction == 1.0
     assert transition.landing.x == pytest.approx(0.3 * TIME)
     assert gait.timing == Timing(20, 80, 0.03)
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from walking.get_up.lying import Lying, Rest, lying_on, up_in_trunk
+from walking.get_up.lying import Lying, RestDetector, lying_on, up_in_trunk
 from walking.parameters import GetUpParameters
 
 ANGLE = st.floats(-pi, pi)
@@ -47,7 +47,7 @@ def test_the_mirror_swaps_left_and_right_alone(angle):
 
 def test_rest_takes_its_time_and_starts_anew_after_a_jolt():
     parameters = GetUpParameters(rest_rate=0.3, rest_time=0.05)
-    rest = Rest(parameters)
+    rest = RestDetector(parameters)
     slow, fast = (0.2, -0.2, 0.1), (0.0, 0.0, -0.4)
     assert [rest.update(slow) for _ in range(11)] == [False] * 9 + [True] * 2
     assert not rest.update(fast)
@@ -55,6 +55,6 @@ def test_rest_takes_its_time_and_starts_anew_after_a_jolt():
 
 
 def test_a_noisy_gyro_is_still_at_rest():
-    rng, rest = np.random.default_rng(0), Rest(GetUpParameters())
-    told = [rest.update(tuple(rng.normal(0.0, 0.01, 3))) for _ in range(60)]
-    assert told[-1]
+    rng, rest = np.random.default_rng(0), RestDetector(GetUpParameters())
+    expected = [rest.update(tuple(rng.normal(0.0, 0.01, 3))) for _ in range(60)]
+    assert expected[-1]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.parameters import CONTROL_PERIOD, PatternParameters
-from walking.pattern.dcm_tracker import dcm_reference
+from walking.pattern.dcm_pattern import dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.paper_pattern import PaperGenerator, zmp_function
 from walking.pattern.pendulum import PendulumState
@@ -38,10 +38,10 @@ def test_the_function_integrates_to_what_is_wanted(time, a, b):
 
 
 @given(times, st.floats(-0.03, 0.03), st.floats(0.0, 1.0), st.floats(-1.0, 1.0))
-def test_no_other_two_level_function_has_a_lower_peak(time, first, share, ratio):
+def test_no_other_two_level_function_has_a_lower_peak(time, first, fraction, ratio):
     """The function is the admissible one wherever any function is."""
     second, growth = first * ratio, exp(W * time)
-    z = exp(W * (1.0 - share) * time)
+    z = exp(W * (1.0 - fraction) * time)
     a = first * (growth - z) + second * (z - 1.0)
     b = first * (1.0 / z - 1.0 / growth) + second * (1.0 - 1.0 / z)
     assert abs(zmp_function(W, time, a, b).level) <= max(abs(first), abs(second)) + 1e-9

@@ -1,4 +1,4 @@
-"""The plan of the ZMP holds between the ticks, and whatever is asked."""
+"""Robust plans of the ZMP: inside the soles between ticks, too, and under any command."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
 from walking.foothold import Foothold
 from walking.parameters import CONTROL_PERIOD, PatternParameters, WalkingParameters
-from walking.pattern.dcm_tracker import dcm_reference
+from walking.pattern.dcm_pattern import dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp

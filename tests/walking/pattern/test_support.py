@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 
 from walking.body.sole import Sole
 from walking.foothold import Foothold
-from walking.pattern.support import Footing, edges, support_polygon, support_region
+from walking.pattern.support import SupportPolygon, edges, support_polygon, support_region
 from walking.pattern.support_kernel import depth
 
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
@@ -53,9 +53,9 @@ def test_clipping_twice_changes_nothing(x, y):
 def test_load_share_runs_from_one_foot_to_the_other():
     left = Foothold(True, 0.0, 0.042, 0.0)
     region = support_region(SOLE, RIGHT, left, MARGIN)
-    assert region.share(0.01, -0.042) == pytest.approx(0.0)
-    assert region.share(0.01, 0.0) == pytest.approx(0.5)
-    assert region.share(0.01, 0.2) == 1.0
+    assert region.load_fraction(0.01, -0.042) == pytest.approx(0.0)
+    assert region.load_fraction(0.01, 0.0) == pytest.approx(0.5)
+    assert region.load_fraction(0.01, 0.2) == 1.0
 
 
 @given(coordinates, coordinates, st.floats(-0.1, 0.1), st.floats(-0.7, 0.7))
@@ -83,14 +83,13 @@ def test_the_polygon_of_one_foot_is_its_sole():
     assert centre == pytest.approx([0.2 + 0.01 * np.cos(0.4), -0.1 + 0.01 * np.sin(0.4)])
 
 
-def test_a_footing_follows_its_feet():
-    footing = Footing(SOLE, (RIGHT, RIGHT))
+def test_the_support_polygon_follows_its_feet():
+    polygon = SupportPolygon(SOLE, (RIGHT, RIGHT))
     left = Foothold(True, 0.0, 0.042, 0.0)
     for feet in ((RIGHT, left), (left, left), (RIGHT, RIGHT)):
-        footing.stand(feet)
-        assert footing.polygon() == support_polygon(SOLE, *feet)
-        assert footing.depth(0.02, 0.01) == depth(edges(footing.polygon()), 0.02, 0.01)
+        polygon.update(feet)
+        assert polygon.depth(0.02, 0.01) == depth(edges(support_polygon(SOLE, *feet)), 0.02, 0.01)
         for margin in (0.004, 0.01):
             np.testing.assert_array_equal(
-                footing.region(margin).row, support_region(SOLE, *feet, margin).row
+                polygon.region(margin).row, support_region(SOLE, *feet, margin).row
             )

@@ -18,7 +18,7 @@ def test_compiled_it_is_what_it_says(plainly, seed):
     ways = np.roll(corners, -1, axis=0) - corners
     edges = np.column_stack([corners, ways, np.hypot(*ways.T)])
     x, y = rng.normal(0.0, 0.1, 2).tolist()
-    for name, table in (("share", region), ("clip", region), ("depth", edges)):
+    for name, table in (("fraction", region), ("clip", region), ("depth", edges)):
         assert getattr(support_kernel, name)(table, x, y) == plainly(
             support_kernel, name, table, x, y
         )

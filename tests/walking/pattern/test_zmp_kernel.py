@@ -13,7 +13,7 @@ from walking.parameters import CONTROL_PERIOD
 from walking.pattern import zmp_kernel
 from walking.pattern.lipm import Lipm
 from walking.pattern.ramps import ZmpRamp, table_of
-from walking.pattern.zmp_kernel import CELL, limit, place, sides, solve
+from walking.pattern.zmp_kernel import CELL, limit, set_points, sides, solve
 
 NOMINAL = (0.005, -0.003)
 BOUNDS = (-0.04, 0.04, -0.02, 0.02)
@@ -37,7 +37,7 @@ class Fit:
 
     def points(self):
         knots = np.zeros((self.weights.size, 3))
-        place(self.table, self.starts, self.weights, self.dual, knots)
+        set_points(self.table, self.starts, self.weights, self.dual, knots)
         return knots[:, 1:].tolist()
 
 
@@ -210,8 +210,8 @@ def reference(rng, *, double, steps):
     feet, turn = [], 0.0
     for k in range(steps + 2):
         turn += rng.uniform(-0.2, 0.2)
-        place = (0.06 * k + rng.uniform(-0.01, 0.01), 0.042 * (-1.0) ** k)
-        feet.append(Foothold(k % 2 == 0, *place, turn))
+        at = (0.06 * k + rng.uniform(-0.01, 0.01), 0.042 * (-1.0) ** k)
+        feet.append(Foothold(k % 2 == 0, *at, turn))
     points = [(f.x + 0.01 * np.cos(f.yaw), f.y + 0.01 * np.sin(f.yaw)) for f in feet]
     left = int(rng.integers(1, 58))
     ramps = [ZmpRamp(left, *points[1], *points[1], (feet[1], feet[1]))]
@@ -232,12 +232,12 @@ def problem(seed):
     double, steps = bool(rng.integers(2)), int(rng.integers(1, 5))
     ramps = reference(rng, double=double, steps=steps)
     table = table_of(ramps)
-    wh = LIPM.omega * CONTROL_PERIOD
-    x, y = zmp_kernel.dcm(table, wh)
+    x, y = zmp_kernel.dcm(table, LIPM.omega * CONTROL_PERIOD)
     off = rng.uniform(-0.006, 0.006, 4)
     zmp = (ramps[0].ax + 0.1 * off[0], ramps[0].ay + 0.1 * off[1])
-    pendulum = (x - 0.02 + off[0], y + 0.01 + off[1], 0.02 + off[2], -0.01 + off[3], *zmp)
-    return ramps, (table, pendulum, SOLE, wh, RATE, START)
+    speed = LIPM.omega * (0.02 + off[2]), LIPM.omega * (-0.01 + off[3])
+    pendulum = (x - 0.02 + off[0], y + 0.01 + off[1], *speed, *zmp)
+    return ramps, (table, pendulum, SOLE, LIPM.tick, RATE, START)
 
 
 def moved(dcm, before, after, ticks):
@@ -254,7 +254,8 @@ def test_along_the_knots_the_pendulum_comes_to_the_reference(seed):
     if not solved:
         return
     x, y, vx, vy, *zmp = arguments[1]
-    dcm, now, ticks = np.array([x + vx, y + vy]), np.array(zmp), 0.0
+    w = LIPM.omega
+    dcm, now, ticks = np.array([x + vx / w, y + vy / w]), np.array(zmp), 0.0
     for knot in knots:
         dcm, now = moved(dcm, now, knot[1:], knot[0]), knot[1:]
         ticks += knot[0]

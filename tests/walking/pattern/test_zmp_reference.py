@@ -31,18 +31,18 @@ def test_it_turns_with_the_foot():
     )
 
 
-def onwards(steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
+def plan_walk(steps, *, ends, zmp=(0.0, 0.0), left=(0, 30)):
     table = np.array([step.row for step in steps])
     ticks = (*left, TIMING.double, TIMING.single, REFERENCE.stop)
-    spot = REFERENCE.spot
-    return Ramps(foothold_kernel.ramps(RIGHT.row, LEFT.row, table, zmp, ticks, spot, ends))
+    zmp_offset = REFERENCE.zmp_offset
+    return Ramps(foothold_kernel.ramps(RIGHT.row, LEFT.row, table, zmp, ticks, zmp_offset, ends))
 
 
 @pytest.mark.parametrize("ends", [False, True])
 @pytest.mark.parametrize("left", [(0, 30), (5, 54)])
 def test_it_goes_from_foot_to_foot_without_jumps(ends, left):
     steps = [RIGHT, Foothold(True, 0.1, 0.042, 0.0), Foothold(False, 0.1, -0.042, 0.0)]
-    ramps = onwards(steps, ends=ends, zmp=(0.01, 0.02), left=left)
+    ramps = plan_walk(steps, ends=ends, zmp=(0.01, 0.02), left=left)
     start = (0.01, 0.02) if left[0] else REFERENCE.under(LEFT)
     assert (ramps[0].ax, ramps[0].ay) == start
     assert all((a.bx, a.by) == (b.ax, b.ay) for a, b in pairwise(ramps))
@@ -66,12 +66,12 @@ def test_under_a_foot_it_is_ahead_of_the_ankle_and_inward():
 
 
 def test_each_step_takes_its_double_and_its_single_support():
-    ramps = onwards([RIGHT], ends=False)
+    ramps = plan_walk([RIGHT], ends=False)
     assert [r.ticks for r in ramps] == [30, 14, 54]
     assert ramps[0].feet == (LEFT, LEFT)
     assert ramps[1].feet == (LEFT, RIGHT)
     assert ramps.goal == REFERENCE.under(LEFT)
-    last = onwards([RIGHT], ends=True, zmp=(0.0, 0.01), left=(3, 54))
+    last = plan_walk([RIGHT], ends=True, zmp=(0.0, 0.01), left=(3, 54))
     assert [r.ticks for r in last] == [3, 54, REFERENCE.stop]
     assert last[0].feet == (RIGHT, LEFT)
     assert last[2].feet == (LEFT, RIGHT)

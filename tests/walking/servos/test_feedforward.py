@@ -74,9 +74,9 @@ def test_shared_loads_put_the_zmp_under_either_sole(robot):
 
 def balanced(robot, right_load, shift, gyro=(0.0, 0.0, 0.0)):
     """What the ankles' task adds to the offsets."""
-    asked = (robot.ready, ORIGIN, SOLES, right_load, (0.0, 0.0))
-    without = feed(robot).offsets(*asked, task=STILL)
-    return feed(robot).offsets(*asked, task=((0.0, 0.0), shift, gyro)) - without
+    arguments = (robot.ready, ORIGIN, SOLES, right_load, (0.0, 0.0))
+    without = feed(robot).offsets(*arguments, task=STILL)
+    return feed(robot).offsets(*arguments, task=((0.0, 0.0), shift, gyro)) - without
 
 
 def test_ankle_torque_matches_the_shift_of_the_zmp(robot):

@@ -57,6 +57,6 @@ def test_compiled_it_is_what_it_says(plainly, drawn):
     law = np.array([6.0, 60.0, CONTROL_PERIOD])
     for call in (head_kernel.advance, lambda *a: plainly(head_kernel, "advance", *a)):
         position, velocity = np.array(drawn[:2]), np.array(drawn[2:4])
-        told = call(position, velocity, tuple(drawn[4:]), limits, law)
-        outcomes.append([*told, *position, *velocity])
+        expected = call(position, velocity, tuple(drawn[4:]), limits, law)
+        outcomes.append([*expected, *position, *velocity])
     assert outcomes[0] == outcomes[1]

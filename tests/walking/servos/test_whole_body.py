@@ -93,7 +93,7 @@ def test_the_servos_are_told_of_the_pendulum_s_acceleration(robot, body):
     expected = FeedForward(robot, PARAMETERS.stabilizer, height).offsets(
         targets.position,
         whole.pelvis,
-        gait.spots,
+        gait.foot_zmps,
         0.5,
         (w2 * 0.02, -w2 * 0.005),
         task=((0.0, 0.0), NONE, STILL),

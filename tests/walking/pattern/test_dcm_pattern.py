@@ -4,7 +4,7 @@ import pytest
 
 from walking.body.sole import Sole
 from walking.foothold import Foothold
-from walking.pattern.dcm_tracker import DcmTracker, dcm_reference
+from walking.pattern.dcm_pattern import DcmGenerator, dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
@@ -49,7 +49,7 @@ def test_dcm_reference_forgets_the_far_future():
 def test_a_pendulum_on_the_dcm_is_walked_along_the_reference():
     x, y = dcm_reference(LIPM, RAMPS)
     state = PendulumState(x, y)
-    DcmTracker(LIPM, 2.0).follow(state, RAMPS, BOTH)
+    DcmGenerator(LIPM, 2.0).advance(state, RAMPS, BOTH)
     first, ticks = RAMPS[0], RAMPS[0].ticks
     # Held for a tick, the ZMP is that of the tick's middle.
     assert state.zmp_x == pytest.approx(first.ax + 0.5 / ticks * (first.bx - first.ax))
@@ -68,7 +68,7 @@ def test_a_pendulum_on_the_dcm_is_walked_along_the_reference():
 def test_an_error_of_the_dcm_shrinks_by_the_gain(gain):
     w = LIPM.omega
     state = PendulumState(0.012, -0.001, -0.001 * w, 0.002 * w)  # its DCM is off by 1 mm
-    DcmTracker(LIPM, gain).advance(state, (0.01, 0.0), (0.01, 0.0), BOTH)
+    DcmGenerator(LIPM, gain).track(state, (0.01, 0.0), (0.01, 0.0), BOTH)
     growth = LIPM.ramp(1).growth
     left = growth - gain * (growth - 1.0)
     assert state.x + state.vx / w - 0.01 == pytest.approx(0.001 * left)

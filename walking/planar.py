@@ -1,0 +1,28 @@
+"""Rotations and frames of the plane, SE(2)."""
+
+from math import cos, sin
+
+Point = tuple[float, float]
+"""x, y [m]."""
+
+Frame = tuple[float, float, float]
+"""x, y [m] of the origin and yaw [rad]."""
+
+
+def rotate(yaw: float, x: float, y: float) -> Point:
+    """Turn a vector by an angle [rad]."""
+    c, s = cos(yaw), sin(yaw)
+    return c * x - s * y, s * x + c * y
+
+
+def rotate_back(yaw: float, x: float, y: float) -> Point:
+    """Express a vector in axes turned by an angle [rad]."""
+    c, s = cos(yaw), sin(yaw)
+    return c * x + s * y, c * y - s * x
+
+
+def from_frame(frame: Frame, x: float, y: float) -> Point:
+    """Express a point of a frame in the parent frame [m]."""
+    ox, oy, yaw = frame
+    c, s = cos(yaw), sin(yaw)
+    return ox + c * x - s * y, oy + s * x + c * y
