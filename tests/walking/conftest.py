@@ -82,9 +82,14 @@ class IdealBody:
         )
 
 
+@pytest.fixture(scope="session")
+def make_body(robot):
+    return lambda stance=0: IdealBody(robot, stance)
+
+
 @pytest.fixture
-def ideal_body(robot) -> IdealBody:
-    return IdealBody(robot)
+def ideal_body(make_body) -> IdealBody:
+    return make_body()
 
 
 @pytest.fixture(scope="session")

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from walking.body.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
+from walking.body.joints import HEAD
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine
-from walking.footsteps.planner import STANCE_TURN
+from walking.footsteps.planner import STANCE_YAW_TOLERANCE
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.phase import Phase
 
@@ -97,17 +97,7 @@ def test_it_stops_with_parallel_feet(robot, ideal_body, generator):
     assert np.hypot(support.x - other.x, support.y - other.y) == pytest.approx(
         2.0 * WalkingParameters().gait.half_stance, abs=1e-3
     )
-    assert support.yaw == pytest.approx(other.yaw, abs=STANCE_TURN)
-
-
-def test_mirrored_commands_give_the_mirrored_motion(robot, ideal_body):
-    body = type(ideal_body)(robot, stance=1)
-    _, left = run(robot, ideal_body, always(0.12, 0.05, 0.4), 3.0)
-    _, right = run(robot, body, always(0.12, -0.05, -0.4), 3.0)
-    for start in (0, 26):
-        a, b = left[:, start : start + 26], right[:, start : start + 26]
-        np.testing.assert_allclose(b[:, RIGHT_LEG], a[:, LEFT_LEG] * MIRROR_LEG, atol=1e-7)
-        np.testing.assert_allclose(b[:, RIGHT_ARM], a[:, LEFT_ARM] * MIRROR_ARM, atol=1e-6)
+    assert support.yaw == pytest.approx(other.yaw, abs=STANCE_YAW_TOLERANCE)
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

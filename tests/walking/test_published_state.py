@@ -12,6 +12,7 @@ from walking.body.odometry import Odometry
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
 from walking.gait.gait import Gait
+from walking.gait.swing_foot_kernel import HEIGHT
 from walking.parameters import WalkingParameters
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.support import SupportPolygon
@@ -84,6 +85,7 @@ def test_the_support_foot_is_first_and_where_odometry_sees_it(robot, gait):
     assert (first.x, first.y, first.yaw) == pytest.approx((LEFT.x, LEFT.y, LEFT.yaw))
     assert [foot.left for foot in plan.footsteps[:4]] == [True, False, True, False]
     assert plan.balance.feet[0, [0, 1, 3]] == pytest.approx((LEFT.x, LEFT.y, LEFT.yaw))
+    assert plan.balance.feet[:, 2].tolist() == gait.feet[:, HEIGHT].tolist()
     assert plan.com == pytest.approx(BODY.com[:2])
 
 

@@ -4,7 +4,7 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.body import estimation_kernel
@@ -37,38 +37,6 @@ class Tilt:
 
 def follow(error, measured, zmp_shift=(0.0, 0.0), slip=(0.0, 0.0)):
     estimation_kernel.filter_error(error, measured, zmp_shift, slip, FILTER, CONTROL_PERIOD)
-
-
-@settings(max_examples=30)
-@given(SEEDS)
-def test_compiled_it_is_what_it_says(plainly, seed):
-    """A few ticks of everything, feet loaded and unloaded."""
-    outcomes = []
-    for call in (
-        estimation_kernel.estimate,
-        lambda *a: plainly(estimation_kernel, "estimate", *a),
-    ):
-        rng = np.random.default_rng(seed)
-        tilt, odometry, error = np.zeros(3), np.zeros(20), np.zeros(5)
-        error[4] = -1.0
-        result, rows = np.zeros(24), []
-        for _ in range(4):
-            orientation = np.array([1.0, *rng.normal(0.0, 0.05, 3)])
-            reading = (
-                rng.uniform(-0.5, 0.5, 26),
-                np.maximum(rng.normal(4.0, 6.0, (2, 4)), 0.0),
-                orientation / np.linalg.norm(orientation),
-                rng.normal(0.0, 0.3, 3),
-            )
-            feet = rng.uniform(-0.1, 0.1, (2, 4))
-            plan = (*rng.uniform(-0.05, 0.05, 10).tolist(), rng.uniform())
-            com, states = rng.normal(0.0, 0.05, 3), (tilt, odometry, error)
-            stepping = bool(rng.integers(2))
-            rest = (*states, LEGS, BODY, GROWTH, FILTER, feet, plan, stepping, CONTROL_PERIOD)
-            expected = call(*reading, com, *rest, result)
-            rows += [*result, *odometry, *error, *(v for part in expected for v in part)]
-        outcomes.append(rows)
-    np.testing.assert_allclose(*outcomes, rtol=1e-10, atol=1e-12)
 
 
 def quaternion(roll, pitch, yaw):

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.body.sole import Sole
@@ -50,30 +50,3 @@ def test_each_foothold_is_the_stride_of_the_one_before(seed, moving):
     assert ends == (not moving and len(steps) < 4)
     if ends:
         assert PLANNER.parallel(*feet[-2:])
-
-
-@settings(max_examples=20)
-@given(st.integers(0, 10**6), st.booleans())
-def test_compiled_they_are_what_they_say(plainly, seed, ends):
-    rng, support, landing, strides = draw(seed)
-    arguments = arguments(support, landing, strides, not ends)
-    steps, over = foothold_kernel.sequence(*arguments)
-    plain, plainly_over = plainly(foothold_kernel, "sequence", *arguments)
-    np.testing.assert_array_equal(steps, plain)
-    assert over == plainly_over
-    swing = Foothold(not support.left, *rng.uniform(-1.0, 1.0, 3).tolist())
-    arguments = (
-        swing.row,
-        support.row,
-        steps,
-        (0.1, 0.2),
-        (int(seed % 2), 30, 10, 58, 60),
-        ZMP_OFFSET,
-        over,
-    )
-    result = foothold_kernel.ramps(*arguments)
-    np.testing.assert_array_equal(result, plainly(foothold_kernel, "ramps", *arguments))
-    chain = arguments(support, landing, strides, not ends)[1:]
-    both = foothold_kernel.plan_walk(swing.row, support.row, *chain, (0.1, 0.2), *arguments[4:6])
-    np.testing.assert_array_equal(both[0], steps)
-    np.testing.assert_array_equal(both[1], result)

@@ -16,12 +16,6 @@ velocities = st.tuples(st.floats(-0.5, 0.5), st.floats(-0.3, 0.3), st.floats(-2.
 
 
 @given(velocities)
-def test_compiled_it_is_what_it_says(plainly, velocity):
-    arguments = (velocity, TIME, LIMITS, BUILD)
-    assert stride_kernel.strides(*arguments) == plainly(stride_kernel, "strides", *arguments)
-
-
-@given(velocities)
 def test_the_other_way_round_the_feet_change_places(velocity):
     vx, vy, wz = velocity
     here, there, moved = stride_kernel.strides(velocity, TIME, LIMITS, BUILD)

@@ -28,11 +28,11 @@ def test_the_swing_fills_its_window_of_single_support():
 @pytest.mark.parametrize("elapsed", [2, 20, 30])
 def test_a_swing_retimed_goes_on_from_where_it_is_and_has_time_to_come_down(elapsed, ticks):
     single = WINDOW.single_support(60)
-    anew = WINDOW.retimed(single, elapsed, ticks)
-    assert anew.phase(elapsed) == single.phase(elapsed)
-    assert anew.phase(anew.last) == 1.0
-    assert anew.last >= elapsed + WINDOW.shortest
-    assert anew.ticks == ticks or anew.last == elapsed + WINDOW.shortest
+    retimed = WINDOW.retimed(single, elapsed, ticks)
+    assert retimed.phase(elapsed) == single.phase(elapsed)
+    assert retimed.phase(retimed.last) == 1.0
+    assert retimed.last >= elapsed + WINDOW.min_ticks
+    assert retimed.ticks == ticks or retimed.last == elapsed + WINDOW.min_ticks
 
 
 def test_a_swing_can_be_retimed_again():

@@ -36,7 +36,7 @@ def walk(velocity, stop_at, *, selective):
         command = VelocityCommand(*velocity) if tick < stop_at else VelocityCommand()
         if tick == stop_at:
             at_stop = gait.completed
-        steering.follow(command, settled=True, balanced=True, fraction=1.0)
+        steering.follow(command, settled=True, balanced=True, speed_ratio=1.0)
         gait.retime(steering.next_timing(gait.timing, stepping=gait.stepping))
         wish = steering.strides(STILL)
         if gait.adjustable:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from walking.gait import swing_foot_kernel
@@ -20,23 +20,6 @@ def run(start, targets):
         swing_foot_kernel.advance(feet, 0.9, 1, landing, left, (0.02, 0.5), CONTROL_PERIOD)
         rows.append(feet[1, [0, 4, 7]])
     return np.array(rows)
-
-
-@settings(max_examples=30)
-@given(st.integers(0, 10**6), st.integers(-1, 1))
-def test_compiled_it_is_what_it_says(plainly, seed, swing):
-    outcomes = []
-    for call in (
-        swing_foot_kernel.advance,
-        lambda *a: plainly(swing_foot_kernel, "advance", *a),
-    ):
-        rng = np.random.default_rng(seed)
-        feet = rng.normal(0.0, 0.1, (2, WIDTH))
-        for left in (9, 3, 2, 1):
-            landing, lift = tuple(rng.normal(0.0, 0.1, 3).tolist()), (0.03, rng.uniform())
-            call(feet, 0.9, swing, landing, left, lift, CONTROL_PERIOD)
-        outcomes.append(feet)
-    np.testing.assert_array_equal(*outcomes)
 
 
 def test_replanning_a_fixed_target_is_the_minimum_jerk_quintic():

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from walking.gait import swing_kernel
 
@@ -18,28 +16,6 @@ def draw(seed, count):
     support, origin, landing = map(tuple, feet[:3].tolist())
     now, later = (int(rng.integers(-40, 20)), 0.02, count > 0), (40, 68, 0.025)
     return rng, ((support, origin, landing), feet[3:], now, later, ZMP_OFFSET)
-
-
-@settings(max_examples=30)
-@given(st.integers(0, 10**6), st.integers(0, 4))
-def test_compiled_it_is_what_it_says(plainly, seed, count):
-    rng, swings = draw(seed, count)
-    profiles = (rng.normal(0.0, 100.0, (40, 6)), rng.normal(0.0, 100.0, (45, 6)))
-    law = np.array([7e-4, 0.012, 3e-4, 7.2, 0.005])
-    state, outcomes = rng.normal(0.0, 0.01, 4), []
-    for call in (swing_kernel.react, lambda *a: plainly(swing_kernel, "react", *a)):
-        own = state.copy()
-        result = call(*swings, *profiles, law, own)
-        outcomes.append([*np.ravel(result), *own])
-    np.testing.assert_allclose(*outcomes, rtol=1e-12, atol=1e-15)
-
-
-@settings(max_examples=20)
-@given(st.integers(0, 10**6), st.integers(1, 4))
-def test_compiled_the_swings_are_what_they_say(plainly, seed, count):
-    arguments = draw(seed, count)[1]
-    result = swing_kernel.swings(*arguments)
-    np.testing.assert_allclose(result, plainly(swing_kernel, "swings", *arguments), atol=1e-15)
 
 
 def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
@@ -58,12 +34,6 @@ def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
         assert complex(*row[8:]) == pytest.approx(under, abs=1e-15)
     held = swing_kernel.swings(feet, steps, (-3, 0.02, False), later, zmp_offset)
     np.testing.assert_array_equal(held, table[1:])
-
-
-def test_compiled_a_profile_is_what_it_says(plainly):
-    arguments = (44, (1.04, 0.02, 0.02), 0.005)
-    result, plain = swing_kernel.profile(*arguments), plainly(swing_kernel, "profile", *arguments)
-    np.testing.assert_allclose(result, plain, rtol=1e-12, atol=1e-12)
 
 
 def test_a_profile_is_that_of_minimum_jerk_and_a_smooth_bump():

@@ -285,17 +285,6 @@ def test_knots_of_single_support_lie_in_their_sole(seed):
         assert abs(v) <= SOLE[2] + 1e-12
 
 
-@settings(max_examples=25)
-@given(st.integers(0, 10**6))
-def test_compiled_it_is_what_it_says(plainly, seed):
-    arguments = problem(seed)[1]
-    solved, dual, evaluations, knots = zmp_kernel.plan(*arguments)
-    *plain, points = plainly(zmp_kernel, "plan", *arguments)
-    assert [solved, evaluations] == [plain[0], plain[2]]
-    assert dual == pytest.approx(plain[1], rel=1e-9, abs=1e-9)
-    np.testing.assert_allclose(knots, points, atol=1e-12)
-
-
 def test_a_plan_is_followed_knot_by_knot_and_the_pendulum_obeys():
     knots = np.array([[2.0, 0.03, -0.01], [1.0, 0.01, 0.02]])
     zmps = [(0.02, -0.005), (0.03, -0.01), (0.01, 0.02), (0.01, 0.02)]
@@ -315,14 +304,3 @@ def test_a_plan_is_followed_knot_by_knot_and_the_pendulum_obeys():
             )
             assert solution.y[:, -1] == pytest.approx(now[axis:4:2], abs=1e-11)
     assert begin == len(knots)
-
-
-@given(st.integers(0, 10**6), st.integers(0, 2))
-def test_compiled_a_plan_is_followed_as_it_says(plainly, seed, begin):
-    outcomes = []
-    for call in (zmp_kernel.follow, lambda *a: plainly(zmp_kernel, "follow", *a)):
-        rng = np.random.default_rng(seed)
-        knots, now = rng.uniform(-0.1, 0.1, (2, 3)), tuple(rng.uniform(-0.1, 0.1, 6).tolist())
-        knots[:, 0] = rng.integers(1, 3, 2)
-        outcomes.append((call(knots, begin, now, LIPM.tick), knots.tolist()))
-    assert outcomes[0] == outcomes[1]

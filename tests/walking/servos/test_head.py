@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from walking.body import head_kernel
 from walking.command import HeadTarget
 from walking.parameters import CONTROL_PERIOD, HeadParameters
 from walking.servos.head import Head
@@ -49,14 +48,3 @@ def test_left_and_right_mirror():
     left = follow([HeadTarget(0.7, 0.1)] * 30)
     right = follow([HeadTarget(-0.7, 0.1)] * 30)
     np.testing.assert_allclose(left[:, 0], -right[:, 0])
-
-
-@given(st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6))
-def test_compiled_it_is_what_it_says(plainly, drawn):
-    outcomes, limits = [], np.array(LIMITS)
-    law = np.array([6.0, 60.0, CONTROL_PERIOD])
-    for call in (head_kernel.advance, lambda *a: plainly(head_kernel, "advance", *a)):
-        position, velocity = np.array(drawn[:2]), np.array(drawn[2:4])
-        expected = call(position, velocity, tuple(drawn[4:]), limits, law)
-        outcomes.append([*expected, *position, *velocity])
-    assert outcomes[0] == outcomes[1]
