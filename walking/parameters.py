@@ -1,14 +1,14 @@
-"""Every number of the walking engine that is a choice, not a property of the robot.
+"""Parameters of the walking engine.
 
-The defaults were chosen for HSR-VIII in full physics with ``scripts/walk_study.py``. Every
-number carries what it goes with from robot to robot; `walking.scaling.parameters_for`
-makes of the defaults those of another robot.
+The defaults were tuned for HSR-VIII in full physics with ``scripts/walk_study.py``. Each has a
+dimension, by which `walking.scaling.parameters_for` scales it to another robot. Fields with bounds
+and a docstring are public keys of a scenario; the others are constants.
 """
 
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Interval
+from annotated_types import Interval
 
 from walking.dimension import (
     ACCELERATION,
@@ -40,245 +40,167 @@ class GaitParameters:
     """Shape and timing of a footstep."""
 
     footstep_time: Annotated[float, Interval(ge=0.01, le=10.0), TIME] = 0.34
-    """Duration of a footstep, double support included, while that keeps it short enough [s]."""
+    """Duration of a footstep, double support included; shorter if the footsteps would exceed their
+    limits [s]."""
     min_footstep_time: Annotated[float, Interval(ge=0.01, le=10.0), TIME] = 0.26
-    """Duration of a footstep at the quickest [s]."""
-    double_support: Annotated[float, Interval(gt=0.0, lt=1.0), NUMBER] = 0.15
-    """Fraction of the footstep in double support [1]."""
-    start_time: Annotated[float, Gt(0.0), TIME] = 0.3
-    """Double support before the first footstep [s]."""
-    stop_time: Annotated[float, Gt(0.0), TIME] = 0.3
-    """Time to bring the ZMP back between the feet after the last footstep [s]."""
-    settle_time: Annotated[float, Ge(0.0), TIME] = 0.5
-    """Standing before the first command is obeyed [s]."""
-    half_stance: Annotated[float, Gt(0.0), STANCE] = 0.042
-    """Lateral distance of a foot from the middle of the stance [m]."""
+    """Minimum duration of a footstep [s]."""
+    double_support: Annotated[float, NUMBER] = 0.15  # fraction of the footstep [1]
+    start_time: Annotated[float, TIME] = 0.3  # double support before the first footstep [s]
+    stop_time: Annotated[float, TIME] = 0.3  # double support after the last footstep [s]
+    settle_time: Annotated[float, TIME] = 0.5  # standing before the first command is followed [s]
+    half_stance: Annotated[float, STANCE] = 0.042  # foot to the middle of the stance, lateral [m]
     swing_height: Annotated[float, Interval(ge=0.001, le=1.0), LENGTH] = 0.025
     """Height of the swing foot at mid-swing [m]."""
-    swing_height_rate: Annotated[float, Gt(0.0), SPEED] = 0.2
-    """Fastest change of that height while the foot is in the air [m/s]."""
-    swing_start: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.05
-    """Fraction of single support after which the foot lifts [1]."""
-    swing_end: Annotated[float, Interval(gt=0.0, le=1.0), NUMBER] = 0.97
-    """Fraction of single support after which the foot is down [1]."""
-    landing_freeze: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.8
-    """Fraction of the swing after which the landing no longer moves [1]."""
-    landing_speed: Annotated[float, Gt(0.0), SPEED] = 4.0
-    """Fastest move of the landing while the foot is in the air [m/s]."""
-    landing_turn: Annotated[float, Gt(0.0), RATE] = 5.0
-    """Fastest turn of the landing while the foot is in the air [rad/s]."""
-    min_swing_time: Annotated[float, Gt(0.0), TIME] = 0.05
-    """Time that a foot in the air keeps to come down when a footstep is cut short [s]."""
-    swing_speed: Annotated[float, Gt(0.0), SPEED] = 3.0
-    """Fastest swing of a foot that hurries to catch a fall [m/s]."""
-    capture_single: Annotated[float, Gt(0.0), TIME] = 0.12
-    """Shortest single support to catch a fall [s]."""
-    capture_double: Annotated[float, Gt(0.0), TIME] = 0.015
-    """Shortest double support to catch a fall [s]."""
-    capture_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.020
-    """What a footstep that catches a fall keeps for `foot_clearance`: the body is off its plan,
-    and a swing foot that meets the other one cannot catch it [m]."""
-    foot_clearance: Annotated[float, Ge(0.0), LENGTH] = 0.012
-    """Distance of every corner of a landing sole from the strip of the support foot [m]."""
-    preview_steps: Annotated[int, Gt(0)] = 4
-    """Footholds planned ahead [1]."""
+    swing_height_rate: Annotated[float, SPEED] = 0.2  # maximum change of it in the air [m/s]
+    swing_start: Annotated[float, NUMBER] = 0.05  # lift-off as a fraction of single support [1]
+    swing_end: Annotated[float, NUMBER] = 0.97  # touchdown as a fraction of single support [1]
+    landing_freeze: Annotated[float, NUMBER] = 0.8  # swing phase at which the landing is final [1]
+    landing_speed: Annotated[float, SPEED] = 4.0  # maximum change of the landing in the air [m/s]
+    landing_turn: Annotated[float, RATE] = 5.0  # maximum turn of the landing in the air [rad/s]
+    min_swing_time: Annotated[float, TIME] = 0.05  # of a foot in the air until touchdown [s]
+    swing_speed: Annotated[float, SPEED] = 3.0  # maximum speed of the foot in a capture step [m/s]
+    capture_single: Annotated[float, TIME] = 0.12  # minimum single support of a capture step [s]
+    capture_double: Annotated[float, TIME] = 0.015  # minimum double support of a capture step [s]
+    # `foot_clearance` of a capture step, with margin for the body off its plan [m]
+    capture_clearance: Annotated[float, LENGTH] = 0.020
+    # distance of every corner of a landing sole from the strip of the support foot [m]
+    foot_clearance: Annotated[float, LENGTH] = 0.012
+    preview_steps: int = 4  # planned footholds [1]
 
 
 @dataclass(frozen=True)
 class PatternParameters:
-    """The ZMP pattern and the point that follows it."""
+    """Pattern generator: ZMP and pendulum."""
 
     generator: Literal["dcm", "preview", "paper", "robust"] = "robust"
-    """Preview of the footholds by the DCM recursion or by Kajita's regulator; the modifiable
-    walking pattern of the paper, two-level ZMP functions in single support; or a plan whose ZMP
-    is inside the soles at all times, a command that does not allow one being altered."""
+    """Pattern generator: "dcm" tracks the DCM of the footholds, "preview" is Kajita's preview
+    control, "paper" the modifiable walking pattern with two-level ZMP functions, "robust" a plan
+    with the ZMP inside the soles at all times, which limits infeasible commands."""
     pelvis_height: Annotated[float, Interval(ge=0.02, le=5.0), LENGTH] = 0.204
     """Height of the hips while walking [m]."""
-    lipm_height: Annotated[float, Gt(0.0), HEIGHT] = 0.19
-    """Height of the pendulum that the pelvis follows; less than the height of the centre
-    of mass because half of the mass is in the legs [m]."""
-    zmp_forward: Annotated[float, LENGTH] = 0.0
-    """Where the ZMP is meant to be ahead of the middle of the sole [m]."""
-    zmp_inward: Annotated[float, STANCE] = 0.003
-    """Where the ZMP is meant to be inward of the ankle [m]."""
-    sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.005
-    """Distance that the planned ZMP keeps from the edge of the sole [m]."""
-    plan_margin: Annotated[float, Ge(0.0), LENGTH] = 0.018
-    """Distance that the robust plan's ZMP keeps from the edge of the sole, so that the ankles
-    have room beside it; undisturbed it is never less, else the sole's margin counts [m]."""
-    zmp_rate: Annotated[float, Gt(0.0), SOLE_SPEED] = 4.0
-    """Fastest move of the robust plan's ZMP in single support [m/s]."""
-    dcm_gain: Annotated[float, Gt(1.0), NUMBER] = 3.0
-    """ZMP moved per error of the planned DCM [1]."""
-    preview_time: Annotated[float, Gt(0.0), TIME] = 1.2
-    """Horizon of Kajita's regulator [s]."""
-    preview_weight: Annotated[float, Gt(0.0), CHANGE_WEIGHT] = 100.0
-    """Weight of the ZMP's change per tick in Kajita's regulator, that of its error one [1]."""
+    # height of the pendulum; below the centre of mass, since half of the mass is in the legs [m]
+    lipm_height: Annotated[float, HEIGHT] = 0.19
+    zmp_forward: Annotated[float, LENGTH] = 0.0  # ZMP ahead of the centre of the sole [m]
+    zmp_inward: Annotated[float, STANCE] = 0.003  # ZMP inward of the ankle [m]
+    sole_margin: Annotated[float, SOLE] = 0.005  # planned ZMP to the edge of the sole [m]
+    # the same of the robust plan while undisturbed, to leave room for the ankles [m]
+    plan_margin: Annotated[float, LENGTH] = 0.018
+    zmp_rate: Annotated[float, SOLE_SPEED] = 4.0  # maximum of the robust plan, single support [m/s]
+    dcm_gain: Annotated[float, NUMBER] = 3.0  # ZMP shift per error of the planned DCM [1]
+    preview_time: Annotated[float, TIME] = 1.2  # horizon of preview control [s]
+    # weight of the ZMP change per tick relative to the ZMP error in preview control [1]
+    preview_weight: Annotated[float, CHANGE_WEIGHT] = 100.0
 
 
 @dataclass(frozen=True)
 class EstimatorParameters:
-    """How far each sensor is trusted."""
+    """State estimation and detection of contacts and falls."""
 
-    tilt_gain: Annotated[float, Interval(gt=0.0, le=1.0), GAIN_PER_TICK] = 0.03
-    """Pull of the IMU's attitude on the integrated gyro, per tick [1]."""
-    acceleration_noise: Annotated[float, Gt(0.0), ACCELERATION] = 4.0
-    """Unknown acceleration of the centre of mass [m/s²]."""
-    position_noise: Annotated[float, Gt(0.0), LENGTH] = 0.0006
-    """Noise of the measured centre of mass [m]."""
-    contact_force: Annotated[float, Gt(0.0), FORCE] = 8.0
-    """Load from which a swinging foot has touched the floor [N]."""
-    contact_ticks: Annotated[int, Gt(0)] = 2
-    """Control ticks that the load must last [1]."""
-    contact_phase: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.55
-    """Fraction of the swing before which no touchdown is believed [1]."""
-    fall_tilt: Annotated[float, Gt(0.0), NUMBER] = 0.8
-    """Tilt of the trunk at which the robot believes that it has fallen [rad]."""
+    tilt_gain: Annotated[float, GAIN_PER_TICK] = 0.03  # complementary filter, per tick [1]
+    acceleration_noise: Annotated[float, ACCELERATION] = 4.0  # of the centre of mass [m/s²]
+    position_noise: Annotated[float, LENGTH] = 0.0006  # of the measured centre of mass [m]
+    contact_force: Annotated[float, FORCE] = 8.0  # load of a swing foot at touchdown [N]
+    contact_ticks: int = 2  # duration of that load in control ticks [1]
+    contact_phase: Annotated[float, NUMBER] = 0.55  # earliest swing phase of touchdown [1]
+    fall_tilt: Annotated[float, NUMBER] = 0.8  # tilt of the trunk that counts as a fall [rad]
 
 
 @dataclass(frozen=True)
 class OdometryParameters:
-    """How much of the robot's motion its dead reckoning does not see."""
+    """Unmeasured motion in dead reckoning."""
 
     forward_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0004
     """Random walk along the heading while stepping [m/√s]."""
     lateral_noise: Annotated[float, Interval(ge=0.0, le=1.0), DIFFUSION] = 0.0005
     """Random walk across the heading while stepping [m/√s]."""
     slip_ratio: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.5
-    """Unseen displacement per axis, by how far the feet slid against each other [1]."""
+    """Slip of the stance foot per axis, per relative slip of the feet in double support [1]."""
     yaw_drift: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.00095
     """Random walk of the IMU's yaw [rad/√s]."""
 
 
 @dataclass(frozen=True)
 class StabilizerParameters:
-    """Feedback and feed-forward on the servos' setpoints."""
+    """Balance feedback and servo feed-forward."""
 
-    dcm_rate: Annotated[float, Ge(0.0), RATE] = 4.24
-    """Pole at which the ankles make an error of the measured DCM fade; the gain follows from it,
-    the pendulum and the servos, see `pole_placement.dcm_gain` [1/s]."""
-    sole_margin: Annotated[float, Ge(0.0), SOLE] = 0.010
-    """Distance that the ZMP moved by the ankles keeps from the edge of the sole [m]."""
-    gyro_gain: Annotated[float, Ge(0.0), ANKLE_TIME] = 0.02
-    """Ankle setpoint per angular velocity of the trunk [s]."""
-    load_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
-    """Fraction of the planned joint torques fed forward [1]."""
-    inertia_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
-    """Fraction of the joints' planned acceleration in those torques [1]."""
-    max_inertia_acceleration: Annotated[float, Ge(0.0), RATE_CHANGE] = 300.0
-    """Largest acceleration of a joint in those torques [rad/s²]."""
-    velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 0.6
-    """Fraction of the servos' velocity lag fed forward, legs [1]."""
-    upper_velocity_gain: Annotated[float, Ge(0.0), NUMBER] = 1.0
-    """Fraction of the servos' velocity lag fed forward, head and arms [1]."""
-    capture_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.3
-    """DCM error left to the ankles, as a fraction of the ZMP room they have [1]."""
-    capture_forward: Annotated[float, Ge(0.0), LENGTH] = 0.19
-    """Largest move of a landing forward or backward to catch a fall [m]."""
-    capture_side: Annotated[float, Ge(0.0), LENGTH] = 0.13
-    """Largest move of a landing sideways to catch a fall [m]."""
-    tilt_gain: Annotated[float, Ge(0.0), NUMBER] = 0.7
-    """Fraction of the trunk's tilt taken out of the swing foot [1]."""
-    tilt_dead_zone: Annotated[float, Ge(0.0), NUMBER] = 0.019
-    """Tilt below which the swing foot ignores it [rad]."""
-    tilt_pull: Annotated[float, Interval(gt=0.0, le=1.0), GAIN_PER_TICK] = 0.3
-    """Fraction of the way per tick on which the swing foot's compensation follows [1]."""
-    tilt_decay: Annotated[float, Interval(ge=0.0, lt=1.0), DECAY_PER_TICK] = 0.85
-    """What is left per tick of the foot's compensation after touchdown [1]."""
-    contact_decay: Annotated[float, Interval(ge=0.0, lt=1.0), DECAY_PER_TICK] = 0.965
-    """What is left per tick of the height at which a foot touched down early [1]."""
-    max_slew_error: Annotated[float, Gt(0.0), LENGTH] = 0.03
-    """DCM error beyond which the velocity no longer changes [m]."""
-    slowdown_start_error: Annotated[float, Gt(0.0), LENGTH] = 0.015
-    """DCM error up to which the robot walks as fast as it is told [m]."""
-    slowdown_full_error: Annotated[float, Gt(0.0), LENGTH] = 0.04
-    """DCM error at which it walks slowest [m]."""
-    min_speed_ratio: Annotated[float, Interval(ge=0.0, le=1.0), NUMBER] = 0.3
-    """Fraction of the commanded velocity that is left then [1]."""
-    slowdown_time: Annotated[float, Gt(0.0), TIME] = 1.5
-    """Time constant with which a DCM error is forgotten [s]."""
-    step_error_ratio: Annotated[float, Gt(0.0), NUMBER] = 1.0
-    """DCM error, as a fraction of the ZMP room, at which a standing robot steps [1]."""
-    heading_gain: Annotated[float, Ge(0.0), RATE] = 2.0
-    """Turn rate per error of the heading [1/s]."""
-    max_heading_rate: Annotated[float, Ge(0.0), RATE] = 0.3
-    """Largest turn rate of the heading hold [rad/s]."""
-    speed_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.5
-    """Fraction of what two footsteps of a steady walk miss of its velocity that is made up for [1]."""
-    max_speed_correction: Annotated[float, Ge(0.0), SPEED] = 0.06
-    """Most that is made up for, forward and sideways [m/s]."""
-    max_steady_shift: Annotated[float, Ge(0.0), LENGTH] = 0.010
-    """Move of a landing for balance up to which a walk is steady: speed, heading and centre of
-    pressure are held over two of its footsteps [m]."""
-    com_offset_gain: Annotated[float, Interval(ge=0.0, lt=1.0), NUMBER] = 0.3
-    """Fraction of the centre of pressure's mean error over two footsteps by which the body moves
-    against it [1]."""
-    max_com_offset: Annotated[float, Ge(0.0), LENGTH] = 0.015
-    """Farthest that the body moves for it, forward and sideways [m]."""
-    max_com_offset_rate: Annotated[float, Ge(0.0), SPEED] = 0.01
-    """Fastest that it does [m/s]."""
+    # decay rate of the DCM error by the ankles; sets the gain, see `pole_placement.dcm_gain` [1/s]
+    dcm_rate: Annotated[float, RATE] = 4.24
+    sole_margin: Annotated[float, SOLE] = 0.010  # ZMP shifted by the ankles to the sole's edge [m]
+    gyro_gain: Annotated[float, ANKLE_TIME] = 0.02  # ankle setpoint per angular velocity [s]
+    load_gain: Annotated[float, NUMBER] = 1.0  # feed-forward of the planned joint torques [1]
+    inertia_gain: Annotated[float, NUMBER] = 1.0  # of the joint accelerations in these torques [1]
+    max_inertia_acceleration: Annotated[float, RATE_CHANGE] = 300.0  # in these torques [rad/s²]
+    velocity_gain: Annotated[float, NUMBER] = 0.6  # feed-forward of the servo lag, legs [1]
+    upper_velocity_gain: Annotated[float, NUMBER] = 1.0  # the same of head and arms [1]
+    capture_dead_zone: Annotated[float, NUMBER] = 0.3  # DCM error per ZMP margin of the sole [1]
+    capture_forward: Annotated[float, LENGTH] = 0.19  # maximum shift of a landing, forward [m]
+    capture_side: Annotated[float, LENGTH] = 0.13  # maximum shift of a landing, lateral [m]
+    tilt_gain: Annotated[float, NUMBER] = 0.7  # swing foot against the tilt of the trunk [1]
+    tilt_dead_zone: Annotated[float, NUMBER] = 0.019  # of that tilt [rad]
+    tilt_pull: Annotated[float, GAIN_PER_TICK] = 0.3  # filter gain of that correction [1]
+    tilt_decay: Annotated[float, DECAY_PER_TICK] = 0.85  # of it after touchdown, per tick [1]
+    contact_decay: Annotated[float, DECAY_PER_TICK] = 0.965  # height after early touchdown [1]
+    max_slew_error: Annotated[float, LENGTH] = 0.03  # DCM error that freezes the velocity [m]
+    slowdown_start_error: Annotated[float, LENGTH] = 0.015  # DCM error of full speed [m]
+    slowdown_full_error: Annotated[float, LENGTH] = 0.04  # DCM error of the minimum speed [m]
+    min_speed_ratio: Annotated[float, NUMBER] = 0.3  # of the commanded velocity [1]
+    slowdown_time: Annotated[float, TIME] = 1.5  # decay of the maximum DCM error [s]
+    step_error_ratio: Annotated[float, NUMBER] = 1.0  # DCM error per ZMP margin to step [1]
+    heading_gain: Annotated[float, RATE] = 2.0  # yaw rate per heading error [1/s]
+    max_heading_rate: Annotated[float, RATE] = 0.3  # of heading control [rad/s]
+    speed_gain: Annotated[float, NUMBER] = 0.5  # correction per mean speed error of a cycle [1]
+    max_speed_correction: Annotated[float, SPEED] = 0.06  # forward and lateral [m/s]
+    # capture shift of a landing below which a gait cycle is steady for the slow corrections [m]
+    max_steady_shift: Annotated[float, LENGTH] = 0.010
+    com_offset_gain: Annotated[float, NUMBER] = 0.3  # per mean CoP error of a cycle [1]
+    max_com_offset: Annotated[float, LENGTH] = 0.015  # forward and lateral [m]
+    max_com_offset_rate: Annotated[float, SPEED] = 0.01  # [m/s]
 
 
 @dataclass(frozen=True)
 class LimitParameters:
-    """What may be asked of the legs."""
+    """Limits of commands and footsteps."""
 
     vx: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.55
-    """Fastest walk forward [m/s]."""
+    """Maximum speed forward [m/s]."""
     vx_backward: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.45
-    """Fastest walk backward [m/s]."""
+    """Maximum speed backward [m/s]."""
     vy: Annotated[float, Interval(ge=0.001, le=50.0), SPEED] = 0.20
-    """Fastest walk sideways [m/s]."""
+    """Maximum speed sideways [m/s]."""
     wz: Annotated[float, Interval(ge=0.001, le=50.0), RATE] = 2.0
-    """Fastest turn [rad/s]."""
-    combined: Annotated[float, Gt(0.0), NUMBER] = 1.15
-    """Largest norm of the velocity with every component in units of its limit [1]."""
-    forward_acceleration: Annotated[float, Gt(0.0), ACCELERATION] = 0.6
-    """Change of the forward velocity [m/s²]."""
-    lateral_acceleration: Annotated[float, Gt(0.0), ACCELERATION] = 0.5
-    """Change of the lateral velocity [m/s²]."""
-    turn_acceleration: Annotated[float, Gt(0.0), RATE_CHANGE] = 3.3
-    """Change of the turn rate [rad/s²]."""
-    braking_time: Annotated[float, Gt(0.0), TIME] = 0.3
-    """Longest time to come to rest [s]."""
-    step_forward: Annotated[float, Gt(0.0), LENGTH] = 0.145
-    """Longest footstep forward or backward [m]."""
-    step_side: Annotated[float, Gt(0.0), LENGTH] = 0.12
-    """Widest opening footstep beyond the stance [m]."""
-    step_turn: Annotated[float, Gt(0.0), NUMBER] = 1.2
-    """Largest turn of an opening footstep [rad]."""
-    reach_forward: Annotated[float, Gt(0.0), LENGTH] = 0.20
-    """Semi-axis of the ellipse of reachable landings, forward [m]."""
-    reach_side: Annotated[float, Gt(0.0), LENGTH] = 0.12
-    """Semi-axis of the ellipse of reachable landings, sideways [m]."""
-    min_single: Annotated[float, Gt(0.0), TIME] = 0.18
-    """Shortest single support of a command state [s]."""
-    max_single: Annotated[float, Gt(0.0), TIME] = 0.6
-    """Longest single support of a command state [s]."""
-    max_double: Annotated[float, Gt(0.0), TIME] = 0.3
-    """Longest double support of a command state [s]."""
-    max_swing_height: Annotated[float, Gt(0.0), LENGTH] = 0.04
-    """Highest swing of a command state [m]."""
+    """Maximum yaw rate [rad/s]."""
+    combined: Annotated[float, NUMBER] = 1.15  # norm of the velocity relative to these limits [1]
+    forward_acceleration: Annotated[float, ACCELERATION] = 0.6  # [m/s²]
+    lateral_acceleration: Annotated[float, ACCELERATION] = 0.5  # [m/s²]
+    turn_acceleration: Annotated[float, RATE_CHANGE] = 3.3  # [rad/s²]
+    braking_time: Annotated[float, TIME] = 0.3  # maximum time to rest [s]
+    step_forward: Annotated[float, LENGTH] = 0.145  # footstep forward or backward [m]
+    step_side: Annotated[float, LENGTH] = 0.12  # opening footstep beyond the stance [m]
+    step_turn: Annotated[float, NUMBER] = 1.2  # turn of an opening footstep [rad]
+    reach_forward: Annotated[float, LENGTH] = 0.20  # semi-axis of the ellipse of landings [m]
+    reach_side: Annotated[float, LENGTH] = 0.12  # semi-axis of the ellipse of landings [m]
+    min_single: Annotated[float, TIME] = 0.18  # single support of a command state [s]
+    max_single: Annotated[float, TIME] = 0.6  # single support of a command state [s]
+    max_double: Annotated[float, TIME] = 0.3  # double support of a command state [s]
+    max_swing_height: Annotated[float, LENGTH] = 0.04  # of a command state [m]
 
 
 @dataclass(frozen=True)
 class HeadParameters:
-    """Pan and tilt."""
+    """Motion of pan and tilt."""
 
     max_rate: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE] = 6.0
-    """Fastest turn of the head, each axis [rad/s]."""
+    """Maximum rate of each axis [rad/s]."""
     max_acceleration: Annotated[float, Interval(ge=0.01, le=10_000.0), RATE_CHANGE] = 60.0
-    """Largest angular acceleration of the head, each axis [rad/s²]."""
+    """Maximum angular acceleration of each axis [rad/s²]."""
 
 
 @dataclass(frozen=True)
 class ArmParameters:
-    """The counter-swing of the arms."""
+    """Counter-swing of the arms."""
 
-    swing_gain: Annotated[float, PER_LENGTH] = 2.0
-    """Shoulder pitch per distance between the feet along the heading [rad/m]."""
-    max_swing: Annotated[float, Ge(0.0), NUMBER] = 0.35
-    """Largest swing from the ready posture [rad]."""
+    swing_gain: Annotated[float, PER_LENGTH] = 2.0  # pitch per distance of the feet [rad/m]
+    max_swing: Annotated[float, NUMBER] = 0.35  # from the ready posture [rad]
 
 
 @dataclass(frozen=True)
@@ -286,22 +208,15 @@ class GetUpParameters:
     """Getting up after a fall."""
 
     enabled: bool = False
-    """Whether a fallen robot gets up, so that the run goes on. Off, because a fall is to end a run
-    of the paper's experiment, not to cost it 10 to 25 s; falls count either way."""
-    max_attempts: Annotated[int, Ge(1)] = 6
-    """Motions that are tried, turning over and rising each for one, before it gives up [1]."""
-    max_joint_speed: Annotated[float, Gt(0.0), RATE] = 12.0
-    """Fastest turn of a joint on the way from posture to posture [rad/s]."""
-    time_scale: Annotated[float, Gt(0.0), TIME] = 1.0
-    """Factor on the durations of the motions [1]."""
-    rest_rate: Annotated[float, Gt(0.0), RATE] = 0.3
-    """Angular velocity of the trunk below which it is at rest, each axis [rad/s]."""
-    rest_time: Annotated[float, Gt(0.0), TIME] = 0.2
-    """Time for which it must be [s]."""
-    displacement_sigma: Annotated[float, Ge(0.0), LENGTH] = 0.2
-    """How far a fall and getting up move the robot unseen, standard deviation per axis [m]."""
-    yaw_sigma: Annotated[float, Ge(0.0), NUMBER] = 0.02
-    """How much of the turn meanwhile the IMU misses, standard deviation [rad]."""
+    """Whether a fallen robot gets up, which takes 10 to 25 s. Off by default: a fall ends a run, as
+    in the paper's experiment. Falls count in both cases."""
+    max_attempts: int = 6  # motions, with turning over and rising one each [1]
+    max_joint_speed: Annotated[float, RATE] = 12.0  # between postures [rad/s]
+    time_scale: Annotated[float, TIME] = 1.0  # of the durations of the motions [1]
+    rest_rate: Annotated[float, RATE] = 0.3  # maximum rate of a trunk at rest, each axis [rad/s]
+    rest_time: Annotated[float, TIME] = 0.2  # at that rate [s]
+    displacement_sigma: Annotated[float, LENGTH] = 0.2  # unmeasured motion of a fall per axis [m]
+    yaw_sigma: Annotated[float, NUMBER] = 0.02  # error of the IMU's yaw over a fall [rad]
 
 
 @dataclass(frozen=True)
@@ -311,7 +226,7 @@ class WalkingParameters:
     gait: GaitParameters = field(default_factory=GaitParameters)
     """Footsteps."""
     pattern: PatternParameters = field(default_factory=PatternParameters)
-    """ZMP pattern."""
+    """Pattern generator."""
     estimator: EstimatorParameters = field(default_factory=EstimatorParameters)
     """State estimation."""
     odometry: OdometryParameters = field(default_factory=OdometryParameters)
@@ -319,7 +234,7 @@ class WalkingParameters:
     stabilizer: StabilizerParameters = field(default_factory=StabilizerParameters)
     """Balance."""
     limits: LimitParameters = field(default_factory=LimitParameters)
-    """Speed, step and reach limits."""
+    """Limits of commands and footsteps."""
     head: HeadParameters = field(default_factory=HeadParameters)
     """Head."""
     arms: ArmParameters = field(default_factory=ArmParameters)
