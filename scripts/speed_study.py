@@ -26,7 +26,6 @@ from walking_body import ROBOT, Body, Plant
 from walking_trial import Script, parameters_of, random_script, steady_script
 
 SETTLED = 3.0  # time after which a walk is measured [s]
-BEYOND = 1e-3  # set-point beyond the range of a joint that counts [rad]
 FAST = {
     "forward": (0.45, 0.0, 0.0),
     "forward, stretch": (0.55, 0.0, 0.0),
@@ -61,7 +60,7 @@ class Walk:
     landed: list[tuple[np.ndarray, Odometry]] = field(default_factory=list)
     torque: np.ndarray = field(default_factory=lambda: np.zeros(26))
     speed: np.ndarray = field(default_factory=lambda: np.zeros(26))
-    beyond: int = 0
+    at_limit: int = 0
 
     def velocity(self) -> np.ndarray:
         """Mean velocity (vx, vy, wz) once settled, pairs of footsteps [m/s, m/s, rad/s] (3,).
@@ -134,7 +133,7 @@ class Study:
                 steps = state.step_count
                 walk.landed.append((body.pose, state.odometry))
             control = targets.setpoint
-            walk.beyond += bool((np.maximum(low - control, control - high) > BEYOND).any())
+            walk.at_limit += bool(((control <= low) | (control >= high))[: RIGHT_LEG.stop].any())
             body.apply(control)
             walk.poses.append(body.pose)
             walk.tilt.append(float(np.degrees(np.arccos(min(1.0, body.up)))))
@@ -162,7 +161,7 @@ class Study:
             print(
                 f"{name:17} {velocity}: {sum(w.fallen for w in walks)} falls of {len(walks)}, "
                 f"walked {speed.round(3).tolist()}, tilt p99 {np.percentile(tilt, 99):.1f} deg; "
-                f"set-points beyond a joint's range in {sum(w.beyond for w in walks)} ticks\n"
+                f"leg setpoints at the end of the range in {sum(w.at_limit for w in walks)} ticks\n"
                 f"    largest torque {_legs(torque)} N m, speed {_legs(rate)} rad/s",
                 flush=True,
             )

@@ -50,14 +50,13 @@ ROWS: tuple[tuple[str, str, str], ...] = (
         "{0:.0%} of the limit, {peak_torque_joint}; saturated in {torque_saturated_ticks} ticks",
     ),
     ("max joint speed", "peak_joint_speed_radps", "{0:.1f} rad/s, {peak_speed_joint}"),
-    ("setpoints beyond range", "clipped_target_ticks", "in {} ticks{clipped}"),
     ("joints at their stops", "joint_stop_ticks", "in {} ticks{stopped}"),
     ("walking tick", "walk_tick_mean_ms", "{0:.2f} ms, 99.9 % below {walk_tick_p999_ms:.2f} ms"),
     ("pushes", "pushes", "{}"),
     ("simulated time", "sim_time_s", "{:.1f} s"),
     ("wall time", "wall_time_s", "{:.1f} s, {real_time_factor:.1f}x real time"),
 )
-HIDDEN_WHEN_ZERO = ("pushes", "clipped_target_ticks", "joint_stop_ticks")
+HIDDEN_WHEN_ZERO = ("pushes", "joint_stop_ticks")
 MAX_REASONS = 3  # of limited commands
 
 
@@ -76,7 +75,6 @@ def show(
     values = {
         **results,
         "reasons": _reasons(results),
-        "clipped": _joints(results.get("clipped_target_by")),
         "stopped": _joints(results.get("joint_stop_by")),
     }
     for label, key, form in ROWS:

@@ -176,8 +176,6 @@ def _saturation(saturation: Saturation) -> dict[str, object]:
         "torque_saturated_by": _by_joint(saturation.torque_ticks),
         "joint_stop_ticks": saturation.stop_any,
         "joint_stop_by": _by_joint(saturation.stop_ticks),
-        "clipped_target_ticks": saturation.clip_any,
-        "clipped_target_by": _by_joint(saturation.clip_ticks),
         "peak_torque_ratio": float(saturation.peak_torque[strongest]),
         "peak_torque_joint": JOINT_NAMES[strongest],
         "peak_joint_speed_radps": float(saturation.peak_speed[fastest]),

@@ -61,7 +61,7 @@ def test_every_row_is_a_documented_metric():
     text = (Path(__file__).parents[3] / "docs/metrics.md").read_text()
     for _, key, form in report.ROWS:
         others = re.findall(r"{([a-z_]\w+)", form)
-        for name in {key, *others} - {"reasons", "clipped", "stopped"}:
+        for name in {key, *others} - {"reasons", "stopped"}:
             assert f"`{name}`" in text
 
 
@@ -74,8 +74,8 @@ def test_a_path_with_spaces_is_quoted(tmp_path):
     assert "hsr8 render '" in shown(tmp_path / "my runs", results={})
 
 
-def test_setpoints_beyond_range_are_shown_only_if_there_are_any(tmp_path):
-    clipped = {"clipped_target_ticks": 3, "clipped_target_by": {"l_knee": 3, "r_hip_pitch": 1}}
-    assert "in 3 ticks: l_knee 3, r_hip_pitch 1" in shown(tmp_path, results=clipped)
-    unclipped = {"clipped_target_ticks": 0, "clipped_target_by": {}}
-    assert "beyond range" not in shown(tmp_path, results=unclipped)
+def test_joints_at_their_stops_are_shown_only_if_there_are_any(tmp_path):
+    stopped = {"joint_stop_ticks": 3, "joint_stop_by": {"l_knee": 3, "r_hip_pitch": 1}}
+    assert "in 3 ticks: l_knee 3, r_hip_pitch 1" in shown(tmp_path, results=stopped)
+    unstopped = {"joint_stop_ticks": 0, "joint_stop_by": {}}
+    assert "at their stops" not in shown(tmp_path, results=unstopped)

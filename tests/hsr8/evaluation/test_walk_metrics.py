@@ -119,13 +119,13 @@ def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
     ticks, peak = np.zeros(26, dtype=np.int64), np.zeros(26)
     ticks[3], peak[3] = 7, 1.0
     none = np.zeros(26, dtype=np.int64)
-    saturation = Saturation(7, ticks, 0, none, 7, ticks, peak, 5.0 * peak)
+    saturation = Saturation(7, ticks, 0, none, peak, 5.0 * peak)
     push = ActivePush(4, 1.0, 0.05, "torso_link", 0.0, np.zeros(3), np.array([3.0, 4.0, 0.0]))
     watch = SimpleNamespace(so_far=lambda: saturation)
     record = fake.record(0.0, saturation=watch, pushes=(push,))
     results = results_of([replace(record, counters=counters)])
-    assert results["torque_saturated_by"] == results["clipped_target_by"] == {"l_knee": 7}
-    assert (results["clipped_target_ticks"], results["joint_stop_by"]) == (7, {})
+    assert results["torque_saturated_by"] == {"l_knee": 7}
+    assert results["joint_stop_by"] == {}
     assert (results["peak_torque_joint"], results["peak_joint_speed_radps"]) == ("l_knee", 5.0)
     assert results["walk_tick_mean_ms"] == pytest.approx(2.0)
     assert results["pushes"] == 5
