@@ -1,7 +1,7 @@
-"""Planners and gazes that do not come with hsr8: they may err, and the run tells how.
+"""Wrappers of user-defined planners and gazes: defensive copies in, validated decisions out.
 
-What they are given is theirs: a copy, so that arithmetic in place changes neither the belief nor
-the mission. What they answer is checked before it reaches walking, log and records.
+A plugin works on copies, so that in-place arithmetic changes neither the belief nor the mission.
+Its decisions are validated before walking, log and records use them.
 """
 
 from copy import deepcopy
@@ -26,121 +26,123 @@ VELOCITY = "vx, vy and wz [m/s, m/s, rad/s]"
 
 
 class PluginPlanner:
-    """A planner that is given copies and whose answers are checked.
+    """User-defined planner with copied inputs and validated decisions.
 
     Args:
-        planner: to ask.
+        planner: user-defined planner.
 
     Raises:
-        UsageError: `planner` has no method plan; from `plan`: it returned no valid MotionDecision.
+        UsageError: `planner` has no method plan; from `plan`: the decision is invalid.
     """
 
     def __init__(self, planner: MotionPlanner) -> None:
-        _must_answer(planner, "planner", PLAN)
+        _require_method(planner, "planner", PLAN)
         self._planner = planner
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
-        """Motion for the next footstep."""
+        """Return the validated motion for the next footstep."""
         motion = self._planner.plan(deepcopy(belief), deepcopy(task))
-        who = f"the planner {_name(self._planner)}"
-        _must_be(MotionDecision, motion, who, PLAN)
+        name = f"planner {_type(self._planner)}"
+        _require_type(MotionDecision, motion, name, PLAN)
         if motion.field is not None and not callable(getattr(motion.field, "at", None)):
-            raise UsageError(f"{who}: field has no method at(points)")
+            raise UsageError(f"{name}: field has no method at(points)")
         if not isinstance(motion.situation, str):
-            raise UsageError(f"{who}: situation is no text but {_told(motion.situation)}")
+            raise UsageError(f"{name}: situation must be a string, got {_shown(motion.situation)}")
+        look_request = motion.look_request
+        if look_request is not None:
+            look_request = _number(look_request, "look_request", name)
         return replace(
             motion,
-            velocity=_velocity(motion.velocity, who),
-            direction=_number(motion.direction, "direction", who),
-            speed=_number(motion.speed, "speed", who),
-            look_request=None
-            if motion.look_request is None
-            else _number(motion.look_request, "look_request", who),
+            velocity=_velocity(motion.velocity, name),
+            direction=_number(motion.direction, "direction", name),
+            speed=_number(motion.speed, "speed", name),
+            look_request=look_request,
         )
 
 
 class PluginGaze:
-    """A gaze that is given copies and whose answers are checked.
+    """User-defined gaze with copied inputs and validated decisions.
 
     Args:
-        gaze: to ask.
+        gaze: user-defined gaze.
 
     Raises:
-        UsageError: `gaze` has no method choose; from `choose`: it returned no valid GazeDecision.
+        UsageError: `gaze` has no method choose; from `choose`: the decision is invalid.
     """
 
     def __init__(self, gaze: GazeController) -> None:
-        _must_answer(gaze, "gaze", CHOOSE)
+        _require_method(gaze, "gaze", CHOOSE)
         self._gaze = gaze
 
     def choose(self, belief: Belief, task: Task, motion: MotionDecision | None) -> GazeDecision:
-        """Gaze for this frame."""
+        """Return the validated gaze for this frame."""
         if motion is not None:
             motion = replace(motion, velocity=motion.velocity.copy())
         gaze = self._gaze.choose(deepcopy(belief), deepcopy(task), motion)
-        who = f"the gaze {_name(self._gaze)}"
-        _must_be(GazeDecision, gaze, who, CHOOSE)
-        names = ("pan", "tilt", "psi_lm", "psi_sf", "psi_ob", "psi_way")
-        numbers: dict[str, Any] = {name: _number(getattr(gaze, name), name, who) for name in names}
-        return replace(gaze, **numbers, gaze_map=_map(gaze.gaze_map, who))
+        name = f"gaze {_type(self._gaze)}"
+        _require_type(GazeDecision, gaze, name, CHOOSE)
+        keys = ("pan", "tilt", "psi_lm", "psi_sf", "psi_ob", "psi_way")
+        numbers: dict[str, Any] = {key: _number(getattr(gaze, key), key, name) for key in keys}
+        return replace(gaze, **numbers, gaze_map=_map(gaze.gaze_map, name))
 
 
-def _must_answer(thing: object, kind: str, method: str) -> None:
-    """Told before the run begins rather than at its first frame."""
-    if isinstance(thing, type):
-        name = thing.__name__
-        raise UsageError(f"{kind}={name} is a class: give an object of it, {kind}={name}()")
-    if not callable(getattr(thing, method.partition("(")[0], None)):
-        raise UsageError(f"the {kind} {_name(thing)} has no method {method}")
+def _require_method(plugin: object, kind: str, method: str) -> None:
+    if isinstance(plugin, type):
+        name = plugin.__name__
+        raise UsageError(f"{kind}={name}: expected an instance, {kind}={name}(), got the class")
+    if not callable(getattr(plugin, method.partition("(")[0], None)):
+        raise UsageError(f"{kind} {_type(plugin)} has no method {method}")
 
 
-def _must_be(wanted: type, answer: object, who: str, method: str) -> None:
-    if not isinstance(answer, wanted):
-        raise UsageError(f"{who}: {method} returns no {wanted.__name__} but {_told(answer)}")
-
-
-def _velocity(given: object, who: str) -> Array:
-    """Three finite numbers as an array (3,)."""
-    values = _numbers(given)
-    if values is None or values.shape != (3,):
-        raise UsageError(f"{who}: velocity must be three numbers, {VELOCITY}, not {_told(given)}")
-    if not np.isfinite(values).all():
-        raise UsageError(f"{who}: velocity must be finite, {VELOCITY}, not {_told(given)}")
-    return values
-
-
-def _map(given: object, who: str) -> Array:
-    """A map of finite weights (m, n)."""
-    values = _numbers(given)
-    if values is None or values.ndim != 2 or not np.isfinite(values).all() or (values < 0.0).any():
+def _require_type(expected: type, decision: object, name: str, method: str) -> None:
+    if not isinstance(decision, expected):
         raise UsageError(
-            f"{who}: gaze_map must be an array of two dimensions, finite and nowhere negative, "
-            f"not {_told(given)}"
+            f"{name}: {method} must return a {expected.__name__}, got {_shown(decision)}"
         )
-    return values
 
 
-def _numbers(given: object) -> Array | None:
-    """Numbers of any real type as they are computed with; None if they are none."""
+def _velocity(value: object, name: str) -> Array:
+    """Three finite numbers as an array (3,)."""
+    numbers = _numbers(value)
+    if numbers is None or numbers.shape != (3,) or not np.isfinite(numbers).all():
+        raise UsageError(
+            f"{name}: velocity must be three finite numbers, {VELOCITY}, got {_shown(value)}"
+        )
+    return numbers
+
+
+def _map(value: object, name: str) -> Array:
+    """Finite, non-negative weights (m, n)."""
+    weights = _numbers(value)
+    if weights is None or weights.ndim != 2 or not (np.isfinite(weights) & (weights >= 0.0)).all():
+        raise UsageError(
+            f"{name}: gaze_map must be a 2-D array of finite, non-negative numbers, "
+            f"got {_shown(value)}"
+        )
+    return weights
+
+
+def _numbers(value: object) -> Array | None:
+    """Real numbers of any type as an array of floats; None for everything else."""
     try:
-        values = np.asarray(given)
-    except (ValueError, TypeError):  # lists of different lengths, or what is on another device
+        numbers = np.asarray(value)
+    except (ValueError, TypeError):  # lists of different lengths, or data on another device
         return None
-    return values.astype(np.float64) if values.dtype.kind in "fiu" else None
+    return numbers.astype(np.float64) if numbers.dtype.kind in "fiu" else None
 
 
-def _number(given: object, name: str, who: str) -> float:
-    if not isinstance(given, Real) or not isfinite(given):
-        raise UsageError(f"{who}: {name} must be a finite number, not {_told(given)}")
-    return float(given)
+def _number(value: object, key: str, name: str) -> float:
+    if not isinstance(value, Real) or not isfinite(value):
+        raise UsageError(f"{name}: {key} must be a finite number, got {_shown(value)}")
+    return float(value)
 
 
-def _name(thing: object) -> str:
-    return type(thing).__name__
+def _type(value: object) -> str:
+    return type(value).__name__
 
 
-def _told(given: object) -> str:
-    """A value in short, with what it is."""
-    shape = f" of shape {given.shape}" if isinstance(given, np.ndarray) else ""
-    text = " ".join(repr(given).split())
-    return f"{_name(given)}{shape} {text if len(text) <= 60 else text[:57] + '...'}"
+def _shown(value: object) -> str:
+    """Type, shape and shortened value."""
+    shape = f" of shape {value.shape}" if isinstance(value, np.ndarray) else ""
+    text = " ".join(repr(value).split())
+    return f"{_type(value)}{shape} {text if len(text) <= 60 else text[:57] + '...'}"

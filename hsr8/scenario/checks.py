@@ -1,4 +1,4 @@
-"""What a scenario must satisfy beyond the type and range of each key."""
+"""Consistency of a scenario beyond the type and range of each key."""
 
 from collections.abc import Iterator
 from math import cos, hypot, radians, sin
@@ -14,35 +14,27 @@ from hsr8.scenario.world import ROBOT_RADIUS, CircleMover, Mover, ShuttleMover
 from vision.errors import VisionError
 
 MAX_CELLS = 1000
-"""Largest side of the local map, in cells."""
-
-# Section, and two of its keys of which the first must be below the second.
-BELOW: tuple[tuple[Path, str, str], ...] = ((("vision",), "min_radius", "max_radius"),)
-NOT_ABOVE: tuple[tuple[Path, str, str], ...] = (
-    (("navigation", "mission"), "r_goal", "r_release"),
-    (("navigation", "evaluation"), "d_nm", "d_fm"),
-)
+"""Maximum side of the local map, in cells."""
+MAX_LEG_RATIO = 0.7
+"""Maximum of the shortest leg of a drawn mission, relative to the diagonal of the field [1]."""
 
 
 def check(scenario: Scenario) -> list[Problem]:
-    """Everything that does not fit together, empty when all does."""
+    """Return all inconsistencies."""
     return [
-        *_speeds(scenario),
-        *_colors(scenario),
-        *_ordered(scenario),
-        *_local_map(scenario),
+        *_parameters(scenario),
         *_mission(scenario),
         *_command(scenario),
-        *_disturbance(scenario),
         *fault_problems(scenario),
-        *_inside(scenario),
-        *_free(scenario),
-        *_walls_free(scenario),
+        *_outside(scenario),
+        *_overlaps(scenario),
+        *_movers(scenario),
     ]
 
 
-def _speeds(scenario: Scenario) -> Iterator[Problem]:
-    speed, limits = scenario.robot.speed, scenario.walking.limits
+def _parameters(scenario: Scenario) -> Iterator[Problem]:
+    """Parameters that contradict each other."""
+    speed, limits, navigation = scenario.robot.speed, scenario.walking.limits, scenario.navigation
     for axis in ("vx", "vx_backward", "vy", "wz"):
         given, limit = getattr(speed, axis), getattr(limits, axis)
         if given > limit:
@@ -50,82 +42,68 @@ def _speeds(scenario: Scenario) -> Iterator[Problem]:
                 ("robot", "speed", axis),
                 f"must be at most walking.limits.{axis} = {limit:g}, got {given:g}",
             )
-
-
-def _colors(scenario: Scenario) -> Iterator[Problem]:
-    """The file of the colour table is one."""
-    path = scenario.vision.color_table
-    if not path:
-        return
-    from vision.color_file import load_table  # noqa: PLC0415 (OpenCV takes its time)
-
-    try:
-        load_table(FilePath(path))
-    except VisionError as error:
-        yield Problem(("vision", "color_table"), str(error))
-
-
-def _ordered(scenario: Scenario) -> Iterator[Problem]:
-    """What begins does so before it ends, what is let go was held."""
-    for section, lower, upper in BELOW:
-        low, high = _bounds(scenario, section, lower, upper)
-        if low >= high:
-            yield Problem((*section, lower), f"{low:g} must be below {upper} = {high:g}")
-    for section, lower, upper in NOT_ABOVE:
-        low, high = _bounds(scenario, section, lower, upper)
+    low, high = scenario.vision.min_radius, scenario.vision.max_radius
+    if low >= high:
+        yield Problem(("vision", "min_radius"), f"must be below max_radius = {high:g}, got {low:g}")
+    for section, lower, upper in (
+        ("mission", "r_goal", "r_release"),
+        ("evaluation", "d_nm", "d_fm"),
+    ):
+        part = getattr(navigation, section)
+        low, high = getattr(part, lower), getattr(part, upper)
         if low > high:
-            yield Problem((*section, lower), f"{low:g} must not be above {upper} = {high:g}")
-
-
-def _bounds(scenario: Scenario, section: Path, lower: str, upper: str) -> tuple[float, float]:
-    part: object = scenario
-    for key in section:
-        part = getattr(part, str(key))
-    return getattr(part, lower), getattr(part, upper)
-
-
-def _local_map(scenario: Scenario) -> Iterator[Problem]:
+            yield Problem(
+                ("navigation", section, lower), f"must be at most {upper} = {high:g}, got {low:g}"
+            )
     grid = scenario.belief.local_map
     if grid.size > MAX_CELLS * grid.cell:
         yield Problem(
             ("belief", "local_map", "cell"),
-            f"a map of {grid.size:g} m has more than {MAX_CELLS} cells of {grid.cell:g} m a side",
+            f"must be at least size / {MAX_CELLS} = {grid.size / MAX_CELLS:g}, got {grid.cell:g}",
         )
+    if scenario.vision.color_table:
+        from vision.color_file import load_table  # noqa: PLC0415 (OpenCV loads slowly)
+
+        try:
+            load_table(FilePath(scenario.vision.color_table))
+        except VisionError as error:
+            yield Problem(("vision", "color_table"), str(error))
+    if scenario.robot.body != "full" and not scenario.disturbance.empty:
+        yield Problem(("disturbance",), 'requires robot.body = "full"')
 
 
 def _mission(scenario: Scenario) -> Iterator[Problem]:
-    mission, criteria = scenario.mission, scenario.criteria
-    before_goal: int | None = None  # via points; none where there is no goal
+    mission, criteria, size = scenario.mission, scenario.criteria, scenario.world.size
+    kind = f'a mission of kind "{mission.kind}"'
+    before_goal: int | None = None  # via points; None without a goal
     if isinstance(mission, Course):
         before_goal = mission.via_points
     elif isinstance(mission, Points) and not mission.endless:
         before_goal = len(mission.points) - 1
     if criteria.goal_reached and before_goal is None:
-        which = "an endless mission" if isinstance(mission, Points) else "a mission"
-        yield Problem(("criteria", "goal_reached"), f'{which} of kind "{mission.kind}" has no goal')
+        endless = "an endless mission" if isinstance(mission, Points) else kind
+        yield Problem(("criteria", "goal_reached"), f"{endless} has no goal")
     if before_goal is not None and criteria.min_via_points > before_goal:
         yield Problem(
             ("criteria", "min_via_points"),
-            f"{criteria.min_via_points} are more than before the goal, {before_goal}",
+            f"must be at most the number of via points before the goal, {before_goal}, "
+            f"got {criteria.min_via_points}",
         )
-    if criteria.min_via_points and isinstance(mission, Walk):
-        yield Problem(("criteria", "min_via_points"), 'a mission of kind "walk" has no via points')
-    if scenario.plugin.planner and isinstance(mission, Walk):
-        yield Problem(("plugin", "planner"), 'a mission of kind "walk" asks no planner')
-    if scenario.world.encounters.n and isinstance(mission, Walk):
-        yield Problem(
-            ("world", "encounters", "n"), 'a mission of kind "walk" has no way to meet on'
-        )
+    if isinstance(mission, Walk):
+        if criteria.min_via_points:
+            yield Problem(("criteria", "min_via_points"), f"{kind} has no via points")
+        if scenario.plugin.planner:
+            yield Problem(("plugin", "planner"), f"{kind} has no planner")
+        if scenario.world.encounters.n:
+            yield Problem(("world", "encounters", "n"), f"{kind} has no route to encounter on")
     if isinstance(mission, Points) and mission.endless and len(mission.points) == 1:
         yield Problem(("mission", "points"), "an endless tour needs at least 2 points, got 1")
-    if isinstance(mission, Tour | Course):
-        diagonal = hypot(*scenario.world.size)
-        if mission.leg[0] > 0.7 * diagonal:
-            yield Problem(
-                ("mission", "leg"),
-                f"legs of at least {mission.leg[0]:g} m do not fit into a field of "
-                f"{scenario.world.size[0]:g} m x {scenario.world.size[1]:g} m",
-            )
+    if isinstance(mission, Tour | Course) and mission.leg[0] > MAX_LEG_RATIO * hypot(*size):
+        yield Problem(
+            ("mission", "leg"),
+            f"legs of at least {mission.leg[0]:g} m do not fit into a field of "
+            f"{size[0]:g} m x {size[1]:g} m",
+        )
 
 
 def _command(scenario: Scenario) -> Iterator[Problem]:
@@ -133,40 +111,29 @@ def _command(scenario: Scenario) -> Iterator[Problem]:
     if walks and scenario.command.empty:
         yield Problem(
             ("command",),
-            "nothing is asked: give vx, vy, wz [m/s, rad/s], footstep, random or stretch, "
+            "is missing; expected vx, vy, wz, footstep, random or stretch, "
             "for example --set command.vx=0.2",
         )
     if not walks and not scenario.command.empty:
         yield Problem(
-            ("command",),
-            f'a mission of kind "{scenario.mission.kind}" finds its own velocities; '
-            'mission.kind = "walk" obeys them',
+            ("command",), f'requires mission.kind = "walk", got "{scenario.mission.kind}"'
         )
 
 
-def _disturbance(scenario: Scenario) -> Iterator[Problem]:
-    disturbance = scenario.disturbance
-    if scenario.robot.body != "full" and not disturbance.empty:
-        yield Problem(
-            ("disturbance",),
-            f'a {scenario.robot.body} body has no dynamics to push; robot.body = "full" has',
-        )
-
-
-def _inside(scenario: Scenario) -> Iterator[Problem]:
-    """Things placed by hand stand in the field."""
+def _outside(scenario: Scenario) -> Iterator[Problem]:
+    """Places outside the field."""
     half_x, half_y = (0.5 * side for side in scenario.world.size)
     for path, point, room in _places(scenario):
         if abs(point[0]) > half_x - room or abs(point[1]) > half_y - room:
             yield Problem(
                 path,
-                f"{list(point)} is outside the field, which reaches from "
-                f"{[-half_x, -half_y]} to {[half_x, half_y]}"
-                + (f", with {room:g} m to spare" if room else ""),
+                f"{list(point)} is outside the field from {[-half_x, -half_y]} to "
+                f"{[half_x, half_y]}" + (f", less {room:g} m at each side" if room else ""),
             )
 
 
 def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
+    """Key of each place, its point, and the distance to keep from the border [m]."""
     world, mission = scenario.world, scenario.mission
     if scenario.robot.start.position is not None:
         yield ("robot", "start", "position"), scenario.robot.start.position, ROBOT_RADIUS
@@ -188,52 +155,40 @@ def _places(scenario: Scenario) -> Iterator[tuple[Path, Point, float]]:
             yield ("mission", "points", i), point, ROBOT_RADIUS
 
 
-def _free(scenario: Scenario) -> Iterator[Problem]:
-    """No obstacle placed by hand stands on the robot, on a point, or in another obstacle."""
-    world, mission = scenario.world, scenario.mission
-    start = scenario.robot.start.position
-    points = mission.points if isinstance(mission, Points) else ()
-    for i, obstacle in enumerate(world.obstacle):
-        path: Path = ("world", "obstacle", i, "position")
-        reach = obstacle.radius + ROBOT_RADIUS
-        if start is not None and _apart(obstacle.position, start) < reach:
-            yield Problem(
-                path,
-                f"{list(obstacle.position)} is on the start of the robot at {list(start)}: "
-                f"they must be {reach:g} m apart (radius {obstacle.radius:g} and robot "
-                f"{ROBOT_RADIUS:g})",
-            )
-        for k, point in enumerate(points):
-            if _apart(obstacle.position, point) < reach:
-                yield Problem(path, f"stands on mission.points[{k}] = {list(point)}")
-        for k, other in enumerate(world.obstacle[:i]):
-            if _apart(obstacle.position, other.position) < obstacle.radius + other.radius:
-                yield Problem(path, f"stands in world.obstacle[{k}] at {list(other.position)}")
-    for i, mover in enumerate(world.mover):
-        if isinstance(mover, ShuttleMover) and mover.start == mover.end:
-            yield Problem(("world", "mover", i, "end"), "is the same point as start")
-        key, begin = _begin(mover)
-        if start is not None and _apart(begin, start) < mover.radius + ROBOT_RADIUS:
-            yield Problem(
-                ("world", "mover", i, key), f"begins on the start of the robot at {list(start)}"
-            )
-
-
-def _walls_free(scenario: Scenario) -> Iterator[Problem]:
-    """No wall stands on the robot or on a point."""
-    start, mission = scenario.robot.start.position, scenario.mission
-    places = [("the start of the robot at", start)] if start is not None else []
+def _overlaps(scenario: Scenario) -> Iterator[Problem]:
+    """Static obstacles on the start of the robot, on a point of the mission or on each other."""
+    world, start, mission = scenario.world, scenario.robot.start.position, scenario.mission
+    places = [("robot.start.position", start)] if start is not None else []
     if isinstance(mission, Points):
-        places += [(f"mission.points[{k}] =", point) for k, point in enumerate(mission.points)]
-    for i, wall in enumerate(scenario.world.wall):
-        reach = wall.radius + ROBOT_RADIUS
+        places += [(f"mission.points[{k}]", point) for k, point in enumerate(mission.points)]
+    cylinders: list[tuple[Path, float, list[Point]]] = [
+        (("world", "wall", i), wall.radius, wall.positions()) for i, wall in enumerate(world.wall)
+    ]
+    for i, a in enumerate(world.obstacle):
+        path: Path = ("world", "obstacle", i, "position")
+        cylinders.append((path, a.radius, [a.position]))
+        for k, b in enumerate(world.obstacle[:i]):
+            if _distance(a.position, b.position) < a.radius + b.radius:
+                yield Problem(path, f"overlaps world.obstacle[{k}] at {list(b.position)}")
+    for path, radius, positions in cylinders:
+        reach = radius + ROBOT_RADIUS
         for name, place in places:
-            if any(_apart(cylinder, place) < reach for cylinder in wall.positions()):
-                yield Problem(("world", "wall", i), f"stands on {name} {list(place)}")
+            if any(_distance(position, place) < reach for position in positions):
+                yield Problem(path, f"must be at least {reach:g} m from {name} = {list(place)}")
 
 
-def _begin(mover: Mover) -> tuple[str, Point]:
-    """Where a mover is at time zero, and the key that says so."""
+def _movers(scenario: Scenario) -> Iterator[Problem]:
+    start = scenario.robot.start.position
+    for i, mover in enumerate(scenario.world.mover):
+        if isinstance(mover, ShuttleMover) and mover.start == mover.end:
+            yield Problem(("world", "mover", i, "end"), "must differ from start")
+        key, first = _initial_position(mover)
+        if start is not None and _distance(first, start) < mover.radius + ROBOT_RADIUS:
+            yield Problem(("world", "mover", i, key), "begins at the start of the robot")
+
+
+def _initial_position(mover: Mover) -> tuple[str, Point]:
+    """Key and position of a mover at time zero."""
     if not isinstance(mover, CircleMover):
         return "start", mover.start
     angle = radians(mover.angle_deg)
@@ -241,5 +196,5 @@ def _begin(mover: Mover) -> tuple[str, Point]:
     return "centre", (x + mover.path_radius * cos(angle), y + mover.path_radius * sin(angle))
 
 
-def _apart(a: Point, b: Point) -> float:
+def _distance(a: Point, b: Point) -> float:
     return hypot(a[0] - b[0], a[1] - b[1])

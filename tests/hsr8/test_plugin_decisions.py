@@ -18,25 +18,25 @@ FORMS = (list, tuple, np.array, lambda values: np.array(values, np.float32))
 speeds = st.floats(-1.0, 1.0, width=32)
 
 
-class Says:
-    """Planner and gaze that always answer the same."""
+class Fixed:
+    """Planner and gaze with a constant decision."""
 
-    def __init__(self, answer):
-        self.answer = answer
+    def __init__(self, decision):
+        self.decision = decision
 
     def plan(self, belief, task):
-        return self.answer
+        return self.decision
 
     def choose(self, belief, task, motion):
-        return self.answer
+        return self.decision
 
 
-class Empty(Says, list):
-    """Is false, as everything of length zero."""
+class Empty(Fixed, list):
+    """Falsy, as every empty container."""
 
 
-class Computes:
-    """Does its arithmetic in place."""
+class InPlace:
+    """Modifies its arguments in place."""
 
     def plan(self, belief, task):
         task.target[:] -= belief.pose[:2]
@@ -57,8 +57,8 @@ def quick(*settings):
 
 
 @given(values=st.tuples(speeds, speeds, speeds), form=st.sampled_from(FORMS))
-def test_a_velocity_arrives_as_it_was_meant_in_any_form(values, form):
-    planner = PluginPlanner(Says(MotionDecision(form(values), np.float32(0.5))))
+def test_a_velocity_of_any_sequence_type_is_accepted_exactly(values, form):
+    planner = PluginPlanner(Fixed(MotionDecision(form(values), np.float32(0.5))))
     motion = planner.plan(None, None)
     assert motion.velocity.dtype == np.float64
     assert tuple(motion.velocity) == values
@@ -66,15 +66,15 @@ def test_a_velocity_arrives_as_it_was_meant_in_any_form(values, form):
 
 
 @given(pan=speeds, number=st.sampled_from((float, np.float32, np.float64, np.array)))
-def test_a_gaze_arrives_as_it_was_meant_or_not_at_all(pan, number):
-    gaze = PluginGaze(Says(GazeDecision(number(pan), 0)))
+def test_a_scalar_gaze_is_accepted_exactly_and_an_array_refused(pan, number):
+    gaze = PluginGaze(Fixed(GazeDecision(number(pan), 0)))
     if number is np.array:
         with pytest.raises(UsageError, match="pan"):
             gaze.choose(None, None, None)
     else:
-        found = gaze.choose(None, None, None)
-        assert (found.pan, found.tilt) == (pan, 0.0)
-        assert {type(found.pan), type(found.tilt)} == {float}
+        decision = gaze.choose(None, None, None)
+        assert (decision.pan, decision.tilt) == (pan, 0.0)
+        assert {type(decision.pan), type(decision.tilt)} == {float}
 
 
 @pytest.mark.parametrize(
@@ -91,16 +91,16 @@ def test_a_gaze_arrives_as_it_was_meant_or_not_at_all(pan, number):
         None,
     ],
 )
-def test_what_is_no_velocity_is_refused_with_what_it_should_be(velocity):
-    with pytest.raises(UsageError, match=r"Says: velocity must be .*vx, vy and wz \[m/s"):
-        PluginPlanner(Says(MotionDecision(velocity))).plan(None, None)
+def test_an_invalid_velocity_is_refused_with_the_expected_one(velocity):
+    with pytest.raises(UsageError, match=r"Fixed: velocity must be .*vx, vy and wz \[m/s"):
+        PluginPlanner(Fixed(MotionDecision(velocity))).plan(None, None)
 
 
 @pytest.mark.parametrize(
-    ("answer", "told"),
+    ("decision", "expected"),
     [
-        (None, "no MotionDecision but NoneType"),
-        (np.zeros(3), "no MotionDecision but ndarray of shape"),
+        (None, "must return a MotionDecision, got NoneType"),
+        (np.zeros(3), "must return a MotionDecision, got ndarray of shape"),
         (MotionDecision(np.zeros(3), direction=None), "direction"),
         (MotionDecision(np.zeros(3), speed=np.nan), "speed"),
         (MotionDecision(np.zeros(3), situation=None), "situation"),
@@ -108,15 +108,15 @@ def test_what_is_no_velocity_is_refused_with_what_it_should_be(velocity):
         (MotionDecision(np.zeros(3), field=object()), "field"),
     ],
 )
-def test_what_is_no_motion_is_refused(answer, told):
-    with pytest.raises(UsageError, match=f"the planner Says: .*{told}"):
-        PluginPlanner(Says(answer)).plan(None, None)
+def test_an_invalid_motion_is_refused(decision, expected):
+    with pytest.raises(UsageError, match=f"planner Fixed: .*{expected}"):
+        PluginPlanner(Fixed(decision)).plan(None, None)
 
 
 @pytest.mark.parametrize(
-    ("answer", "told"),
+    ("decision", "expected"),
     [
-        ((0.0, 0.0), "no GazeDecision but tuple"),
+        ((0.0, 0.0), "must return a GazeDecision, got tuple"),
         (GazeDecision(np.nan, 0.0), "pan"),
         (GazeDecision(0.0, "up"), "tilt"),
         (GazeDecision(0.0, 0.0, psi_ob=np.inf), "psi_ob"),
@@ -126,15 +126,15 @@ def test_what_is_no_motion_is_refused(answer, told):
         (GazeDecision(0.0, 0.0, gaze_map=-np.ones((2, 2))), "gaze_map"),
     ],
 )
-def test_what_is_no_gaze_is_refused(answer, told):
-    with pytest.raises(UsageError, match=f"the gaze Says: .*{told}"):
-        PluginGaze(Says(answer)).choose(None, None, None)
+def test_an_invalid_gaze_is_refused(decision, expected):
+    with pytest.raises(UsageError, match=f"gaze Fixed: .*{expected}"):
+        PluginGaze(Fixed(decision)).choose(None, None, None)
 
 
 def test_arithmetic_in_place_changes_neither_belief_nor_mission(fake):
     frame, other = fake.frame(0.0), fake.frame(0.0)
-    PluginPlanner(Computes()).plan(frame.belief, frame.task)
-    PluginGaze(Computes()).choose(frame.belief, frame.task, frame.motion)
+    PluginPlanner(InPlace()).plan(frame.belief, frame.task)
+    PluginGaze(InPlace()).choose(frame.belief, frame.task, frame.motion)
     assert np.array_equal(frame.belief.pose, other.belief.pose)
     assert np.array_equal(frame.belief.pose_covariance, other.belief.pose_covariance)
     assert np.array_equal(frame.task.target, other.task.target)
@@ -143,30 +143,30 @@ def test_arithmetic_in_place_changes_neither_belief_nor_mission(fake):
         assert np.array_equal(track.position, same.position)
 
 
-def test_the_planner_and_gaze_that_come_with_hsr8_decide_the_same_as_ones_own():
+def test_the_built_in_planner_and_gaze_decide_the_same_as_plugins():
     scenario, seed = quick(), 4
     layout, limits = draw_layout(scenario, seed), scenario.speed_limits()
     planner = build_planner(scenario.navigation, limits, named_rng(seed, "planner"))
     fov = field_of_view(scenario, head_camera(scenario))
     gaze = GazePlanner(scenario.navigation, limits, known_beacons(scenario, layout), *fov)
-    own = hsr8.run(scenario, seed=seed, planner=planner, gaze=gaze)
-    assert own.metrics["state_hash"] == hsr8.run(scenario, seed=seed).metrics["state_hash"]
+    plugins = hsr8.run(scenario, seed=seed, planner=planner, gaze=gaze)
+    assert plugins.metrics["state_hash"] == hsr8.run(scenario, seed=seed).metrics["state_hash"]
 
 
-def test_a_planner_that_is_false_plans_all_the_same():
+def test_a_falsy_planner_is_used():
     planner = Empty(MotionDecision(np.zeros(3)))
     assert not planner
     assert hsr8.run(quick(), seed=4, planner=planner).metrics["path_length_m"] < 0.01
 
 
 @pytest.mark.parametrize("kind", ["planner", "gaze"])
-def test_what_cannot_answer_is_told_before_the_run(kind, tmp_path):
-    for given_, told in ((Says, rf"{kind}=Says\(\)"), (object(), "has no method")):
-        with pytest.raises(UsageError, match=told):
-            hsr8.run(quick(), out=tmp_path, **{kind: given_})
+def test_an_unsuitable_object_is_refused_before_the_run(kind, tmp_path):
+    for plugin, expected in ((Fixed, rf"{kind}=Fixed\(\)"), (object(), "has no method")):
+        with pytest.raises(UsageError, match=expected):
+            hsr8.run(quick(), out=tmp_path, **{kind: plugin})
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_walk_takes_no_planner():
     with pytest.raises(UsageError, match="section command"):
-        hsr8.run("walk", settings=STAND_INS, planner=Says(None))
+        hsr8.run("walk", settings=STAND_INS, planner=Fixed(None))

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beside import SPEED
+from speeds import SPEED
 from navigation.decision import GazeDecision, MotionDecision
 
 
@@ -74,16 +74,16 @@ LINE = SOURCE.split("\n").index('        raise RuntimeError("no\\nway")') + 1
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """Working directory with a file of planners and gazes, and one beside it."""
+    """Working directory with a file of plugins and a module that it imports."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    tmp_path.joinpath("beside.py").write_text("SPEED = 0.05\n")
+    tmp_path.joinpath("speeds.py").write_text("SPEED = 0.05\n")
     tmp_path.joinpath("mine.py").write_text(SOURCE)
     yield tmp_path
-    sys.modules.pop("beside", None)
+    sys.modules.pop("speeds", None)
 
 
-def test_every_object_is_new_and_the_file_is_run_once(folder):
+def test_instances_are_new_and_the_file_is_executed_once(folder):
     first, second = load_plugin("mine.py:Ahead"), load_plugin("mine.py:Ahead")
     assert first is not second
     assert type(first) is type(second)
@@ -91,32 +91,32 @@ def test_every_object_is_new_and_the_file_is_run_once(folder):
 
 
 @pytest.mark.parametrize(
-    ("reference", "said"),
+    ("reference", "expected"),
     [
         ("none.py:Ahead", "cannot read none.py: No such file"),
-        ("mine.py:Behind", "mine.py has no class Behind, but Ahead, Down, Silent, Trips"),
-        ("mine.py:nothing", "mine.py has no class nothing, but"),
-        ("mine.py:Breaks", rf"Breaks\(\) fails: RuntimeError: no way \(line {LINE}\)"),
-        ("wrong.py:Ahead", r"wrong.py cannot be run: NameError: .* \(line 2\)"),
-        ("leaves.py:Ahead", "leaves.py cannot be run: SystemExit: 1"),
-        ("text.py:Ahead", "text.py cannot be run: SyntaxError"),
-        ("empty.py:Ahead", "empty.py has no class Ahead, but none at all"),
+        ("mine.py:Behind", "mine.py has no class Behind; expected Ahead, Down, Silent, Trips"),
+        ("mine.py:nothing", "mine.py has no class nothing; expected"),
+        ("mine.py:Breaks", rf"Breaks\(\) failed: RuntimeError: no way \(line {LINE}\)"),
+        ("wrong.py:Ahead", r"wrong.py failed: NameError: .* \(line 2\)"),
+        ("leaves.py:Ahead", "leaves.py failed: SystemExit: 1"),
+        ("text.py:Ahead", "text.py failed: SyntaxError"),
+        ("empty.py:Ahead", "empty.py has no class Ahead; expected a class"),
     ],
 )
-def test_what_cannot_be_made_is_told_in_a_line(folder, reference, said):
+def test_a_plugin_that_cannot_be_loaded_is_reported_in_one_line(folder, reference, expected):
     folder.joinpath("wrong.py").write_text("x = 1\ny = z\n")
     folder.joinpath("leaves.py").write_text("raise SystemExit(1)\n")
     folder.joinpath("text.py").write_text("two words\n")
     folder.joinpath("empty.py").write_text("")
-    for _ in range(2):  # a file that failed is not taken for one that was run
-        with pytest.raises(UsageError, match=f"^{reference}: {said}") as told:
+    for _ in range(2):  # a file that failed is executed again
+        with pytest.raises(UsageError, match=f"^{reference}: {expected}") as error:
             require_plugins(Plugin(gaze=reference))
-        assert "\n" not in str(told.value)
+        assert "\n" not in str(error.value)
 
 
 @given(other=st.binary(min_size=1, max_size=20))
-def test_digests_tell_files_apart(tmp_path_factory, other):
-    file = tmp_path_factory.mktemp("own") / "mine.py"
+def test_digests_depend_on_the_content_of_the_file(tmp_path_factory, other):
+    file = tmp_path_factory.mktemp("plugin") / "mine.py"
     file.write_bytes(b"")
     plugin = Plugin(planner=f"{file}:A", gaze=f"{file}:B")
     before = digests(plugin)
@@ -127,7 +127,7 @@ def test_digests_tell_files_apart(tmp_path_factory, other):
     assert digests(Plugin()) == {}
 
 
-def test_a_named_planner_and_gaze_decide_as_given_ones_do(folder):
+def test_plugins_of_a_scenario_decide_as_the_same_objects_in_python(folder):
     named = {"plugin.planner": "mine.py:Ahead", "plugin.gaze": "mine.py:Down"}
     fast = dict(setting.split("=") for setting in SETTINGS) | {"duration": 3.0}
     given_ = hsr8.run(
@@ -137,9 +137,9 @@ def test_a_named_planner_and_gaze_decide_as_given_ones_do(folder):
         gaze=load_plugin("mine.py:Down"),
     )
     usual = hsr8.run("quick", settings=fast)
-    found = hsr8.run("quick", settings=fast | named)
-    assert found.metrics["state_hash"] == given_.metrics["state_hash"]
-    assert found.metrics["state_hash"] != usual.metrics["state_hash"]
+    from_file = hsr8.run("quick", settings=fast | named)
+    assert from_file.metrics["state_hash"] == given_.metrics["state_hash"]
+    assert from_file.metrics["state_hash"] != usual.metrics["state_hash"]
 
 
 def test_a_class_without_the_method_is_refused(folder):
@@ -147,76 +147,77 @@ def test_a_class_without_the_method_is_refused(folder):
         hsr8.run("quick", settings=[*SETTINGS, "plugin.planner=mine.py:Silent"])
 
 
-def test_a_run_names_the_file_s_digest_and_is_computed_again(folder, capsys):
-    own = ("--set", "plugin.planner=mine.py:Ahead", "plugin.gaze=mine.py:Down", "duration=3.0")
-    assert entry(["run", "quick", *FAST, *own, "--no-log", "--out", "runs"]) == 1
+def test_a_run_records_the_digest_and_can_be_verified(folder, capsys):
+    plugins = ("--set", "plugin.planner=mine.py:Ahead", "plugin.gaze=mine.py:Down", "duration=3.0")
+    assert entry(["run", "quick", *FAST, *plugins, "--no-log", "--out", "runs"]) == 1
     (manifest,) = folder.glob("runs/quick/*/manifest.json")
-    told = json.loads(manifest.read_text())["libraries"]
-    assert digests(Plugin(planner="mine.py:Ahead")).items() <= told.items()
-    assert entry(["check", "replay", "runs"]) == 0
+    libraries = json.loads(manifest.read_text())["libraries"]
+    assert digests(Plugin(planner="mine.py:Ahead")).items() <= libraries.items()
+    assert entry(["verify", "runs"]) == 0
 
 
-def test_a_sweep_refuses_to_go_on_with_another_file(folder, capsys):
+def test_a_sweep_refuses_to_continue_with_another_file(folder, capsys):
     sweep = ["sweep", "quick", *FAST, "--seeds", "0:1", "--out", "s"]
-    own = ["--set", "plugin.planner=mine.py:Ahead", "duration=0.3"]
-    assert entry([*sweep, *own]) == 1
+    plugins = ["--set", "plugin.planner=mine.py:Ahead", "duration=0.3"]
+    assert entry([*sweep, *plugins]) == 1
     folder.joinpath("mine.py").write_text(SOURCE + "\n")
-    assert entry([*sweep, *own]) == 2
+    assert entry([*sweep, *plugins]) == 2
     assert "mine.py:Ahead: " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("command", [("check",), ("sweep", "--seeds", "0:1"), ("run",)])
-def test_commands_refuse_what_cannot_be_made(folder, capsys, command):
+def test_commands_refuse_a_missing_class(folder, capsys, command):
     word, *more = command
     assert entry([word, "quick", *more, "--set", "plugin.planner=mine.py:Behind"]) == 2
     assert "has no class Behind" in capsys.readouterr().err
 
 
-def test_a_walk_asks_no_planner(folder):
-    with pytest.raises(hsr8.errors.ScenarioError, match="asks no planner"):
+def test_a_walk_has_no_planner(folder):
+    with pytest.raises(hsr8.errors.ScenarioError, match="has no planner"):
         hsr8.load_scenario("walk", ["plugin.planner=mine.py:Ahead"])
 
 
 @pytest.mark.parametrize(
-    ("name", "told"), [("Trips", "ZeroDivisionError: too near"), ("Leaves", "SystemExit: enough")]
+    ("name", "message"),
+    [("Trips", "ZeroDivisionError: too near"), ("Leaves", "SystemExit: enough")],
 )
-def test_a_planner_that_fails_is_no_mistake_of_ours(folder, capsys, name, told):
-    own = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
-    assert entry(["run", "quick", *FAST, *own, "--out", "runs"]) == 2
-    said = capsys.readouterr().err
-    assert f"{folder / 'mine.py'}, line {ERRING}: {told}" in said
-    assert "internal" not in said
+def test_an_error_in_a_plugin_is_reported_with_its_line(folder, capsys, name, message):
+    plugins = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
+    assert entry(["run", "quick", *FAST, *plugins, "--out", "runs"]) == 2
+    error = capsys.readouterr().err
+    assert f"{folder / 'mine.py'}, line {ERRING}: {message}" in error
+    assert "internal" not in error
     (manifest,) = folder.glob("runs/quick/*/manifest.json")
     assert json.loads(manifest.read_text())["exit_reason"] == "error"
-    assert told in (manifest.parent / "crash.txt").read_text()
+    assert message in (manifest.parent / "crash.txt").read_text()
     assert entry(["info", "runs"]) == 0
 
 
-def test_when_it_failed_is_told(folder, capsys):
+def test_the_time_of_the_error_is_reported(folder, capsys):
     for name in ("Trips", "Wanders"):
-        own = ("--set", f"plugin.planner=mine.py:{name}")
-        assert entry(["run", "quick", *FAST, *own, "--no-log", "--out", "runs"]) == 2
+        plugins = ("--set", f"plugin.planner=mine.py:{name}")
+        assert entry(["run", "quick", *FAST, *plugins, "--no-log", "--out", "runs"]) == 2
         when = re.search(r", at (\S+) s of simulated time$", capsys.readouterr().err, re.MULTILINE)
         assert 0.5 <= float(when[1]) < 1.5
 
 
-def test_a_planner_that_fails_reaches_python_as_it_is(folder):
+def test_an_error_in_a_plugin_reaches_python_unchanged(folder):
     with pytest.raises(ZeroDivisionError, match=r"^too near\n") as error:
         hsr8.run("quick", settings=[*SETTINGS, "plugin.planner=mine.py:Trips"])
     assert error.value.args == ("too near",)
 
 
 @pytest.mark.parametrize("name", ["Trips", "Wanders"])
-def test_in_a_sweep_it_is_a_run_that_failed(folder, capsys, name):
-    own = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
-    assert entry(["sweep", "quick", *FAST, "--seeds", "0:2", "--out", "s", *own]) == 3
+def test_an_error_in_a_plugin_is_a_crashed_run_of_a_sweep(folder, capsys, name):
+    plugins = ("--set", f"plugin.planner=mine.py:{name}", "duration=3.0")
+    assert entry(["sweep", "quick", *FAST, "--seeds", "0:2", "--out", "s", *plugins]) == 3
     rows = [json.loads(line) for line in (folder / "s" / "runs.jsonl").read_text().splitlines()]
     assert {row["seed"] for row in rows} == {0, 1}
     assert {row["outcome"] for row in rows} == {"crashed"}
     assert "0 of 2" in (folder / "s" / "report.md").read_text()
 
 
-def test_errors_from_elsewhere_have_no_line_of_one_s_own(folder):
+def test_other_errors_have_no_plugin_line(folder):
     load_plugin("mine.py:Ahead")
     with pytest.raises(ValueError, match="Expecting") as error:
         json.loads("{")
