@@ -203,7 +203,7 @@ class Render:
     fine: Flag = False
     """Smooth edges and sharper shadows, at twice the cost."""
     out: File = None
-    """Video (.mp4, .gif, .webp) or image (.png, at --start); default: run folder, video.mp4."""
+    """Video (.mp4, .webp) or image (.png, at --start); default: run folder, video.mp4."""
     start: float = 0.0
     """Simulated time at which the video begins [s]."""
     stop: Seconds = None

@@ -12,10 +12,10 @@ from hsr8.gl import is_software, require_gl
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run import run_folder
 from hsr8.recorder.run.run_reader import open_run
-from hsr8.render import animation
 from hsr8.render.run_video import RenderedVideo, VideoOptions, render_run
+from hsr8.render.video import FORMATS
 
-SUFFIXES = (".mp4", *animation.KINDS, ".png")
+SUFFIXES = (*FORMATS, ".png")
 
 
 def main(options: Render) -> int:

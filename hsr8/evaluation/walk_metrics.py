@@ -160,11 +160,11 @@ def _counts(counters: WalkCounters) -> dict[str, object]:
 
 
 def _times(counters: WalkCounters) -> dict[str, object]:
-    times = counters.wall_times
+    times = 1000.0 * np.array(counters.wall_times)
     return {
-        "walk_tick_mean_ms": 1000.0 * times.mean,
-        "walk_tick_p999_ms": 1000.0 * times.quantile(0.999),
-        "walk_tick_max_ms": 1000.0 * times.max,
+        "walk_tick_mean_ms": float(times.mean()),
+        "walk_tick_p999_ms": float(np.quantile(times, 0.999)),
+        "walk_tick_max_ms": float(times.max()),
     }
 
 

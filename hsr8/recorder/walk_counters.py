@@ -1,10 +1,10 @@
 """Counters of walking, updated in every control tick because records are rarer."""
 
+from array import array
 from collections import Counter
 from math import inf
 from typing import Protocol
 
-from hsr8.recorder.time_histogram import TimeHistogram
 from walking.command_limits import Limit
 
 ROUNDING = 1e-9  # of a ZMP on the edge of the sole [m]
@@ -31,7 +31,7 @@ class WalkCounters:
         by_limit: ticks in which each limit was active.
         zmp_outside: ticks with the planned ZMP outside the soles.
         min_zmp_depth: smallest depth of the planned ZMP inside the soles [m].
-        wall_times: wall times of the walking ticks.
+        wall_times: of the walking ticks [s].
     """
 
     __slots__ = ("by_limit", "limited", "min_zmp_depth", "ticks", "wall_times", "zmp_outside")
@@ -40,12 +40,12 @@ class WalkCounters:
         self.ticks = self.limited = self.zmp_outside = 0
         self.by_limit: Counter[Limit] = Counter()
         self.min_zmp_depth = inf
-        self.wall_times = TimeHistogram()
+        self.wall_times = array("d")
 
     def add(self, walking: Countable, seconds: float) -> None:
         """Count one tick, which took `seconds` of wall time."""
         self.ticks += 1
-        self.wall_times.add(seconds)
+        self.wall_times.append(seconds)
         limits = walking.limits
         if limits:
             self.limited += 1

@@ -1,4 +1,4 @@
-"""A recorded run as a video, an animation or an image."""
+"""A recorded run as a video or an image."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from hsr8.errors import UsageError
 from hsr8.recorder.run.run_reader import Run
-from hsr8.render.animation import KINDS, AnimationWriter, require_room
 from hsr8.render.png import write_png
 from hsr8.render.run_images import RunImages
 from hsr8.render.video import VideoWriter
@@ -63,19 +62,18 @@ class RenderedVideo:
 
 
 def render_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -> RenderedVideo:
-    """Draw a run as a video, an animation or an image, depending on the suffix of `out`.
+    """Draw a run as a video or an image, depending on the suffix of `out`.
 
     Args:
         run: recorded run.
         options: of the video; an image shows the instant `start`.
-        out: file to write: ``.mp4``, ``.gif``, ``.webp`` or ``.png``. The thumbnail of an MP4
+        out: file to write: ``.mp4``, ``.webp`` or ``.png``. The thumbnail of an MP4
             file has the same name with the suffix ``.png``.
         progress: called with the number of finished frames and of all.
 
     Raises:
         OSError: a file cannot be written.
-        UsageError: the run has no motion in the given time, the camera is unknown, or a GIF would
-            be too large.
+        UsageError: the run has no motion in the given time, or the camera is unknown.
         RenderingUnavailable: there is no OpenGL.
     """
     times, speed = instants(run.trajectory().time, options)
@@ -83,7 +81,6 @@ def render_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -
     if kind == ".png":
         times, speed = times[:1], 1.0
     count = len(times)
-    require_room(out, options.size, count)
     thumbnail = None
     with RunImages(
         run, times, options.size, fps=options.fps, speed=speed, fine=options.fine
@@ -94,14 +91,13 @@ def render_run(run: Run, options: VideoOptions, out: Path, progress: Progress) -
             progress(1, 1)
         else:
             middle = None
-            writer = AnimationWriter if kind in KINDS else VideoWriter
-            with writer(out, options.size, options.fps) as video:
+            with VideoWriter(out, options.size, options.fps) as video:
                 for index in range(count):
                     image = draw(index)
                     video.add(image)
                     middle = image if index == count // 2 else middle
                     progress(index + 1, count)
-            if kind not in KINDS and middle is not None:
+            if kind == ".mp4" and middle is not None:
                 thumbnail = out.with_suffix(".png")
                 write_png(thumbnail, middle)
     return RenderedVideo(out, thumbnail, count, count / options.fps, speed)

@@ -1,30 +1,48 @@
-"""H.264 videos that every browser plays, with exact timing."""
+"""Videos for web pages: H.264 with exact timing, and WebP animations that repeat endlessly."""
 
+import os
 from concurrent.futures import Future, ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 import av
 
-from hsr8.render.atomic_writer import AtomicWriter, Image
+from hsr8.render.text import Image
 
-OPTIONS = {"preset": "veryfast", "crf": "21", "threads": "1"}
-CONTAINER_OPTIONS = {"movflags": "+faststart"}  # a page plays the video while it loads
+# Codec, its options and those of the container, by suffix.
+FORMATS: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
+    ".mp4": (
+        "libx264",
+        {"preset": "veryfast", "crf": "21", "threads": "1"},
+        {"movflags": "+faststart"},  # a page plays the video while it loads
+    ),
+    ".webp": (
+        "libwebp_anim",
+        {"quality": "30", "compression_level": "6", "preset": "picture"},
+        {"loop": "0"},
+    ),
+}
 
 
-class VideoWriter(AtomicWriter):
-    """Writer of an MP4 file.
+class VideoWriter:
+    """Writer of a video, used by ``with``; an error inside leaves no file.
 
     Args:
-        path: of the file.
+        path: of the file, which appears when it is complete; its suffix is one of `FORMATS`.
         size: width and height, both even [pixel].
         fps: frames per second.
     """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: int) -> None:
-        super().__init__(path)
-        self._container = av.open(str(self._draft), "w", format="mp4", options=CONTAINER_OPTIONS)
-        self._stream = self._container.add_stream("libx264", rate=fps, options=OPTIONS)
+        kind = path.suffix.lower()
+        codec, options, container_options = FORMATS[kind]
+        self._path, self._draft = path, path.with_name(f"{path.name}.{os.getpid()}.part")
+        self._container = av.open(
+            str(self._draft), "w", format=kind.removeprefix("."), options=container_options
+        )
+        self._stream = self._container.add_stream(codec, rate=fps, options=options)
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"
         self._tick = Fraction(1, fps)
@@ -33,28 +51,40 @@ class VideoWriter(AtomicWriter):
         self._worker = ThreadPoolExecutor(max_workers=1)
         self._pending: Future[None] | None = None
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        try:
+            try:
+                if error is None:
+                    self._wait()
+                    self._container.mux(self._stream.encode(None))
+            finally:
+                self._worker.shutdown()
+                self._container.close()
+            if error is None:
+                self._draft.replace(self._path)
+        finally:
+            self._draft.unlink(missing_ok=True)
+
     def add(self, image: Image) -> None:
-        """Append one image (height, width, 3)."""
+        """Append one frame (height, width, 3)."""
         self._wait()
         self._pending = self._worker.submit(self._encode, image, self._count)
         self._count += 1
 
     def _encode(self, image: Image, index: int) -> None:
         frame = av.VideoFrame.from_ndarray(image, format="rgb24")
-        frame.pts = index
-        frame.time_base = self._tick
+        frame.pts, frame.time_base = index, self._tick
         self._container.mux(self._stream.encode(frame))
 
     def _wait(self) -> None:
         if self._pending is not None:
             self._pending.result()
             self._pending = None
-
-    def _finish(self, *, keep: bool) -> None:
-        try:
-            if keep:
-                self._wait()
-                self._container.mux(self._stream.encode(None))
-        finally:
-            self._worker.shutdown()
-            self._container.close()

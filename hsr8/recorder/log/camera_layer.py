@@ -13,7 +13,7 @@ from hsr8.recorder import palette
 from hsr8.recorder.frame_record import FrameRecord, Image
 from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
-from hsr8.recorder.log.geometry import xyzw
+from hsr8.recorder.log.geometry import quaternions
 from hsr8.world.model.assembly import HEAD_CAMERA
 from navigation.decision import GazeDecision
 from navigation.parameters.gaze import GazeParameters
@@ -77,8 +77,10 @@ class CameraLayer:
 
     def add_poses(self, times: Sequence[float], positions: Array, rotations: Array) -> None:
         """Add true poses: positions (n, 3) [m] and MuJoCo's rotations (n, 9)."""
+        # MuJoCo's camera looks along -z with y up, Rerun's along z with y down.
+        turned = rotations * np.tile((1.0, -1.0, -1.0), 3)
         self._pose.add_rows(
-            times, [1] * len(times), translation=positions, quaternion=_quaternions(rotations)
+            times, [1] * len(times), translation=positions, quaternion=quaternions(turned)
         )
 
     def add_frames(self, frames: Sequence[FrameRecord]) -> None:
@@ -184,16 +186,6 @@ def _images(stream: BlockStream, path: str, kind: str) -> Channel:
 def _lines(stream: BlockStream, path: str, radius: float) -> Channel:
     style = rr.LineStrips2D.from_fields(colors=[palette.VIEW], radii=[radius])
     return Channel(stream, path, rr.LineStrips2D.columns, style)
-
-
-def _quaternions(rotations: Array) -> Array:
-    """Return Rerun's quaternions (n, 4) of cameras with MuJoCo's rotations (n, 9)."""
-    # MuJoCo's camera looks along -z with y up, Rerun's along z with y down.
-    turned = rotations * np.tile((1.0, -1.0, -1.0), 3)
-    quaternions = np.empty((len(turned), 4))
-    for quaternion, rotation in zip(quaternions, turned, strict=True):
-        mujoco.mju_mat2Quat(quaternion, rotation)
-    return xyzw(quaternions)
 
 
 def _jpeg(image: Image, quality: int) -> NDArray[np.uint8]:

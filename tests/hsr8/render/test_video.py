@@ -24,6 +24,19 @@ def test_frames_have_exact_times_and_a_format_browsers_play(tmp_path):
     assert content.index(b"moov") < content.index(b"mdat")
 
 
+def test_a_webp_repeats_endlessly(tmp_path):
+    with VideoWriter(tmp_path / "a.webp", (64, 48), 5) as video:
+        for k in range(6):
+            image = np.full((48, 64, 3), (200, 190, 180), np.uint8)
+            image[10:20, 8 * k : 8 * k + 8] = (220, 30, 30)
+            video.add(image)
+    content = (tmp_path / "a.webp").read_bytes()
+    assert content.startswith(b"RIFF")
+    assert content.count(b"ANMF") == 6
+    loops = content[content.index(b"ANIM") + 12 :][:2]
+    assert loops == b"\x00\x00"
+
+
 def _fail_within(path):
     with VideoWriter(path, (64, 48), 25) as video:
         for _ in range(3):

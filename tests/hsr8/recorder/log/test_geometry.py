@@ -2,32 +2,16 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.geometry import (
     BASE,
+    Scene,
     batches_of,
     colors,
-    multiply,
-    rotate,
     sole_outline,
-    xyzw,
 )
-
-
-def _unit(rng, n):
-    q = rng.normal(size=(n, 4))
-    return q / np.linalg.norm(q, axis=1, keepdims=True)
-
-
-def test_quaternion_helpers_agree_with_mujoco():
-    rng = np.random.default_rng(0)
-    a, b, v = _unit(rng, 20), _unit(rng, 20), rng.normal(size=(20, 3))
-    for i in range(20):
-        product, turned = np.empty(4), np.empty(3)
-        mujoco.mju_mulQuat(product, a[i], b[i])
-        mujoco.mju_rotVecQuat(turned, v[i], a[i])
-        np.testing.assert_allclose(multiply(a, b)[i], product, atol=1e-12)
-        np.testing.assert_allclose(rotate(a, v)[i], turned, atol=1e-12)
-    assert xyzw(np.array([1.0, 2.0, 3.0, 4.0])).tolist() == [2.0, 3.0, 4.0, 1.0]
+from hsr8.recorder.log.log_reader import Log
+from hsr8.world.model.assembly import HEAD_CAMERA
 
 
 @pytest.fixture(scope="module")
@@ -41,20 +25,42 @@ def test_every_visible_geom_of_the_robot_is_in_one_batch(model, robot):
     assert sorted(geoms.tolist()) == np.flatnonzero(visible).tolist()
 
 
-def test_poses_of_geoms_follow_their_bodies(model, robot):
-    """In any configuration, body pose and offset give MuJoCo's own geom pose."""
-    data = mujoco.MjData(model)
-    data.qpos[:] = np.random.default_rng(3).normal(size=model.nq)
-    mujoco.mj_normalizeQuat(model, data.qpos)
-    mujoco.mj_kinematics(model, data)
-    for batch in batches_of(model, robot & (model.geom_group == 2)):
-        turn = data.xquat[batch.bodies]
-        position = data.xpos[batch.bodies] + rotate(turn, batch.offset)
-        if batch.kind == "capsules":
-            half = np.zeros_like(position)
-            half[:, 2] = model.geom_size[batch.geoms, 1]
-            position = position + rotate(multiply(turn, batch.rotation), half)
-        np.testing.assert_allclose(position, data.geom_xpos[batch.geoms], atol=1e-9)
+def test_logged_shapes_are_where_the_geoms_are(model, tmp_path):
+    rng, data = np.random.default_rng(3), mujoco.MjData(model)
+    qpos = rng.normal(size=(3, model.nq))
+    qpos[:, 3:7] /= np.linalg.norm(qpos[:, 3:7], axis=1, keepdims=True)
+    stream = BlockStream("test")
+    stream.save(tmp_path / "log.rrd")
+    movers = [np.zeros((1, 2))] * 3
+    cameras, _ = Scene(stream, model, (4.0, 4.0)).add([0.0, 1.0, 2.0], list(qpos), movers)
+    stream.send()
+    stream.disconnect()
+    log = Log(tmp_path / "log.rrd")
+    visible = (model.body_rootid[model.geom_bodyid] == model.body(BASE).id) & (
+        model.geom_group == 2
+    )
+    for k, configuration in enumerate(qpos):
+        data.qpos[:] = configuration
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_camlight(model, data)
+        assert cameras[k] == pytest.approx(data.camera(HEAD_CAMERA).xpos)
+        for batch in batches_of(model, visible):
+            kind = f"{batch.kind.capitalize()}3D"
+            name = "translations" if batch.kind == "capsules" else "centers"
+            entity = f"/world/robot/{batch.kind}"
+            positions = log.table(entity, f"{kind}:{name}").rows[k]
+            for geom, position, quaternion in zip(
+                batch.geoms,
+                positions,
+                log.table(entity, f"{kind}:quaternions").rows[k],
+                strict=True,
+            ):
+                matrix = np.empty(9)
+                mujoco.mju_quat2Mat(matrix, np.roll(quaternion, 1).astype(float))
+                assert matrix == pytest.approx(data.geom_xmat[geom], abs=1e-5)
+                half = model.geom_size[geom, 1] if batch.kind == "capsules" else 0.0
+                centre = position + half * matrix[2::3]
+                assert centre == pytest.approx(data.geom_xpos[geom], abs=1e-5)
 
 
 def test_colors_come_from_the_material(model):
