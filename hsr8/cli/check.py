@@ -1,6 +1,8 @@
 """``hsr8 check``: settings and world of a scenario, without running it."""
 
+import re
 from math import degrees
+from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -13,16 +15,12 @@ from hsr8.plugin_file import require_plugins
 from hsr8.recorder.files import atomic
 from hsr8.render.plan_view import PlanView
 from hsr8.render.png import write_png
-from hsr8.scenario.command import Command
 from hsr8.scenario.loader import load_scenario
-from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
+from hsr8.scenario.section import Section
 from hsr8.world.field.certificate import least_clearance, straight_length
 from hsr8.world.field.generator import FairWorld, draw_world
-from hsr8.world.field.layout import Layout
 from hsr8.world.field.motion import pace
-
-Summary = dict[str, object]
 
 
 def main(options: Check) -> int:
@@ -44,38 +42,50 @@ def main(options: Check) -> int:
     if options.json:
         print(atomic.dumps(summary))
     else:
-        _show(scenario, world.layout, summary)
-        print(f"run it: {' '.join(run_command(options, scenario.seed))}")
+        obstacles = summary.pop("obstacles")
+        console = Console(highlight=False)
+        facts = Table(show_header=False)
+        for key, value in summary.items():
+            if value not in ({}, []):
+                facts.add_row(_label(key), escape(_text(value)))
+        console.print(facts)
+        if obstacles:
+            table = Table(*map(_label, obstacles[0]), title="obstacles", title_justify="left")
+            for obstacle in obstacles:
+                table.add_row(*map(_text, obstacle.values()))
+            console.print(table)
+        print(f"run it      {' '.join(run_command(options, scenario.seed))}")
     return 0
 
 
-def summarize(scenario: Scenario, world: FairWorld) -> Summary:
-    """Return world, mission and certificate as plain values."""
-    layout, certificate = world.layout, world.certificate
+def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
+    """Return robot, world, mission and feasibility certificate as plain values."""
+    layout, certificate, camera = world.layout, world.certificate, scenario.camera
     clearance = None
     if len(certificate.path) and layout.obstacles:
         clearance = round(least_clearance(layout, certificate.path), 3)
-    heading = layout.goal_heading
+    fov = [round(camera.horizontal_fov_deg), round(camera.vertical_fov_deg)]
+    x, y, heading = layout.start
+    goal_heading = layout.goal_heading
     return {
         "name": scenario.name,
         "seed": scenario.seed,
-        "duration": scenario.duration,
-        "field": list(layout.field_size),
-        "start": [round(v, 3) for v in layout.start],
-        "obstacles": [
-            {
-                "index": i,
-                "moves": o.motion is not None,
-                "position": [round(v, 3) for v in o.position],
-                "radius": round(o.radius, 3),
-                "color": o.color,
-                "speed": round(pace(o.motion), 3) if o.motion else 0.0,
-            }
-            for i, o in enumerate(layout.obstacles)
-        ],
-        "beacons": [b.name for b in layout.beacons],
-        "waypoints": layout.waypoints.round(3).tolist(),
-        "goal_heading_deg": None if heading is None else round(degrees(heading), 1),
+        "duration_s": scenario.duration,
+        "body": scenario.robot.body,
+        "camera": camera.source,
+        "camera_period_s": camera.period_ms / 1000.0,
+        "camera_fov_deg": [360] if camera.omnidirectional else fov,
+        "profile": scenario.navigation.profile,
+        "mission": scenario.mission.kind,
+        "command": _set_values(scenario.command),
+        "disturbance": _set_values(scenario.disturbance),
+        "fault": [_set_values(fault) for fault in scenario.fault],
+        "field_m": list(layout.field_size),
+        "start_m": [round(x, 3), round(y, 3)],
+        "start_heading_deg": round(degrees(heading), 1),
+        "waypoints_m": layout.waypoints.round(3).tolist(),
+        "repeated": layout.endless,
+        "goal_heading_deg": None if goal_heading is None else round(degrees(goal_heading), 1),
         "straight_length_m": round(straight_length(layout), 2),
         "certified": certificate.solvable,
         "certified_points": certificate.points_reached,
@@ -83,91 +93,41 @@ def summarize(scenario: Scenario, world: FairWorld) -> Summary:
         "certified_length_m": round(certificate.length, 2),
         "certified_clearance_m": clearance,
         "rejected_worlds": world.rejected,
+        "beacons": [b.name for b in layout.beacons],
+        "obstacles": [
+            {
+                "index": i,
+                "position_m": [round(v, 3) for v in o.position],
+                "radius_m": round(o.radius, 3),
+                "color": o.color,
+                "motion": type(o.motion).__name__.lower() if o.motion else None,
+                "speed_mps": round(pace(o.motion), 3) if o.motion else 0.0,
+            }
+            for i, o in enumerate(layout.obstacles)
+        ],
     }
 
 
-def _show(scenario: Scenario, layout: Layout, summary: Summary) -> None:
-    console = Console(highlight=False)
-    width, depth = layout.field_size
-    x, y, heading = layout.start
-    camera, pushes = scenario.camera, scenario.disturbance.random
-    speeds = [pace(o.motion) for o in layout.movers if o.motion]
-    speed_range = f", {min(speeds):.3f} to {max(speeds):.3f} m/s" if speeds else ""
-    facts = Table(
-        title=f"{scenario.name}, seed {scenario.seed}", title_justify="left", show_header=False
-    )
-    facts.add_row("field", f"{width:g} m x {depth:g} m")
-    facts.add_row("static obstacles", str(len(layout.static)))
-    facts.add_row("moving obstacles", f"{len(speeds)}{speed_range}")
-    facts.add_row("beacons", ", ".join(b.name for b in layout.beacons) or "none")
-    facts.add_row("robot", f"{scenario.robot.body} body")
-    facts.add_row("start", f"({x:.2f}, {y:.2f}) m, {degrees(heading):.0f} deg")
-    facts.add_row("mission", f"{scenario.mission.kind}, {_waypoints(layout)}")
-    if isinstance(scenario.mission, Walk):
-        facts.add_row("command", _command(scenario.command))
-    if pushes is not None:
-        low, high = pushes.impulse
-        facts.add_row("pushes", f"drawn, {low:g} to {high:g} N s on {pushes.body}")
-    if scenario.fault:
-        facts.add_row("faults", ", ".join(f"{f.kind} at {f.start:g} s" for f in scenario.fault))
-    facts.add_row("certificate", _certificate(summary, layout))
-    fov = f"{camera.horizontal_fov_deg:.0f} x {camera.vertical_fov_deg:.0f} deg"
-    view = "" if camera.omnidirectional else f" {camera.width} x {camera.height}, {fov},"
-    facts.add_row("camera", f"{camera.source},{view} every {camera.period_ms} ms")
-    facts.add_row("profile", scenario.navigation.profile)
-    facts.add_row("simulated time", f"at most {scenario.duration:g} s")
-    console.print(facts)
-    if layout.obstacles:
-        console.print(_obstacles(layout))
+def _set_values(section: Section) -> dict[str, Any]:
+    values = section.model_dump(mode="json", exclude_none=True)
+    return {key: value for key, value in values.items() if value not in ([], {})}
 
 
-def _command(command: Command) -> str:
-    if command.constant:
-        vx, vy, wz = command.vx or 0.0, command.vy or 0.0, command.wz or 0.0
-        return f"{vx:g} m/s forward, {vy:g} m/s left, {wz:g} rad/s"
-    if command.footstep is not None:
-        return f"footsteps of {command.footstep.forward:g} m"
-    if command.random is not None:
-        low, high = command.random.interval
-        return f"drawn every {low:g} to {high:g} s, {command.random.stop_fraction:.0%} stops"
-    total = sum(stretch.duration for stretch in command.stretch)
-    return f"{len(command.stretch)} stretches, {total:g} s"
+def _label(key: str) -> str:
+    """Return a key for people: ``speed_mps`` becomes ``speed [m/s]``."""
+    name = re.sub(r"_(m|s|mps|deg)$", r" [\1]", key).replace("[mps]", "[m/s]").replace("_", " ")
+    return escape(name)
 
 
-def _waypoints(layout: Layout) -> str:
-    n, heading = len(layout.waypoints), layout.goal_heading
-    if n == 0:
-        return "no waypoints"
-    if layout.endless:
-        return f"{n} via points, repeated"
-    goal = "a goal" if heading is None else f"a goal at {degrees(heading):.0f} deg"
-    via = "1 via point" if n == 2 else f"{n - 1} via points"
-    return f"{via} and {goal}, {straight_length(layout):.1f} m straight"
+def _text(value: object) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(_inner, value))
+    if isinstance(value, dict):
+        return ", ".join(f"{key} = {_inner(part)}" for key, part in value.items())
+    if value is None or isinstance(value, bool):
+        return {None: "none", True: "yes", False: "no"}[value]
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _certificate(summary: Summary, layout: Layout) -> str:
-    """Describe the path of a point robot that knows the world."""
-    points = summary["certified_points"]
-    if len(layout.waypoints) == 0:
-        return "not needed without waypoints"
-    if not summary["certified"]:
-        return f"none: no feasible path beyond waypoint {points}, even with full knowledge"
-    clearance = summary["certified_clearance_m"]
-    room = "" if clearance is None else f", clearance {clearance} m"
-    path = f"{summary['certified_time_s']} s, {summary['certified_length_m']} m{room}"
-    rejected = f"; {n} worlds rejected before" if (n := summary["rejected_worlds"]) else ""
-    return f"{points} waypoints reached with full knowledge in {path}{rejected}"
-
-
-def _obstacles(layout: Layout) -> Table:
-    table = Table(title="obstacles", title_justify="left")
-    for name in ("", "x [m]", "y [m]", "radius [m]", "speed [m/s]"):
-        table.add_column(escape(name), justify="right")
-    table.add_column("color")
-    table.add_column("motion")
-    for i, o in enumerate(layout.obstacles):
-        speed = f"{pace(o.motion):.3f}" if o.motion else ""
-        motion = type(o.motion).__name__.lower() if o.motion else ""
-        x, y = o.position
-        table.add_row(str(i), f"{x:.2f}", f"{y:.2f}", f"{o.radius:.3f}", speed, o.color, motion)
-    return table
+def _inner(value: object) -> str:
+    return f"({_text(value)})" if isinstance(value, list | dict) else _text(value)
