@@ -1,6 +1,7 @@
 """``hsr8 check``: settings and world of a scenario, without running it."""
 
 import re
+import shlex
 from math import degrees
 from typing import Any
 
@@ -8,7 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from hsr8.cli.command_line import run_command, settings
+from hsr8.cli.command_line import command_words, run_options, settings
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.plugin_file import require_plugins
@@ -54,7 +55,7 @@ def main(options: Check) -> int:
             for obstacle in obstacles:
                 table.add_row(*map(_text, obstacle.values()))
             console.print(table)
-        print(f"run it      {' '.join(run_command(options, scenario.seed))}")
+        print(f"run it      {shlex.join(command_words(run_options(options, scenario.seed)))}")
     return 0
 
 

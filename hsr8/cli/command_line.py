@@ -1,7 +1,7 @@
-"""Settings of a scenario, and the command line of a run, from the options of a command."""
+"""Settings of a scenario, and command lines to repeat a run, from the options of a command."""
 
-import shlex
 from collections.abc import Iterable, Sequence
+from dataclasses import fields, replace
 from typing import Any
 
 from hsr8.cli.options import Check, Run, Sweep
@@ -25,48 +25,35 @@ def flat(groups: Iterable[Iterable[str]]) -> tuple[str, ...]:
     return tuple(value for group in groups for value in group)
 
 
-def run_words(options: Run | Check | Sweep, more: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the words of the command line that makes such a run, without its seed.
-
-    Args:
-        options: as given.
-        more: further settings.
-    """
-    words = ["hsr8", "run", options.scenario]
-    if not isinstance(options, Check):
-        for flag, value in (
-            ("--duration", options.duration),
-            ("--body", options.body),
-            ("--camera", options.camera),
-        ):
-            if value is not None:
-                words += [flag, str(value)]
-    for group in (*options.set, *((setting,) for setting in more)):
-        words += ["--set", *group]
+def command_words(options: Run | Sweep) -> tuple[str, ...]:
+    """Return the words of the command line with these options and the default output."""
+    options = replace(options, json=False, quiet=False)
+    words = ["hsr8", type(options).__name__.lower(), options.scenario]
+    for field in fields(options)[1:]:
+        flag, value = f"--{field.name.replace('_', '-')}", getattr(options, field.name)
+        if value == field.default:
+            continue
+        for group in value if isinstance(value, tuple) else [(value,)]:
+            words += [flag, *map(str, group)] if value is not True else [flag]
     return tuple(words)
 
 
-def run_command(options: Run | Check, seed: int) -> tuple[str, ...]:
-    """Return the words, quoted for a shell, of the command line that makes exactly this run."""
-    head, name, scenario, *rest = run_words(options)
-    words = [head, name, scenario, "--seed", str(seed), *rest]
-    if isinstance(options, Run):
-        words += [] if options.out == Run.out else ["--out", str(options.out)]
-        words += ["--no-log"] if options.no_log else []
-        words += ["--log-level", options.log_level] if options.log_level else []
-    return tuple(shlex.quote(word) for word in words)
+def run_options(options: Check | Sweep, seed: int | None, more: Sequence[str] = ()) -> Run:
+    """Return the options of ``hsr8 run`` for the same scenario and further settings."""
+    run = Run(options.scenario, seed, set=(*options.set, *((setting,) for setting in more)))
+    if isinstance(options, Sweep):
+        run = replace(run, duration=options.duration, body=options.body, camera=options.camera)
+    return run
 
 
 def option_tables(options: Run | Sweep) -> dict[str, dict[str, Any]]:
     """Return the settings that each option stands for, by option; ``--set`` overrides them."""
-    tables: dict[str, dict[str, Any]] = {}
-    if options.duration is not None:
-        tables["--duration"] = {"duration": options.duration}
-    if options.body is not None:
-        tables["--body"] = {"robot": {"body": options.body}}
-    if options.camera is not None:
-        tables["--camera"] = {"camera": {"source": options.camera}}
-    return tables
+    tables: dict[str, dict[str, Any]] = {
+        "--duration": {"duration": options.duration},
+        "--body": {"robot": {"body": options.body}},
+        "--camera": {"camera": {"source": options.camera}},
+    }
+    return {flag: table for flag, table in tables.items() if getattr(options, flag[2:]) is not None}
 
 
 def log_level(options: Run) -> LogLevel | None:

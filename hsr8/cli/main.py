@@ -13,7 +13,7 @@ from typing import Any, get_args
 
 import tyro
 
-from hsr8.cli.crash import CrashReport
+from hsr8.cli.crash import crash_report
 from hsr8.cli.loading import loading
 from hsr8.cli.options import Command
 from hsr8.cli.renamed import require_present_names
@@ -76,7 +76,7 @@ def entry(arguments: Sequence[str] | None = None) -> int:
 def _run(words: list[str]) -> int:
     """Run the command of a command line; return its exit code."""
     try:
-        with CrashReport():
+        with crash_report():
             command = parse(words)
             if command is None:
                 return 0

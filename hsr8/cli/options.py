@@ -76,11 +76,11 @@ class Run:
     """Parent folder of run folders."""
     duration: Seconds = None
     """Maximum simulated time [s]; default: that of the scenario."""
-    set: Settings = ()
     body: Body = None
     """Full physics, or feet that land exactly as planned (faster)."""
     camera: Camera = None
     """rendered: OpenGL; analytic: geometry only; omnidirectional: analytic, 360 deg."""
+    set: Settings = ()
     no_log: Flag = False
     """Write no Rerun log."""
     log_level: Level = None

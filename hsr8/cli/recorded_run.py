@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 from hsr8.cli import report, termination
-from hsr8.cli.crash import CrashReport
+from hsr8.cli.crash import crash_report
 from hsr8.cli.options import Run
 from hsr8.cli.progress import Progress
 from hsr8.evaluation.recording import Recording, Result, renderer_of
@@ -42,7 +42,7 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
     recording = Recording(simulation, () if options.quiet else (Progress(scenario.duration),))
     with _view(options) as view:
         path = RunFolder.create(options.out, scenario.name, scenario.seed)
-        with CrashReport(path), _interruptible(simulation):
+        with crash_report(path), _interruptible(simulation):
             recording.into(path, manifest, log=log, live=view.address if view else "")
             result = recording.run()
         code = _report(options, result, manifest)

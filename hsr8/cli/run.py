@@ -1,8 +1,10 @@
 """``hsr8 run``: checks before anything heavy is imported."""
 
+import shlex
 import sys
+from dataclasses import replace
 
-from hsr8.cli.command_line import log_level, option_tables, run_command, settings
+from hsr8.cli.command_line import command_words, log_level, option_tables, settings
 from hsr8.cli.loading import loading
 from hsr8.cli.options import Run
 from hsr8.scenario.loader import load_scenario
@@ -24,4 +26,5 @@ def main(options: Run) -> int:
     with loading():
         from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
-    return start(options, scenario, log, run_command(options, scenario.seed))
+    repeated = replace(options, seed=scenario.seed, view=None)
+    return start(options, scenario, log, tuple(map(shlex.quote, command_words(repeated))))

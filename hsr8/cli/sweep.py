@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hsr8.cli import termination
-from hsr8.cli.command_line import flat, option_tables, run_words, settings
+from hsr8.cli.command_line import command_words, flat, option_tables, run_options, settings
 from hsr8.cli.main import entry
 from hsr8.cli.options import Sweep
 from hsr8.errors import Hsr8Error, UsageError
@@ -73,7 +73,7 @@ def main(options: Sweep) -> int:
         require_plugins(scenario.plugin)
     out = options.out or Path("sweeps") / next(iter(scenarios.values())).name
     definitions = _definitions(scenarios, options, combinations)
-    command = _command(options)
+    command = shlex.join(command_words(options))
     folders: dict[str, SweepFolder] = {}
     jobs: list[Job] = []
     with ExitStack() as stack:
@@ -116,7 +116,7 @@ def _definitions(
         name: replace(
             common,
             name=scenario.name,
-            command_words=run_words(options, combinations[name]),
+            command_words=command_words(run_options(options, None, combinations[name])),
             libraries=common.libraries | digests(scenario.plugin),
             scenario=dump(scenario),
         )
@@ -202,23 +202,6 @@ def _scenario(options: Sweep, varied: tuple[str, ...]) -> Scenario:
     return load_scenario(
         options.scenario, settings(options), options=option_tables(options), varied=varied
     )
-
-
-def _command(options: Sweep) -> str:
-    words = ["hsr8", "sweep", *run_words(options)[2:], "--seeds", options.seeds]
-    for group in options.vary:
-        words += ["--vary", *group]
-    for flag, value, default in (
-        ("--out", options.out, None),
-        ("--workers", options.workers, None),
-        ("--executor", options.executor, "local"),
-        ("--shard", options.shard, None),
-        ("--timeout", options.timeout, None),
-        ("--keep", options.keep, "all"),
-    ):
-        if value != default:
-            words += [flag, str(value)]
-    return shlex.join([*words, "--log"] if options.log else words)
 
 
 def _print(options: Sweep, out: Path, summaries: dict[str, Summary], *, interrupted: bool) -> None:

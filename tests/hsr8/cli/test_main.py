@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hsr8.cli.crash import CrashReport, InternalError
+from hsr8.cli.crash import InternalError, crash_report
 from hsr8.cli.main import COMMANDS, entry
 from hsr8.errors import Hsr8Error, SimulationDiverged, UsageError
 
@@ -112,12 +112,12 @@ def test_an_internal_error_leaves_its_traceback_in_a_file(failing, capsys, tmp_p
 
 def test_a_run_folder_that_cannot_be_written_takes_no_traceback(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    with pytest.raises(InternalError) as caught, CrashReport(tmp_path / "no" / "such"):
+    with pytest.raises(InternalError) as caught, crash_report(tmp_path / "no" / "such"):
         raise ZeroDivisionError
     (report,) = tmp_path.glob("hsr8-*/crash.txt")
     assert str(report) in str(caught.value)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
-    with pytest.raises(InternalError, match="cannot be written"), CrashReport():
+    with pytest.raises(InternalError, match="cannot be written"), crash_report():
         raise ZeroDivisionError
 
 

@@ -45,7 +45,7 @@ def test_a_part_of_a_run_is_plotted_elsewhere(run, tmp_path, capsys):
     [
         (["--from", "3"], "the run ended at 1.5 s"),
         (["--out", "plot.jpg"], ".png, .svg, .pdf"),
-        (["--out", "no/such/plot.png"], "there is no folder"),
+        (["--out", "no/such/plot.png"], "no folder"),
         (["--what", "zmpp"], "zmp"),
     ],
 )

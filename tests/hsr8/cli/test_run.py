@@ -5,9 +5,7 @@ import tomllib
 
 import pytest
 
-from hsr8.cli.command_line import option_tables
 from hsr8.cli.main import entry
-from hsr8.cli.options import Run
 from hsr8.errors import SimulationDiverged
 from hsr8.loop import Simulation
 from hsr8.recorder.run.run_reader import open_run
@@ -164,14 +162,6 @@ def test_an_unwritable_folder_is_a_usage_error(tmp_path, capsys):
     (tmp_path / "runs").write_text("a file")
     assert _run(tmp_path / "runs") == 2
     assert "--out" in capsys.readouterr().err
-
-
-def test_options_become_tables_of_the_scenario():
-    options = Run("course", seed=3, duration=2.5, set=(("a=1",),), body="kinematic")
-    assert option_tables(options) == {
-        "--duration": {"duration": 2.5},
-        "--body": {"robot": {"body": "kinematic"}},
-    }
 
 
 def test_what_is_set_goes_over_the_other_options(tmp_path, capsys):
