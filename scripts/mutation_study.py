@@ -55,7 +55,7 @@ MODULES = (
     "navigation/motion/virtual_obstacle",
     "navigation/motion/velocity_modification",
     "navigation/belief/localization",
-    "navigation/belief/pose_kernel",
+    "navigation/belief/pose_filter",
     "navigation/belief/association",
     "navigation/belief/particle_kernel",
     "navigation/belief/imm_kernel",

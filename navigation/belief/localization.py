@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.belief import pose_kernel
 from navigation.belief.beacon_relocalization import BeaconRelocalization
-from navigation.belief.pose_filter import PoseFilter
+from navigation.belief.pose_filter import nis, pose_filter
 from navigation.observation import Frame, Observation
 from navigation.parameters.belief import LocalizationParameters
-from navigation.transform import rotate
+from navigation.transform import rotate, yaw_rotation
 
 Array = NDArray[np.float64]
 
@@ -48,8 +47,9 @@ class Localizer:
         self._parameters = parameters
         self._beacons = {name: (float(x), float(y)) for name, (x, y) in beacons.items()}
         self._relocalization = BeaconRelocalization(parameters, self._beacons)
-        self._filter = PoseFilter()
+        self._filter = pose_filter()
         self._set(np.asarray(pose, float), np.asarray(covariance, float))
+        self._last_valid = self.pose
         self._previous: tuple[float, list[float]] | None = None
         self.lost = False
         self.faults = 0
@@ -91,13 +91,18 @@ class Localizer:
             self._restart()
         if not (np.isfinite(self._filter.x).all() and np.isfinite(self._filter.P).all()):
             self._restart()
+        self._last_valid = self.pose
 
     def _set(self, pose: Array, covariance: Array) -> None:
         pose = pose.copy()
         pose[2] = wrap(float(pose[2]))
-        self._filter.x = pose
-        self._filter.P = 0.5 * (covariance + covariance.T)
-        self._last_valid = self._filter.x.copy()
+        self._filter.x, self._filter.P = pose, covariance
+        self._symmetrize()
+
+    def _symmetrize(self) -> None:
+        """Remove the rounding errors of the covariance."""
+        P = self._filter.P
+        self._filter.P = 0.5 * (P + P.T)
 
     def _restart(self) -> None:
         """Re-initialize, lost, at the last valid pose."""
@@ -116,25 +121,36 @@ class Localizer:
         turn = odometry[2] - last[2]
         middle = last[2] + 0.5 * turn
         dx, dy = rotate(-middle, (odometry[0] - last[0], odometry[1] - last[1]))
+        f = self._filter
         drift = self._parameters.drift**2 * (frame.time - previous[0])
-        self._filter.move(np.array([dx, dy, turn]), frame.motion_covariance, drift)
-        self._last_valid = self._filter.x.copy()
+        rotation = yaw_rotation(float(f.x[2]))
+        f.Q = rotation @ frame.motion_covariance @ rotation.T + drift * np.eye(3)
+        f.predict(increment=np.array([dx, dy, turn]))
+        self._symmetrize()
 
     def _correct(self, frame: Frame, beacons: list[Observation]) -> list[str]:
         """Correct by all beacons inside the gate, as one measurement; return their names."""
         f = self._filter
-        f.spread()
-        z = np.array([(o.distance, o.bearing) for o in beacons])
-        noise = np.array([o.covariance for o in beacons])
-        places = np.array([self._beacons[o.label] for o in beacons])
-        # NaN is outside the gate.
-        fit = np.flatnonzero(f.nis(z, noise, places) <= self._parameters.gate)
-        if len(fit) == 0:
-            return []
-        R = pose_kernel.together(noise[fit], frame.view.yaw_sigma**2, MAX_SHARED)
-        f.correct(z[fit], R, places[fit])
-        self._last_valid = f.x.copy()
-        return [beacons[k].label for k in fit.tolist()]
+        # There is no prediction before the first frame and after relocalization.
+        f.sigmas_f = f.points_fn.sigma_points(f.x, f.P)
+        distances = nis(f, *self._measurement(frame, beacons))
+        gate = self._parameters.gate
+        accepted = [o for o, d in zip(beacons, distances, strict=True) if d <= gate]
+        if accepted:
+            z, R, landmarks = self._measurement(frame, accepted)
+            f.update(z, R=R, landmarks=landmarks)
+            self._symmetrize()
+        return [o.label for o in accepted]
+
+    def _measurement(self, frame: Frame, beacons: list[Observation]) -> tuple[Array, Array, Array]:
+        """Return measurement (2 k,), its covariance (2 k, 2 k) and the landmarks in W (k, 2)."""
+        z = np.array([(o.distance, o.bearing) for o in beacons]).ravel()
+        shared = MAX_SHARED * min(float(o.covariance[1, 1]) for o in beacons)
+        R = np.zeros((len(z), len(z)))
+        R[1::2, 1::2] = min(frame.view.yaw_sigma**2, shared)
+        for i, o in enumerate(beacons):
+            R[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = o.covariance
+        return z, R, np.array([self._beacons[o.label] for o in beacons])
 
     def _detect_failure(self, time: float, beacons: list[Observation], accepted: list[str]) -> None:
         rejected = [o.label for o in beacons if o.label not in accepted]

@@ -1,149 +1,110 @@
-"""Unscented Kalman filter of a pose that sees landmarks: filterpy's, with Julier's points.
+"""Unscented Kalman filter of the robot pose: filterpy's, with Julier's sigma points.
 
-It is the distribution-approximation filter of Yoo & Kim. The filter is filterpy's; its loops
-over the sigma points, in Python there, are compiled here.
+State: x, y, heading of R in W [m, m, rad]. Measurement: distances and bearings of k landmarks,
+(d_1, b_1, d_2, b_2, ...) (2 k,) [m, rad]. It is the distribution-approximation filter of
+Yoo & Kim.
 """
 
+from math import atan2, cos, hypot, sin
+
 import numpy as np
-from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter
+from filterpy.kalman import JulierSigmaPoints, UnscentedKalmanFilter, unscented_transform
 from numpy.typing import NDArray
 
-from navigation.angles import wrap
-from navigation.belief import pose_kernel
-from navigation.transform import yaw_rotation
+from navigation.angles import wrap, wrap_array
 
 Array = NDArray[np.float64]
 
-# Every third entry of a state and every second of a measurement is an angle.
-STATE = 3
-MEASUREMENT = 2
-ONE = np.eye(3)
+
+def pose_filter() -> UnscentedKalmanFilter:
+    """Return the filter; its `update` takes any number of landmarks."""
+    return UnscentedKalmanFilter(
+        dim_x=3,
+        dim_z=2,
+        dt=1.0,
+        fx=_move,
+        hx=_observe,
+        points=JulierSigmaPoints(3, kappa=0.0, sqrt_method=_upper_cholesky),
+        x_mean_fn=_mean_pose,
+        z_mean_fn=_mean_measurement,
+        residual_x=_pose_difference,
+        residual_z=_measurement_difference,
+        state_add=_pose_sum,
+    )
 
 
-def _root(covariance: Array) -> Array:
-    upper = pose_kernel.root(covariance)
-    if upper[0, 0] == 0.0:
-        raise np.linalg.LinAlgError("the covariance of the pose is not positive definite")
+def nis(f: UnscentedKalmanFilter, z: Array, R: Array, landmarks: Array) -> Array:
+    """Return the normalized innovation squared of each landmark by itself (k,).
+
+    Args:
+        f: filter with sigma points of its present state.
+        z: measurement (2 k,).
+        R: its covariance (2 k, 2 k).
+        landmarks: in W (k, 2) [m].
+    """
+    points = np.array([f.hx(x, landmarks) for x in f.sigmas_f])
+    mean, S = unscented_transform(points, f.Wm, f.Wc, R, f.z_mean, f.residual_z)
+    k = len(landmarks)
+    y = f.residual_z(z, mean).reshape(k, 2)
+    blocks = S.reshape(k, 2, k, 2)[range(k), :, range(k), :]
+    squares: Array = np.einsum("ki,ki->k", y, np.linalg.solve(blocks, y[:, :, None])[:, :, 0])
+    return squares
+
+
+def _upper_cholesky(covariance: Array) -> Array:
+    upper: Array = np.asarray(np.linalg.cholesky(covariance).T, np.float64)
     return upper
 
 
-def _seen(pose: Array, landmarks: Array) -> Array:
-    return pose_kernel.sighted(pose, landmarks)
+def _move(pose: Array, _dt: float, increment: Array) -> Array:
+    """Move a pose by an odometry increment in R (3,), midpoint rule."""
+    x, y, heading = pose.tolist()
+    dx, dy, turn = increment.tolist()
+    middle = heading + 0.5 * turn
+    c, s = cos(middle), sin(middle)
+    return np.array([x + c * dx - s * dy, y + s * dx + c * dy, heading + turn])
 
 
-def _difference(a: Array, b: Array) -> Array:
-    return pose_kernel.difference(a, b, MEASUREMENT)
+def _observe(pose: Array, landmarks: Array) -> Array:
+    """Return distances and bearings (2 k,) of landmarks in W (k, 2) from a pose."""
+    x, y, heading = pose.tolist()
+    polar: list[float] = []
+    for u, v in landmarks.tolist():
+        polar += hypot(u - x, v - y), atan2(v - y, u - x) - heading
+    return np.array(polar)
 
 
-def _moved_on(state: Array, step: Array) -> Array:
-    total: Array = state + step
+def _pose_difference(a: Array, b: Array) -> Array:
+    difference: Array = a - b
+    difference[2] = wrap(float(difference[2]))
+    return difference
+
+
+def _pose_sum(pose: Array, step: Array) -> Array:
+    total: Array = pose + step
     total[2] = wrap(float(total[2]))
     return total
 
 
-def _state(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
-    return pose_kernel.transform(points, mean, weights, noise, STATE)
+def _measurement_difference(a: Array, b: Array) -> Array:
+    difference: Array = a - b
+    difference[1::2] = wrap_array(difference[1::2])
+    return difference
 
 
-def _measurement(points: Array, mean: Array, weights: Array, noise: Array, *_: object) -> object:
-    return pose_kernel.transform(points, mean, weights, noise, MEASUREMENT)
+def _mean_pose(points: Array, weights: Array) -> Array:
+    mean: Array = weights @ points
+    mean[2] = _mean_angle(points[:, 2:], weights)[0]
+    return mean
 
 
-class PosePoints(JulierSigmaPoints):  # type: ignore[misc]  # filterpy has no types
-    """Julier's sigma points of a pose; weights and form are filterpy's."""
-
-    def __init__(self) -> None:
-        super().__init__(3, kappa=0.0, sqrt_method=_root)
-
-    def sigma_points(self, x: Array, P: Array) -> Array:
-        """Points (7, 3) of mean (3,) and covariance (3, 3).
-
-        Raises:
-            numpy.linalg.LinAlgError: the covariance is not positive definite.
-        """
-        return pose_kernel.sigma_points(x, self.sqrt((self.n + self.kappa) * P))
+def _mean_measurement(points: Array, weights: Array) -> Array:
+    mean: Array = weights @ points
+    mean[1::2] = _mean_angle(points[:, 1::2], weights)
+    return mean
 
 
-class PoseFilter(UnscentedKalmanFilter):  # type: ignore[misc]  # filterpy has no types
-    """State: x, y, heading of R in W [m, m, rad].
-
-    Attributes:
-        x: mean (3,), heading wrapped.
-        P: covariance (3, 3), exactly symmetric.
-    """
-
-    x: Array
-    P: Array
-
-    def __init__(self) -> None:
-        super().__init__(
-            dim_x=3,
-            dim_z=2,
-            dt=1.0,
-            hx=_seen,
-            fx=None,
-            points=PosePoints(),
-            residual_z=_difference,
-            state_add=_moved_on,
-        )
-
-    def move(self, increment: Array, covariance: Array, drift: float) -> None:
-        """Predict.
-
-        Args:
-            increment: of the odometry, in R (3,) [m, m, rad].
-            covariance: of its error (3, 3).
-            drift: variance of every component that it lacks [m², rad²].
-
-        Raises:
-            numpy.linalg.LinAlgError: the covariance is not positive definite.
-        """
-        rotation = yaw_rotation(float(self.x[2]))
-        self.Q = rotation @ covariance @ rotation.T + drift * ONE
-        self.predict(UT=_state, increment=increment)
-        self._tidy()
-
-    def spread(self) -> None:
-        """Lay the sigma points anew: filterpy keeps those of the prediction.
-
-        Raises:
-            numpy.linalg.LinAlgError: the covariance is not positive definite.
-        """
-        self.sigmas_f: Array = self.points_fn.sigma_points(self.x, self.P)
-
-    def nis(self, z: Array, noise: Array, landmarks: Array) -> Array:
-        """Normalised innovation squared of sightings (k, 2) of landmarks (k, 2), each by itself.
-
-        Args:
-            z: ranges and bearings (k, 2) [m, rad].
-            noise: their covariances (k, 2, 2).
-            landmarks: in W (k, 2) [m].
-
-        Returns:
-            (k,), after `spread`.
-        """
-        return pose_kernel.nis(self.sigmas_f, self.Wm, self.Wc, landmarks, z, noise)
-
-    def correct(self, z: Array, noise: Array, landmarks: Array) -> None:
-        """Take in sightings as one measurement, after `spread`; arguments as `nis`.
-
-        Args:
-            z: ranges and bearings (k, 2) [m, rad].
-            noise: covariance of all of them (2 k, 2 k).
-            landmarks: in W (k, 2) [m].
-        """
-        self.update(z.ravel(), R=noise, UT=_measurement, landmarks=landmarks)
-        self._tidy()
-
-    def _tidy(self) -> None:
-        self.x[2] = wrap(float(self.x[2]))
-        self.P = 0.5 * (self.P + self.P.T)
-
-    def compute_process_sigmas(self, dt: float, fx: object = None, **fx_args: Array) -> None:
-        """Filterpy's hook: the sigma points, moved by ``increment``."""
-        points = self.points_fn.sigma_points(self.x, self.P)
-        self.sigmas_f = pose_kernel.moved(points, fx_args["increment"])
-
-    def cross_variance(self, x: Array, z: Array, sigmas_f: Array, sigmas_h: Array) -> Array:
-        """Filterpy's hook: covariance of state and measurement (3, 2 k)."""
-        return pose_kernel.cross_covariance(sigmas_f, x, sigmas_h, z, self.Wc, MEASUREMENT)
+def _mean_angle(angles: Array, weights: Array) -> Array:
+    """Return the circular means (n,) of angles (m, n)."""
+    mean: Array = np.arctan2(weights @ np.sin(angles), weights @ np.cos(angles))
+    return mean
