@@ -1,1 +1,1 @@
-"""Published planners behind the protocol of ours, for comparison."""
+"""Baselines: published obstacle avoidance methods."""

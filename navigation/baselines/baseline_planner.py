@@ -1,4 +1,4 @@
-"""All that the baselines share: the way to the destination, arrival, turning at the goal."""
+"""Planner of all baselines: move-to-goal field, arrival, turn at the goal."""
 
 from math import atan2, hypot
 from typing import Protocol
@@ -20,19 +20,23 @@ Array = NDArray[np.float64]
 
 
 class Avoidance(Protocol):
-    """What distinguishes one baseline from another."""
+    """Obstacle avoidance of one baseline.
+
+    Attributes:
+        margin: distance to the bodies of obstacles [m].
+    """
 
     margin: float
 
     def decide(self, scene: PlanningScene) -> Array:
-        """Body velocity for the next footstep (3,) [m/s, m/s, rad/s]."""
+        """Return the body velocity of the next footstep, vx, vy, wz (3,) [m/s, m/s, rad/s]."""
 
 
 class BaselinePlanner:
-    """A published way to avoid obstacles with our way to arrive.
+    """Published obstacle avoidance with the arrival of the default planner.
 
-    Direction and speed towards the destination, the turn to the goal's heading near it,
-    turning when lost and standing when done are those of our planner; only the avoidance differs.
+    Direction and speed towards the destination, the turn to the heading of the goal, the turn of
+    a lost robot and the stop at the end are those of the default planner.
     """
 
     def __init__(
@@ -41,64 +45,64 @@ class BaselinePlanner:
         """Start standing.
 
         Args:
-            parameters: profile; univector, body and planner are used.
-            limits: envelope of the walking layer.
-            avoidance: the baseline.
+            parameters: profile; univector, velocity_mapping and planner are used.
+            limits: of the walking layer.
+            avoidance: of the baseline.
         """
-        self._parameters = parameters
+        p = self._parameters = parameters
         self._limits = limits
         self._avoidance = avoidance
         self._envelope = BodyEnvelope(
-            limits, parameters.velocity_mapping.turn_gain, parameters.safety_filter.turn_change
+            limits, p.velocity_mapping.turn_gain, p.safety_filter.turn_change
         )
-        self._arrival = ArrivalSide(parameters.univector)
+        self._arrival = ArrivalSide(p.univector)
         self._body = np.zeros(3)
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
         """Decide the motion of the next footstep; call once per footstep.
 
         Args:
-            belief: what the robot believes now.
-            task: where it is to go.
+            belief: of the robot.
+            task: of the mission.
         """
         heading = float(belief.pose[2])
         if task.done or belief.lost:
-            turn = self._parameters.velocity_mapping.lost_turn_rate
-            self._body = idle_velocity(not task.done, turn, self._limits)
-            return MotionDecision(self._body, heading)
+            turn_rate = self._parameters.velocity_mapping.lost_turn_rate
+            self._body = idle_velocity(not task.done, turn_rate, self._limits)
+            return MotionDecision(self._body.copy(), heading)
         scene = self._scene(belief, task)
         limits = self._envelope
         self._body = np.clip(self._avoidance.decide(scene), limits.low(), limits.high())
-        forward, left, _ = self._body.tolist()
-        speed = hypot(forward, left)
-        direction = wrap(heading + atan2(left, forward)) if speed > 1e-9 else scene.course
-        radii = self._parameters.univector.s_robot + scene.radii(self._avoidance.margin)
+        vx, vy, _ = self._body.tolist()
+        speed = hypot(vx, vy)
+        direction = wrap(heading + atan2(vy, vx)) if speed > 1e-9 else scene.course
+        radii = scene.s_robot + scene.radii(self._avoidance.margin)
         pairs = zip(scene.obstacles.ids.tolist(), radii.tolist(), strict=True)
-        return MotionDecision(self._body, direction, speed, extended_radii=tuple(pairs))
+        return MotionDecision(self._body.copy(), direction, speed, extended_radii=tuple(pairs))
 
     def _scene(self, belief: Belief, task: Task) -> PlanningScene:
         p = self._parameters
         known = [t for t in belief.tracks if t.particles is None or t.age <= p.planner.memory]
         obstacles = ObstacleSet.from_tracks(known)
-        course, speed, side = self._way(belief.pose, task)
+        sigma = np.minimum(p.planner.max_sigma, obstacles.sigma)
+        course, speed, side = self._move_to_goal(belief.pose, task)
         turning = arriving(belief.pose[:2], task, p.univector.holonomic_distance)
         return PlanningScene(
             pose=belief.pose,
             body=self._body,
             obstacles=obstacles,
-            swelling=np.where(
-                obstacles.static, 0.0, np.minimum(p.planner.max_sigma, obstacles.sigma)
-            ),
+            inflation=np.where(obstacles.static, 0.0, sigma),
             task=task,
             course=course,
             speed=speed,
             facing=task.heading if turning else None,
             side=side,
             envelope=self._envelope,
+            s_robot=p.univector.s_robot,
         )
 
-    def _way(self, pose: Array, task: Task) -> tuple[float, float, int]:
-        """Direction [rad], speed [m/s] and side of our way where there is no obstacle."""
+    def _move_to_goal(self, pose: Array, task: Task) -> tuple[float, float, int]:
+        """Return direction [rad], speed [m/s] and arrival side without obstacles."""
         if task.aligning:
             return float(pose[2]), 0.0, 0
         p = self._parameters.univector

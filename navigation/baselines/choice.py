@@ -1,6 +1,4 @@
-"""The planner a scenario asks for by name."""
-
-from collections.abc import Callable
+"""Choice of the planner by the method of the scenario."""
 
 import numpy as np
 
@@ -19,22 +17,28 @@ from navigation.parameters.navigation import NavigationParameters
 def build_planner(
     parameters: NavigationParameters, limits: SpeedLimits, rng: np.random.Generator
 ) -> Planner | BaselinePlanner:
-    """The planner named by `parameters.planner.method`.
+    """Build the planner of `parameters.planner.method`.
 
     Args:
         parameters: of all decisions.
-        limits: envelope of the walking layer.
-        rng: for the planner that draws samples.
+        limits: of the walking layer.
+        rng: for the samples of `mppi`.
     """
-    p, s_robot = parameters.planner, parameters.univector.s_robot
-    if p.method == "univector":
-        return Planner(parameters, limits)
-    baselines: dict[str, Callable[[], Avoidance]] = {
-        "univector-plain": lambda: PlainUnivector(parameters),
-        "n-posture": lambda: NPosture(p.n_posture, s_robot),
-        "apf": lambda: PotentialField(p.apf, s_robot),
-        "orca": lambda: Orca(p.orca, s_robot),
-        "dwa": lambda: DynamicWindow(p.dwa, s_robot),
-        "mppi": lambda: PathIntegral(p.mppi, s_robot, rng),
-    }
-    return BaselinePlanner(parameters, limits, baselines[p.method]())
+    p = parameters.planner
+    avoidance: Avoidance
+    match p.method:
+        case "univector":
+            return Planner(parameters, limits)
+        case "univector-plain":
+            avoidance = PlainUnivector(parameters)
+        case "n-posture":
+            avoidance = NPosture(p.n_posture)
+        case "apf":
+            avoidance = PotentialField(p.apf)
+        case "orca":
+            avoidance = Orca(p.orca)
+        case "dwa":
+            avoidance = DynamicWindow(p.dwa)
+        case "mppi":
+            avoidance = PathIntegral(p.mppi, rng)
+    return BaselinePlanner(parameters, limits, avoidance)

@@ -9,42 +9,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap_array
+from navigation.baselines.baseline_planner import Avoidance
 from navigation.baselines.planning_scene import PlanningScene
-from navigation.baselines.roll_out import contact_cost, gaps, roll_out
+from navigation.baselines.rollout import contact_cost, gaps, rollout
 from navigation.parameters.planner import DwaParameters
 
 Array = NDArray[np.float64]
 
 
-class DynamicWindow:
-    """The best of all body velocities that the next footstep can reach."""
+class DynamicWindow(Avoidance):
+    """Best body velocity among those within reach of the next footstep."""
 
-    def __init__(self, parameters: DwaParameters, s_robot: float) -> None:
-        """Keep the weights; `s_robot` is the robot's radius [m]."""
+    def __init__(self, parameters: DwaParameters) -> None:
         self.margin = parameters.margin
         self._parameters = parameters
-        self._s_robot = s_robot
 
     def decide(self, scene: PlanningScene) -> Array:
-        """Body velocity of least cost (3,) [m/s, m/s, rad/s]."""
         s, p = scene, self._parameters
         limits = s.envelope.limits
         window = self._window(s)
         steps = max(1, round(p.horizon / limits.footstep))
-        held = np.broadcast_to(window[:, None], (len(window), steps, 3))
-        position, heading = roll_out(s.pose, held, limits.footstep)
+        constant = np.broadcast_to(window[:, None], (len(window), steps, 3))
+        position, heading = rollout(s.pose, constant, limits.footstep)
         horizon = steps * limits.footstep
-        # A carrot on the way: the destination itself would be overrun in the horizon.
-        carrot = s.pose[:2] + horizon * s.wanted()
-        off = position[:, -1] - carrot
-        gap = gaps(position, s, self._s_robot + s.radii(p.margin), p.clearance)
+        # A point ahead at the desired speed: the horizon may reach beyond the destination.
+        error = position[:, -1] - (s.pose[:2] + horizon * s.wanted())
+        gap = gaps(position, s, s.s_robot + s.radii(p.margin), p.clearance)
         facing = s.course if s.facing is None else s.facing
-        turn = window[:, 2]
-        stopping = 0.5 * turn * np.abs(turn) / s.envelope.turn_change * limits.footstep
-        left = np.abs(wrap_array(facing - heading[:, 0] - stopping))
+        wz = window[:, 2]
+        stopping = 0.5 * wz * np.abs(wz) / s.envelope.turn_change * limits.footstep
+        heading_error = np.abs(wrap_array(facing - heading[:, 0] - stopping))
         cost = (
-            np.hypot(off[:, 0], off[:, 1]) / (horizon * limits.vx)
-            + p.heading_weight * left / np.pi
+            np.hypot(error[:, 0], error[:, 1]) / (horizon * limits.vx)
+            + p.heading_weight * heading_error / np.pi
             + p.clearance_weight * np.maximum(0.0, 1.0 - gap.min(axis=1) / p.clearance)
             + p.contact_weight * contact_cost(gap)
         )
@@ -52,7 +49,7 @@ class DynamicWindow:
         return best
 
     def _window(self, s: PlanningScene) -> Array:
-        """Velocities within reach (n, 3), standing still among them if it is."""
+        """Return velocities within reach (n, 3), with zero components where possible."""
         low, high, change = s.envelope.low(), s.envelope.high(), s.envelope.change()
         low, high = np.maximum(low, s.body - change), np.minimum(high, s.body + change)
         axes = [

@@ -1,4 +1,4 @@
-"""ORCA half planes and the linear program over them.
+"""ORCA half-planes and the linear program over them.
 
 J. van den Berg, S. Guy, M. Lin, D. Manocha, "Reciprocal n-body collision avoidance",
 Robotics Research 2011 (ISRR 2009); the program after de Berg et al., "Computational
@@ -28,7 +28,7 @@ class HalfPlane:
     dy: float
 
     def depth(self, v: Velocity) -> float:
-        """How far `v` is on the forbidden side; negative when it is allowed [m/s]."""
+        """Return the depth of `v` on the forbidden side, negative if it is allowed [m/s]."""
         return self.dx * (self.y - v[1]) - self.dy * (self.x - v[0])
 
 
@@ -42,16 +42,16 @@ def orca_plane(
     footstep: float,
     responsibility: float,
 ) -> HalfPlane:
-    """Half plane of velocities that touch one disc not before `horizon`.
+    """Return the half-plane of velocities without collision with one disc within `horizon`.
 
     Args:
         position: of the disc relative to the robot [m].
         relative: velocity of the robot relative to the disc [m/s].
         own: velocity of the robot [m/s].
-        radius: distance at which the two touch [m].
-        horizon: time to be free for [s].
-        footstep: time in which an overlap is to be left [s].
-        responsibility: share of the change of relative velocity the robot takes.
+        radius: collision distance [m].
+        horizon: collision-free time [s].
+        footstep: time in which an overlap must end [s].
+        responsibility: fraction of the change of relative velocity taken by the robot.
     """
     px, py = position
     vx, vy = relative
@@ -62,7 +62,7 @@ def orca_plane(
     along = wx * px + wy * py
     norm = hypot(wx, wy)
     if not apart or (along < 0.0 and along * along > radius * radius * norm * norm):
-        # Nearest is the arc that cuts the cone off.
+        # The cut-off arc of the cone is nearest.
         nx, ny = (wx / norm, wy / norm) if norm > _PARALLEL else (-px, -py)
         dx, dy = ny, -nx
         change = radius / time - norm
@@ -79,27 +79,27 @@ def orca_plane(
 
 
 def solve(planes: list[HalfPlane], hard: int, wanted: Velocity, v_max: float) -> Velocity:
-    """Velocity nearest to `wanted` in all half planes and the disc of radius `v_max`.
+    """Return the velocity nearest to `wanted` in all half-planes and the disc of radius `v_max`.
 
-    If there is none, the first `hard` half planes hold and the others are violated as
-    little as possible.
+    If there is none, the first `hard` half-planes hold and the maximum violation of the others
+    is minimized.
 
     Args:
-        planes: half planes.
-        hard: how many of the first must hold; together they must allow something.
-        wanted: velocity to be near to [m/s].
-        v_max: largest speed [m/s].
+        planes: half-planes.
+        hard: number of hard half-planes, which must have a common velocity.
+        wanted: desired velocity [m/s].
+        v_max: maximum speed [m/s].
     """
     best, failed = _nearest(planes, wanted, v_max)
     if failed == len(planes):
         return best
-    return _least_violation(planes, hard, failed, best, v_max)
+    return _min_violation(planes, hard, failed, best, v_max)
 
 
 def _on_line(
     planes: list[HalfPlane], index: int, wanted: Velocity, v_max: float, *, extreme: bool
 ) -> Velocity | None:
-    """Best velocity on the line of one half plane allowed by those before it."""
+    """Return the best velocity on the line of one half-plane allowed by those before it."""
     p = planes[index]
     dot = p.x * p.dx + p.y * p.dy
     discriminant = dot * dot + v_max * v_max - p.x * p.x - p.y * p.y
@@ -131,9 +131,9 @@ def _on_line(
 def _nearest(
     planes: list[HalfPlane], wanted: Velocity, v_max: float, *, extreme: bool = False
 ) -> tuple[Velocity, int]:
-    """Incremental program: the best velocity, and the first half plane it cannot satisfy.
+    """Return the best velocity and the index of the first half-plane it cannot satisfy.
 
-    `extreme` asks for the farthest along the unit vector `wanted` instead of the nearest.
+    With `extreme`, the best velocity is the farthest along the unit vector `wanted`.
     """
     speed = hypot(*wanted)
     if extreme:
@@ -144,17 +144,17 @@ def _nearest(
         best = wanted
     for index, plane in enumerate(planes):
         if plane.depth(best) > 0.0:
-            found = _on_line(planes, index, wanted, v_max, extreme=extreme)
-            if found is None:
+            on_line = _on_line(planes, index, wanted, v_max, extreme=extreme)
+            if on_line is None:
                 return best, index
-            best = found
+            best = on_line
     return best, len(planes)
 
 
-def _least_violation(
+def _min_violation(
     planes: list[HalfPlane], hard: int, begin: int, best: Velocity, v_max: float
 ) -> Velocity:
-    """Velocity whose largest violation of the soft half planes is least."""
+    """Return the velocity with the minimum of the maximum violation of soft half-planes."""
     worst = 0.0
     for index in range(max(begin, hard), len(planes)):
         plane = planes[index]
@@ -165,15 +165,15 @@ def _least_violation(
             between = _bisector(plane, q)
             if between is not None:
                 projected = [*projected, between]
-        found, failed = _nearest(projected, (-plane.dy, plane.dx), v_max, extreme=True)
+        candidate, failed = _nearest(projected, (-plane.dy, plane.dx), v_max, extreme=True)
         if failed == len(projected):
-            best = found
+            best = candidate
         worst = plane.depth(best)
     return best
 
 
 def _bisector(p: HalfPlane, q: HalfPlane) -> HalfPlane | None:
-    """Where `q` is violated no more than `p`; None if that is everywhere it matters."""
+    """Return the half-plane that violates `q` no more than `p`; None if all velocities do."""
     cross = p.dx * q.dy - p.dy * q.dx
     if abs(cross) <= _PARALLEL:
         if p.dx * q.dx + p.dy * q.dy > 0.0:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
+from navigation.baselines.baseline_planner import Avoidance
 from navigation.baselines.planning_scene import PlanningScene
 from navigation.motion.univector import normalized
 from navigation.parameters.planner import NPostureParameters
@@ -21,18 +22,15 @@ from navigation.parameters.planner import NPostureParameters
 Array = NDArray[np.float64]
 
 
-class NPosture:
-    """Winds towards the destination so as to arrive with its heading."""
+class NPosture(Avoidance):
+    """Posture field with the obstacle field of the nearest obstacle."""
 
-    def __init__(self, parameters: NPostureParameters, s_robot: float) -> None:
-        """Keep the sizes of the field; `s_robot` is the robot's radius [m]."""
+    def __init__(self, parameters: NPostureParameters) -> None:
         self.margin = parameters.margin
         self._parameters = parameters
-        self._s_robot = s_robot
 
     def decide(self, scene: PlanningScene) -> Array:
-        """Body velocity along the field (3,) [m/s, m/s, rad/s]."""
-        s = scene.in_effect()
+        s = scene.predicted()
         if s.speed == 0.0:
             return s.walk(np.zeros(2))
         phi = self._posture(s)
@@ -40,18 +38,18 @@ class NPosture:
         return s.walk(s.speed * self._mixed(s, u_goal))
 
     def _posture(self, s: PlanningScene) -> float:
-        """Kim's field at the robot [rad]."""
+        """Return the direction of Kim's field at the robot [rad]."""
         p = self._parameters
         dx, dy = (s.task.target - s.pose[:2]).tolist()
         bearing = atan2(dy, dx)
         x = dx + p.offset * np.cos(s.task.heading)
         y = dy + p.offset * np.sin(s.task.heading)
         turn = p.gain * wrap(atan2(y, x) - bearing)
-        # More than a right angle off would walk away from the destination.
+        # More than a right angle would lead away from the destination.
         return bearing - float(np.clip(turn, -0.5 * np.pi, 0.5 * np.pi))
 
     def _mixed(self, s: PlanningScene, u_goal: Array) -> Array:
-        """Lim's mixture of the field of the nearest obstacle with `u_goal` (2,)."""
+        """Return Lim's blend of the field of the nearest obstacle with `u_goal` (2,)."""
         p = self._parameters
         if len(s.obstacles) == 0:
             return u_goal
@@ -60,18 +58,18 @@ class NPosture:
         shifted = s.obstacles.position + p.lead * relative * moving
         away = s.pose[:2] - s.obstacles.position
         distance = np.hypot(away[:, 0], away[:, 1])
-        # A shift farther than the obstacle is would repel towards it.
+        # A shift beyond the robot would repel towards the obstacle.
         reach = np.hypot(*(shifted - s.obstacles.position).T)
         scale = np.minimum(1.0, 0.5 * distance / np.maximum(reach, 1e-9))[:, None]
         shifted = s.obstacles.position + scale * (shifted - s.obstacles.position)
-        gap = np.hypot(*(s.pose[:2] - shifted).T) - self._s_robot - s.radii(self.margin)
-        gap = np.minimum(gap, distance - self._s_robot - s.radii(self.margin))
+        gap = np.hypot(*(s.pose[:2] - shifted).T) - s.s_robot - s.radii(self.margin)
+        gap = np.minimum(gap, distance - s.s_robot - s.radii(self.margin))
         nearest = int(np.argmin(gap))
         over = max(0.0, float(gap[nearest]) - p.d_min)
         weight = float(np.exp(-(over**2) / (2.0 * p.delta**2)) * s.yielding(gap)[nearest])
         out = normalized(s.pose[:2] - shifted[nearest])
         mixed: Array = weight * out + (1.0 - weight) * u_goal
-        # Where the two cancel, the robot slips along the obstacle on the goal's side.
+        # If the two cancel, the robot slides along the obstacle on the side of the goal.
         if hypot(*mixed.tolist()) < 0.3:
             side = 1.0 if out[0] * u_goal[1] - out[1] * u_goal[0] >= 0.0 else -1.0
             mixed = mixed + side * np.array([-out[1], out[0]])

@@ -5,6 +5,7 @@ from math import cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.baselines.baseline_planner import Avoidance
 from navigation.baselines.half_planes import HalfPlane, orca_plane, solve
 from navigation.baselines.planning_scene import PlanningScene
 from navigation.parameters.planner import OrcaParameters
@@ -12,23 +13,20 @@ from navigation.parameters.planner import OrcaParameters
 Array = NDArray[np.float64]
 
 
-class Orca:
-    """ORCA with full responsibility, in the box of velocities the body can walk with.
+class Orca(Avoidance):
+    """ORCA with full responsibility, within the speed limits of the body at its heading.
 
-    The published method shares the avoidance with the other side and lets a disc move in
-    any direction at once. Here nobody else gives way, and the velocity is sought among
-    those the body has with its present heading, from where it will be in a footstep.
+    The published method splits the avoidance between both agents and lets a disc move in any
+    direction at once. Here obstacles do not give way, and four more half-planes are the speed
+    limits at the present heading.
     """
 
-    def __init__(self, parameters: OrcaParameters, s_robot: float) -> None:
-        """Keep the horizons; `s_robot` is the robot's radius [m]."""
+    def __init__(self, parameters: OrcaParameters) -> None:
         self.margin = parameters.margin
         self._parameters = parameters
-        self._s_robot = s_robot
 
     def decide(self, scene: PlanningScene) -> Array:
-        """Body velocity of the linear program (3,) [m/s, m/s, rad/s]."""
-        s = scene.in_effect()
+        s = scene.predicted()
         box = self._box(s)
         wanted, own = s.wanted().tolist(), s.velocity().tolist()
         planes = [*box, *self._planes(s, (own[0], own[1]))]
@@ -36,11 +34,11 @@ class Orca:
         return s.walk(np.array(solve(planes, len(box), (wanted[0], wanted[1]), v_max)))
 
     def _planes(self, s: PlanningScene, own: tuple[float, float]) -> list[HalfPlane]:
-        """Half planes of the obstacles near enough to matter, the nearest first."""
+        """Return the half-planes of the obstacles within reach, the nearest first."""
         p = self._parameters
         x, y, _ = s.pose.tolist()
-        found = []
-        radii = self._s_robot + s.radii(self.margin)
+        planes = []
+        radii = s.s_robot + s.radii(self.margin)
         for (ox, oy), (u, w), radius, static in zip(
             s.obstacles.position.tolist(),
             s.obstacles.velocity.tolist(),
@@ -61,11 +59,11 @@ class Orca:
                 footstep=s.envelope.limits.footstep,
                 responsibility=p.responsibility,
             )
-            found.append((gap, plane))
-        return [plane for _, plane in sorted(found, key=lambda pair: pair[0])]
+            planes.append((gap, plane))
+        return [plane for _, plane in sorted(planes, key=lambda pair: pair[0])]
 
     def _box(self, s: PlanningScene) -> list[HalfPlane]:
-        """The envelope of the body at its heading."""
+        """Return the half-planes of the speed limits at the present heading."""
         limits = s.envelope.limits
         c, n = cos(float(s.pose[2])), sin(float(s.pose[2]))
         return [

@@ -1,4 +1,4 @@
-"""What a baseline is told: the same belief, task, envelope and delays as our planner."""
+"""Inputs of a baseline: belief, task, speed limits and delay of the default planner."""
 
 from dataclasses import dataclass, replace
 from math import cos, sin
@@ -16,12 +16,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class BodyEnvelope:
-    """What the body can do.
+    """Velocities within reach of the body.
 
     Attributes:
-        limits: largest speeds, acceleration and the footstep a command is latched for.
+        limits: of speed and acceleration, and the footstep for which a command is latched.
         turn_gain: turn rate per heading error [1/s].
-        turn_change: largest change of the turn rate per footstep [rad/s].
+        turn_change: maximum change of the turn rate between footsteps [rad/s].
     """
 
     limits: SpeedLimits
@@ -29,82 +29,84 @@ class BodyEnvelope:
     turn_change: float
 
     def low(self) -> Array:
-        """Least forward, left and turn (3,) [m/s, m/s, rad/s]."""
+        """Return minimum vx, vy, wz (3,) [m/s, m/s, rad/s]."""
         return np.array([-self.limits.vx_backward, -self.limits.vy, -self.limits.wz])
 
     def high(self) -> Array:
-        """Largest forward, left and turn (3,) [m/s, m/s, rad/s]."""
+        """Return maximum vx, vy, wz (3,) [m/s, m/s, rad/s]."""
         return np.array([self.limits.vx, self.limits.vy, self.limits.wz])
 
     def change(self) -> Array:
-        """Largest change of them from footstep to footstep (3,) [m/s, m/s, rad/s]."""
+        """Return maximum changes between footsteps of vx, vy, wz (3,) [m/s, m/s, rad/s]."""
         step = self.limits.acceleration * self.limits.footstep
         return np.array([step, step, self.turn_change])
 
 
 @dataclass(frozen=True, slots=True)
 class PlanningScene:
-    """What one decision is made from.
+    """Inputs of one decision.
 
     Attributes:
         pose: of the robot in W (3,) [m, m, rad].
-        body: its present velocity in R (3,) [m/s, m/s, rad/s].
+        body: present velocity of the robot in R (3,) [m/s, m/s, rad/s].
         obstacles: n obstacles in W.
-        swelling: uncertainty to add to their radii (n,) [m].
-        task: where to go.
-        course: direction of the way to the destination in W [rad].
-        speed: wanted along it [m/s].
-        facing: heading to turn to; None for the direction of motion [rad].
-        side: on which a destination to be entered from beyond is circled, see `move_to_goal`.
+        inflation: of their radii by uncertainty (n,) [m].
+        task: of the mission.
+        course: direction of the move-to-goal field in W [rad].
+        speed: desired speed along the course [m/s].
+        facing: target heading; None for the direction of motion [rad].
+        side: of the arrival, see `move_to_goal`.
         envelope: of the body.
+        s_robot: radius of the robot [m].
     """
 
     pose: Array
     body: Array
     obstacles: ObstacleSet
-    swelling: Array
+    inflation: Array
     task: Task
     course: float
     speed: float
     facing: float | None
     side: int
     envelope: BodyEnvelope
+    s_robot: float
 
     def wanted(self) -> Array:
-        """Velocity towards the destination in W (2,) [m/s]."""
+        """Return the desired velocity in W (2,) [m/s]."""
         return self.speed * np.array([cos(self.course), sin(self.course)])
 
     def velocity(self) -> Array:
-        """Present velocity in W (2,) [m/s]."""
+        """Return the present velocity in W (2,) [m/s]."""
         return velocity_in_world(self.pose, self.body)
 
     def radii(self, margin: float) -> Array:
-        """Radii of the obstacles with their uncertainty and a margin (n,) [m]."""
-        return self.obstacles.radius + self.swelling + margin
+        """Return radii of the obstacles with uncertainty and a margin (n,) [m]."""
+        return self.obstacles.radius + self.inflation + margin
 
     def yielding(self, gap: Array) -> Array:
-        """Share of the repulsion of obstacles at `gap` (n,) [m] that is left (n,).
+        """Return the weight of the repulsion of obstacles at `gap` (n,) [m] (n,).
 
-        It falls when the destination is nearer than the obstacle: else a destination
-        beside an obstacle could not be reached (S. S. Ge, Y. J. Cui, "New potential
-        functions for mobile robot path planning", IEEE T-RA 16(5), 2000).
+        It falls if the destination is nearer than the obstacle, so that a destination next to an
+        obstacle can be reached (S. S. Ge, Y. J. Cui, "New potential functions for mobile robot
+        path planning", IEEE T-RA 16(5), 2000).
         """
         x, y = (self.task.target - self.pose[:2]).tolist()
-        share: Array = np.minimum(1.0, np.hypot(x, y) / np.maximum(gap, 1e-3))
-        return share
+        weight: Array = np.minimum(1.0, np.hypot(x, y) / np.maximum(gap, 1e-3))
+        return weight
 
-    def in_effect(self) -> "PlanningScene":
-        """The scene one footstep later, when the command has become motion."""
+    def predicted(self) -> "PlanningScene":
+        """Return the scene after one footstep, when the command takes effect."""
         dt = self.envelope.limits.footstep
-        moved = self.pose + dt * np.array([*self.velocity().tolist(), float(self.body[2])])
-        carried = self.obstacles.position + dt * self.obstacles.velocity
-        return replace(self, pose=moved, obstacles=replace(self.obstacles, position=carried))
+        pose = self.pose + dt * np.array([*self.velocity().tolist(), float(self.body[2])])
+        position = self.obstacles.position + dt * self.obstacles.velocity
+        return replace(self, pose=pose, obstacles=replace(self.obstacles, position=position))
 
     def walk(self, velocity: Array) -> Array:
-        """Body velocity (3,) that walks with `velocity` in W (2,) [m/s].
+        """Return the body velocity (3,) for `velocity` in W (2,) [m/s].
 
-        The body turns to where it walks, to the destination when it stands, and to the
-        goal's heading near the goal.
+        The target heading is the direction of motion, that of the destination for zero velocity,
+        and the heading of the goal near the goal.
         """
         x, y = velocity.tolist()
         speed = float(np.hypot(x, y))

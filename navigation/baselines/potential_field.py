@@ -9,6 +9,7 @@ method", Autonomous Robots 13, 2002; the tangential part after A. De Luca, G. Or
 import numpy as np
 from numpy.typing import NDArray
 
+from navigation.baselines.baseline_planner import Avoidance
 from navigation.baselines.planning_scene import PlanningScene
 from navigation.motion.univector import normalized
 from navigation.parameters.planner import ApfParameters
@@ -16,30 +17,27 @@ from navigation.parameters.planner import ApfParameters
 Array = NDArray[np.float64]
 
 
-class PotentialField:
-    """Sum of the wanted velocity and of the repulsions of near obstacles."""
+class PotentialField(Avoidance):
+    """Sum of the desired velocity and the repulsion of near obstacles."""
 
-    def __init__(self, parameters: ApfParameters, s_robot: float) -> None:
-        """Keep the gains; `s_robot` is the robot's radius [m]."""
+    def __init__(self, parameters: ApfParameters) -> None:
         self.margin = parameters.margin
         self._parameters = parameters
-        self._s_robot = s_robot
 
     def decide(self, scene: PlanningScene) -> Array:
-        """Body velocity down the potential (3,) [m/s, m/s, rad/s]."""
-        s = scene.in_effect()
+        s = scene.predicted()
         limits = s.envelope.limits
         total = s.wanted() + limits.vx * self._repulsion(s)
         speed = float(np.hypot(*total))
         return s.walk(total * min(1.0, limits.vx / max(speed, 1e-9)))
 
     def _repulsion(self, s: PlanningScene) -> Array:
-        """Sum over the obstacles (2,), as a share of the largest speed."""
+        """Return the sum over the obstacles (2,), ratio to the maximum speed."""
         p = self._parameters
         away = s.pose[:2] - s.obstacles.position
         distance = np.hypot(away[:, 0], away[:, 1])
         out = normalized(away)
-        gap = distance - self._s_robot - s.radii(self.margin)
+        gap = distance - s.s_robot - s.radii(self.margin)
         relative = s.obstacles.velocity - s.velocity()
         approach = np.maximum(0.0, np.sum(relative * out, axis=1))
         braking = p.reaction * approach + approach**2 / (2.0 * s.envelope.limits.acceleration)
@@ -47,7 +45,7 @@ class PotentialField:
         effective = np.maximum(p.min_gap, gap - braking)
         strength = p.gain * np.maximum(0.0, 1.0 / effective - 1.0 / p.influence)
         strength = strength * s.yielding(effective)
-        # The side: that of the wanted way; for a mover, away from where it goes.
+        # Side of the desired velocity; of a mover, away from its velocity.
         reference = s.wanted()[None] - s.obstacles.velocity
         side = np.sign(out[:, 0] * reference[:, 1] - out[:, 1] * reference[:, 0])
         ahead = np.sum(reference * out, axis=1) < 0.0

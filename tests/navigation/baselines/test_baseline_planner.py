@@ -1,4 +1,4 @@
-"""What every baseline must do, whatever its method."""
+"""Properties of all baselines."""
 
 from dataclasses import replace
 from math import pi
@@ -9,12 +9,11 @@ import pytest
 
 from navigation.baselines.baseline_planner import BaselinePlanner
 from navigation.baselines.choice import build_planner
-from navigation.decision import Task
 from navigation.mission import Mission
 from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.motion.planner import Planner
 from navigation.parameters.motion import LandmarkParameters
-from navigation.parameters.navigation import NavigationParameters
+from navigation.parameters.navigation import MissionParameters, NavigationParameters
 from navigation.parameters.planner import Method, PlannerParameters
 
 BASELINES = [m for m in get_args(Method) if m != "univector"]
@@ -28,19 +27,50 @@ def planner(method, limits, seed=0):
     return build_planner(p, limits, np.random.default_rng(seed))
 
 
-class Body:
-    """Walks as commanded once per footstep, with the acceleration it has."""
+class Walker:
+    """Closed loop of a planner and a body with acceleration limits."""
 
-    def __init__(self, pose, limits):
-        self.pose, self.body, self._limits = np.array(pose, float), np.zeros(3), limits
+    def __init__(self, planned, pose, limits, belief, advance):
+        self.pose, self.body = np.array(pose, float), np.zeros(3)
+        self._planner, self._belief, self._advance = planned, belief, advance
+        self._change = FOOTSTEP * np.array([limits.acceleration] * 2 + [2.0])
 
-    def step(self, command):
-        change = FOOTSTEP * np.array([self._limits.acceleration] * 2 + [2.0])
-        self.body = self.body + np.clip(command - self.body, -change, change)
-        forward, left, turn = self.body.tolist()
-        h = self.pose[2] + 0.5 * FOOTSTEP * turn
-        c, s = np.cos(h), np.sin(h)
-        self.pose += FOOTSTEP * np.array([c * forward - s * left, s * forward + c * left, turn])
+    def step(self, task, tracks=(), landmarks=None):
+        b = self._belief(tracks, self.pose)
+        command = self._planner.plan(b if landmarks is None else landmarks.added_to(b), task)
+        self.body += np.clip(command.velocity - self.body, -self._change, self._change)
+        self.pose = self._advance(self.pose, self.body, FOOTSTEP)
+
+    def distance(self, point):
+        return float(np.hypot(*(self.pose[:2] - point)))
+
+    def arrive(self, mission, footsteps=90, **scene):
+        for _ in range(footsteps):
+            task = mission.update(self.pose)
+            if task.done:
+                break
+            self.step(task, **scene)
+        return task
+
+    def pass_by(self, obstacle, task, **scene):
+        """Walk to the target of `task`; return the minimum distance to `obstacle`."""
+        least = 9.0
+        for _ in range(90):
+            self.step(task, **scene)
+            least = min(least, self.distance(obstacle))
+            if self.distance(task.target) < 0.15:
+                return least
+        return 0.0
+
+
+@pytest.fixture
+def walker(limits, belief, advance):
+    """Builds a closed loop of a method from a pose."""
+
+    def walker(method, pose=(0.0, 0.0, 0.0)):
+        return Walker(planner(method, limits), pose, limits, belief, advance)
+
+    return walker
 
 
 def scene(rng):
@@ -56,48 +86,42 @@ def test_every_method_is_built(limits):
 
 
 @EACH
-def test_done_stands_and_lost_turns_as_ours_does(method, belief, task, limits):
+def test_done_stands_and_lost_turns_as_the_default_planner_does(method, belief, task, limits):
     for b, t in ((belief(), task(done=True)), (belief(lost=True), task())):
-        ours = planner("univector", limits).plan(b, t).velocity
-        assert planner(method, limits).plan(b, t).velocity == pytest.approx(ours)
+        default = planner("univector", limits).plan(b, t).velocity
+        assert planner(method, limits).plan(b, t).velocity == pytest.approx(default)
 
 
 @EACH
-def test_an_empty_world_is_crossed_and_the_goal_arrived_at(method, belief, limits):
-    start, goal, heading = (0.0, 0.0, 2.0), np.array([1.1, 0.4]), -1.0
-    points = np.array([[0.5, -0.3], goal])
-    mission = Mission(points, heading, False, NavigationParameters().mission)
-    walker, planned = Body(start, limits), planner(method, limits)
-    for _ in range(110):
-        task = mission.update(walker.pose)
-        if task.done:
-            break
-        walker.step(planned.plan(belief(pose=walker.pose), task).velocity)
+def test_an_empty_world_is_crossed_and_the_goal_reached(method, walker):
+    goal, heading = np.array([1.1, 0.4]), -1.0
+    mission = Mission(np.array([[0.5, -0.3], goal]), heading, False, MissionParameters())
+    walk = walker(method, (0.0, 0.0, 2.0))
+    task = walk.arrive(mission, 110)
     assert task.done
     assert task.index == 1
-    assert np.hypot(*(walker.pose[:2] - goal)) < 0.08
-    assert abs(np.angle(np.exp(1j * (walker.pose[2] - heading)))) < 0.1
+    assert walk.distance(goal) < 0.08
+    assert abs(np.angle(np.exp(1j * (walk.pose[2] - heading)))) < 0.1
 
 
 @EACH
-def test_commands_keep_to_the_envelope(method, belief, task, track, limits):
+def test_commands_obey_the_speed_limits(method, belief, task, tracks, limits):
     rng = np.random.default_rng(2)
     low = np.array([-limits.vx_backward, -limits.vy, -limits.wz])
     high = np.array([limits.vx, limits.vy, limits.wz])
     for _ in range(15):
         places, speeds = scene(rng)
-        tracks = [track(x, v, id=i) for i, (x, v) in enumerate(zip(places, speeds, strict=True))]
-        planned = planner(method, limits)
+        planned, obstacles = planner(method, limits), tracks(places, speeds)
         t = task(rng.uniform(-1.5, 1.5, 2), rng.uniform(-pi, pi), is_goal=True)
         for _ in range(2):
-            decision = planned.plan(belief(tracks, (0, 0, rng.uniform(-pi, pi))), t)
+            decision = planned.plan(belief(obstacles, (0, 0, rng.uniform(-pi, pi))), t)
             assert np.all(decision.velocity <= high + 1e-12)
             assert np.all(decision.velocity >= low - 1e-12)
             assert decision.speed == pytest.approx(np.hypot(*decision.velocity[:2]))
 
 
 @EACH
-def test_a_mirrored_world_mirrors_the_command(method, belief, task, track, limits):
+def test_a_mirrored_world_mirrors_the_command(method, belief, task, tracks, limits):
     rng = np.random.default_rng(3)
     for _ in range(6):
         places, speeds = scene(rng)
@@ -105,12 +129,8 @@ def test_a_mirrored_world_mirrors_the_command(method, belief, task, track, limit
         commands = []
         for sign in (1.0, -1.0):
             flip = np.array([1.0, sign])
-            tracks = [
-                track(x * flip, v * flip, id=i)
-                for i, (x, v) in enumerate(zip(places, speeds, strict=True))
-            ]
-            planned = planner(method, limits)
-            b, t = belief(tracks, (0, 0, sign * heading)), task(target * flip, sign * arrival)
+            planned, t = planner(method, limits), task(target * flip, sign * arrival)
+            b = belief(tracks(places * flip, speeds * flip), (0, 0, sign * heading))
             planned.plan(b, t)
             commands.append(planned.plan(b, t).velocity)
         assert commands[1] == pytest.approx(MIRROR * commands[0], abs=1e-6)
@@ -118,79 +138,54 @@ def test_a_mirrored_world_mirrors_the_command(method, belief, task, track, limit
 
 
 @EACH
-def test_the_order_of_tracks_is_irrelevant(method, belief, task, track, limits):
-    places, speeds = scene(np.random.default_rng(4))
-    tracks = [track(x, v, id=i) for i, (x, v) in enumerate(zip(places, speeds, strict=True))]
-    one = planner(method, limits).plan(belief(tracks), task())
-    other = planner(method, limits).plan(belief(tracks[::-1]), task())
+def test_the_order_of_tracks_is_irrelevant(method, belief, task, tracks, limits):
+    obstacles = tracks(*scene(np.random.default_rng(4)))
+    one = planner(method, limits).plan(belief(obstacles), task())
+    other = planner(method, limits).plan(belief(obstacles[::-1]), task())
     assert other.velocity == pytest.approx(one.velocity, abs=1e-9)
 
 
 @EACH
-def test_it_walks_around_what_stands_in_the_way(method, belief, task, track, limits):
-    walker, planned = Body((0.0, 0.02, 0.0), limits), planner(method, limits)
-    least = 9.0
-    for _ in range(60):
-        b = belief([track((0.8, 0.0))], walker.pose)
-        walker.step(planned.plan(b, task((1.6, 0.0))).velocity)
-        least = min(least, float(np.hypot(*(walker.pose[:2] - [0.8, 0.0]))))
-        if np.hypot(*(walker.pose[:2] - [1.6, 0.0])) < 0.15:
-            break
-    assert np.hypot(*(walker.pose[:2] - [1.6, 0.0])) < 0.15
+def test_an_obstacle_on_the_path_is_passed(method, walker, task, track):
+    walk = walker(method, (0.0, 0.02, 0.0))
+    least = walk.pass_by((0.8, 0.0), task((1.6, 0.0)), tracks=[track((0.8, 0.0))])
     assert least > REACH + 0.08
 
 
 @pytest.mark.parametrize("method", get_args(Method))
-@pytest.mark.parametrize("aside", [-0.05, 0.02, 0.10])
-def test_a_known_landmark_in_the_way_is_walked_round(method, aside, belief, task, limits):
+@pytest.mark.parametrize("lateral", [-0.05, 0.02, 0.10])
+def test_a_known_landmark_on_the_path_is_passed(method, lateral, walker, task):
     landmarks = LandmarkObstacles({"post": (1.5, 0.0)}, 0.05, LandmarkParameters())
-    walker, planned = Body((0.0, aside, 0.0), limits), planner(method, limits)
-    least = 9.0
-    for _ in range(90):
-        b = landmarks.added_to(belief(pose=walker.pose))
-        walker.step(planned.plan(b, task((2.3, 0.0))).velocity)
-        least = min(least, float(np.hypot(*(walker.pose[:2] - [1.5, 0.0]))))
-        if np.hypot(*(walker.pose[:2] - [2.3, 0.0])) < 0.15:
-            break
-    assert np.hypot(*(walker.pose[:2] - [2.3, 0.0])) < 0.15
-    assert least > REACH + 0.05
+    walk = walker(method, (0.0, lateral, 0.0))
+    assert walk.pass_by((1.5, 0.0), task((2.3, 0.0)), landmarks=landmarks) > REACH + 0.05
 
 
 @pytest.mark.parametrize("method", get_args(Method))
-@pytest.mark.parametrize("away", [0.6, 0.8, 1.05])
-def test_a_goal_before_a_known_landmark_is_arrived_at(method, away, belief, limits):
-    goal, heading = np.array([1.0, 0.0]), 0.0
-    landmarks = LandmarkObstacles({"post": (1.0 + away, 0.0)}, 0.05, LandmarkParameters())
-    mission = Mission(goal[None], heading, False, NavigationParameters().mission)
-    walker, planned = Body((0.0, 0.2, 0.5), limits), planner(method, limits)
-    for _ in range(90):
-        task = mission.update(walker.pose)
-        if task.done:
-            break
-        b = landmarks.added_to(belief(pose=walker.pose))
-        walker.step(planned.plan(b, task).velocity)
-    assert task.done
+@pytest.mark.parametrize("distance", [0.6, 0.8, 1.05])
+def test_a_goal_before_a_known_landmark_is_reached(method, distance, walker):
+    landmarks = LandmarkObstacles({"post": (1.0 + distance, 0.0)}, 0.05, LandmarkParameters())
+    mission = Mission(np.array([[1.0, 0.0]]), 0.0, False, MissionParameters())
+    assert walker(method, (0.0, 0.2, 0.5)).arrive(mission, landmarks=landmarks).done
 
 
-# The plain field knows no future: a mover that crosses is a disc that jumps.
+# The plain field has no prediction: a crossing mover is a disc that jumps.
 @pytest.mark.parametrize("method", [m for m in BASELINES if m != "univector-plain"])
-def test_it_does_not_touch_a_mover_that_crosses(method, belief, task, track, limits):
-    walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
+def test_a_crossing_mover_is_avoided(method, walker, task, track):
+    walk = walker(method)
     mover, velocity = np.array([0.85, -0.5]), np.array([0.0, 0.11])
     straight, least = 9.0, 9.0
     for k in range(45):
-        b = belief([track(mover, velocity)], walker.pose)
-        walker.step(planned.plan(b, task((1.8, 0.0))).velocity)
+        walk.step(task((1.8, 0.0)), [track(mover, velocity)])
         mover = mover + FOOTSTEP * velocity
-        least = min(least, float(np.hypot(*(walker.pose[:2] - mover))))
+        least = min(least, walk.distance(mover))
         straight = min(straight, float(np.hypot(0.2 * FOOTSTEP * (k + 1) - mover[0], mover[1])))
     assert straight < 0.1
     assert least > REACH + 0.08
-    assert walker.pose[0] > 1.2
+    assert walk.pose[0] > 1.2
 
 
 @EACH
-def test_long_lost_movers_are_forgotten(method, belief, task, track, limits):
+def test_movers_lost_for_long_are_forgotten(method, belief, task, track, limits):
     cloud = ([[3.0, 3.0]], [[0.0, 0.0]], [1.0])
     memory = PlannerParameters().memory
     for age, known in ((0.5 * memory, 1), (2.0 * memory, 0)):
@@ -200,7 +195,7 @@ def test_long_lost_movers_are_forgotten(method, belief, task, track, limits):
 
 
 @EACH
-def test_radii_shown_contain_robot_obstacle_margin_and_uncertainty(
+def test_published_radii_contain_robot_obstacle_margin_and_uncertainty(
     method, belief, task, track, limits
 ):
     parameters = PlannerParameters()
@@ -212,13 +207,12 @@ def test_radii_shown_contain_robot_obstacle_margin_and_uncertainty(
 
 
 @EACH
-def test_at_the_goal_it_turns_in_place(method, belief, limits):
-    t = Task(np.zeros(2), 0.6, True, 0, True, False)
-    walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
+def test_at_the_goal_it_turns_in_place(method, walker, task):
+    walk = walker(method)
     for _ in range(25):
-        walker.step(planned.plan(belief(pose=walker.pose), t).velocity)
-    assert walker.pose[2] == pytest.approx(0.6, abs=0.1)
-    assert np.hypot(*walker.pose[:2]) < 0.05
+        walk.step(task((0.0, 0.0), 0.6, is_goal=True, aligning=True))
+    assert walk.pose[2] == pytest.approx(0.6, abs=0.1)
+    assert walk.distance((0.0, 0.0)) < 0.05
 
 
 def test_samples_come_from_the_generator_alone(belief, task, track, limits):
@@ -228,7 +222,7 @@ def test_samples_come_from_the_generator_alone(belief, task, track, limits):
     assert not np.array_equal(first, other)
 
 
-def test_each_baseline_obeys_its_own_section(belief, task, track, limits):
+def test_each_baseline_has_its_own_parameters(belief, task, track, limits):
     b, t = belief([track((0.5, 0.1))]), task()
     for method in BASELINES:
         name = method.replace("-", "_")
@@ -244,42 +238,35 @@ def test_each_baseline_obeys_its_own_section(belief, task, track, limits):
 
 
 @EACH
-def test_a_goal_beside_an_obstacle_is_reached(method, belief, track, limits):
-    goal = np.array([0.9, 0.0])
-    mission = Mission(goal[None], 0.0, False, NavigationParameters().mission)
-    walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
-    for _ in range(60):
-        task = mission.update(walker.pose)
-        if task.done:
-            break
-        b = belief([track((0.9, 0.45))], walker.pose)
-        walker.step(planned.plan(b, task).velocity)
-    assert task.done
+def test_a_goal_next_to_an_obstacle_is_reached(method, walker, track):
+    mission = Mission(np.array([[0.9, 0.0]]), 0.0, False, MissionParameters())
+    assert walker(method).arrive(mission, 60, tracks=[track((0.9, 0.45))]).done
 
 
 @EACH
-def test_near_the_goal_the_body_turns_to_the_goals_heading(method, belief, task, limits):
-    """A via point at the same place leaves it on its way, which leads straight ahead."""
+def test_near_the_goal_the_body_turns_to_the_goals_heading(method, walker, task):
+    """A via point at the same position leaves the body on its course, straight ahead."""
     turned = []
     for is_goal in (True, False):
-        walker, planned = Body((0.0, 0.0, 0.0), limits), planner(method, limits)
+        walk = walker(method)
         for _ in range(5):
-            aim = task((0.44, 0.0), 0.6 if is_goal else 0.0, is_goal=is_goal)
-            walker.step(planned.plan(belief(pose=walker.pose), aim).velocity)
-        turned.append(walker.pose[2])
+            walk.step(task((0.44, 0.0), 0.6 if is_goal else 0.0, is_goal=is_goal))
+        turned.append(walk.pose[2])
     assert turned[0] > abs(turned[1]) + 0.02
 
 
-def test_orca_looks_farther_ahead_for_movers_than_for_what_stands(belief, task, track, limits):
+def test_orca_has_a_longer_horizon_for_movers_than_for_static_obstacles(
+    belief, task, track, limits
+):
     p = PlannerParameters(method="orca").orca
     gap = 0.5 * (p.static_horizon + p.horizon) * limits.vx
     place = (gap + 0.2 + p.margin, 0.0)
-    free, standing, coming = (
+    free, static, moving = (
         planner("orca", limits).plan(belief(tracks), task((4.0, 0.0))).velocity
         for tracks in ([], [track(place)], [track(place, (-0.1, 0.0))])
     )
-    assert standing == pytest.approx(free)
-    assert not np.allclose(coming, free)
+    assert static == pytest.approx(free)
+    assert not np.allclose(moving, free)
 
 
 def test_the_plain_field_gives_a_fast_mover_more_room(belief, task, track, limits):
