@@ -1,19 +1,19 @@
-"""hsr8: a full-body simulator of a small humanoid that sees, looks and walks.
+"""hsr8: full-body simulator of a small humanoid that navigates with on-board sensors.
 
     import hsr8
 
     result = hsr8.run("course", seed=7)
     print(result.criteria_met, result.metrics["time_to_goal_s"])
 
-`run` and `Result` make runs at once, `load_scenario` and `Simulation` tick by tick; `open_run` and
-`read_log` read them back. `docs/python.md` shows how a planner or a gaze of one's own takes part,
-`docs/log.md` what a log holds.
+`run` and `Result` make whole runs, `load_scenario` and `Simulation` run tick by tick, `open_run`
+and `read_log` read run folders. `docs/python.md` shows custom planners and gaze controllers,
+`docs/log.md` the contents of a log.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from hsr8 import arithmetic as arithmetic  # chosen as it is imported, before NumPy is
+from hsr8 import arithmetic as arithmetic  # sets the environment, before NumPy is imported
 from hsr8.gl import choose_backend
 from hsr8.kernel_cache import choose_kernel_cache
 from hsr8.version import VERSION
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __version__ = VERSION
 __all__ = ["Result", "Simulation", "load_scenario", "open_run", "read_log", "run"]
 
-# Imported when they are asked for: MuJoCo and SciPy take seconds.
+# Imported on first use: MuJoCo and SciPy take seconds.
 _PLACES = {
     "Result": "hsr8.evaluation.recording",
     "Simulation": "hsr8.loop",

@@ -1,4 +1,4 @@
-"""Runs from Python: a scenario, a seed, and perhaps a planner or a gaze of one's own."""
+"""Runs from Python, with an optional custom planner or gaze controller."""
 
 import shlex
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,7 @@ from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.record import Listener
-from hsr8.recorder.run.manifest import OWN, Manifest
+from hsr8.recorder.run.manifest import CALL, Manifest
 from hsr8.recorder.run.run_folder import SCENARIO, RunFolder
 from hsr8.scenario.loader import as_words, load_scenario
 from hsr8.scenario.schema import Scenario
@@ -31,28 +31,28 @@ def run(
     """Run a scenario.
 
     Args:
-        scenario: name of a built-in one, a TOML file, or one that is loaded already.
-        seed: of the world and every noise; the scenario's by default.
-        settings: over the scenario's, as ``key=value`` or by key with dots.
-        out: folder for the run folder; by default nothing is written.
-        log: write the Rerun log into it too; ``"minimal"``, ``"standard"`` or ``"full"``.
-        planner: plans the motion instead of the scenario's planner.
-        gaze: chooses the gaze instead of the scenario's.
-        listeners: told of every record.
+        scenario: name of a built-in scenario, TOML file, or loaded scenario.
+        seed: seed of the world and of all noise; default: that of the scenario.
+        settings: override those of the scenario, as ``key=value`` or by dotted key.
+        out: parent folder of the run folder; by default nothing is written.
+        log: also write the Rerun log; True, False, ``"minimal"``, ``"standard"`` or ``"full"``.
+        planner: replaces the planner of the scenario.
+        gaze: replaces the gaze controller of the scenario.
+        listeners: receive every record.
 
     Raises:
-        ScenarioError: the scenario or a setting is wrong, or its world cannot be drawn.
+        ScenarioError: the scenario or a setting is invalid, or its world cannot be drawn.
         RenderingUnavailable: the camera needs OpenGL and there is none.
-        UsageError: the run folder cannot be made, there is no such level of `log`, or `planner`
-            or `gaze` answers with what is no decision.
-        RecordingFailed: the run folder cannot be written any more.
-        TypeError: a loaded scenario is given settings.
+        UsageError: the run folder cannot be made, `log` is not a level, or `planner` or `gaze`
+            returned an invalid decision.
+        RecordingFailed: the run folder can no longer be written.
+        TypeError: settings were given for a loaded scenario.
         KeyboardInterrupt: Ctrl-C; the run folder is complete up to then.
     """
     level = _level(log)
     loaded = scenario if isinstance(scenario, Scenario) else load_scenario(str(scenario), settings)
     if isinstance(scenario, Scenario) and settings:
-        raise TypeError("settings go with a scenario's name or file, not with a loaded one")
+        raise TypeError("settings: need the name or file of a scenario, got a loaded scenario")
     loaded = loaded if seed is None else loaded.with_seed(seed)
     simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze)
     recording = Recording(simulation, listeners)
@@ -60,37 +60,31 @@ def run(
         renderer = renderer_of(loaded)
         path = RunFolder.create(Path(out), loaded.name, loaded.seed)
         source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
-        words = ("hsr8", "run", str(source), "--seed", str(loaded.seed), *_options(settings))
-        command = _own(planner, gaze) or tuple(map(shlex.quote, words))
+        words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
+        words += ["--set", *as_words(settings)] if settings else []
+        command = _call(planner, gaze) or tuple(map(shlex.quote, words))
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer)
         recording.into(path, manifest, log=level)
     result = recording.run()
     if result.exit_reason == "interrupted":
-        raise KeyboardInterrupt  # a loop over runs is to end, too
+        raise KeyboardInterrupt  # also ends a loop over runs
     return result
 
 
-def _own(planner: MotionPlanner | None, gaze: GazeController | None) -> tuple[str, ...]:
-    """The words of the call that names planner and gaze of one's own; none if there are none."""
-    given = {"planner": planner, "gaze": gaze}
+def _call(planner: MotionPlanner | None, gaze: GazeController | None) -> tuple[str, ...]:
+    """Return the call with the classes of a planner and gaze object; empty without them."""
+    objects = {"planner": planner, "gaze": gaze}
     names = [
-        f"{key}={type(own).__module__}.{type(own).__qualname__}"
-        for key, own in given.items()
-        if own is not None
+        f"{key}={type(value).__module__}.{type(value).__qualname__}"
+        for key, value in objects.items()
+        if value is not None
     ]
-    return (f"{OWN}{', '.join(names)})",) if names else ()
+    return (f"{CALL}{', '.join(names)})",) if names else ()
 
 
 def _level(log: bool | str) -> LogLevel | None:
-    """How much is logged."""
     if isinstance(log, bool):
         return LogLevel.STANDARD if log else None
     if log not in tuple(LogLevel):
-        raise UsageError(f"log={log!r}: give True, False or one of {', '.join(LogLevel)}")
+        raise UsageError(f"log: got {log!r}; expected True, False, {', '.join(LogLevel)}")
     return LogLevel(log)
-
-
-def _options(settings: Sequence[str] | Mapping[str, Any]) -> tuple[str, ...]:
-    """Settings as options of the command line."""
-    words = as_words(settings)
-    return ("--set", *words) if words else ()

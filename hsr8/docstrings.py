@@ -1,7 +1,7 @@
-"""What stands below each attribute of a class in its source: the meaning of settings and options.
+"""Attribute docstrings of a class, read from its source.
 
-Pydantic can read it too, but when it makes a class: every process would parse the source of all
-sections of a scenario, and only the schema and messages about mistakes need it.
+Pydantic reads them when a class is made: every process would parse the source of all sections of
+a scenario, but only the schema and error messages need them.
 """
 
 import ast
@@ -11,8 +11,8 @@ from itertools import pairwise
 
 
 def docstrings(described: type) -> dict[str, str]:
-    """Docstring by attribute of a class and of those it extends; what has none is left out."""
-    found: dict[str, str] = {}
+    """Return the docstring by attribute of a class and its bases."""
+    texts: dict[str, str] = {}
     for part in reversed(described.__mro__):
         if part.__module__.split(".")[0] in ("builtins", "pydantic"):
             continue
@@ -22,5 +22,5 @@ def docstrings(described: type) -> dict[str, str]:
             if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):
                 match below:
                     case ast.Expr(value=ast.Constant(value=str(text))):
-                        found[line.target.id] = inspect.cleandoc(text)
-    return found
+                        texts[line.target.id] = inspect.cleandoc(text)
+    return texts

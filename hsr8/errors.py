@@ -1,33 +1,33 @@
-"""Errors a user may meet, each with the exit code the command line gives it."""
+"""Errors that a user may encounter, each with the exit code of the command line."""
 
 
 class Hsr8Error(Exception):
-    """Base of every error of the simulator; its message is meant for people."""
+    """Base of every error of the simulator; its message is meant for users."""
 
     exit_code = 3
 
 
 class UsageError(Hsr8Error):
-    """The command line asks for something that cannot be done as asked."""
+    """Invalid command line, argument or input."""
 
     exit_code = 2
 
 
 class ScenarioError(UsageError):
-    """A scenario file or a setting is wrong: what, where, why, and what is allowed."""
+    """Invalid scenario file or setting; the message has the place, the reason and the remedy."""
 
 
 class ModelError(UsageError):
-    """A model file is missing or wrong: in which folder, and what MuJoCo or walking says."""
+    """Missing or invalid robot or field model."""
 
 
 class RenderingUnavailable(UsageError):
-    """No OpenGL that can draw without a display was found."""
+    """OpenGL that draws without a display is not available."""
 
 
 class SimulationDiverged(Hsr8Error):
-    """The physics blew up: names the tick, the body and the last command."""
+    """The physics diverged; the message has the tick, the body and the last command."""
 
 
 class RecordingFailed(Hsr8Error):
-    """What a run leaves behind cannot be written: the disk is full, or the folder is gone."""
+    """The records of a run cannot be written: the disk is full, or the folder is gone."""

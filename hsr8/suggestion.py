@@ -1,10 +1,10 @@
-"""The word that was probably meant."""
+"""Did-you-mean hints."""
 
 from collections.abc import Sequence
 from difflib import get_close_matches
 
 
 def suggestion(word: str, choices: Sequence[str]) -> str:
-    """``; did you mean 'x'?`` for the closest choice, else nothing."""
+    """Return ``; did you mean 'x'?`` for the closest choice, or an empty string."""
     close = get_close_matches(word, choices, n=1)
     return f"; did you mean '{close[0]}'?" if close else ""

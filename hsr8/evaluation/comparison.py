@@ -22,7 +22,7 @@ from hsr8.evaluation.sweep.folder import DEFINITION, SweepFolder
 from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 from hsr8.evaluation.sweep.table import flatten
 from hsr8.recorder.run import run_folder
-from hsr8.recorder.run.manifest import OWN
+from hsr8.recorder.run.manifest import CALL
 from hsr8.recorder.run.run_reader import open_run
 from hsr8.suggestion import suggestion
 
@@ -190,7 +190,7 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
 def _plugin(side: Side) -> str:
     """Return the call that ran a custom planner or gaze; ``-`` for the scenario's."""
     command = " ".join(side.definition.command_words)
-    return command if command.startswith(OWN) else "-"
+    return command if command.startswith(CALL) else "-"
 
 
 def _difference(metric: str, a: Side, b: Side, seeds: Sequence[int]) -> MetricDifference | None:

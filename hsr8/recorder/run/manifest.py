@@ -25,7 +25,7 @@ LIBRARIES = (
 )
 FORMAT = 4  # of run folders; those without a number are of format 1
 RUNNING = "running"
-OWN = "hsr8.run("  # begins the command of a run with a planner or gaze object
+CALL = "hsr8.run("  # begins the command of a run with a planner or gaze object
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class Manifest:
         scenario: name of the scenario.
         seed: of the run.
         command: command line that repeats the run. A run with a planner or gaze object cannot be
-            repeated by a command; the call, which begins with `OWN`, takes its place.
+            repeated by a command; the call, which begins with `CALL`, takes its place.
         exit_reason: how the run ended. ``running`` until then and after a kill, ``failed`` if the
             records could not be written, ``error`` after an internal error.
         started: wall-clock time, ISO 8601.
