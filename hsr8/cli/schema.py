@@ -9,7 +9,7 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def main(options: Schema) -> int:
-    """Print the schema, or write it.
+    """Print or write the schema.
 
     Raises:
         UsageError: the file cannot be written.

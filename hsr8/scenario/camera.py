@@ -1,4 +1,4 @@
-"""The head camera of a scenario: optics, timing and noise."""
+"""Section ``[camera]``: optics, timing and noise of the head camera."""
 
 from math import atan, degrees, radians, tan
 from typing import Annotated, Literal
@@ -15,16 +15,16 @@ DelayMs = Annotated[int, Interval(ge=0, le=500), MultipleOf(CONTROL_PERIOD_MS)]
 
 
 class CameraNoise(Section):
-    """What is wrong with every image."""
+    """Image noise."""
 
     pixel: Annotated[float, Interval(ge=0.0, le=60.0)] = 3.0
-    """White noise of each channel of each pixel; of rendered images [grey level]."""
+    """White noise of each channel of each pixel; rendered images only [grey level]."""
     exposure: Annotated[float, Interval(ge=0.0, le=0.3)] = 0.02
-    """White noise of the brightness from image to image, relative; of rendered images [1]."""
+    """White noise of the exposure from image to image, relative; rendered images only [1]."""
 
 
 class Camera(Section):
-    """The head camera; walking.head limits how fast it turns, navigation.gaze how far."""
+    """Head camera; `walking.head` limits its rate, `navigation.gaze` its range."""
 
     source: Literal["rendered", "analytic", "omnidirectional"] = "rendered"
     """rendered: OpenGL images; analytic: cylinders projected geometrically, without OpenGL;
@@ -34,23 +34,23 @@ class Camera(Section):
     height: Annotated[int, Interval(ge=24, le=1080)] = 240
     """Image height [pixel]."""
     lens: Literal["wide", "narrow", "custom"] = "wide"
-    """wide: 70 deg vertically (86 horizontally at 4:3); narrow: 45 (58); custom: as given."""
+    """wide: 70 deg vertically (86 deg horizontally at 4:3); narrow: 45 deg (58 deg); custom."""
     vertical_fov_deg: Annotated[float, Interval(ge=10.0, le=120.0)] = LENSES["wide"]
-    """Vertical field of view; given by the lens unless that is custom [deg]."""
+    """Vertical field of view; fixed by the lens unless custom [deg]."""
     period_ms: PeriodMs = 60
-    """Time between two images, a multiple of the control tick of 5 ms [ms]."""
+    """Frame period, a multiple of the control tick of 5 ms [ms]."""
     latency_ms: DelayMs = 0
-    """Time from the capture of an image to its arrival, a multiple of 5 ms [ms]."""
+    """Latency from exposure to arrival, a multiple of 5 ms [ms]."""
     shutter_ms: Annotated[float, Interval(ge=0.0, le=100.0)] = 0.0
-    """Exposure of rendered images, at most the period; turning smears them, 0 is sharp [ms]."""
+    """Exposure time, at most the frame period; causes motion blur; rendered images only [ms]."""
     shadows: bool = False
-    """Whether things cast shadows in rendered images, which then take twice as long."""
+    """Whether rendered images have shadows; doubles the rendering time."""
     noise: CameraNoise = CameraNoise()
-    """Noise of the images."""
+    """Image noise."""
 
     @property
     def omnidirectional(self) -> bool:
-        """Whether it sees everything around at once."""
+        """Whether the field of view is 360 deg."""
         return self.source == "omnidirectional"
 
     @property

@@ -1,4 +1,4 @@
-"""What walking is asked for when nobody navigates: velocities or footsteps, given or drawn."""
+"""Section ``[command]``: velocities or footsteps of a mission without navigation."""
 
 from typing import Annotated
 
@@ -17,69 +17,68 @@ SecondsRange = Annotated[tuple[Seconds, Seconds], AfterValidator(ordered)]
 
 
 class Footsteps(Section):
-    """Explicit footsteps, one like the other: the command state of the walking pattern."""
+    """Explicit footsteps, all alike: the command state of the walking pattern."""
 
     single_support: Annotated[float, Interval(gt=0.0, le=2.0)] = 0.27
-    """Time on one foot [s]."""
+    """Duration of the single support [s]."""
     double_support: Annotated[float, Interval(gt=0.0, le=2.0)] = 0.07
-    """Time on both feet before that [s]."""
+    """Duration of the preceding double support [s]."""
     forward: Annotated[float, Interval(ge=-0.5, le=0.5)] = 0.0
-    """Advance of the middle of the stance per footstep [m]."""
+    """Advance of the stance centre per footstep [m]."""
     side: Annotated[float, Interval(gt=0.0, le=0.5)] = 0.084
     """Distance between the feet at landing [m]."""
     direction: Annotated[float, Interval(ge=-1.5, le=1.5)] = 0.0
-    """Of the landing foot, from the support foot, counter-clockwise positive [rad]."""
+    """Yaw of the landing foot relative to the support foot, counter-clockwise positive [rad]."""
     swing_height: Annotated[float, Interval(gt=0.0, le=0.2)] = 0.025
-    """Height of the swing foot at mid-swing [m]."""
+    """Maximum height of the swing foot [m]."""
 
 
 class Stretch(Section):
-    """One velocity, or one kind of footstep, for some time."""
+    """Constant velocity, or footsteps all alike, for a time."""
 
     duration: Annotated[float, Interval(gt=0.0, le=7200.0)]
-    """How long it is commanded [s]."""
+    """Duration [s]."""
     vx: Velocity = 0.0
-    """Velocity forward [m/s]."""
+    """Forward velocity [m/s]."""
     vy: Velocity = 0.0
-    """Velocity to the left [m/s]."""
+    """Lateral velocity, to the left positive [m/s]."""
     wz: TurnRate = 0.0
     """Turn rate, counter-clockwise positive [rad/s]."""
     footstep: Footsteps | None = None
-    """Explicit footsteps in place of the velocity."""
+    """Explicit footsteps, instead of a velocity."""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> "Stretch":
         if self.footstep is not None and (self.vx, self.vy, self.wz) != (0.0, 0.0, 0.0):
-            raise ValueError("a stretch has a velocity (vx, vy, wz) or a footstep, not both")
+            raise ValueError("expected a velocity (vx, vy, wz) or a footstep, not both")
         return self
 
 
 class RandomCommands(Section):
-    """Velocities drawn from the seed, each held for some time."""
+    """Velocities drawn from the seed, each held for a drawn time."""
 
     vx: VelocityRange = (-0.4, 0.4)
-    """Least and greatest velocity forward [m/s]."""
+    """Minimum and maximum forward velocity [m/s]."""
     vy: VelocityRange = (-0.15, 0.15)
-    """Least and greatest velocity to the left [m/s]."""
+    """Minimum and maximum lateral velocity [m/s]."""
     wz: TurnRange = (-2.0, 2.0)
-    """Least and greatest turn rate [rad/s]."""
+    """Minimum and maximum turn rate [rad/s]."""
     interval: SecondsRange = (0.5, 2.0)
-    """Shortest and longest time for which a velocity is held [s]."""
+    """Minimum and maximum hold time of a velocity [s]."""
     stop_fraction: Fraction = 0.15
-    """Share of the draws that are a stop [1]."""
+    """Probability that a drawn velocity is zero [1]."""
 
 
 class Command(Section):
-    """What walking is asked for in a mission of kind "walk".
+    """Velocities or footsteps of a mission of kind "walk".
 
-    A velocity or a footstep given here holds for the whole run; else velocities are drawn, if
-    there is a table of them; else the stretches follow one another.
+    A constant velocity or footstep takes precedence over `random`, which does over `stretch`.
     """
 
     vx: Velocity | None = None
-    """Velocity forward for the whole run, in place of everything below [m/s]."""
+    """Forward velocity for the whole run [m/s]."""
     vy: Velocity | None = None
-    """Velocity to the left for the whole run [m/s]."""
+    """Lateral velocity for the whole run, to the left positive [m/s]."""
     wz: TurnRate | None = None
     """Turn rate for the whole run, counter-clockwise positive [rad/s]."""
     footstep: Footsteps | None = None
@@ -87,21 +86,21 @@ class Command(Section):
     random: RandomCommands | None = None
     """Velocities drawn from the seed."""
     stretch: Annotated[tuple[Stretch, ...], Len(0, 1000)] = ()
-    """Velocities or footsteps one after the other; after the last the robot stands."""
+    """Consecutive velocities or footsteps; after the last one the robot stands."""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> "Command":
         if self.footstep is not None and self.constant:
-            raise ValueError("give a velocity (vx, vy, wz) or a footstep for the run, not both")
+            raise ValueError("expected a velocity (vx, vy, wz) or a footstep, not both")
         return self
 
     @property
     def constant(self) -> bool:
-        """Whether one velocity holds for the whole run."""
+        """Whether the velocity is constant for the whole run."""
         return any(v is not None for v in (self.vx, self.vy, self.wz))
 
     @property
     def empty(self) -> bool:
-        """Whether nothing is asked."""
+        """Whether no command is given."""
         given = self.constant or self.footstep is not None or self.random is not None
         return not given and not self.stretch

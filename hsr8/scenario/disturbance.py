@@ -1,4 +1,4 @@
-"""What disturbs the robot: pushes drawn from the seed. Those given one by one are faults."""
+"""Section ``[disturbance]``: random pushes; single pushes are faults."""
 
 from typing import Annotated, Literal
 
@@ -24,29 +24,29 @@ DegreesRange = Annotated[tuple[Degrees, Degrees], AfterValidator(ordered)]
 
 
 class RandomPushes(Section):
-    """Pushes drawn from the seed, one after the other."""
+    """Consecutive pushes drawn from the seed."""
 
     start: Annotated[float, Interval(ge=0.0, le=7200.0)] = 3.0
-    """Nothing is pushed before this time [s]."""
+    """Earliest time of the first push [s]."""
     interval: SecondsRange = (2.0, 4.0)
-    """Shortest and longest time from one push to the next [s]."""
+    """Minimum and maximum time between pushes [s]."""
     impulse: ImpulseRange = (0.2, 0.8)
-    """Weakest and strongest push, force times duration [N s]."""
+    """Minimum and maximum impulse: force times duration [N s]."""
     duration: PushDuration = 0.05
-    """How long each lasts, in whole control ticks of 5 ms [s]."""
+    """Duration of a push, rounded to control ticks of 5 ms [s]."""
     direction_deg: DegreesRange = (-180.0, 180.0)
-    """Directions from the robot's forward, counter-clockwise [deg]."""
+    """Range of directions of the force from the robot's heading, counter-clockwise [deg]."""
     body: PushedBody = "torso_link"
-    """What is pushed."""
+    """Body that the force acts on."""
 
 
 class Disturbance(Section):
-    """What disturbs the robot; it needs the full body."""
+    """Random disturbances; require the full body."""
 
     random: RandomPushes | None = None
     """Pushes drawn from the seed."""
 
     @property
     def empty(self) -> bool:
-        """Whether nothing is disturbed."""
+        """Whether no disturbance is given."""
         return self.random is None

@@ -1,4 +1,4 @@
-"""What the robot is asked to do."""
+"""Section ``[mission]``: via points and goal."""
 
 from typing import Annotated, Literal
 
@@ -9,47 +9,43 @@ from hsr8.scenario.section import Degrees, LengthRange, Point, Section
 
 
 class Tour(Section):
-    """Via point after via point until the time is over, as in the paper's experiment."""
+    """Endless tour of drawn via points, as in the paper's experiment."""
 
     kind: Literal["tour"]
-    """An endless tour of drawn via points."""
     via_points: Annotated[int, Interval(ge=2, le=500)] = 90
-    """Via points drawn; after the last comes the first again [1]."""
+    """Number of via points; after the last, the tour starts again [1]."""
     leg: LengthRange = (1.2, 3.0)
-    """Shortest and longest way from one via point to the next [m]."""
+    """Minimum and maximum distance between consecutive points [m]."""
 
 
 class Course(Section):
-    """Some via points, then a goal to arrive at with a posture."""
+    """Drawn via points, then a goal with an arrival heading."""
 
     kind: Literal["course"]
-    """A finite course of drawn points."""
     via_points: Annotated[int, Interval(ge=0, le=50)] = 4
-    """Via points before the goal [1]."""
+    """Number of via points before the goal [1]."""
     leg: LengthRange = (1.2, 6.0)
-    """Shortest and longest way from one point to the next [m]."""
+    """Minimum and maximum distance between consecutive points [m]."""
     goal_heading_deg: Degrees | None = None
-    """Heading to arrive with [deg]; drawn if left out."""
+    """Arrival heading at the goal; default: drawn [deg]."""
 
 
 class Points(Section):
-    """Via points placed by hand."""
+    """Via points placed by hand; the last is the goal unless `endless`."""
 
     kind: Literal["points"]
-    """A list of points."""
     points: Annotated[tuple[Point, ...], Len(1, 500)]
-    """Points to pass in this order in W; the last is the goal unless the tour is endless [m]."""
+    """Points in W, in the order of the visits [m]."""
     goal_heading_deg: Degrees | None = None
-    """Heading to arrive with [deg]; any will do if left out."""
+    """Arrival heading at the goal; default: any [deg]."""
     endless: bool = False
-    """Whether the first point follows the last."""
+    """Whether the tour starts again after the last point."""
 
 
 class Walk(Section):
-    """No navigation: the robot walks what the section `command` asks for."""
+    """No navigation: the robot walks as the section `command` says."""
 
     kind: Literal["walk"]
-    """Walking as commanded."""
 
 
 Mission = Annotated[Tour | Course | Points | Walk, Field(discriminator="kind")]

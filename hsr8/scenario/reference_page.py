@@ -1,4 +1,4 @@
-"""Reference page of all keys of a scenario file."""
+"""Reference page of all public keys of a scenario file."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -12,7 +12,7 @@ _INTRODUCTION = """\
 A scenario is a TOML file. All keys have a default, except those marked *required*. A file may
 extend another one: `extends = "course"`. `hsr8 check FILE` checks a file and describes its world,
 `--set camera.period_ms=80` changes one key for one run. `hsr8 schema` prints the JSON Schema, for
-completion in an editor.
+completion in an editor. W is the world frame, with its origin in the centre of the field.
 
 Keys marked *experimental* select variants under study and may change in any version. All other
 parameters of walking, vision, belief and navigation are constants, documented next to the code that
@@ -34,90 +34,85 @@ class ReferencePage:
     """Reference page, section by section.
 
     Attributes:
-        keys: dotted names of the documented keys.
+        keys: cells of the documented keys by dotted name.
         text: the page, in Markdown.
     """
 
     def __init__(self) -> None:
-        self.keys: dict[str, str] = {}  # row by key
+        self.keys: dict[str, str] = {}
         self._shown: set[str] = set()
-        sections = list(self._sections((), json_schema()))
-        basic = [row for key, row in self.keys.items() if key in BASIC]
-        lines = [_INTRODUCTION, *_HEADER, *basic, *sections]
-        self.text = "\n".join(lines) + "\n"
+        sections = list(self._section((), json_schema()))
+        basic = [f"| `{key}` | {cells}" for key, cells in self.keys.items() if key in BASIC]
+        self.text = "\n".join([_INTRODUCTION, *_HEADER, *basic, *sections]) + "\n"
 
-    def _sections(self, path: tuple[str, ...], given: Node) -> Iterator[str]:
+    def _section(self, path: tuple[str, ...], given: Node) -> Iterator[str]:
         """Lines of a table and of the tables in it."""
         node, many = _entry(given), "items" in resolve(given, None)
         if not _is_table(node) or _title(node) in self._shown:
             return
         self._shown.add(_title(node))
         name = ".".join(path)
-        title = f"`[[{name}]]`" if many else f"`[{name}]`" if name else "Top level"
-        description = given.get("description") or node.get("description", "")
+        text = given.get("description") or node.get("description", "")
+        rows: list[str] = []
+        properties, required = node.get("properties", {}), node.get("required", [])
         if "discriminator" in node:
-            variants = _variants(node)
-            rows, properties = self._variants(name, node["discriminator"]["propertyName"], variants)
-            required: list[str] = []
-        else:
-            rows, properties, required = [], node["properties"], node.get("required", [])
-            description = node.get("description") or description
-        values = {k: v for k, v in properties.items() if not _is_table(_entry(v))}
+            rows, properties = self._variants(name, node["discriminator"])
+        values = {key: value for key, value in properties.items() if not _is_table(_entry(value))}
         if values or rows:
-            yield from ("", f"## {title}", "", description.split("\n\n")[0].replace("\n", " "), "")
+            title = f"`[[{name}]]`" if many else f"`[{name}]`" if name else "Top level"
+            yield from ("", f"## {title}", "", text.split("\n\n")[0].replace("\n", " "), "")
             yield from rows
         if values:
             yield from _HEADER
         for key, value in values.items():
-            yield self._row(f"{name}.{key}".lstrip("."), key, value, key in required)
+            yield self._row(name, key, value, key in required)
         for key, value in properties.items():
             if key != "constants":  # see the introduction
-                yield from self._sections((*path, key), value)
+                yield from self._section((*path, key), value)
 
-    def _variants(self, name: str, tag: str, variants: dict[str, Node]) -> tuple[list[str], Node]:
-        """Table of the variants with their own keys, and the keys that variants share."""
+    def _variants(self, name: str, discriminator: Node) -> tuple[list[str], Node]:
+        """Table of the variants with their specific keys, and the keys that variants share."""
+        tag, mapping = discriminator["propertyName"], discriminator["mapping"]
+        variants = {choice: resolve({"$ref": ref}, None) for choice, ref in mapping.items()}
+        choices = ", ".join(f'"{choice}"' for choice in variants)
+        kind = f"{tag.capitalize()} of {name.rpartition('.')[2]}"
+        self.keys[f"{name}.{tag}"] = f"*required* | {choices} | {kind}; see `{name}` below. |"
         uses: dict[str, list[Node]] = {}
         for node in variants.values():
             for key, value in node["properties"].items():
-                uses.setdefault(key, []).append(value)
-        shared = {
-            key: values[0]
-            for key, values in uses.items()
-            if key != tag and len(values) > 1 and all(_same(v, values[0]) for v in values)
-        }
-        rows = [f"| `{tag}` | meaning | keys |", "|---|---|---|"]
+                if key != tag:
+                    uses.setdefault(key, []).append(value)
+        shared: Node = {}
+        for key, values in uses.items():
+            common = max(values, key=lambda value: sum(_same(value, other) for other in values))
+            if sum(_same(common, value) for value in values) > max(1, len(values) // 2):
+                shared[key] = common
+            elif len(values) == 1:
+                self._row(name, key, common, False)
+            else:
+                self.keys[f"{name}.{key}"] = f"by {tag} | | See `{name}` below. |"
+        rows = [f"| `{tag}`{_mark(f'{name}.{tag}')} | meaning | keys |", "|---|---|---|"]
         for choice, node in variants.items():
-            cells = []
-            for key, value in node["properties"].items():
-                if key == tag:
-                    continue
-                full = f"{name}.{key}"
-                row = self._row(full, key, value, key in node.get("required", []))
-                if key in shared:
-                    cells.append(f"`{key}`")
-                else:
-                    self.keys.setdefault(full, row)
-                    cells.append(_sentence(key, value, key in node.get("required", [])))
+            phrases = (
+                _phrase(key, value, shared.get(key, {}), node)
+                for key, value in node["properties"].items()
+                if key != tag
+            )
             text = node.get("description", "").replace("\n", " ")
-            rows.append(f'| `"{choice}"` | {text} | {"; ".join(cells)} |')
-        choices = ", ".join(f'"{choice}"' for choice in variants)
-        mark = " *basic*" if f"{name}.{tag}" in BASIC else ""
-        self.keys[f"{name}.{tag}"] = (
-            f"| `{name}.{tag}`{mark} | *required* | {choices} | Selects the variant. |"
-        )
-        return [*rows, ""], shared
+            rows.append(f'| `"{choice}"` | {text} | {"; ".join(phrases)} |')
+        return [*rows, ""] if shared else rows, shared
 
-    def _row(self, full: str, key: str, given: Node, required: bool) -> str:
-        """Row of a key, which is remembered under its full name."""
-        node = resolve(given, None)
-        default = _default(given, node, required)
+    def _row(self, name: str, key: str, given: Node, required: bool) -> str:
+        """Row of a key, whose cells are kept by its full name."""
+        full, node = f"{name}.{key}".lstrip("."), resolve(given, None)
+        default = "*required*" if required else _default(given, node)
         meaning = str(given.get("description") or node.get("description", "")).replace("\n", " ")
-        mark = ""
-        if full in BASIC or full in EXPERIMENTAL:
-            mark = " *basic*" if full in BASIC else " *experimental*"
-        cells = f" | {default} | {allowed(node)} | {meaning} |"
-        self.keys[full] = f"| `{full}`{cells}"
-        return f"| `{key}`{mark}{cells}"
+        self.keys[full] = f"{default} | {allowed(node)} | {meaning} |"
+        return f"| `{key}`{_mark(full)} | {self.keys[full]}"
+
+
+def _mark(full: str) -> str:
+    return " *basic*" if full in BASIC else " *experimental*" if full in EXPERIMENTAL else ""
 
 
 def _title(node: Node) -> str:
@@ -134,29 +129,25 @@ def _is_table(node: Node) -> bool:
     return "properties" in node or "discriminator" in node
 
 
-def _variants(node: Node) -> dict[str, Node]:
-    mapping = node["discriminator"]["mapping"]
-    return {choice: resolve({"$ref": reference}, None) for choice, reference in mapping.items()}
-
-
 def _same(a: Node, b: Node) -> bool:
-    return {**a, "title": ""} == {**b, "title": ""}
+    """Whether two schemas differ in their defaults at most."""
+    return {**a, "title": "", "default": ""} == {**b, "title": "", "default": ""}
 
 
-def _sentence(key: str, given: Node, required: bool) -> str:
-    """A key that one variant has, in a cell."""
-    node = resolve(given, None)
-    limits = allowed(node)
-    default = _default(given, node, required)
-    facts = [f"default {default}"] if default and not required else []
-    text = str(given.get("description", "")).replace("\n", " ").rstrip(".")
-    details = ", ".join([*facts, limits] if limits else facts)
-    return f"`{key}`: {text}" + (f" ({details})" if details else "")
+def _phrase(key: str, given: Node, shared: Node, variant: Node) -> str:
+    """A key of one variant, in a cell: its differences from the shared key."""
+    node, required = resolve(given, None), key in variant.get("required", [])
+    details = ["required"] if required and "default" in shared else []
+    if not required and given.get("default") != shared.get("default"):
+        details = [f"default {_default(given, node)}"]
+    text = ""
+    if not _same(given, shared):
+        text = ": " + str(given.get("description", "")).replace("\n", " ").rstrip(".")
+        details += [allowed(node)] if allowed(node) else []
+    return f"`{key}`{text}" + (f" ({', '.join(details)})" if details else "")
 
 
-def _default(given: Node, node: Node, required: bool) -> str:
-    if required:
-        return "*required*"
+def _default(given: Node, node: Node) -> str:
     default = given.get("default", node.get("default"))
     return "" if default is None else f"`{_toml(default)}`"
 
@@ -166,4 +157,4 @@ def _toml(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, str):
         return f'"{value}"'
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value).replace("'", '"')

@@ -1,4 +1,4 @@
-"""The scenario: everything that determines a run but its seed."""
+"""Scenario: all that determines a run."""
 
 from dataclasses import dataclass
 from operator import index
@@ -24,70 +24,70 @@ from navigation.parameters.navigation import NavigationParameters
 from vision.parameters import VisionParameters
 from walking.parameters import WalkingParameters
 
-LARGEST_SEED = 2**63 - 1  # integers of TOML have 64 bits
+MAX_SEED = 2**63 - 1  # integers of TOML have 64 bits
 
 
 @dataclass(frozen=True)
 class Navigation(NavigationParameters):
-    """Parameters of the decisions; the profile gives the defaults of all others."""
+    """Gaze, planner and mission; the profile sets the defaults."""
 
     profile: Literal["extended", "paper"] = "extended"
-    """extended: our best; paper: the printed equations with the least repairs."""
+    """extended: all improvements; paper: the printed equations with minimal corrections."""
 
 
 class Criteria(Section):
-    """What a run must achieve to pass."""
+    """Criteria of success."""
 
     max_falls: Annotated[int, Interval(ge=0, le=1000)] = 0
-    """Falls that are still a pass [1]."""
+    """Maximum number of falls [1]."""
     max_collisions: Annotated[int, Interval(ge=0, le=100_000)] | None = None
-    """Contacts with obstacles that are still a pass, any number if left out [1]."""
+    """Maximum number of collisions; default: any number [1]."""
     goal_reached: bool = False
     """Whether the goal must be reached."""
     max_zmp_outside_ticks: Annotated[int, Interval(ge=0, le=10_000_000)] | None = None
-    """Control ticks with the planned ZMP outside the soles that are still a pass [1]."""
+    """Maximum number of control ticks with the planned ZMP outside the soles [1]."""
     min_via_points: Annotated[int, Interval(ge=0, le=100_000)] = 0
-    """Via points that must be passed [1]."""
+    """Minimum number of via points passed [1]."""
 
 
 class Recorder(Section):
-    """What is published and kept."""
+    """Recording of the run."""
 
     period_ms: PeriodMs = 20
-    """Time between two records, a multiple of the control tick of 5 ms [ms]."""
+    """Period of the records, a multiple of the control tick of 5 ms [ms]."""
 
 
 class Scenario(Section):
-    """A world, a robot in it, what it shall do, and what counts as success."""
+    """World, robot, mission and criteria of success."""
 
     name: Annotated[str, Len(1, 64), Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
-    """Name that run folders carry; the file's own if left out."""
+    """Name of the run folders; default: the name of the file."""
     description: Annotated[str, Len(0, 2000)] = ""
-    """One or two sentences about it."""
-    seed: Annotated[int, Interval(ge=0, le=LARGEST_SEED)] = 0
-    """Draws the world and every noise [1]."""
+    """Description in one or two sentences."""
+    seed: Annotated[int, Interval(ge=0, le=MAX_SEED)] = 0
+    """Seed of the world and of all noise [1]."""
     duration: Annotated[float, Interval(gt=0.0, le=7200.0)] = 240.0
-    """Simulated time after which the run ends [s]."""
+    """Maximum simulated time [s]."""
     world: World = World()
     """Field, obstacles, beacons and light."""
     mission: Mission
-    """What the robot is asked to do."""
+    """Via points and goal."""
     command: Command = Command()
-    """What walking is asked for in a mission of kind "walk"."""
+    """Velocities or footsteps of a mission of kind "walk"."""
     disturbance: Disturbance = Disturbance()
-    """What disturbs the robot."""
+    """Random pushes."""
     fault: Annotated[tuple[Fault, ...], Len(0, 64)] = ()
-    """What fails, when, for how long and how badly."""
+    """Faults of sensors, servos and the environment."""
     robot: Robot = Robot()
-    """Body, start and speeds."""
+    """Body, initial pose and speed limits."""
     camera: Camera = Camera()
-    """The head camera."""
+    """Head camera."""
     sensors: SensorNoise = SensorNoise()
-    """Noise of the body's sensors."""
+    """Noise of encoders, IMU and foot force sensors."""
     walking: WalkingParameters = WalkingParameters()
-    """The walking engine; keys left at their default are scaled to the robot's size."""
+    """Walking engine; defaults scale with the size of the robot."""
     vision: VisionParameters = VisionParameters()
-    """The detector."""
+    """Obstacle and beacon detector."""
     belief: BeliefParameters = BeliefParameters()
     """Localization, obstacle tracks and local map."""
     navigation: Navigation = Navigation()
@@ -95,29 +95,26 @@ class Scenario(Section):
     plugin: Plugin = Plugin()
     """User-defined planner and gaze."""
     criteria: Criteria = Criteria()
-    """What passes."""
+    """Criteria of success."""
     recorder: Recorder = Recorder()
-    """What is published and kept."""
+    """Recording of the run."""
 
     def with_seed(self, seed: SupportsIndex) -> Self:
-        """The same with another seed.
+        """Return the scenario with another seed.
 
         Raises:
-            ScenarioError: it is none.
+            ScenarioError: the seed is invalid.
         """
         try:
             number = int(index(seed))
         except TypeError:
             number = -1
-        if not 0 <= number <= LARGEST_SEED:
-            raise ScenarioError(
-                f"seed={seed!r}: must be a whole number from 0 to {LARGEST_SEED:_}, that draws "
-                "the world and every noise"
-            )
+        if not 0 <= number <= MAX_SEED:
+            raise ScenarioError(f"seed={seed!r}: expected an integer from 0 to {MAX_SEED:_}")
         return self.model_copy(update={"seed": number})
 
     def speed_limits(self) -> SpeedLimits:
-        """Speed envelope navigation plans with; a command lasts for one footstep."""
+        """Return the speed limits of navigation, whose commands last for one footstep."""
         speed = self.robot.speed
         return SpeedLimits(
             vx=speed.vx,

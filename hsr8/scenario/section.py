@@ -1,4 +1,4 @@
-"""What all sections of a scenario share: strict reading, units in words, common ranges."""
+"""Base class and common types of the sections of a scenario."""
 
 from typing import Annotated, Literal
 
@@ -11,11 +11,9 @@ CONTROL_PERIOD_MS = round(1000.0 * CONTROL_PERIOD)
 
 
 class Section(BaseModel):
-    """A table of a scenario file: no unknown keys, no guessed types, no changes afterwards.
+    """Table of a scenario file: strict types, no unknown keys, immutable.
 
-    The parameter dataclasses of the libraries are sections too: pydantic reads their
-    constraints, `hsr8.docstrings` the docstrings of attributes, and these settings hold for
-    them as well.
+    The configuration also applies to the parameter dataclasses of the libraries.
     """
 
     model_config = ConfigDict(
@@ -27,9 +25,9 @@ class Section(BaseModel):
 
 
 def ordered(bounds: tuple[float, float]) -> tuple[float, float]:
-    """Refuse a range whose first bound is the greater."""
+    """Check that the first bound of a range is not above the second."""
     if bounds[0] > bounds[1]:
-        raise ValueError("the smaller bound comes first")
+        raise ValueError("the first bound must not be above the second")
     return bounds
 
 

@@ -1,4 +1,4 @@
-"""The world a scenario describes: what is drawn from the seed and what is placed by hand."""
+"""Section ``[world]``: field, obstacles drawn from the seed or placed by hand, beacons, light."""
 
 from math import ceil, hypot
 from typing import Annotated, Literal
@@ -25,77 +25,74 @@ Bearing = Annotated[float, Interval(ge=0.0, le=180.0)]
 BearingRange = Annotated[tuple[Bearing, Bearing], AfterValidator(ordered)]
 
 ROBOT_RADIUS = 0.12
-"""Radius of the circle in which the walking robot fits, S_robot [m]."""
+"""Radius of the walking robot, S_robot [m]."""
 
 
 class StaticObstacle(Section):
-    """A cylinder that stands still."""
+    """Static obstacle: a cylinder."""
 
     position: Point
     """Axis of the cylinder in W, x and y [m]."""
     radius: Radius = 0.08
     """Radius [m]."""
     color: Color = "red"
-    """Colour; it says nothing about size or motion."""
+    """Colour; independent of size and motion."""
 
 
 class _Mover(Section):
     radius: Radius = 0.08
     """Radius [m]."""
     color: Color = "blue"
-    """Colour; it says nothing about size or motion."""
+    """Colour; independent of size and motion."""
     speed: Speed = 0.10
-    """Speed along its lane, constant [m/s]."""
+    """Constant speed along the path [m/s]."""
 
 
 class ShuttleMover(_Mover):
-    """A cylinder that goes back and forth between two points and turns about at the ends."""
+    """Back and forth between two points."""
 
     motion: Literal["shuttle"]
-    """Back and forth."""
     start: Point
-    """Where it is at time zero, one end of its lane in W [m]."""
+    """Initial position in W [m]."""
     end: Point
-    """Other end of its lane in W [m]."""
+    """Turning point in W [m]."""
 
 
 class LineMover(_Mover):
-    """A cylinder that goes straight on and never turns about."""
+    """Straight ahead."""
 
     motion: Literal["line"]
-    """One way."""
     start: Point
-    """Where it is at time zero in W [m]."""
+    """Initial position in W [m]."""
     heading_deg: Degrees
-    """Direction in which it goes, counter-clockwise from x of W [deg]."""
+    """Direction of motion, counter-clockwise from x of W [deg]."""
 
 
 class CircleMover(_Mover):
-    """A cylinder that goes round a circle."""
+    """Around a circle."""
 
     motion: Literal["circle"]
-    """Round."""
     centre: Point
     """Centre of the circle in W [m]."""
     path_radius: Annotated[float, Interval(gt=0.0, le=10.0)]
     """Radius of the circle [m]."""
     angle_deg: Degrees = 0.0
-    """Where on the circle it is at time zero, counter-clockwise from x of W [deg]."""
+    """Initial angle on the circle, counter-clockwise from x of W [deg]."""
     clockwise: bool = False
-    """Sense of the motion."""
+    """Whether the motion is clockwise."""
 
 
 class Wall(Section):
-    """Static cylinders side by side, too close for the robot: a wall that vision knows."""
+    """Wall: a row of cylinders with gaps too narrow for the robot."""
 
     start: Point
     """Axis of the first cylinder in W [m]."""
     end: Point
     """Axis of the last cylinder in W [m]."""
     radius: Radius = 0.12
-    """Radius of each [m]."""
+    """Radius of a cylinder [m]."""
     gap: Annotated[float, Interval(ge=0.0, lt=2.0 * ROBOT_RADIUS)] = 0.20
-    """Widest gap between neighbours, narrower than the robot [m]."""
+    """Maximum gap between neighbouring cylinders [m]."""
 
     def positions(self) -> list[Point]:
         """Axes of the cylinders, evenly spaced [m]."""
@@ -105,62 +102,62 @@ class Wall(Section):
 
 
 class Encounters(Section):
-    """Movers on collision courses: they cross the field once, at constant velocity.
+    """Moving obstacles on collision courses, which cross the field once at constant velocity.
 
-    Each would meet a robot that goes straight from the start through all points at the
-    nominal pace. None of them knows where the robot is.
+    Each would meet a robot that walks straight from point to point at the nominal pace. None
+    reacts to the robot.
     """
 
     n: Count = 0
-    """Movers to draw, spread over the nominal walk [1]."""
+    """Number of these moving obstacles, distributed over the nominal walk [1]."""
     speed_ratio: RatioRange = (0.4, 1.0)
-    """Slowest and fastest, relative to the robot's forward speed `robot.speed.vx` [1]."""
+    """Minimum and maximum speed relative to `robot.speed.vx` [1]."""
     bearing_deg: BearingRange = (0.0, 90.0)
-    """Where the nominal robot sees it come: 0 ahead, 180 behind, either side [deg]."""
+    """Range of the bearing of approach: 0 ahead, 180 behind, on either side [deg]."""
     pace: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.75
-    """Pace of the nominal walk, relative to the robot's forward speed [1]."""
+    """Speed of the nominal walk relative to `robot.speed.vx` [1]."""
 
 
 Mover = Annotated[ShuttleMover | LineMover | CircleMover, Field(discriminator="motion")]
 
 
 class World(Section):
-    """Field, obstacles and light. Drawn obstacles join those placed by hand."""
+    """Field, obstacles, beacons and light; drawn obstacles are added to those placed by hand."""
 
     size: tuple[Side, Side] = (5.0, 5.0)
-    """Extent of the field along x and y of W, centred on the origin [m]."""
+    """Size of the field along x and y of W, centred on the origin [m]."""
     n_static: Count = 12
-    """Static obstacles to draw [1]."""
+    """Number of drawn static obstacles [1]."""
     n_moving: Count = 4
-    """Moving obstacles to draw [1]."""
+    """Number of drawn moving obstacles [1]."""
     radius: RadiusRange = (0.05, 0.12)
-    """Smallest and largest radius of a drawn obstacle [m]."""
+    """Minimum and maximum radius of a drawn obstacle [m]."""
     speed_ratio: RatioRange = (0.3, 0.7)
-    """Slowest and fastest drawn mover, relative to the robot's forward speed [1]."""
+    """Minimum and maximum speed of a drawn moving obstacle relative to `robot.speed.vx` [1]."""
     motions: Annotated[tuple[Literal["shuttle", "circle", "wander"], ...], Len(1, 3)] = ("shuttle",)
-    """Motions drawn for movers, each as likely as the other."""
+    """Motions of drawn moving obstacles, with equal probability."""
     lane: LengthRange = (0.8, 1.8)
-    """Range of a drawn mover's lane length (shuttle), diameter (circle) or extent (wander) [m]."""
+    """Minimum and maximum length (shuttle), diameter (circle) or extent (wander) of a path [m]."""
     encounters: Encounters = Encounters()
-    """Further movers, on collision courses with the nominal walk."""
+    """Moving obstacles on collision courses."""
     beacons: bool = True
-    """Whether the six beacons stand around the field."""
+    """Whether the field has six beacons: two-colour landmarks at known places."""
     beacon_displacement: Annotated[float, Interval(ge=-2.0, le=2.0)] = 0.0
-    """Distance along the rim at which the first beacon stands from where it is known to [m]."""
+    """Displacement of the first beacon from its known place, along the border [m]."""
     brightness: Annotated[float, Interval(ge=0.1, le=2.0)] = 1.0
-    """Strength of all lights, relative to the usual [1]."""
+    """Relative intensity of all lights [1]."""
     obstacle: Annotated[tuple[StaticObstacle, ...], Len(0, 64)] = ()
     """Static obstacles placed by hand."""
     wall: Annotated[tuple[Wall, ...], Len(0, 16)] = ()
-    """Walls of static cylinders placed by hand."""
+    """Walls placed by hand."""
     mover: Annotated[tuple[Mover, ...], Len(0, 64)] = ()
     """Moving obstacles placed by hand."""
 
 
 class Start(Section):
-    """Where the robot stands at time zero; what is left out is drawn."""
+    """Initial pose of the robot; drawn by default."""
 
     position: Point | None = None
-    """In W, x and y [m]; drawn if left out."""
+    """Position in W; default: drawn [m]."""
     heading_deg: Degrees | None = None
-    """Counter-clockwise from x of W [deg]; drawn if left out."""
+    """Heading, counter-clockwise from x of W; default: drawn [deg]."""

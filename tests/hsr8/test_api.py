@@ -64,7 +64,7 @@ def test_seeds_may_come_from_numpy(tmp_path):
     drawn = np.random.default_rng(0).integers(100, size=1)[0]
     result = hsr8.run("quick", seed=drawn, settings=STAND_INS, out=tmp_path, log=False)
     assert open_run(result.folder).seed == drawn
-    with pytest.raises(ScenarioError, match="whole number"):
+    with pytest.raises(ScenarioError, match="expected an integer"):
         hsr8.run("quick", seed=-1)
 
 

@@ -101,7 +101,7 @@ def test_contradicting_keys_are_reported_with_their_line(text, expected):
         ("walk", "command.vz=0.1", "known here: vx, vy, wz"),
         ("walk", "command.vx=3", "allowed: ≥ -1 and ≤ 1"),
         ("walk", "command.footstep={forward=0.05, lift=1}", "known here: single_support"),
-        ("walk", "command.random.vx=[0.3, 0.1]", "the smaller bound comes first"),
+        ("walk", "command.random.vx=[0.3, 0.1]", "the first bound must not be above the second"),
         ("walk", "command.stretch=[]", "command: is missing; expected vx"),
         ("course", "command.vx=0.1", 'requires mission.kind = "walk"'),
         ("walk", 'fault=[{kind="push"}]', "fault[0].magnitude: is missing"),

@@ -73,7 +73,7 @@ mode = "deadlin"
         (COURSE + 'duration = "long"', 'duration: must be a valid number, got "long"'),
         (COURSE + "duration = nan", "duration: must be a finite number"),
         (COURSE + "world = 3", "world: must be a table, got 3"),
-        (COURSE + "[world]\nradius = [0.1, 0.05]", "the smaller bound comes first"),
+        (COURSE + "[world]\nradius = [0.1, 0.05]", "the first bound must not be above the second"),
         (COURSE + "[world]\nn_static = true", "world.n_static: must be a valid integer, got true"),
         ("", "mission: is missing"),
         ("mission = {}", 'mission.kind: is missing; expected one of "course"'),
