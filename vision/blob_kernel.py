@@ -90,11 +90,7 @@ def _measure(runs: Table, parent: Table, min_area: Table) -> tuple[Table, Table]
         if root == i:
             k = count
             count += 1
-            table[k, LEFT], table[k, TOP], table[k, RIGHT] = (
-                runs[i, START],
-                runs[i, ROW],
-                0,
-            )
+            table[k, LEFT], table[k, TOP], table[k, RIGHT] = (runs[i, START], runs[i, ROW], 0)
             table[k, AREA], table[k, LABEL], table[k, RUNS] = 0, runs[i, COLOR], 0
             index[k] = -1
         else:

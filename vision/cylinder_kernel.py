@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Table = NDArray[np.int64]
+Edges = tuple[Array, Table, Array, Array]  # rims, points, azimuth and slope, see `locate`
 
 ITERATIONS = 3
 MAX_RIMS = 3  # a beacon shows three
@@ -133,15 +134,7 @@ def _guess(x: Array, sides: Array, known: Array, distance: float) -> None:
 
 @njit(cache=True)
 def _keep_inner(
-    keep: Bools,
-    mean_sigma: Array,
-    x: Array,
-    rims: Array,
-    points: Table,
-    azimuth: Array,
-    slope: Array,
-    h: float,
-    common: float,
+    keep: Bools, mean_sigma: Array, x: Array, edges: Edges, h: float, common: float
 ) -> int:
     """Select the rim points away from the ends; return their number.
 
@@ -149,14 +142,12 @@ def _keep_inner(
         keep: output, which points are used.
         mean_sigma: output, standard deviation of the mean slope of each rim (3,) [1].
         x: initial azimuth, distance and radius.
-        rims: as for `locate`, of one candidate.
-        points: first point of each of its rims, and the end of the last.
-        azimuth: as for `locate`.
-        slope: as for `locate`.
+        edges: rims of one candidate and their points as for `locate`.
         h: height of the camera [m].
         common: correlation of the errors of two points of one edge [1].
     """
     theta, d, r = x[0], x[1], x[2]
+    rims, points, azimuth, slope = edges
     used = 0
     mean_sigma[:] = NO_INFORMATION
     for j in range(len(rims)):
@@ -183,15 +174,13 @@ def _linearise(
     sides: Array,
     prior: float,
     keep: Bools,
-    rims: Array,
-    points: Table,
-    azimuth: Array,
-    slope: Array,
+    edges: Edges,
     h: float,
     span: float,
 ) -> None:
     """Write Jacobian (7, 3) and residuals (7,) of a candidate at x, and residuals of its points."""
     theta, d, r = x[0], x[1], x[2]
+    rims, points, azimuth, slope = edges
     H[:] = 0.0
     residual[:] = 0.0
     reach, half = sqrt(d * d - r * r), asin(r / d)
@@ -391,34 +380,21 @@ def locate(
         side, x = sides[k], result[k, :3]
         first, last = first_rims[k], first_rims[k + 1]
         rim, ends = rims[first:last], points[first : last + 1]
+        edges = (rim, ends, azimuth, slope)
         distance = _rim_distance(rim, ends, slope, h, known[k, 0])
         _guess(x, side, known[k], distance)
-        used = _keep_inner(keep, mean_sigma, x, rim, ends, azimuth, slope, h, common)
+        used = _keep_inner(keep, mean_sigma, x, edges, h, common)
         span = span_sigma = 0.0
         if used == 0:
             span, span_sigma = _span(side, known[k, 2], h)
             if span > 0.0:
                 _guess(x, side, known[k], span)
-                _keep_inner(keep, mean_sigma, x, rim, ends, azimuth, slope, h, common)
+                _keep_inner(keep, mean_sigma, x, edges, h, common)
         for j in range(SIDES):
             side_sigma[j] = side[j, 1] * _of_mean(side[j, 2], common)
             trusted[j] = side[j, 5] != 0.0
         for _ in range(ITERATIONS):
-            _linearise(
-                H,
-                residual,
-                point_residual,
-                x,
-                side,
-                known[k, 0],
-                keep,
-                rim,
-                ends,
-                azimuth,
-                slope,
-                h,
-                span,
-            )
+            _linearise(H, residual, point_residual, x, side, known[k, 0], keep, edges, h, span)
             for j in range(MAX_RIMS):
                 means[j] = residual[SIDES + j]
             # A side visible beyond foot or head is not an edge of the cylinder.

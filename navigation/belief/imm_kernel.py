@@ -293,13 +293,7 @@ def correct(x: Array, P: Array, z: Array, R: Array) -> float:
 
 @njit(cache=True)
 def update(
-    weights: Array,
-    states: Array,
-    covariances: Array,
-    rows: Rows,
-    z: Array,
-    R: Array,
-    limit: float,
+    weights: Array, states: Array, covariances: Array, rows: Rows, z: Array, R: Array, limit: float
 ) -> None:
     """Correct the filters and mode probabilities of detected obstacles in place.
 

@@ -5,6 +5,7 @@ eq. (1)). It depends only on the time since the cell was last seen, which the ma
 it does not depend on the frame rate.
 """
 
+from copy import copy
 from math import floor
 
 import numpy as np
@@ -36,11 +37,6 @@ class LocalMap:
         self._corner = self._corner_for(centre)
         self._seen_at = np.full((self._count, self._count), -np.inf)
         self._log_odds = np.zeros((self._count, self._count))
-
-    @property
-    def time(self) -> float:
-        """Time of the last update [s]."""
-        return self._time
 
     @property
     def cell(self) -> float:
@@ -115,14 +111,10 @@ class LocalMap:
 
     def snapshot(self) -> "LocalMap":
         """Return a copy that later updates leave unchanged."""
-        copy = object.__new__(LocalMap)
-        copy._parameters = self._parameters
-        copy._count = self._count
-        copy._time = self._time
-        copy._corner = self._corner
-        copy._seen_at = self._seen_at.copy()
-        copy._log_odds = self._log_odds.copy()
-        return copy
+        snapshot = copy(self)
+        snapshot._seen_at = self._seen_at.copy()
+        snapshot._log_odds = self._log_odds.copy()
+        return snapshot
 
     def _confidence_of(self, age: Array) -> Array:
         confidence: Array = np.maximum(0.0, 1.0 + self._parameters.attenuation * age)

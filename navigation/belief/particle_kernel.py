@@ -77,41 +77,6 @@ def moments(positions: Array, velocities: Array, weights: Array) -> tuple[Array,
 
 
 @njit(cache=True)
-def log_density(
-    positions: Array, weights: Array, z: Array, variance: Array, jitter: float
-) -> Array:
-    """Return the log kernel density of particles at points (m,), up to log(2 pi).
-
-    The kernel width follows Scott's rule, so that the density is positive between a few distant
-    particles.
-
-    Args:
-        positions: (n, 2) [m].
-        weights: sum to one (n,).
-        z: points (m, 2) [m].
-        variance: added to the kernel for each point (m,) [m²].
-        jitter: minimum kernel width [m].
-    """
-    x = y = square = scatter = 0.0
-    for i in range(len(weights)):
-        x += weights[i] * positions[i, 0]
-        y += weights[i] * positions[i, 1]
-        square += weights[i] * weights[i]
-    for i in range(len(weights)):
-        dx, dy = positions[i, 0] - x, positions[i, 1] - y
-        scatter += weights[i] * (dx * dx + dy * dy)
-    spread = 0.5 * scatter * square ** (1.0 / 3.0) + jitter * jitter
-    logarithm = np.empty(len(z))
-    for k in range(len(z)):
-        wide, density = variance[k] + spread, 0.0
-        for i in range(len(weights)):
-            dx, dy = positions[i, 0] - z[k, 0], positions[i, 1] - z[k, 1]
-            density += weights[i] * exp(-0.5 * (dx * dx + dy * dy) / wide)
-        logarithm[k] = log(max(density / wide, 1e-30))
-    return logarithm
-
-
-@njit(cache=True)
 def costs(
     positions: Array,
     weights: Array,
@@ -124,21 +89,38 @@ def costs(
 ) -> Array:
     """Return the association costs of detections: -2 log likelihood, up to log(2 pi) (m,).
 
+    The likelihood is a kernel density of the particles, mixed with a uniform density in the
+    reachable disc. The kernel width follows Scott's rule, so that the density is positive
+    between a few distant particles.
+
     Args:
-        positions: as for `log_density`, like all arguments up to `jitter`.
-        weights: of the particles.
-        z: detected positions.
-        variance: of each detection.
-        jitter: minimum kernel width.
-        centre: position of the mover's last detection (2,) [m].
-        reach: radius of the disc that it can have reached [m].
-        uniform: probability of a uniform density in that disc instead of the particles [1].
+        positions: of the particles (n, 2) [m].
+        weights: sum to one (n,).
+        z: detected positions (m, 2) [m].
+        variance: of each detection (m,) [m²].
+        jitter: minimum kernel width [m].
+        centre: of the reachable disc (2,) [m].
+        reach: its radius [m].
+        uniform: weight of the uniform density [1].
     """
-    logarithm = log_density(positions, weights, z, variance, jitter)
+    x = y = square = scatter = 0.0
+    for i in range(len(weights)):
+        x += weights[i] * positions[i, 0]
+        y += weights[i] * positions[i, 1]
+        square += weights[i] * weights[i]
+    for i in range(len(weights)):
+        dx, dy = positions[i, 0] - x, positions[i, 1] - y
+        scatter += weights[i] * (dx * dx + dy * dy)
+    spread = 0.5 * scatter * square ** (1.0 / 3.0) + jitter * jitter
     cost = np.empty(len(z))
     for k in range(len(z)):
+        wide, density = variance[k] + spread, 0.0
+        for i in range(len(weights)):
+            dx, dy = positions[i, 0] - z[k, 0], positions[i, 1] - z[k, 1]
+            density += weights[i] * exp(-0.5 * (dx * dx + dy * dy) / wide)
+        logarithm = log(max(density / wide, 1e-30))
         dx, dy = z[k, 0] - centre[0], z[k, 1] - centre[1]
         within = dx * dx + dy * dy < reach * reach
-        spread = uniform * 2.0 / (reach * reach) if within else 0.0
-        cost[k] = -2.0 * log((1.0 - uniform) * exp(logarithm[k]) + spread + 1e-30)
+        flat = uniform * 2.0 / (reach * reach) if within else 0.0
+        cost[k] = -2.0 * log((1.0 - uniform) * exp(logarithm) + flat + 1e-30)
     return cost

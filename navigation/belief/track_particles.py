@@ -126,32 +126,6 @@ def select(cloud: Particles, indices: NDArray[np.intp]) -> Particles:
     )
 
 
-def moments(cloud: Particles) -> tuple[Array, Array]:
-    """Return mean (4,) and covariance (4, 4) of x, y, vx, vy."""
-    return particle_kernel.moments(cloud.positions, cloud.velocities, cloud.weights)
-
-
-def costs(
-    cloud: Particles,
-    z: Array,
-    variance: Array,
-    lost: tuple[Array, float],
-    p: TrackingParameters,
-) -> Array:
-    """Return the association costs of detections: -2 log likelihood, up to log(2 pi) (m,).
-
-    Args:
-        cloud: n particles.
-        z: detected positions (m, 2) [m].
-        variance: of each detection (m,) [m²].
-        lost: position of the last detection (2,) [m] and radius of the reachable disc [m].
-        p: probability of a uniform density in that disc, kernel width.
-    """
-    return particle_kernel.costs(
-        cloud.positions, cloud.weights, z, variance, p.position_jitter, *lost, p.uniform_probability
-    )
-
-
 def _systematic(weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.intp]:
     """Return indices (count,) drawn by `weights` (n,) (systematic resampling)."""
     ticks = (np.arange(count) + rng.random()) / count

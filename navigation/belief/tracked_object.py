@@ -6,9 +6,10 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import imm_kernel, track_particles
+from navigation.belief import imm_kernel
 from navigation.belief.belief import Motion, Particles, Track
 from navigation.belief.imm import Modes
+from navigation.belief.particle_kernel import moments
 from navigation.parameters.belief import TrackingParameters
 
 Array = NDArray[np.float64]
@@ -85,9 +86,10 @@ class TrackedObject:
         """Return the track as of `time` [s], from `estimate` or, while lost, from the particles."""
         position, velocity, covariance, turn_rate = estimate
         if self.particles is not None:
-            mean, covariance = track_particles.moments(self.particles)
+            cloud = self.particles
+            mean, covariance = moments(cloud.positions, cloud.velocities, cloud.weights)
             position, velocity = mean[:2], mean[2:4]
-            turn_rate = float(self.particles.weights @ self.particles.turn_rates)
+            turn_rate = float(cloud.weights @ cloud.turn_rates)
         return Track(
             id=self.id,
             label=self.label,

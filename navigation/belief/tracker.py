@@ -10,7 +10,7 @@ from math import hypot, inf, log, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from navigation.belief import imm, imm_kernel, track_particles
+from navigation.belief import imm, imm_kernel, particle_kernel, track_particles
 from navigation.belief.association import Indices, assign
 from navigation.belief.association_kernel import overlapping
 from navigation.belief.belief import Motion, Track
@@ -102,10 +102,12 @@ class Tracker:
         costs = imm_kernel.costs(*self._modes, z, R, p.gate)
         variance = 0.5 * (R[:, 0, 0] + R[:, 1, 1])
         for i, o in enumerate(self._objects):
-            if o.particles is not None:
-                lost = o.last_seen, o.search_radius(time, self._modes.at(i), p)
-                cloud = track_particles.costs(o.particles, z, variance, lost, p)
-                costs[i] = np.minimum(costs[i], cloud)
+            if (cloud := o.particles) is not None:
+                radius = o.search_radius(time, self._modes.at(i), p)
+                lost = o.last_seen, radius, p.uniform_probability
+                kernel = z, variance, p.position_jitter
+                lost_costs = particle_kernel.costs(cloud.positions, cloud.weights, *kernel, *lost)
+                costs[i] = np.minimum(costs[i], lost_costs)
         costs += np.where(self._on_free_floor, self._intruder_cost, self._birth_cost)
         for i, j in np.argwhere(costs < 0.0).tolist():
             if self._objects[i].label != detections.observations[j].label:

@@ -22,7 +22,6 @@ def test_compiled_and_plain_agree(cloud):
     for function, arguments in (
         (kernel.advance, (positions, velocities, rates, bends, draws, wander, 0.05, 0.1)),
         (kernel.moments, (positions, velocities, weights)),
-        (kernel.log_density, (positions, weights, z, variance, 0.03)),
         (kernel.costs, (positions, weights, z, variance, 0.03, positions[0], 0.4, 0.2)),
     ):
         found, plain = function(*arguments), function.py_func(*arguments)
@@ -70,23 +69,16 @@ def test_the_moments_are_those_of_weighted_samples(cloud):
     assert np.array_equal(covariance, covariance.T)
 
 
-def test_the_density_is_a_sum_of_gaussians(cloud):
+def test_the_likelihood_is_a_kernel_density_mixed_with_a_uniform_one(cloud):
     positions, _, weights, z, variance = cloud
     off = positions - weights @ positions
     scott = 0.5 * (weights @ np.sum(off * off, axis=1)) * (weights @ weights) ** (1 / 3)
     wide = variance + scott + 0.03**2
     square = np.sum((positions[:, None] - z) ** 2, axis=2)
     density = weights @ (np.exp(-0.5 * square / wide) / wide)
-    found = kernel.log_density(positions, weights, z, variance, 0.03)
-    assert found == pytest.approx(np.log(density))
-
-
-def test_a_lost_mover_may_be_anywhere_in_reach(cloud):
-    positions, _, weights, z, variance = cloud
-    reach, anywhere = 0.4, 0.2
-    density = np.exp(kernel.log_density(positions, weights, z, variance, 0.03))
-    flat = anywhere * 2.0 / reach**2 * (np.hypot(*(z - z[0]).T) < reach)
-    wanted = -2.0 * np.log((1.0 - anywhere) * density + flat + 1e-30)
-    found = kernel.costs(positions, weights, z, variance, 0.03, z[0], reach, anywhere)
+    reach, uniform = 0.4, 0.2
+    flat = uniform * 2.0 / reach**2 * (np.hypot(*(z - z[0]).T) < reach)
+    wanted = -2.0 * np.log((1.0 - uniform) * density + flat)
+    found = kernel.costs(positions, weights, z, variance, 0.03, z[0], reach, uniform)
     assert found == pytest.approx(wanted)
     assert 1 < np.count_nonzero(flat) < 5

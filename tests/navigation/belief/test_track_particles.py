@@ -28,6 +28,10 @@ def straight(rate):
     return TrackingParameters(turn_rate_sigma=1e-9, reversal_rate=rate)
 
 
+def moments(cloud):
+    return particle_kernel.moments(cloud.positions, cloud.velocities, cloud.weights)
+
+
 @pytest.fixture
 def rng():
     return np.random.default_rng(0)
@@ -35,7 +39,7 @@ def rng():
 
 def test_particles_have_the_moments_of_the_filter(rng):
     cloud = track_particles.spawn(modes(), 20000, rng)
-    mean, covariance = track_particles.moments(cloud)
+    mean, covariance = moments(cloud)
     assert np.allclose(mean, STATE[:4], atol=1e-3)
     assert np.allclose(covariance, COVARIANCE[:4, :4], atol=2e-5)
     assert np.mean(cloud.turn_rates) == pytest.approx(STATE[4], abs=1e-3)
@@ -95,8 +99,8 @@ def test_resampling_keeps_the_mean_and_only_happens_when_needed(rng):
     skewed = Particles(positions, np.zeros((500, 2)), np.zeros(500), weights / weights.sum())
     drawn = track_particles.resample(skewed, P, rng)
     assert np.allclose(drawn.weights, 1 / 500)
-    before, _ = track_particles.moments(skewed)
-    after, _ = track_particles.moments(drawn)
+    before, _ = moments(skewed)
+    after, _ = moments(drawn)
     assert np.allclose(after, before, atol=0.05)
 
 
@@ -127,24 +131,14 @@ def test_half_of_the_scattered_particles_fill_the_reach_and_half_the_line(rng):
     assert np.mean(np.hypot(*offsets[~line].T) < 0.25) == pytest.approx(0.25, abs=0.03)
 
 
-def log_density(cloud, z, variance):
-    jitter = P.position_jitter
-    return particle_kernel.log_density(cloud.positions, cloud.weights, z, variance, jitter)
-
-
-def test_log_density_of_one_particle_is_a_gaussian():
-    cloud = Particles(np.array([[1.0, 0.0]]), np.zeros((1, 2)), np.zeros(1), np.ones(1))
-    z = np.array([[1.0, 0.0], [1.2, 0.1]])
-    variance = np.array([0.01, 0.04])
-    wide = variance + P.position_jitter**2
-    expected = -0.5 * np.array([0.0, 0.05]) / wide - np.log(wide)
-    assert np.allclose(log_density(cloud, z, variance), expected)
-
-
-def test_log_density_has_no_holes_between_few_particles(rng):
+def test_the_density_has_no_holes_between_few_particles(rng):
     cloud = track_particles.redistribute(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
     z = rng.uniform(-0.5, 0.5, (50, 2))
-    density = np.exp(log_density(cloud, z, np.full(50, 1e-4))) / (2 * np.pi)
+    jitter, variance = P.position_jitter, np.full(50, 1e-4)
+    costs = particle_kernel.costs(
+        cloud.positions, cloud.weights, z, variance, jitter, np.zeros(2), 1.0, 0.0
+    )
+    density = np.exp(-0.5 * costs) / (2 * np.pi)
     assert density.min() > 0.02
 
 
