@@ -1,13 +1,13 @@
-"""Old names of the keys and values of a scenario: refused with the new name."""
+"""Old keys and values of a scenario, and their new names."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from hsr8.scenario.key_lines import Path
 from hsr8.scenario.problem import Problem, shown
+from hsr8.scenario.public_keys import LIBRARIES, PUBLIC
 
-# Old key -> new key, both with dots, without indices of lists; a section covers the keys below it.
-# Sorted, one entry per line.
+# Old key -> new key, dotted, without indices of lists; a section covers the keys below it. Sorted.
 RENAMED: dict[str, str] = {
     "belief.localization.map": "belief.localization.landmarks",
     "belief.recognition": "belief.relocalization",
@@ -98,33 +98,31 @@ RENAMED_VALUES: dict[str, dict[str, str]] = {
     },
 }
 
-CONSTANTS = "constants"  # the table of constants has the same keys
-
 
 def renamed(data: Any, path: Path = ()) -> Iterator[Problem]:
-    """Old keys and values in the tables of a scenario.
+    """Yield the old keys and values in the tables of a scenario.
 
     Args:
         data: value at `path`.
-        path: of the keys around it.
+        path: keys and indices of `data`.
     """
-    names = [part for part in path if isinstance(part, str)]
-    prefix = names[:1] if names[:1] == [CONSTANTS] else []
-    old = ".".join(names[len(prefix) :])
-    if not isinstance(data, Mapping) and (new := _new_key(old)):
-        yield Problem(path, f"renamed to {'.'.join([*prefix, new])}")
-    elif isinstance(data, str) and data in (values := RENAMED_VALUES.get(old, {})):
-        yield Problem(path, f'{shown(data)} is renamed to "{values[data]}"')
-    elif isinstance(data, Mapping):
+    old = ".".join(str(part) for part in path if isinstance(part, str))
+    old = old.removeprefix("constants.")
+    if isinstance(data, Mapping):
         for key, value in data.items():
             yield from renamed(value, (*path, key))
+    elif new := _new_key(old):
+        constant = new.partition(".")[0] in LIBRARIES and new not in PUBLIC
+        yield Problem(path, f"renamed to {'constants.' if constant else ''}{new}")
+    elif isinstance(data, str) and data in (values := RENAMED_VALUES.get(old, {})):
+        yield Problem(path, f'{shown(data)} is renamed to "{values[data]}"')
     elif isinstance(data, Sequence) and not isinstance(data, str):
         for k, value in enumerate(data):
             yield from renamed(value, (*path, k))
 
 
 def _new_key(old: str) -> str:
-    """New key for an old one; empty if it is not renamed."""
+    """New key of an old one; empty if it is not renamed."""
     section, rest = old, ""
     while section:
         if section in RENAMED:

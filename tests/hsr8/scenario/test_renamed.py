@@ -2,7 +2,9 @@ import pytest
 
 from hsr8.errors import ScenarioError
 from hsr8.scenario import renamed
+from hsr8.scenario.constants import constant_names
 from hsr8.scenario.loader import load_scenario, loads
+from hsr8.scenario.reference_page import ReferencePage
 
 TEXT = """\
 mission = {kind = "course"}
@@ -20,8 +22,8 @@ size = 1.0
 """
 
 
-@pytest.fixture(autouse=True)
-def _names(monkeypatch):
+@pytest.fixture
+def names(monkeypatch):
     keys = {
         "fault.size": "fault.magnitude",
         "navigation.gate": "navigation.unseen_ground",
@@ -32,7 +34,7 @@ def _names(monkeypatch):
     monkeypatch.setattr(renamed, "RENAMED_VALUES", {"fault.kind": {"late": "latency"}})
 
 
-def test_an_old_key_is_refused_with_its_line_and_its_new_name():
+def test_an_old_key_is_refused_with_its_line_and_its_new_name(names):
     with pytest.raises(ScenarioError) as error:
         loads(TEXT, "file.toml")
     assert [line.strip() for line in str(error.value).splitlines()[1:]] == [
@@ -46,6 +48,15 @@ def test_an_old_key_is_refused_with_its_line_and_its_new_name():
     ]
 
 
-def test_an_old_key_of_a_setting_is_refused():
+def test_an_old_key_of_a_setting_is_refused(names):
     with pytest.raises(ScenarioError, match=r"--set navigation.gate.enabled=true: .*renamed to"):
         load_scenario("quick", ["navigation.gate.enabled=true"])
+
+
+def test_new_keys_exist_and_old_keys_do_not():
+    known = ReferencePage().keys.keys() | set(constant_names())
+    sections = {key[:k] for key in known for k, c in enumerate(key) if c == "."}
+    assert set(renamed.RENAMED.values()) <= known | sections
+    assert not set(renamed.RENAMED) & (known | sections)
+    assert list(renamed.RENAMED) == sorted(renamed.RENAMED)
+    assert set(renamed.RENAMED_VALUES) <= known
