@@ -36,20 +36,6 @@ def work(job: Job) -> RunResult:
     return started.result(done.returncode)
 
 
-def require_dask() -> None:
-    """Check that Dask is installed.
-
-    Raises:
-        UsageError: a package is missing.
-    """
-    try:
-        import distributed  # noqa: F401, PLC0415  an extra
-    except ImportError as error:
-        raise UsageError(
-            f'--executor dask: package {error.name} is missing; pip install "hsr8[dask]"'
-        ) from None
-
-
 class DaskExecutor:
     """Jobs as Dask futures; Dask repeats the jobs of a worker that dies on another worker.
 
@@ -61,26 +47,31 @@ class DaskExecutor:
     """
 
     def __init__(self, address: str) -> None:
-        require_dask()
-        from distributed import Client  # noqa: PLC0415  an extra
-
-        self._name = f"--executor dask://{address}"
+        option = f"--executor dask://{address}"
+        try:
+            from distributed import Client  # noqa: PLC0415  an extra
+        except ImportError as error:
+            raise UsageError(
+                f'{option}: package {error.name} is missing; pip install "hsr8[dask]"'
+            ) from None
         host, _, port = address.rpartition(":")
         try:
             socket.create_connection((host.strip("[]"), int(port)), TIMEOUT).close()
             self._client: Any = Client(f"tcp://{address}", timeout=TIMEOUT, set_as_default=False)
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
+            versions = set(self._client.run(code_digest).values())
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise UsageError(f"{option}: no scheduler at {address}: {reason}") from None
+        except ImportError:
+            versions = {"none"}
+        if versions != {code_digest()}:
+            self._client.close()
             raise UsageError(
-                f"{self._name}: no scheduler at {address}: {reason[:1].lower()}{reason[1:]}"
-            ) from None
+                f"{option}: no workers, or workers without this version of hsr8; expected the "
+                f"same version on every worker"
+            )
         self._ended: SimpleQueue[tuple[Job, Any]] = SimpleQueue()
         self._futures: set[Any] = set()
-        try:
-            self._check_workers()
-        except UsageError:
-            self._client.close()
-            raise
 
     def submit(self, job: Job) -> None:
         """Add a job."""
@@ -110,21 +101,3 @@ class DaskExecutor:
             return result
         error = future.exception() if future.status == "error" else future.status
         return lost(job, f"the worker died: {error}")
-
-    def _check_workers(self) -> None:
-        """Check that there are workers and that all run the code of this machine."""
-        try:
-            digests: dict[str, str] = self._client.run(code_digest)
-        except Exception as error:  # anything that a worker raises arrives here
-            raise UsageError(
-                f"{self._name}: hsr8 must be installed on every worker ({error})"
-            ) from error
-        if not digests:
-            raise UsageError(f"{self._name}: the cluster has no worker")
-        local = code_digest()
-        different = [worker for worker, digest in digests.items() if digest != local]
-        if different:
-            raise UsageError(
-                f"{self._name}: {len(different)} of {len(digests)} workers run other code than "
-                f"this machine ({different[0]}); install the same version on every worker"
-            )

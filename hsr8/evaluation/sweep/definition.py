@@ -49,9 +49,8 @@ class Definition:
     @classmethod
     def now(cls, name: str, command_words: tuple[str, ...], scenario: str) -> "Definition":
         """Return a definition with the installed versions."""
-        return cls(
-            name, command_words, VERSION, code_digest(), platform.machine(), versions(), scenario
-        )
+        code, machine = code_digest(), platform.machine()
+        return cls(name, command_words, VERSION, code, machine, versions(), scenario)
 
     def command(self, seed: int) -> str:
         """Return the command line that repeats the run of `seed`."""
@@ -69,15 +68,9 @@ class Definition:
             KeyError, TypeError, ValueError: `value` is not such a result.
         """
         tomllib.loads(scenario)
-        return cls(
-            name=str(value["name"]),
-            command_words=tuple(map(str, value["command_words"])),
-            hsr8=str(value["hsr8"]),
-            code=str(value["code"]),
-            processor=str(value["processor"]),
-            libraries={str(k): str(v) for k, v in dict(value["libraries"]).items()},
-            scenario=scenario,
-        )
+        words = tuple(map(str, value["command_words"]))
+        libraries = dict(value["libraries"])
+        return cls(**{**value, "command_words": words, "libraries": libraries}, scenario=scenario)
 
     def made_with(self) -> str:
         """Return the versions as one line."""

@@ -140,17 +140,10 @@ def lost(job: Job, reason: str) -> RunResult:
 
 def _metrics(folder: Path | None) -> RunResult | None:
     """Return the metrics in a run folder, None for a run that did not end."""
-    try:
-        metrics = None if folder is None else json.loads((folder / run_folder.METRICS).read_bytes())
-    except (OSError, ValueError):
-        return None
-    return metrics if isinstance(metrics, dict) else None
+    file = None if folder is None else folder / run_folder.METRICS
+    metrics: RunResult | None = json.loads(file.read_bytes()) if file and file.exists() else None
+    return metrics
 
 
 def _ending(code: int) -> str:
-    if code >= 0:
-        return f"exit code {code}"
-    try:
-        return f"killed by {signal.Signals(-code).name}"
-    except ValueError:
-        return f"killed by signal {-code}"
+    return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"

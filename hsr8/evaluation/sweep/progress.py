@@ -21,8 +21,8 @@ class SweepProgress:
     """
 
     def __init__(self, total: int, done: int) -> None:
-        self._total, self._done_before, self._done = total, done, done
-        self._succeeded = self._failed = self._crashed = 0
+        self._total, self._left = total, total - done
+        self._ended = self._succeeded = self._crashed = 0
         self._started = clock.monotonic()
         console = Console(stderr=True)
         self._live: Live | None = None
@@ -32,11 +32,10 @@ class SweepProgress:
 
     def on_result(self, result: RunResult) -> None:
         """Count a run that ended."""
-        self._done += 1
-        crashed, success = result["outcome"] == CRASHED, bool(result.get("success"))
-        self._crashed += crashed
-        self._succeeded += success
-        self._failed += not (success or crashed)
+        self._ended += 1
+        self._left -= 1
+        self._succeeded += bool(result.get("success"))
+        self._crashed += result["outcome"] == CRASHED
         text = f"seed {result['seed']}: {problem(result) or 'success'}"
         if self._live is None:
             print(f"{self._line()}   {text}", file=sys.stderr, flush=True)
@@ -54,13 +53,10 @@ class SweepProgress:
             self._live.stop()
 
     def _line(self) -> str:
-        crashed = f", {self._crashed} crashed" if self._crashed else ""
-        counts = f"{self._succeeded} succeeded, {self._failed} failed{crashed}"
-        return f"{self._done}/{self._total} runs   {counts}   {self._remaining()}"
-
-    def _remaining(self) -> str:
-        ended = self._done - self._done_before
-        if ended == 0:
-            return "remaining time unknown"
-        seconds = (clock.monotonic() - self._started) / ended * (self._total - self._done)
-        return f"about {timedelta(seconds=round(seconds))} left"
+        failed = self._ended - self._succeeded - self._crashed
+        counts = f"{self._succeeded} succeeded, {failed} failed, {self._crashed} crashed"
+        time = "remaining time unknown"
+        if self._ended:
+            seconds = (clock.monotonic() - self._started) / self._ended * self._left
+            time = f"about {timedelta(seconds=round(seconds))} left"
+        return f"{self._total - self._left}/{self._total} runs   {counts}   {time}"

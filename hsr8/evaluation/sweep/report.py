@@ -5,47 +5,12 @@ from typing import Any
 
 from hsr8.evaluation.sweep.definition import Definition
 from hsr8.evaluation.sweep.job import REFUSED, RunResult
-from hsr8.evaluation.sweep.summary import Summary, summarize, worst_first
+from hsr8.evaluation.sweep.summary import COUNTS, QUANTITIES, Summary, summarize, worst_first
 
 MAX_LISTED = 20  # runs listed with their command line
 MAX_TABLE = 200  # runs in the table of the page
-LABELS = {
-    "min_clearance_m": "min clearance [m]",
-    "time_to_goal_s": "time to goal, successes [s]",
-    "arrival_error_deg": "arrival error, successes [deg]",
-    "path_length_m": "path length, successes [m]",
-    "localization_rmse_m": "position RMSE [m]",
-    "heading_rmse_deg": "heading RMSE [deg]",
-    "nees_mean": "NEES / 3",
-    "obstacle_speed_rmse_mps": "obstacle speed RMSE [m/s]",
-    "lost_fraction": "fraction of frames lost",
-    "time_standing_s": "time standing [s]",
-    "max_tilt_deg": "max tilt [deg]",
-    "saccades_per_s": "saccades [1/s]",
-    "head_travel_radps": "head travel [rad/s]",
-    "real_time_factor": "real-time factor",
-}
-COLUMNS = {
-    "outcome": "outcome",
-    "success": "success",
-    "falls": "falls",
-    "collisions": "collisions",
-    "collisions_at_fault": "at fault",
-    "via_points_passed": "via points",
-    "arrival_error_deg": "arrival error [deg]",
-    "time_to_goal_s": "time to goal [s]",
-    "min_clearance_m": "min clearance [m]",
-    "localization_rmse_m": "position RMSE [m]",
-    "heading_rmse_deg": "heading RMSE [deg]",
-    "nees_mean": "NEES/3",
-    "real_time_factor": "real-time factor",
-    "exit_reason": "exit reason",
-}
-MEDIANS = {
-    "min_clearance_m": "min clearance, median [m]",
-    "time_to_goal_s": "time to goal, median [s]",
-    "localization_rmse_m": "position RMSE, median [m]",
-}
+COLUMNS = ("outcome", "success", *COUNTS, *QUANTITIES, "exit_reason")
+MEDIANS = ("min_clearance_m", "time_to_goal_s", "localization_rmse_m")
 
 
 def report(definition: Definition, results: Sequence[RunResult], command: str) -> str:
@@ -55,7 +20,7 @@ def report(definition: Definition, results: Sequence[RunResult], command: str) -
     lines += [f"{definition.made_with()}.", ""]
     lines += _table(("result", "(95 % interval)"), headline(summary))
     quantities = [
-        (LABELS[key], str(d.n), *map(_number, (d.mean, d.median, d.p10, d.p90, d.min, d.max)))
+        (QUANTITIES[key], str(d.n), *map(_number, (d.mean, d.median, d.p10, d.p90, d.min, d.max)))
         for key, d in summary.quantities.items()
     ]
     lines += _table(("per run", "n", "mean", "median", "10 %", "90 %", "min", "max"), quantities)
@@ -67,7 +32,7 @@ def report(definition: Definition, results: Sequence[RunResult], command: str) -
         lines += [*_and_more(refused), ""]
     if 0 < len(results) <= MAX_TABLE:
         rows = [(str(r["seed"]), *(_cell(r.get(key)) for key in COLUMNS)) for r in results]
-        lines += ["## Runs", "", *_table(("seed", *COLUMNS.values()), rows)]
+        lines += ["## Runs", "", *_table(("seed", *COLUMNS), rows)]
     return "\n".join(lines)
 
 
@@ -90,7 +55,7 @@ def report_of_values(
             f"{s.success.fraction:.0%}",
             f"{s.success.low:.0%} to {s.success.high:.0%}",
             f"{s.without_fall.fraction:.0%}",
-            str(s.falls),
+            str(s.counts["falls"]),
             _number(s.collisions_per_run),
             _number(s.collisions_per_m),
             *(_number(s.quantities[k].median) if k in s.quantities else "" for k in MEDIANS),
@@ -98,25 +63,22 @@ def report_of_values(
         for value, s in summaries.items()
     ]
     lines = [f"# Over `{keys}`", "", f"    {command}", "", f"{made_with}.", ""]
-    return "\n".join(lines + _table((*head, "per metre", *MEDIANS.values()), rows))
+    return "\n".join(
+        lines
+        + _table((*head, "per metre", *(f"{QUANTITIES[key]}, median" for key in MEDIANS)), rows)
+    )
 
 
 def headline(summary: Summary) -> list[tuple[str, str]]:
     """Return the main results by label."""
-    collisions = summary.collisions
     rates = _number(summary.collisions_per_run), _number(summary.collisions_per_m)
     lines = [
         ("success", str(summary.success)),
         ("criteria met", str(summary.criteria_met)),
         ("without collision", str(summary.without_collision)),
         ("without fall", str(summary.without_fall)),
-        (
-            "collisions",
-            f"{collisions['all']}: {collisions['moving']} with moving, {collisions['static']} with "
-            f"static obstacles; {collisions['at_fault']} at the robot's fault",
-        ),
+        *((label, str(summary.counts[key])) for key, label in COUNTS.items()),
         ("collisions per run, per metre", ", ".join(rates)),
-        ("falls", str(summary.falls)),
     ]
     if summary.arrived.n:
         lines.append(("successes that arrive within 15 deg", str(summary.arrived)))

@@ -13,33 +13,31 @@ from hsr8.evaluation.sweep.job import CRASHED, REFUSED, RunResult
 
 MAX_ARRIVAL_ERROR = 15.0  # heading error of an arrival [deg]
 
-# Quantities, and whether only successful runs count.
-QUANTITIES: dict[str, bool] = {
-    "min_clearance_m": False,
-    "time_to_goal_s": True,
-    "arrival_error_deg": True,
-    "path_length_m": True,
-    "localization_rmse_m": False,
-    "heading_rmse_deg": False,
-    "nees_mean": False,
-    "obstacle_speed_rmse_mps": False,
-    "lost_fraction": False,
-    "time_standing_s": False,
-    "max_tilt_deg": False,
-    "saccades_per_s": False,
-    "head_travel_radps": False,
-    "real_time_factor": False,
+COUNTS = {
+    "falls": "falls",
+    "collisions": "collisions",
+    "collisions_moving": "with moving obstacles",
+    "collisions_static": "with static obstacles",
+    "collisions_at_fault": "at the robot's fault",
 }
-COUNTS = (
-    "collisions",
-    "collisions_moving",
-    "collisions_static",
-    "collisions_at_fault",
-    "falls",
-    "attempts",
-    "via_points_missed",
-)
-NUMBERS = (*COUNTS, *QUANTITIES)
+QUANTITIES = {
+    "min_clearance_m": "min clearance [m]",
+    "time_to_goal_s": "time to goal, successes [s]",
+    "arrival_error_deg": "arrival error, successes [deg]",
+    "path_length_m": "path length, successes [m]",
+    "localization_rmse_m": "position RMSE [m]",
+    "heading_rmse_deg": "heading RMSE [deg]",
+    "nees_mean": "NEES / 3",
+    "obstacle_speed_rmse_mps": "obstacle speed RMSE [m/s]",
+    "lost_fraction": "fraction of frames lost",
+    "time_standing_s": "time standing [s]",
+    "max_tilt_deg": "max tilt [deg]",
+    "saccades_per_s": "saccades [1/s]",
+    "head_travel_radps": "head travel [rad/s]",
+    "real_time_factor": "real-time factor",
+}
+OF_SUCCESSES = ("time_to_goal_s", "arrival_error_deg", "path_length_m")
+NUMBERS = (*COUNTS, *QUANTITIES, "attempts", "via_points_missed")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,9 +72,8 @@ class Summary:
         criteria_met: the scenario's criteria hold.
         without_collision, without_fall: of the runs that did not crash.
         arrived: successes within 15 deg of the arrival heading, where there is one.
-        collisions: all, with moving obstacles, with static obstacles, at the robot's fault.
-        collisions_per_run, collisions_per_m: of the runs that did not crash [1], [1/m].
-        falls: number of falls.
+        counts: falls and collisions in all runs that did not crash.
+        collisions_per_run, collisions_per_m: of these runs [1], [1/m].
         exit_reasons: number of runs by exit reason.
         quantities: distribution by name.
     """
@@ -91,10 +88,9 @@ class Summary:
     without_collision: Proportion
     without_fall: Proportion
     arrived: Proportion
-    collisions: dict[str, int]
+    counts: dict[str, int]
     collisions_per_run: float
     collisions_per_m: float
-    falls: int
     exit_reasons: dict[str, int]
     quantities: dict[str, Distribution]
 
@@ -114,10 +110,7 @@ def summarize(results: Sequence[RunResult]) -> Summary:
     def proportion(runs: Sequence[RunResult], test: Callable[[RunResult], bool]) -> Proportion:
         return Proportion.counted(sum(map(test, runs)), len(runs))
 
-    def total(key: str) -> int:
-        return sum(int(r.get(key) or 0) for r in complete)
-
-    collisions = total("collisions")
+    counts = {key: sum(int(r.get(key) or 0) for r in complete) for key in COUNTS}
     return Summary(
         runs=len(counted),
         refused=len(results) - len(counted),
@@ -131,22 +124,16 @@ def summarize(results: Sequence[RunResult]) -> Summary:
         arrived=Proportion.counted(
             sum(error <= MAX_ARRIVAL_ERROR for error in arrival_errors), len(arrival_errors)
         ),
-        collisions={
-            "all": collisions,
-            "moving": total("collisions_moving"),
-            "static": total("collisions_static"),
-            "at_fault": total("collisions_at_fault"),
-        },
-        collisions_per_run=collisions / len(complete) if complete else 0.0,
-        collisions_per_m=collisions / metres if metres else 0.0,
-        falls=total("falls"),
+        counts=counts,
+        collisions_per_run=counts["collisions"] / len(complete) if complete else 0.0,
+        collisions_per_m=counts["collisions"] / metres if metres else 0.0,
         exit_reasons=dict(
             Counter(str(r.get("exit_reason", r["outcome"])) for r in counted).most_common()
         ),
         quantities={
             key: Distribution.of(values)
-            for key, needs_success in QUANTITIES.items()
-            if (values := _values(successes if needs_success else complete, key))
+            for key in QUANTITIES
+            if (values := _values(successes if key in OF_SUCCESSES else complete, key))
         },
     )
 

@@ -21,28 +21,20 @@ def flatten(result: RunResult, prefix: str = "") -> RunResult:
 
 
 def write_table(path: Path, results: Sequence[RunResult]) -> None:
-    """Write `results`; missing values are null."""
+    """Write `results`; missing values are null, columns of mixed types text."""
     import pyarrow as pa  # noqa: PLC0415  takes half a second
     import pyarrow.parquet as pq  # noqa: PLC0415
 
+    def column(values: list[Any]) -> Any:
+        try:
+            return pa.array(values)
+        except (pa.ArrowInvalid, pa.ArrowTypeError, UnicodeEncodeError):
+            texts = (None if v is None else str(v) for v in values)
+            return pa.array(t and t.encode("utf-8", "backslashreplace").decode() for t in texts)
+
     rows = [flatten(result) for result in results]
     names = dict.fromkeys(name for row in rows for name in row)
-    columns = {name: pa.array(_column([row.get(name) for row in rows])) for name in names}
+    columns = {name: column([row.get(name) for row in rows]) for name in names}
     content = io.BytesIO()
     pq.write_table(pa.table(columns), content)
     atomic.write_bytes(path, content.getvalue())
-
-
-def _column(values: list[Any]) -> list[Any]:
-    """Return values of one type: integers and floats become floats, other mixtures text."""
-    types = {type(value) for value in values if value is not None}
-    if types == {int, float}:
-        return [None if value is None else float(value) for value in values]
-    if types == {str} or len(types) > 1:
-        return [None if value is None else _text(value) for value in values]
-    return values
-
-
-def _text(value: Any) -> str:
-    """Return text in which bytes of file names that are not UTF-8 are escaped."""
-    return str(value).encode("utf-8", errors="backslashreplace").decode("utf-8")

@@ -10,7 +10,7 @@ def test_every_run_has_a_line_where_there_is_no_terminal(result, capsys):
     progress.close()
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 3
-    assert lines[0].startswith("3/5 runs   1 succeeded, 0 failed")
+    assert lines[0].startswith("3/5 runs   1 succeeded, 0 failed, 0 crashed")
     assert lines[0].endswith("seed 7: success")
     assert "1 succeeded, 1 failed, 1 crashed" in lines[2]
     assert "killed by SIGKILL" in lines[2]

@@ -1,10 +1,9 @@
 from hsr8.evaluation.sweep.report import (
-    LABELS,
     problem,
     report,
     report_of_values,
 )
-from hsr8.evaluation.sweep.summary import QUANTITIES, summarize
+from hsr8.evaluation.sweep.summary import summarize
 
 
 def test_the_page_has_proportions_worst_runs_and_commands_to_repeat_them(definition, result):
@@ -36,10 +35,6 @@ def test_refused_seeds_are_listed_separately(definition, result):
 
 def test_an_empty_sweep_has_a_page(definition):
     assert "no runs yet" in report(definition, [], "")
-
-
-def test_every_quantity_has_a_label():
-    assert set(LABELS) == set(QUANTITIES)
 
 
 def test_problems_in_words(result):

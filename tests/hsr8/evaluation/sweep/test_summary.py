@@ -20,10 +20,11 @@ def test_counts(result):
     assert (summary.success.count, summary.success.n) == (2, 5)
     assert (summary.without_fall.count, summary.without_fall.n) == (3, 4)
     assert (summary.arrived.count, summary.arrived.n) == (1, 2)
-    assert summary.collisions == {"all": 2, "moving": 1, "static": 0, "at_fault": 0}
+    assert summary.counts["collisions"] == 2
+    assert summary.counts["collisions_moving"] == 1
     assert summary.collisions_per_run == pytest.approx(0.5)
     assert summary.collisions_per_m == pytest.approx(2 / 40)
-    assert summary.falls == 1
+    assert summary.counts["falls"] == 1
     assert summary.exit_reasons == {"goal": 3, "crashed": 1, "diverged": 1}
     assert summary.quantities["time_to_goal_s"].n == 2
     assert summary.quantities["min_clearance_m"].n == 4
