@@ -15,6 +15,7 @@ from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS
 from hsr8.recorder.run.measurements import Measurement
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import Block
+from hsr8.recorder.run.walking_table import COLUMNS
 from hsr8.world.model.models import models_dir
 from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
@@ -65,14 +66,16 @@ def motion(a: Run, b: Run) -> list[RunDifference]:
     Raises:
         UsageError: a record is missing, damaged or, in a run that ended, cut off.
     """
-    tapes, measurements = (a.tape(), b.tape()), (a.measurements(), b.measurements())
+    tapes = a.tape(), b.tape()
+    inputs = ([(m.frame.time, _values(m)) for m in run.measurements()] for run in (a, b))
+    summaries = ([(frame.time, asdict(frame)) for frame in run.frames()] for run in (a, b))
     differences = (
         _first_set_point(*tapes),
         _first_hash(*tapes),
         _first_row(a, b),
-        _first_frame(*measurements),
+        _first_frame("measurements", *inputs),
         _first_walking(a, b),
-        _first_summary(a, b),
+        _first_frame("frames", *summaries),
         _first_event(a, b),
     )
     present = [difference for difference in differences if difference is not None]
@@ -121,21 +124,15 @@ def _first_row(a: Run, b: Run) -> RunDifference | None:
 
 
 def _first_walking(a: Run, b: Run) -> RunDifference | None:
-    p, q = a.walking(), b.walking()
-    names = [*p.columns, *(name for name in q.columns if name not in p.columns)]
-    if p.columns.keys() != q.columns.keys():
-        counts = [f"{len(t.columns)} columns" for t in (p, q)]
-        return RunDifference("walking", "columns", counts[0], counts[1], 0, 0.0)
-    tables = [np.column_stack([t.time, *(t[name] for name in names)]) for t in (p, q)]
-    return _first_value("walking", ["time [s]", *names], *tables)
+    tables = [np.column_stack([t.time, *t.columns.values()]) for t in (a.walking(), b.walking())]
+    return _first_value("walking", ["time [s]", *COLUMNS], *tables)
 
 
 def _first_value(record: str, names: Sequence[str], a: Array, b: Array) -> RunDifference | None:
     """Compare two tables (n, columns) with the time in the first column."""
     n = min(len(a), len(b))
-    differ = np.ascontiguousarray(a[:n]).view(np.int64) != np.ascontiguousarray(b[:n]).view(
-        np.int64
-    )
+    bits = [np.ascontiguousarray(table[:n]).view(np.int64) for table in (a, b)]
+    differ = bits[0] != bits[1]
     rows = np.flatnonzero(differ.any(axis=1))
     if not len(rows):
         return _longer(record, "rows", a[:, 0].tolist(), b[:, 0].tolist())
@@ -154,23 +151,15 @@ def _longer(record: str, unit: str, a: Sequence[float], b: Sequence[float]) -> R
     return RunDifference(record, f"number of {unit}", len(a), len(b), tick, time)
 
 
-def _first_frame(a: list[Measurement], b: list[Measurement]) -> RunDifference | None:
-    for index, (x, y) in enumerate(zip(a, b, strict=False)):
-        for channel, u, v in _unequal(_values(x), _values(y)):
-            tick = round(x.frame.time / CONTROL_PERIOD)
+def _first_frame(
+    record: str, a: list[tuple[float, dict[str, Any]]], b: list[tuple[float, dict[str, Any]]]
+) -> RunDifference | None:
+    """Compare two records of frames, each with its time [s] and values by channel."""
+    for index, ((time, x), (_, y)) in enumerate(zip(a, b, strict=False)):
+        for channel, u, v in _unequal(x, y):
             name = f"{channel}, frame {index}"
-            return RunDifference("measurements", name, u, v, tick, x.frame.time)
-    times = [[measurement.frame.time for measurement in frames] for frames in (a, b)]
-    return _longer("measurements", "frames", *times)
-
-
-def _first_summary(a: Run, b: Run) -> RunDifference | None:
-    frames = a.frames(), b.frames()
-    for index, (x, y) in enumerate(zip(*frames, strict=False)):
-        for channel, u, v in _unequal(asdict(x), asdict(y)):
-            name = f"{channel}, frame {index}"
-            return RunDifference("frames", name, u, v, round(x.time / CONTROL_PERIOD), x.time)
-    return _longer("frames", "frames", *([frame.time for frame in record] for record in frames))
+            return RunDifference(record, name, u, v, round(time / CONTROL_PERIOD), time)
+    return _longer(record, "frames", *([time for time, _ in frames] for frames in (a, b)))
 
 
 def _first_event(a: Run, b: Run) -> RunDifference | None:

@@ -28,11 +28,6 @@ class LogRates:
     map: float
     jpeg: int
 
-    @property
-    def images(self) -> bool:
-        """Whether there are images, beliefs and plans."""
-        return self.jpeg > 0
-
 
 RATES = {
     LogLevel.MINIMAL: LogRates(pose=0.06, frame=0.18, map=0.0, jpeg=0),

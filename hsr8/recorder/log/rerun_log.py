@@ -88,7 +88,7 @@ class RerunLog:
         self._waits = not live  # for the file; a viewer may disconnect
         self._failed = False
         shown = blueprint(
-            max(layout.field_size), walking=len(layout.waypoints) == 0, images=rates.images
+            max(layout.field_size), walking=len(layout.waypoints) == 0, images=rates.jpeg > 0
         )
         try:
             self._stream.begin(sinks, shown)
@@ -102,7 +102,7 @@ class RerunLog:
         self._soles = tuple(sole_outline(model, side) for side in "lr")
         self._camera: CameraLayer | None = None
         self._belief_layers: tuple[BeliefLayer | PlanLayer, ...] = ()
-        if rates.images:
+        if rates.jpeg:
             self._camera = CameraLayer(self._stream, model, image_size, rates.jpeg, gaze)
             self._belief_layers = (
                 BeliefLayer(self._stream, rates.map),
@@ -250,14 +250,11 @@ class RerunLog:
             static=True,
         )
         if has_goal and layout.goal_heading is not None:
-            direction = [cos(layout.goal_heading), sin(layout.goal_heading), 0.0]
-            self._stream.log(
-                "/world/waypoints/heading",
-                rr.Arrows3D(
-                    origins=[[*points[-1].tolist(), 0.01]],
-                    vectors=[0.25 * np.array(direction)],
-                    colors=[palette.TARGET],
-                    radii=0.01,
-                ),
-                static=True,
+            c, s = cos(layout.goal_heading), sin(layout.goal_heading)
+            heading = rr.Arrows3D(
+                origins=[[*points[-1].tolist(), 0.01]],
+                vectors=[[0.25 * c, 0.25 * s, 0.0]],
+                colors=[palette.TARGET],
+                radii=0.01,
             )
+            self._stream.log("/world/waypoints/heading", heading, static=True)

@@ -180,16 +180,9 @@ def from_line(line: str, before: FrameSummary | None = None) -> FrameSummary:
         lost=bool(row["lost"]),
         tracks=tuple(
             TrackSummary(
-                id=number,
-                label=label,
-                position=(x, y),
-                velocity=(vx, vy),
-                covariance=(xx, xy, yy),
-                radius=radius,
-                motion=_MOTIONS[motion],
-                visible=bool(visible),
+                id, label, (x, y), (vx, vy), (xx, xy, yy), r, _MOTIONS[motion], bool(visible)
             )
-            for number, label, x, y, vx, vy, xx, xy, yy, radius, motion, visible in row["tracks"]
+            for id, label, x, y, vx, vy, xx, xy, yy, r, motion, visible in row["tracks"]
         ),
         virtual_obstacles=tuple((x, y, radius) for x, y, radius in row["virtual"]),
         captured=row["seen"],

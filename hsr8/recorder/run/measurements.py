@@ -30,9 +30,9 @@ MAGIC = b"HSR8MEA3"
 _COUNT = struct.Struct("<H")
 _VIEW = 9 + 3 + 5  # doubles of a camera view
 _FIXED = 1 + 3 + 9 + _VIEW  # doubles of a frame without its observations
-_NOW = 1 + 3 + _VIEW  # doubles of the input of a decision
+_CONTEXT = 1 + 3 + _VIEW  # doubles of the input of a decision
 _STEP = struct.Struct("<q?")
-_SEEN = struct.Struct("<10d")  # an observation
+_OBSERVATION = struct.Struct("<10d")
 _KINDS = ("obstacle", "beacon")
 
 
@@ -70,7 +70,7 @@ class MeasurementWriter:
 
     def add(self, frame: FrameRecord) -> None:
         """Append a camera frame."""
-        payload = _packed(frame.measured) + _packed_now(frame.context, frame.decision.fresh)
+        payload = _packed(frame.measured) + _packed_context(frame.context, frame.decision.fresh)
         estimate = fingerprints(frame.estimate)
         known = estimate if frame.belief is frame.estimate else None
         payload += b"".join(decision_fingerprints(frame.decision, known))
@@ -108,7 +108,7 @@ def read_measurements(path: Path, *, whole: bool) -> list[Measurement]:
 
 
 def _packed(frame: Frame) -> bytes:
-    numbers = np.concatenate(
+    fixed = np.concatenate(
         [
             [frame.time],
             frame.odometry,
@@ -117,18 +117,18 @@ def _packed(frame: Frame) -> bytes:
         ],
         dtype="<f8",
     )
-    parts = [numbers.tobytes(), _COUNT.pack(len(frame.observations))]
+    parts = [fixed.tobytes(), _COUNT.pack(len(frame.observations))]
     for o in frame.observations:
         label = o.label.encode()
         flags = _KINDS.index(o.kind) | o.cut << 1 | o.occluded << 2
         (xx, xy), (yx, yy) = o.covariance.tolist()
-        offset, size = (o.distance, o.bearing, xx, xy, yx, yy), (o.radius, o.radius_sigma)
-        content = _SEEN.pack(*offset, *size, *o.by_radius.tolist())
+        numbers = (o.distance, o.bearing, xx, xy, yx, yy, o.radius, o.radius_sigma)
+        content = _OBSERVATION.pack(*numbers, *o.by_radius.tolist())
         parts.append(bytes((flags, len(label))) + label + content)
     return b"".join(parts)
 
 
-def _packed_now(context: DecisionContext, fresh: bool) -> bytes:
+def _packed_context(context: DecisionContext, fresh: bool) -> bytes:
     numbers = np.concatenate(
         [[context.time], context.odometry, *_view_numbers(context.view)], dtype="<f8"
     )
@@ -156,9 +156,9 @@ def _unpacked(payload: bytes) -> Measurement:
         flags, length = payload[offset], payload[offset + 1]
         offset += 2 + length
         label = payload[offset - length : offset].decode()
-        distance, bearing, *rest = _SEEN.unpack_from(payload, offset)
+        distance, bearing, *rest = _OBSERVATION.unpack_from(payload, offset)
         covariance, (radius, radius_sigma), by_radius = rest[:4], rest[4:6], rest[6:]
-        offset += _SEEN.size
+        offset += _OBSERVATION.size
         observations.append(
             Observation(
                 kind="beacon" if flags & 1 else "obstacle",
@@ -180,11 +180,11 @@ def _unpacked(payload: bytes) -> Measurement:
         view=_view(view),
         observations=tuple(observations),
     )
-    numbers = np.frombuffer(payload, "<f8", _NOW, offset).astype(np.float64)
-    offset += 8 * _NOW
+    numbers = np.frombuffer(payload, "<f8", _CONTEXT, offset).astype(np.float64)
+    offset += 8 * _CONTEXT
     step_count, fresh = _STEP.unpack_from(payload, offset)
     offset += _STEP.size
-    now = DecisionContext(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
+    context = DecisionContext(float(numbers[0]), numbers[1:4], _view(numbers[4:]), step_count)
     prints = [payload[k : k + FINGERPRINT] for k in range(offset, len(payload), FINGERPRINT)]
     decided, believed = prints[: len(DECISIONS)], prints[len(DECISIONS) :]
-    return Measurement(frame, now, fresh, tuple(believed), tuple(decided))
+    return Measurement(frame, context, fresh, tuple(believed), tuple(decided))
