@@ -7,7 +7,7 @@ from navigation.belief.belief import Motion, Track
 from navigation.motion.avoid_obstacle import avoid_obstacle
 from navigation.motion.extended_radius import extended_radius, physical_radius
 from navigation.motion.motion_field import FieldScene, MotionField
-from navigation.motion.move_to_goal import muf
+from navigation.motion.move_to_goal import move_to_goal, muf
 from navigation.motion.univector import normalized
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.navigation import NavigationParameters
@@ -87,7 +87,9 @@ def panels() -> list[FieldPanel]:
                 _panel(
                     "move-to-goal, eq. (8)",
                     p,
-                    lambda x: muf(x, 0.0, TARGET, GOAL_HEADING, paper.univector),
+                    lambda x: muf(
+                        x, TARGET, move_to_goal(x, 0.0, TARGET, GOAL_HEADING, paper.univector)
+                    ),
                 )
             )
             made.append(_panel("avoid-obstacle, eq. (9)", p, lambda x, s=s_oe: avoid_obstacle(

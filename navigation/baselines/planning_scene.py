@@ -114,7 +114,7 @@ class PlanningScene:
         return body_velocity(
             course,
             speed,
-            self.pose[2],
+            float(self.pose[2]),
             course if self.facing is None else self.facing,
             limits=self.envelope.limits,
             turn_gain=self.envelope.turn_gain,

@@ -87,7 +87,8 @@ class MotionField:
         position of the robot.
         """
         p = self._univector
-        u_muf = muf(points, heading, scene.target, scene.target_heading, p, side=scene.side)
+        phi = move_to_goal(points, heading, scene.target, scene.target_heading, p, side=scene.side)
+        u_muf = muf(points, scene.target, phi)
         if p.blend == "weights":
             return self._weighted(points, u_muf, scene, virtual)
         return self._blended(points, u_muf, scene, virtual)

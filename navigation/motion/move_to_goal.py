@@ -59,21 +59,17 @@ def move_to_goal(
     return wrap_array(np.where(distance > parameters.d_con, bearing, near))
 
 
-def muf(
-    position: ArrayLike,
-    heading: ArrayLike,
-    target: Array,
-    target_heading: float,
-    parameters: UnivectorParameters,
-    *,
-    side: int = 0,
-) -> Array:
+def muf(position: ArrayLike, target: Array, phi: Array) -> Array:
     """Return u_muf of eq. (8) with k_rho = 1: unit vectors (..., 2), zero at the destination.
 
     k_rho scales the speed, see `arrival_gain`. The third component of the printed vector is a
-    heading and is not part of the field. Arguments as for `move_to_goal`.
+    heading and is not part of the field.
+
+    Args:
+        position: of the robot in W (..., 2) [m].
+        target: destination (2,) [m].
+        phi: result of `move_to_goal` (...) [rad].
     """
-    phi = move_to_goal(position, heading, target, target_heading, parameters, side=side)
     arrived = np.all(np.asarray(position) == target, axis=-1)
     unit: Array = np.stack([np.cos(phi), np.sin(phi)], axis=-1)
     return np.where(arrived[..., None], 0.0, unit)

@@ -23,7 +23,7 @@ from navigation.motion.motion_field import ActiveVirtualObstacles, FieldScene, M
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain
 from navigation.motion.passing_side import PassingSides
 from navigation.motion.rear_check import RearCheck
-from navigation.motion.safety_filter import SafetyFilter, direction_and_speed
+from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.motion.unseen_ground import ground_seen
 from navigation.motion.velocity_mapping import body_velocity, idle_velocity
 from navigation.motion.velocity_modification import ModifiedSpeed, modify_speed, sample_speed
@@ -150,15 +150,9 @@ class Planner:
         discs = collision_hypotheses(
             belief.tracks, obstacles, p.univector.s_robot, p.safety_filter, belief.local_map
         )
-        velocity = self._safety_filter.choose(
-            belief.pose,
-            wanted.speed * np.array([cos(wanted.direction), sin(wanted.direction)]),
-            wanted.direction,
-            facing=facing,
-            body_now=self._body,
-            discs=discs,
-        )
-        return direction_and_speed(velocity, wanted.direction)
+        start = RolloutStart(belief.pose, self._body, wanted.direction, facing)
+        velocity = wanted.speed * np.array([cos(wanted.direction), sin(wanted.direction)])
+        return self._safety_filter.choose(start, velocity, discs)
 
     def _scene(
         self, belief: Belief, task: Task, obstacles: ObstacleSet

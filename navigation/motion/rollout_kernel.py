@@ -43,19 +43,7 @@ def body_velocity(error: float, speed: float, turn: float, envelope: Envelope) -
 
 
 @njit(cache=True)
-def body_velocities(inputs: Array, envelope: Envelope) -> Array:
-    """Return `body_velocity` of course, speed, heading and facing (4, n): (n, 3)."""
-    velocities = np.empty((inputs.shape[1], 3))
-    for i in range(inputs.shape[1]):
-        error, turn = inputs[0, i] - inputs[2, i], inputs[3, i] - inputs[2, i]
-        velocities[i, 0], velocities[i, 1], velocities[i, 2] = body_velocity(
-            error, inputs[1, i], turn, envelope
-        )
-    return velocities
-
-
-@njit(cache=True)
-def roll_out(
+def rollout(
     candidates: Array,
     heading: float,
     course: float,

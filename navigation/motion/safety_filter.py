@@ -22,92 +22,72 @@ Array = NDArray[np.float64]
 
 
 @value
-class Paths:
-    """n piecewise straight paths of k segments from one point.
+class RolloutStart:
+    """Start of a rollout.
 
     Attributes:
-        velocity: of each segment (k, n, 2) [m/s].
-        duration: of each segment (k, n) [s]; the last may be infinite.
+        pose: of the robot (3,) [m, m, rad].
+        body: present velocity in R, vx, vy, wz (3,) [m/s, m/s, rad/s].
+        course: direction of motion in W, defined also for zero velocity [rad].
+        facing: target heading of the body.
     """
 
-    velocity: Array
-    duration: Array
-
-
-def contact_times(paths: Paths, position: Array, discs: Hypotheses) -> tuple[Array, Array]:
-    """Return time to collision and closing speed of every path with every disc.
-
-    Args:
-        paths: n paths of the robot.
-        position: start of the paths (2,) [m].
-        discs: m discs at constant velocity.
-
-    Returns:
-        As `rollout_kernel.contact_times`: (n, m) [s], (n, m) [m/s].
-    """
-    return rollout_kernel.contact_times(
-        paths.velocity, paths.duration, position, discs.position, discs.velocity, discs.radius
-    )
+    pose: Array
+    body: Array
+    course: float
+    facing: Facing
 
 
 class SafetyFilter:
-    """Choice of the candidate velocity with minimum cost."""
+    """Choice of the candidate velocity with minimum cost.
+
+    Args:
+        parameters: horizons and penalties.
+        mapping: velocity mapping.
+        limits: of the walking layer.
+    """
 
     def __init__(
         self,
         parameters: SafetyFilterParameters,
-        body: VelocityMappingParameters,
+        mapping: VelocityMappingParameters,
         limits: SpeedLimits,
     ) -> None:
-        """Prepare the candidates.
-
-        Args:
-            parameters: horizons and penalties.
-            body: velocity mapping.
-            limits: of the walking layer.
-        """
-        self._parameters = parameters
-        self._body = body
+        p = self._parameters = parameters
         self._limits = limits
-        turns = 2.0 * pi * np.arange(parameters.headings) / parameters.headings
-        speeds = limits.vx * np.arange(1, parameters.speeds + 1) / parameters.speeds
-        self._turns = np.repeat(turns, parameters.speeds)
-        self._speeds = np.tile(speeds, parameters.headings)
+        self._envelope = envelope(limits, mapping.turn_gain)
+        self._gait = (
+            limits.footstep,
+            limits.acceleration * limits.footstep,
+            p.turn_change,
+            mapping.turn_first_angle,
+            mapping.sidestep_ratio * limits.vy,
+        )
+        self._turns = np.repeat(2.0 * pi * np.arange(p.headings) / p.headings, p.speeds)
+        self._speeds = np.tile(limits.vx * np.arange(1, p.speeds + 1) / p.speeds, p.headings)
 
-    def choose(
-        self,
-        pose: Array,
-        wanted: Array,
-        course: float,
-        *,
-        facing: Facing,
-        body_now: Array,
-        discs: Hypotheses,
-    ) -> Array:
-        """Return the best velocity in W (2,) [m/s].
+    def choose(self, start: RolloutStart, wanted: Array, discs: Hypotheses) -> tuple[float, float]:
+        """Return direction in W [rad] and speed [m/s] of the best candidate.
 
         Args:
-            pose: of the robot (3,) [m, m, rad].
+            start: of the rollout.
             wanted: desired velocity in W (2,) [m/s].
-            course: direction of `wanted`, defined also if that is zero [rad].
-            facing: target heading of the body.
-            body_now: present velocity of the body in R (3,) [m/s, m/s, rad/s].
             discs: collision hypotheses.
         """
-        near = discs.within_reach(pose[:2], self._limits.vx)
-        if len(near) == 0:
-            return wanted
-        candidates = self.candidates(wanted, course)
-        penalty = self.penalty(
-            pose, candidates, course, facing=facing, body_now=body_now, discs=near
-        )
-        off, change = candidates - wanted, candidates - velocity_in_world(pose, body_now)
-        cost = (
-            np.hypot(off[:, 0], off[:, 1])
-            + self._parameters.change_weight * np.hypot(change[:, 0], change[:, 1])
-        ) / self._limits.vx + penalty
-        best: Array = candidates[int(np.argmin(cost))]
-        return best
+        near = discs.within_reach(start.pose[:2], self._limits.vx)
+        best = wanted
+        if len(near) > 0:
+            candidates = self.candidates(wanted, start.course)
+            error = candidates - wanted
+            change = candidates - velocity_in_world(start.pose, start.body)
+            cost = (
+                np.hypot(error[:, 0], error[:, 1])
+                + self._parameters.change_weight * np.hypot(change[:, 0], change[:, 1])
+            ) / self._limits.vx + self.penalty(start, candidates, near)
+            best = candidates[int(np.argmin(cost))]
+        vx, vy = best.tolist()
+        speed = hypot(vx, vy)
+        return (atan2(vy, vx) if speed > 1e-9 else start.course), speed
 
     def candidates(self, wanted: Array, course: float) -> Array:
         """Return `wanted`, zero, and a fan of directions and speeds (n, 2) [m/s]."""
@@ -115,59 +95,34 @@ class SafetyFilter:
         fan = self._speeds[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         return np.concatenate([wanted[None], np.zeros((1, 2)), fan])
 
-    def penalty(
-        self,
-        pose: Array,
-        candidates: Array,
-        course: float,
-        *,
-        facing: Facing,
-        body_now: Array,
-        discs: Hypotheses,
-    ) -> Array:
-        """Return the collision penalty of every candidate (n,); arguments as for `choose`."""
-        p = self._parameters
-        paths = self.paths(pose, candidates, course, facing, body_now)
-        time, closing = contact_times(paths, pose[:2], discs)
-        offset = discs.position - pose[:2]
-        depth = 1.0 - np.hypot(offset[:, 0], offset[:, 1]) / discs.radius
+    def penalty(self, start: RolloutStart, candidates: Array, discs: Hypotheses) -> Array:
+        """Return the collision penalty of every candidate (n,)."""
+        p, position = self._parameters, start.pose[:2]
+        time, closing = rollout_kernel.contact_times(
+            *self.rollout(start, candidates), position, discs.position, discs.velocity, discs.radius
+        )
+        offset = discs.position - position
         return rollout_kernel.penalties(
             time,
             closing,
-            depth,
+            1.0 - np.hypot(offset[:, 0], offset[:, 1]) / discs.radius,
             discs.horizon,
             discs.weight,
             (p.urgent_time, p.urgent_weight, p.weight),
             (p.inside_weight, p.inside_depth, p.inside_closing),
         )
 
-    def paths(
-        self, pose: Array, candidates: Array, course: float, facing: Facing, body_now: Array
-    ) -> Paths:
-        """Return the rollout of every candidate."""
-        p, limits = self._parameters, self._limits
-        velocity, duration = rollout_kernel.roll_out(
+    def rollout(self, start: RolloutStart, candidates: Array) -> tuple[Array, Array]:
+        """Return velocities (k, n, 2) [m/s] and durations (k, n) [s] of the path segments."""
+        facing = start.facing
+        return rollout_kernel.rollout(
             candidates,
-            float(pose[2]),
-            course,
+            float(start.pose[2]),
+            start.course,
             nan if facing.heading is None else facing.heading,
             facing.offset,
-            body_now,
-            envelope(limits, self._body.turn_gain),
-            (
-                limits.footstep,
-                limits.acceleration * limits.footstep,
-                p.turn_change,
-                self._body.turn_first_angle,
-                self._body.sidestep_ratio * limits.vy,
-            ),
-            p.steps,
+            start.body,
+            self._envelope,
+            self._gait,
+            self._parameters.steps,
         )
-        return Paths(velocity, duration)
-
-
-def direction_and_speed(velocity: Array, fallback: float) -> tuple[float, float]:
-    """Return direction [rad] and norm [m/s] of `velocity` (2,); `fallback` if it is zero."""
-    x, y = velocity.tolist()
-    speed = hypot(x, y)
-    return (atan2(y, x) if speed > 1e-9 else fallback), speed

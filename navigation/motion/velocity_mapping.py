@@ -1,7 +1,7 @@
 """Velocity mapping from direction and speed in W to a body velocity in R."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from navigation.decision import SpeedLimits
 from navigation.motion import rollout_kernel
@@ -10,10 +10,10 @@ Array = NDArray[np.float64]
 
 
 def body_velocity(
-    course: ArrayLike,
-    speed: ArrayLike,
-    heading: ArrayLike,
-    facing: ArrayLike,
+    course: float,
+    speed: float,
+    heading: float,
+    facing: float,
     *,
     limits: SpeedLimits,
     turn_gain: float,
@@ -24,19 +24,18 @@ def body_velocity(
     direction: the robot is slower sideways and backwards.
 
     Args:
-        course: direction of motion in W (...) [rad].
-        speed: along it (...) [m/s].
-        heading: of the robot (...) [rad].
-        facing: target heading (...) [rad].
+        course: direction of motion in W [rad].
+        speed: along the course [m/s].
+        heading: of the robot [rad].
+        facing: target heading [rad].
         limits: of the walking layer.
         turn_gain: turn rate per heading error [1/s].
 
     Returns:
-        vx, vy, wz (..., 3) [m/s, m/s, rad/s].
+        vx, vy, wz (3,) [m/s, m/s, rad/s].
     """
-    inputs = np.array(np.broadcast_arrays(course, speed, heading, facing), dtype=np.float64)
-    velocities = rollout_kernel.body_velocities(inputs.reshape(4, -1), envelope(limits, turn_gain))
-    return velocities.reshape(*inputs.shape[1:], 3)
+    bounds = envelope(limits, turn_gain)
+    return np.array(rollout_kernel.body_velocity(course - heading, speed, facing - heading, bounds))
 
 
 def envelope(limits: SpeedLimits, turn_gain: float) -> rollout_kernel.Envelope:

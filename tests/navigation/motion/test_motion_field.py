@@ -6,7 +6,7 @@ import pytest
 from navigation.motion.avoid_obstacle import avoid_obstacle
 from navigation.motion.extended_radius import extended_radius
 from navigation.motion.motion_field import FieldScene, MotionField
-from navigation.motion.move_to_goal import muf
+from navigation.motion.move_to_goal import move_to_goal, muf
 from navigation.motion.univector import normalized, weighted_sum
 from navigation.motion.virtual_obstacle import oval
 from navigation.obstacle_set import ObstacleSet
@@ -156,7 +156,7 @@ def test_against_the_printed_sign_every_start_enters_the_disc(track):
     place = np.array([(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)])
     least = np.full(15, np.inf)
     for _ in range(200):
-        u_muf = muf(place, 0.0, s.target, 0.0, p)
+        u_muf = muf(place, s.target, move_to_goal(place, 0.0, s.target, 0.0, p))
         u = avoid_obstacle(place, s.target, s.obstacles.position, s.s_oe, p)
         outward = normalized(place[:, None] - s.obstacles.position)
         other = 2.0 * (u * outward).sum(axis=-1, keepdims=True) * outward - u

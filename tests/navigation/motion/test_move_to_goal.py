@@ -31,7 +31,10 @@ def arrivals(p, limits, radius, r_goal=0.06, duration=60.0):
         for step in range(round(duration / 0.085)):
             if step % 4 == 0:
                 phi = move_to_goal(place, heading, ORIGIN, goal_heading, p)
-                body = body_velocity(phi, 0.15, heading, phi, limits=limits, turn_gain=1.5)
+                body = np.array([
+                    body_velocity(a, 0.15, h, a, limits=limits, turn_gain=1.5)
+                    for a, h in zip(phi.tolist(), heading.tolist(), strict=True)
+                ])  # fmt: skip
             here = np.isnan(error) & (np.hypot(*place.T) < r_goal)
             error[here] = np.abs(wrap_array(heading - goal_heading))[here]
             middle = heading + 0.5 * body[:, 2] * 0.085
@@ -144,9 +147,9 @@ def test_k_rho_falls_at_the_goal_only():
 def test_the_vector_has_the_direction_phi_and_is_zero_at_the_destination(p):
     places = np.random.default_rng(5).uniform(-1, 1, (50, 2))
     phi = move_to_goal(places, 0.0, ORIGIN, 0.5, p)
-    u = muf(places, 0.0, ORIGIN, 0.5, p)
+    u = muf(places, ORIGIN, phi)
     assert u == pytest.approx(np.stack([np.cos(phi), np.sin(phi)], axis=1))
-    assert not muf(ORIGIN, 0.0, ORIGIN, 0.5, p).any()
+    assert not muf(ORIGIN, ORIGIN, 0.5).any()
 
 
 def test_the_printed_field_is_the_weighted_sum_of_both_angles():

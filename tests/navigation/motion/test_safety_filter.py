@@ -1,16 +1,10 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from navigation.motion.facing import Facing
 from navigation.motion.hypotheses import Hypotheses
-from navigation.motion.safety_filter import (
-    Paths,
-    SafetyFilter,
-    contact_times,
-    direction_and_speed,
-)
+from navigation.motion.rollout_kernel import contact_times
+from navigation.motion.safety_filter import RolloutStart, SafetyFilter
 from navigation.parameters.motion import SafetyFilterParameters, VelocityMappingParameters
 
 HERE = np.zeros(3)
@@ -32,12 +26,23 @@ def discs(places, velocities=None, radius=0.25, horizon=6.0, weight=1.0):
     )
 
 
-def choose(limits, wanted, hypotheses, pose=HERE, facing=ON_COURSE, body=STANDING, **changes):
-    p = replace(SafetyFilterParameters(), **changes)
-    return SafetyFilter(p, VelocityMappingParameters(), limits).choose(
-        pose, np.asarray(wanted, float), float(np.arctan2(wanted[1], wanted[0])),
-        facing=facing, body_now=body, discs=hypotheses,
-    )  # fmt: skip
+def start(pose=HERE, body=STANDING, course=0.0, facing=ON_COURSE):
+    return RolloutStart(np.asarray(pose), np.asarray(body), course, facing)
+
+
+def filter_of(limits, **changes):
+    return SafetyFilter(SafetyFilterParameters(**changes), VelocityMappingParameters(), limits)
+
+
+def choose(limits, wanted, hypotheses):
+    course = float(np.arctan2(wanted[1], wanted[0]))
+    wanted = np.asarray(wanted, float)
+    direction, speed = filter_of(limits).choose(start(course=course), wanted, hypotheses)
+    return speed * np.array([np.cos(direction), np.sin(direction)])
+
+
+def times(velocity, duration, d):
+    return contact_times(velocity, duration, np.zeros(2), d.position, d.velocity, d.radius)
 
 
 def test_contact_times_equal_brute_force():
@@ -47,7 +52,7 @@ def test_contact_times_equal_brute_force():
     velocity = rng.normal(0, 0.2, (3, n, 2))
     duration = np.concatenate([rng.uniform(0, 2, (2, n)), np.full((1, n), np.inf)])
     d = discs(rng.uniform(-1.5, 1.5, (m, 2)), rng.normal(0, 0.15, (m, 2)), radius=0.2)
-    time, _ = contact_times(Paths(velocity, duration), np.zeros(2), d)
+    time, _ = times(velocity, duration, d)
     place = np.zeros((n, 2))
     touched = np.full((n, m), np.inf)
     near = np.full((n, m), np.inf)
@@ -71,8 +76,8 @@ def test_contact_times_equal_brute_force():
 
 
 def test_inside_leaving_is_free_and_closing_is_now():
-    paths = Paths(np.array([[[1.0, 0.0], [-1.0, 0.0]]]), np.full((1, 2), np.inf))
-    time, closing = contact_times(paths, np.zeros(2), discs([-0.1, 0.0]))
+    both = np.array([[[1.0, 0.0], [-1.0, 0.0]]])
+    time, closing = times(both, np.full((1, 2), np.inf), discs([-0.1, 0.0]))
     assert time[:, 0].tolist() == [np.inf, 0.0]
     assert closing[:, 0] == pytest.approx([0.0, 1.0])
 
@@ -85,9 +90,7 @@ def test_without_near_obstacles_the_wanted_velocity_stays(limits):
 def test_a_disc_on_the_path_changes_the_velocity(limits):
     v = choose(limits, AHEAD, discs([0.45, 0.02], horizon=2.0))
     assert v != pytest.approx(AHEAD)
-    time, _ = contact_times(
-        Paths(v[None, None], np.full((1, 1), np.inf)), np.zeros(2), discs([0.45, 0.02])
-    )
+    time, _ = times(v[None, None], np.full((1, 1), np.inf), discs([0.45, 0.02]))
     assert time[0, 0] > 1.5
 
 
@@ -96,71 +99,56 @@ def test_a_standing_robot_leaves_the_band_of_a_mover(limits):
     assert abs(v[1]) > 0.02
 
 
-def test_the_choice_turns_with_the_scene(limits, rotation):
+def test_the_penalty_turns_with_the_scene(limits, rotation):
     rng = np.random.default_rng(1)
+    filter_ = filter_of(limits)
     for _ in range(20):
         places, velocities = rng.uniform(-1, 1, (8, 2)), rng.normal(0, 0.1, (8, 2))
         heading, a = float(rng.uniform(-3, 3)), float(rng.uniform(-3, 3))
-        r = rotation(a)
-        wish, body = rng.normal(0, 0.1, 2), np.array([0.1, 0.0, 0.2])
-        filter_ = SafetyFilter(SafetyFilterParameters(), VelocityMappingParameters(), limits)
-        course = float(np.arctan2(wish[1], wish[0]))
+        r, wanted = rotation(a), rng.normal(0, 0.1, 2)
+        course = float(np.arctan2(wanted[1], wanted[0]))
         one, other = (
-            filter_.penalty(
-                np.array([0, 0, h]),
-                filter_.candidates(v, c),
-                c,
-                facing=ON_COURSE,
-                body_now=body,
-                discs=d,
-            )
+            filter_.penalty(start((0, 0, h), (0.1, 0.0, 0.2), c), filter_.candidates(v, c), d)
             for h, v, c, d in (
-                (heading, wish, course, discs(places, velocities)),
-                (heading + a, r @ wish, course + a, discs(places @ r.T, velocities @ r.T)),
+                (heading, wanted, course, discs(places, velocities)),
+                (heading + a, r @ wanted, course + a, discs(places @ r.T, velocities @ r.T)),
             )
         )
         assert one == pytest.approx(other, abs=1e-6)
 
 
-def test_without_rollout_the_path_is_turn_then_straight(limits):
-    filter_ = SafetyFilter(
-        replace(SafetyFilterParameters(), steps=0), VelocityMappingParameters(), limits
-    )
-    paths = filter_.paths(
-        HERE, np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]]), 0.0, ON_COURSE, STANDING
-    )
-    assert paths.duration[0] == pytest.approx([(np.pi - 0.5) / limits.wz, 0.0, 0.0])
-    assert paths.velocity[0] == pytest.approx(np.zeros((3, 2)))
-    assert paths.velocity[1, 0] == pytest.approx([-0.2, 0.0])
+def test_without_footsteps_the_path_is_turn_then_straight(limits):
+    candidates = np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]])
+    velocity, duration = filter_of(limits, steps=0).rollout(start(), candidates)
+    assert duration[0] == pytest.approx([(np.pi - 0.5) / limits.wz, 0.0, 0.0])
+    assert velocity[0] == pytest.approx(np.zeros((3, 2)))
+    assert velocity[1, 0] == pytest.approx([-0.2, 0.0])
 
 
-def test_the_rollout_obeys_the_envelope(limits):
-    p = SafetyFilterParameters()
-    filter_ = SafetyFilter(p, VelocityMappingParameters(), limits)
-    paths = filter_.paths(HERE, filter_.candidates(AHEAD, 0.0), 0.0, ON_COURSE, STANDING)
-    speed = np.hypot(paths.velocity[..., 0], paths.velocity[..., 1])[: p.steps]
+def test_the_rollout_obeys_the_limits(limits):
+    filter_ = filter_of(limits)
+    velocity, _ = filter_.rollout(start(), filter_.candidates(AHEAD, 0.0))
+    speed = np.hypot(velocity[..., 0], velocity[..., 1])[: SafetyFilterParameters().steps]
     assert speed.max() <= limits.vx + 1e-9
-    change = limits.acceleration * limits.footstep
-    assert speed[0].max() <= change + 1e-9
+    assert speed[0].max() <= limits.acceleration * limits.footstep + 1e-9
 
 
 def test_a_turned_body_is_rolled_out_along_its_course(limits):
     """The lateral speed limit slows the turned body down."""
-    filter_ = SafetyFilter(SafetyFilterParameters(), VelocityMappingParameters(), limits)
     turned, straight = (
-        filter_.paths(np.array([0.0, 0.0, a]), AHEAD[None], 0.0, Facing(offset=a), body)
-        for a, body in ((1.0, np.array([0.05, -0.08, 0.0])), (0.0, np.array([0.2, 0.0, 0.0])))
+        filter_of(limits).rollout(start((0.0, 0.0, a), body, 0.0, Facing(offset=a)), AHEAD[None])
+        for a, body in ((1.0, (0.05, -0.08, 0.0)), (0.0, (0.2, 0.0, 0.0)))
     )
-    lateral = turned.velocity[-2 - 1, 0]
-    assert np.arctan2(lateral[1], lateral[0]) == pytest.approx(0.0, abs=1e-9)
-    assert lateral[0] == pytest.approx(limits.vy / np.sin(1.0))
-    assert straight.velocity[-2 - 1, 0] == pytest.approx(AHEAD)
+    last = turned[0][-3, 0]
+    assert np.arctan2(last[1], last[0]) == pytest.approx(0.0, abs=1e-9)
+    assert last[0] == pytest.approx(limits.vy / np.sin(1.0))
+    assert straight[0][-3, 0] == pytest.approx(AHEAD)
 
 
 def test_weightless_hypotheses_do_not_matter(limits):
     assert choose(limits, AHEAD, discs([0.4, 0.0], weight=0.0)) == pytest.approx(AHEAD)
 
 
-def test_direction_and_speed():
-    assert direction_and_speed(np.array([0.0, 0.1]), 1.0) == pytest.approx((np.pi / 2, 0.1))
-    assert direction_and_speed(np.zeros(2), 1.0) == (1.0, 0.0)
+def test_a_standing_robot_keeps_its_course(limits):
+    there = start(course=1.0)
+    assert filter_of(limits).choose(there, np.zeros(2), discs([5.0, 0.0])) == (1.0, 0.0)

@@ -6,8 +6,16 @@ from navigation.motion.velocity_mapping import body_velocity, idle_velocity
 COURSES = np.linspace(-np.pi, np.pi, 181)
 
 
-def test_the_direction_is_kept_and_the_envelope_respected(limits):
-    v = body_velocity(COURSES, 0.2, 0.3, COURSES, limits=limits, turn_gain=1.5)
+@pytest.fixture
+def mapped(limits):
+    def mapped(course, speed, heading, facing):
+        return body_velocity(course, speed, heading, facing, limits=limits, turn_gain=1.5)
+
+    return mapped
+
+
+def test_the_direction_is_kept_and_the_limits_respected(limits, mapped):
+    v = np.array([mapped(c, 0.2, 0.3, c) for c in COURSES.tolist()])
     speed = np.hypot(v[:, 0], v[:, 1])
     along = v[:, 0] * np.cos(COURSES - 0.3) + v[:, 1] * np.sin(COURSES - 0.3)
     assert along == pytest.approx(speed)
@@ -18,19 +26,15 @@ def test_the_direction_is_kept_and_the_envelope_respected(limits):
     assert np.abs(v[:, 2]).max() <= limits.wz
 
 
-def test_inside_the_envelope_nothing_is_lost(limits):
-    v = body_velocity(COURSES, 0.07, 0.3, COURSES, limits=limits, turn_gain=1.5)
-    assert np.hypot(v[:, 0], v[:, 1]) == pytest.approx(0.07)
+def test_within_the_limits_the_speed_is_kept(mapped):
+    speeds = [np.hypot(*mapped(c, 0.07, 0.3, c)[:2]) for c in COURSES.tolist()]
+    assert speeds == pytest.approx([0.07] * len(speeds))
+    assert mapped(1.0, 0.0, 0.0, 0.0) == pytest.approx(0.0)
 
 
-def test_it_turns_to_where_it_faces(limits):
-    v = body_velocity(1.0, 0.1, 0.0, -0.2, limits=limits, turn_gain=1.5)
-    assert v[2] == pytest.approx(-0.3)
-    assert body_velocity(0.0, 0.0, 3.0, -3.0, limits=limits, turn_gain=1.5)[2] > 0.0
-
-
-def test_standing_stands(limits):
-    assert body_velocity(1.0, 0.0, 0.0, 0.0, limits=limits, turn_gain=1.5) == pytest.approx(0.0)
+def test_the_body_turns_to_its_target_heading(mapped):
+    assert mapped(1.0, 0.1, 0.0, -0.2)[2] == pytest.approx(-0.3)
+    assert mapped(0.0, 0.0, 3.0, -3.0)[2] > 0.0
 
 
 def test_an_idle_robot_stands_and_a_lost_one_turns_within_the_limits(limits):
