@@ -7,8 +7,11 @@ from math import cos, hypot, radians, sin
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vision.blob import Blob, find_blobs
 from vision.camera import CameraPose, PinholeCamera
-from vision.color import COLOR_CLASSES
+from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
+from vision.outline import Outline, trace
+from vision.view import View
 
 FLOOR = (0.62, 0.61, 0.58)
 SKY = (0.05, 0.05, 0.06)
@@ -104,6 +107,16 @@ def at(distance: float, bearing_deg: float, color: str, radius: float = 0.08) ->
     """An obstacle at a distance [m] and bearing [degree] from the origin of R."""
     bearing = radians(bearing_deg)
     return Cylinder(distance * cos(bearing), distance * sin(bearing), color, radius)
+
+
+def traced(
+    things: Sequence[Cylinder], view: CameraPose, min_area: int = 20
+) -> tuple[list[Blob], NDArray[np.uint8], list[Outline]]:
+    """Blobs, padded labels and outlines of an image of `things`."""
+    labels = ColorTable().classify(paint(things, view))
+    blobs = find_blobs(labels, (min_area,) * len(COLOR_CLASSES))
+    padded = np.pad(labels, 1, constant_values=OUTSIDE)
+    return blobs, padded, trace(blobs, padded, View(CAMERA, view), 0.35)
 
 
 def true_polar(thing: Cylinder) -> tuple[float, float]:

@@ -1,23 +1,17 @@
-import numpy as np
 import pytest
 
-from tests.vision.scene import CAMERA, HEIGHT, Cylinder, at, beacon, paint, pose
+from tests.vision.scene import HEIGHT, Cylinder, at, beacon, pose, traced
 from vision.beacon import Post, find_posts
-from vision.blob import Blob, find_blobs
-from vision.color import COLOR_CLASSES, OUTSIDE, ColorTable
-from vision.outline import trace
+from vision.blob import Blob
+from vision.color import COLOR_CLASSES
 from vision.parameters import VisionParameters
-from vision.view import View
 
 NAMES = ("", *COLOR_CLASSES)
 GAZE = pose(tilt=-0.1)
 
 
 def posts(things: list[Cylinder]) -> tuple[list[Blob], list[Post]]:
-    labels = ColorTable().classify(paint(things, GAZE))
-    blobs = find_blobs(labels, (5,) * 7)
-    padded = np.pad(labels, 1, constant_values=OUTSIDE)
-    outlines = trace(blobs, padded, View(CAMERA, GAZE), 0.35)
+    blobs, _, outlines = traced(things, GAZE, min_area=5)
     indices = [k for k, b in enumerate(blobs) if COLOR_CLASSES[NAMES[b.label]].kind == "beacon"]
     return blobs, find_posts(blobs, outlines, indices, HEIGHT, VisionParameters())
 

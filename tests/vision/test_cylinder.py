@@ -6,12 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, true_polar
-from vision.blob import find_blobs
+from tests.vision.scene import CAMERA, Cylinder, at, pose, traced, true_polar
 from vision.camera import CameraPose
-from vision.color import OUTSIDE, ColorTable
 from vision.cylinder import Candidate, RimCue, interpenetrate, locate, polar_in_robot
-from vision.outline import Outline, trace
+from vision.outline import Outline
 from vision.view import View
 
 TYPICAL_RADIUS = (0.085, 0.02)
@@ -19,9 +17,7 @@ NOISE = (0.01, 0.1, 3.5)  # roundness, correlation along an edge, deviation of a
 
 
 def outline_of(thing: Cylinder, gaze: CameraPose) -> Outline:
-    labels = ColorTable().classify(paint([thing], gaze))
-    padded = np.pad(labels, 1, constant_values=OUTSIDE)
-    (outline,) = trace(find_blobs(labels, (20,) * 7), padded, View(CAMERA, gaze), 0.35)
+    _, _, (outline,) = traced([thing], gaze)
     return outline
 
 

@@ -111,11 +111,11 @@ def packed(made, pose=POSE):
     return (
         np.array([[tuple(map(float, s)) for s in c["sides"]] for c in made]),
         np.array([c["known"] for c in made]),
-        np.array([rim[:3] for rim in rims]),
+        np.array([rim[:3] for rim in rims]).reshape(-1, 3),
         np.cumsum([0, *(len(c["rims"]) for c in made)]),
         np.cumsum([0, *(len(rim[3]) for rim in rims)]),
-        np.concatenate([rim[3] for rim in rims]),
-        np.concatenate([rim[4] for rim in rims]),
+        np.concatenate([np.empty(0), *(rim[3] for rim in rims)]),
+        np.concatenate([np.empty(0), *(rim[4] for rim in rims)]),
         pose,
         OPTIONS,
     )
@@ -164,28 +164,14 @@ def one_side(seed, n, least):
             (azimuth, 1e-3, 9.0, *(span if ok else (0.0, 0.0)), ok)
             for azimuth, ok in zip(azimuths, (left, not left), strict=True)
         ]
-        made.append({"sides": sides, "known": (0.085, 0.02, 0.3), "truth": x})
+        made.append({"sides": sides, "known": (0.085, 0.02, 0.3), "rims": [], "truth": x})
     return made
-
-
-def packed_sides(made):
-    return (
-        np.array([[tuple(map(float, s)) for s in c["sides"]] for c in made]),
-        np.array([c["known"] for c in made]),
-        np.empty((0, 3)),
-        np.zeros(len(made) + 1, int),
-        np.zeros(1, int),
-        np.empty(0),
-        np.empty(0),
-        POSE,
-        OPTIONS,
-    )
 
 
 @pytest.mark.parametrize("least", [0.3, 0.6, 0.9])
 def test_a_side_alone_tells_the_distance_as_well_as_it_says(least):
     made = one_side(3, 200, least)
-    results, covariances = locate(*packed_sides(made))
+    results, covariances = locate(*packed(made))
     error = results[:, 1] - [c["truth"][1] for c in made]
     sigma = np.sqrt(covariances[:, 1, 1])
     assert np.abs(error / sigma).max() < 3.5
@@ -196,7 +182,7 @@ def test_a_side_alone_tells_the_distance_as_well_as_it_says(least):
 
 def test_the_more_of_a_side_is_seen_the_surer_its_distance():
     sigmas = [
-        np.mean(np.sqrt(locate(*packed_sides(one_side(4, 100, least)))[1][:, 1, 1]))
+        np.mean(np.sqrt(locate(*packed(one_side(4, 100, least)))[1][:, 1, 1]))
         for least in (0.3, 0.6, 0.9)
     ]
     assert sigmas == sorted(sigmas, reverse=True)

@@ -3,11 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.vision.scene import CAMERA, Cylinder, at, paint, pose
-from vision.blob import find_blobs
-from vision.color import OUTSIDE, ColorTable
+from tests.vision.scene import CAMERA, Cylinder, at, paint, pose, traced
 from vision.detector import Detector
-from vision.outline import trace
 from vision.parameters import VisionParameters
 from vision.split import Part, split
 from vision.view import View
@@ -16,19 +13,9 @@ GAZE = pose(tilt=-0.3)
 
 
 def parts_of(things: list[Cylinder]) -> list[Part]:
-    labels = ColorTable().classify(paint(things, GAZE))
-    padded = np.pad(labels, 1, constant_values=OUTSIDE)
-    view = View(CAMERA, GAZE)
-    (blob,) = find_blobs(labels, (20,) * 7)
-    (outline,) = trace([blob], padded, view, 0.35)
-    return split(
-        blob,
-        outline,
-        padded,
-        view=view,
-        parameters=VisionParameters(),
-        radius=(0.085, 0.02),
-    )
+    (blob,), padded, (outline,) = traced(things, GAZE)
+    options = {"parameters": VisionParameters(), "radius": (0.085, 0.02)}
+    return split(blob, outline, padded, view=View(CAMERA, GAZE), **options)
 
 
 @settings(max_examples=40)

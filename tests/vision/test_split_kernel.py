@@ -3,7 +3,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from vision.split_kernel import MIN_COLUMNS, MIN_INNER, borders, pieces, quantile
+from vision.split_kernel import MIN_COLUMNS, MIN_INNER, borders, pieces
 
 RNG = np.random.default_rng(0)
 
@@ -75,10 +75,3 @@ def test_an_envelope_is_cut_at_its_steps_and_nowhere_else():
     assert borders(envelope, 0.1).tolist() == [0, 6, 12]  # one column is no piece
     assert borders(envelope, 1.0).tolist() == [0, 12]
     assert np.array_equal(borders(envelope, 0.1), borders.py_func(envelope, 0.1))
-
-
-@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 1.0])
-def test_a_quantile_is_numpy_s(share):
-    values = np.sort(RNG.normal(size=17))
-    assert quantile(values, share) == pytest.approx(np.quantile(values, share))
-    assert quantile(values, share) == quantile.py_func(values, share)

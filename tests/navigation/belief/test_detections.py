@@ -1,5 +1,4 @@
 from dataclasses import replace
-from math import cos, sin
 
 import numpy as np
 import pytest
@@ -69,9 +68,3 @@ def test_beacons_are_no_obstacles(observe):
     assert seen.observations == ()
     assert seen.positions.shape == (0, 2)
     assert seen.covariances.shape == (0, 2, 2)
-
-
-def test_direction_adds_up(observe):
-    pose = (1.0, -1.0, 2.0)
-    seen = convert([observe(pose, (1.0 + cos(0.3), -1.0 + sin(0.3)))], pose, np.zeros((3, 3)))
-    assert np.allclose(seen.positions[0], [1.0 + cos(0.3), -1.0 + sin(0.3)])

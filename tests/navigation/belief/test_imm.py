@@ -31,18 +31,6 @@ def line(seconds, velocity, start=(1.0, 0.0)):
     return np.array(start) + DT * steps * np.array(velocity)
 
 
-def test_without_change_of_mode_it_is_a_plain_filter():
-    p = TrackingParameters(reversal_rate=0.0, start_rate=1e-12, stop_rate=1e-12)
-    modes = one()
-    predicted = imm.predict(modes, 0.5, p)
-    F, q = np.eye(4) + 0.5 * np.eye(4, k=2), p.acceleration_noise
-    block = np.array([[0.5**3 / 3, 0.5**2 / 2], [0.5**2 / 2, 0.5]]) * q * q
-    covariance = F @ modes.covariances[0, FORWARD, :4, :4] @ F.T + np.kron(block, np.eye(2))
-    assert np.allclose(predicted.states[0, FORWARD, :4], F @ modes.states[0, FORWARD, :4])
-    assert np.allclose(predicted.covariances[0, FORWARD, :4, :4], covariance)
-    assert np.allclose(predicted.states[:, STATIC], modes.states[:, STATIC])
-
-
 @pytest.mark.parametrize("seed", range(10))
 def test_tells_what_stands_from_what_moves(seed):
     rng = np.random.default_rng(seed)
@@ -59,20 +47,6 @@ def test_a_reversal_shows_within_three_frames():
     after = watch(before, line(3 * DT, (-0.1, 0.0), mean[:2]))
     mean, _ = imm_kernel.moments(*(a[0] for a in after))
     assert mean[2] < 0.0
-
-
-def test_what_turned_between_two_frames_may_have_turned_at_any_time():
-    """Turned at once it is as far behind as, turned just now, it is ahead."""
-    modes = imm.initial(np.array([1.0, 0.0]), R, 0.9, P)
-    modes.states[FORWARD, 2] = 0.1
-    modes.weights[REVERSED] = 0.0
-    modes.covariances[FORWARD] = 1e-12 * np.eye(5)
-    dt = 0.5
-    p = TrackingParameters(reversal_rate=0.01, acceleration_noise=1e-9)
-    after = imm.predict(Modes(*(a[None] for a in modes)), dt, p)
-    assert after.states[0, REVERSED] == pytest.approx([1.0, 0.0, -0.1, 0.0, 0.0], abs=1e-6)
-    assert after.covariances[0, REVERSED, 0, 0] == pytest.approx((0.1 * dt) ** 2 / 3, rel=1e-3)
-    assert after.covariances[0, REVERSED, 1, 1] < 1e-9
 
 
 def test_a_reversal_out_of_sight_is_weighed_against_going_on():
@@ -122,10 +96,6 @@ def test_covariances_stay_positive_definite_over_100000_updates():
         assert np.allclose(modes.weights.sum(axis=1), 1.0)
 
 
-def of_one(modes):
-    return Modes(*(a[0] for a in modes))
-
-
 def only(mode, velocity=(0.0, 0.0)):
     """An obstacle known to be in one mode."""
     modes = one()
@@ -147,32 +117,6 @@ def test_modes_change_at_their_rates():
         changed = imm.predict(only(mode), dt, p).weights[0]
         assert changed == pytest.approx(wanted, abs=1e-9)
         assert imm.predict(only(mode), dt, p).moving[0] == pytest.approx(1 - wanted[0])
-
-
-def test_what_sets_out_may_go_anywhere_and_what_stops_stands_where_it_was():
-    p = TrackingParameters(acceleration_noise=1e-9, reversal_rate=0.0, static_diffusion=1e-3)
-    out = imm.predict(only(STATIC), DT, p)
-    assert out.states[0, FORWARD] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
-    doubt = [*(2 * [p.velocity_sigma**2]), p.turn_rate_sigma**2]
-    assert np.diag(out.covariances[0, FORWARD])[2:] == pytest.approx(doubt)
-    still = imm.predict(only(FORWARD, (0.1, 0.0)), 0.5, p)
-    assert still.states[0, STATIC] == pytest.approx([1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-9)
-    grown = np.diag(still.covariances[0, STATIC])
-    assert grown == pytest.approx([1e-4 + 0.5e-3, 2e-4 + 0.5e-3, 0.0, 0.0, 0.0], abs=1e-9)
-
-
-def test_the_moments_are_those_of_the_mixture_of_both_ways():
-    modes = of_one(watch(one(), line(0.6, (0.1, 0.05))))
-    modes.states[REVERSED, 2:4] = (-0.08, 0.02)
-    modes.weights[:] = 0.2, 0.5, 0.3
-    share, moving = np.array([0.625, 0.375]), modes.states[FORWARD:]
-    mean = share @ moving
-    second = np.einsum("m,mij->ij", share, modes.covariances[FORWARD:])
-    second += np.einsum("m,mi,mj->ij", share, moving, moving)
-    found, covariance = imm_kernel.moments(*modes)
-    assert found == pytest.approx(mean)
-    assert imm_kernel.mean(modes.weights, modes.states) == pytest.approx(mean)
-    assert covariance == pytest.approx(second - np.outer(mean, mean))
 
 
 def test_a_new_obstacle_has_no_velocity_and_as_much_doubt_about_it_as_is_given():

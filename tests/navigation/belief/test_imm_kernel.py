@@ -41,7 +41,7 @@ def after(function, arguments, changed):
 def test_compiled_and_plain_agree():
     weights, states, covariances, z, R = drawn(0)
     one, rows = (weights[0], states[0], covariances[0]), np.array([2, 0])
-    standing = np.array([True, False, False, True])
+    static = np.array([True, False, False, True])
     for function, arguments, changed in (
         (kernel.mix, (weights, states, covariances, change(1), 0.3, 5e-3, 0.04), ()),
         (kernel.predict, (states, covariances, 0.3, 0.02, 1e-4, 0.9, 0.04), (0, 1)),
@@ -51,8 +51,8 @@ def test_compiled_and_plain_agree():
         (kernel.update, (weights, states, covariances, rows, z, R, 6.0), (0, 1, 2)),
         (kernel.mean, one[:2], ()),
         (kernel.moments, one, ()),
-        (kernel.positions, (weights, states, standing), ()),
-        (kernel.estimates, (weights, states, covariances, standing, R, 0.04, 1e-5), ()),
+        (kernel.positions, (weights, states, static), ()),
+        (kernel.estimates, (weights, states, covariances, static, R, 0.04, 1e-5), ()),
     ):
         compiled = after(function, arguments, changed)
         plain = after(function.py_func, arguments, changed)
@@ -195,12 +195,12 @@ def test_costs_are_those_of_the_gaussian_mixture_up_to_their_constant():
 def test_estimates_are_those_of_the_verdicts(seed):
     """Of the mixture of both ways, or of what stands, with doubt that looking does not end."""
     weights, states, covariances, _, best = drawn(seed)
-    standing = np.array([True, False, True, False])
+    static = np.array([True, False, True, False])
     place, velocity, covariance, turn = kernel.estimates(
-        weights, states, covariances, standing, best, 0.04, 1e-5
+        weights, states, covariances, static, best, 0.04, 1e-5
     )
     for k in range(4):
-        if standing[k]:
+        if static[k]:
             mean, spread = states[k, 0], covariances[k, 0, :4, :4].copy()
             spread[:2, :2] += 0.04 * best[k]
             spread[(2, 3), (2, 3)] = 1e-5
@@ -213,4 +213,6 @@ def test_estimates_are_those_of_the_verdicts(seed):
         assert velocity[k] == pytest.approx(mean[2:4])
         assert covariance[k] == pytest.approx(spread)
         assert turn[k] == pytest.approx(mean[4])
-    assert kernel.positions(weights, states, standing) == pytest.approx(place)
+        moving = kernel.mean(weights[k], states[k])
+        assert static[k] or moving == pytest.approx(mean)
+    assert kernel.positions(weights, states, static) == pytest.approx(place)

@@ -63,12 +63,6 @@ def test_reversals_come_at_their_rate(rng):
     assert np.mean(np.sign(cloud.velocities[:, 0])) == pytest.approx(np.exp(-2 * 5 / 15), abs=0.02)
 
 
-def test_without_reversals_particles_go_straight(rng):
-    cloud = replace(track_particles.spawn(modes(), 10, rng), turn_rates=np.zeros(10))
-    later = track_particles.advance(cloud, 2.0, straight(0.0), rng)
-    assert np.allclose(later.positions, cloud.positions + 2.0 * cloud.velocities)
-
-
 def test_turn_rates_drift_about_zero_with_the_spread_of_movers(rng):
     p = TrackingParameters(turn_rate_sigma=0.3, turn_rate_time=1.0)
     cloud = track_particles.spawn(modes(), 20000, rng)
@@ -140,10 +134,3 @@ def test_the_density_has_no_holes_between_few_particles(rng):
     )
     density = np.exp(-0.5 * costs) / (2 * np.pi)
     assert density.min() > 0.02
-
-
-def test_chosen_particles_weigh_the_same(rng):
-    cloud = track_particles.redistribute(np.zeros(2), 1.0, np.array([0.1, 0.0]), EACH, rng)
-    few = track_particles.select(cloud, np.array([1, 5]))
-    assert np.array_equal(few.positions, cloud.positions[[1, 5]])
-    assert few.weights.tolist() == [0.5, 0.5]

@@ -118,14 +118,6 @@ def test_the_faster_it_was_the_farther_off_it_is_looked_for():
         assert o.search_radius(9.0, modes, P) == pytest.approx(farther)
 
 
-def test_no_number_of_detections_brings_the_lasting_error_down():
-    best = np.diag([4e-4, 1e-4])
-    o = make(motion=Motion.STATIC)
-    filtered = filters().covariances[0, :2, :2]
-    told = published(o, 5.0, best=best).covariance[:2, :2]
-    assert np.allclose(told - filtered, P.bias_fraction**2 * best)
-
-
 def test_a_cloud_is_published_by_its_moments():
     cloud = Particles(
         np.array([[0.0, 0.0], [1.0, 0.0]]),
