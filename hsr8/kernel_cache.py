@@ -14,7 +14,6 @@ VARIABLE = "NUMBA_CACHE_DIR"
 FOLDERS = (
     "hsr8/world/body",
     "hsr8/world/camera",
-    "hsr8/world/field",
     "hsr8/world/truth",
     "navigation",
     "navigation/belief",

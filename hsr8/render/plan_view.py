@@ -10,8 +10,7 @@ from hsr8.render.text import Color, Image, draw_text
 from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import Certificate
 from hsr8.world.field.layout import Layout, Obstacle
-from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Shuttle
-from hsr8.world.field.passage import Passage
+from hsr8.world.field.motion import Appearing, Circle, Line, MotionLaw, Passage, Shuttle
 from hsr8.world.field.wander import Wander
 from vision.color import COLOR_CLASSES
 

@@ -30,8 +30,7 @@ from hsr8.world.field.layout import (
     standard_beacons,
     with_first_moved,
 )
-from hsr8.world.field.motion import Circle, MotionLaw, Shuttle
-from hsr8.world.field.passage import Passage
+from hsr8.world.field.motion import Circle, MotionLaw, Passage, Shuttle
 from hsr8.world.field.wander import draw_wander
 
 Array = NDArray[np.float64]

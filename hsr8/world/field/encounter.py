@@ -6,7 +6,7 @@ from math import cos, hypot, inf, sin, sqrt
 
 import numpy as np
 
-from hsr8.world.field.passage import Passage
+from hsr8.world.field.motion import Passage
 
 Point = tuple[float, float]
 

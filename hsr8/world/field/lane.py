@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.world import LineMover, Mover, ShuttleMover
 from hsr8.world.field.layout import OBSTACLE_HEIGHT, Obstacle
-from hsr8.world.field.motion import Circle, Line, MotionLaw, Point, Shuttle
-from hsr8.world.field.passage import Passage
+from hsr8.world.field.motion import Circle, Line, MotionLaw, Passage, Point, Shuttle
 from hsr8.world.field.wander import Wander
 
 Array = NDArray[np.float64]

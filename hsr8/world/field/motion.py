@@ -1,4 +1,4 @@
-"""Motion laws: where a moving obstacle is at any time, exactly, with no integration."""
+"""Motion laws of moving obstacles: exact position and velocity at any time."""
 
 from dataclasses import dataclass
 from math import cos, fmod, hypot, inf, sin
@@ -6,20 +6,18 @@ from math import cos, fmod, hypot, inf, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.world.field import motion_kernel
-from hsr8.world.field.passage import Passage
 from hsr8.world.field.wander import Wander
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
-AWAY = 60.0  # what is away is so far from its place: nothing sees it there [m]
-INSTANT = 1e-6  # times nearer to one another are the same [s]
+AWAY = 60.0  # distance of an absent mover from its lane, out of sight [m]
+SAME_TIME = 1e-6  # times closer than this are equal [s]
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Straight on at constant velocity.
+    """Straight line at constant velocity.
 
     Attributes:
         start: position at time zero [m].
@@ -30,23 +28,23 @@ class Line:
     rate: Point
 
     def position(self, time: float) -> Point:
-        """Position at `time` [s]."""
+        """Return the position at `time` [s]."""
         return self.start[0] + self.rate[0] * time, self.start[1] + self.rate[1] * time
 
     def velocity(self, time: float) -> Point:
-        """Velocity at `time` [m/s]."""
+        """Return the velocity at `time` [m/s]."""
         return self.rate
 
 
 @dataclass(frozen=True, slots=True)
 class Shuttle:
-    """Back and forth between two points at constant speed, turning about at once.
+    """Back and forth between two points at constant speed, reversing at once.
 
     Attributes:
         start: one end [m].
-        end: the other [m].
+        end: other end [m].
         speed: [m/s].
-        offset: way it has gone at time zero, from `start` to `end` and back [m].
+        offset: distance travelled before time zero, from `start` to `end` and back [m].
     """
 
     start: Point
@@ -60,32 +58,63 @@ class Shuttle:
         return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
     def position(self, time: float) -> Point:
-        """Position at `time` [s]."""
+        """Return the position at `time` [s]."""
         length = self.length
-        gone = fmod(self.offset + self.speed * time, 2.0 * length)
-        share = min(gone, 2.0 * length - gone) / length
-        return (
-            self.start[0] + share * (self.end[0] - self.start[0]),
-            self.start[1] + share * (self.end[1] - self.start[1]),
-        )
+        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
+        return _between(self.start, self.end, min(travelled, 2.0 * length - travelled) / length)
 
     def velocity(self, time: float) -> Point:
-        """Velocity at `time` [m/s]; at an end, the one it leaves with."""
+        """Return the velocity at `time` [m/s]; at an end, the velocity after it."""
         length = self.length
-        gone = fmod(self.offset + self.speed * time, 2.0 * length)
-        rate = (self.speed if gone < length else -self.speed) / length
+        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
+        rate = (self.speed if travelled < length else -self.speed) / length
+        return rate * (self.end[0] - self.start[0]), rate * (self.end[1] - self.start[1])
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """One straight move from one point to another at constant speed.
+
+    Attributes:
+        start: position until the departure [m].
+        end: position after the arrival [m].
+        speed: [m/s].
+        depart: time of the departure [s].
+    """
+
+    start: Point
+    end: Point
+    speed: float
+    depart: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """Distance from `start` to `end` [m]."""
+        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    def position(self, time: float) -> Point:
+        """Return the position at `time` [s]."""
+        travelled = self.speed * (time - self.depart)
+        return _between(self.start, self.end, min(max(travelled / self.length, 0.0), 1.0))
+
+    def velocity(self, time: float) -> Point:
+        """Return the velocity at `time` [m/s]; at an end, the velocity after it."""
+        travelled, length = self.speed * (time - self.depart), self.length
+        if not 0.0 <= travelled < length:
+            return 0.0, 0.0
+        rate = self.speed / length
         return rate * (self.end[0] - self.start[0]), rate * (self.end[1] - self.start[1])
 
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """Round a circle at constant speed.
+    """Circle at constant speed.
 
     Attributes:
         centre: [m].
         radius: of the path [m].
         speed: counter-clockwise positive [m/s].
-        angle: where on the circle it is at time zero [rad].
+        angle: on the circle at time zero [rad].
     """
 
     centre: Point
@@ -94,7 +123,7 @@ class Circle:
     angle: float = 0.0
 
     def position(self, time: float) -> Point:
-        """Position at `time` [s]."""
+        """Return the position at `time` [s]."""
         angle = self.angle + self.speed / self.radius * time
         return (
             self.centre[0] + self.radius * cos(angle),
@@ -102,19 +131,19 @@ class Circle:
         )
 
     def velocity(self, time: float) -> Point:
-        """Velocity at `time` [m/s]."""
+        """Return the velocity at `time` [m/s]."""
         angle = self.angle + self.speed / self.radius * time
         return -self.speed * sin(angle), self.speed * cos(angle)
 
 
 @dataclass(frozen=True, slots=True)
 class Appearing:
-    """Another law for some time; before and after it the mover is far away.
+    """Another law during an interval; outside it the mover is far away.
 
     Attributes:
-        law: what it does while it is there.
-        start: when it appears [s].
-        end: when it is gone again [s].
+        law: while the mover is present.
+        start: of the interval [s].
+        end: of the interval [s].
     """
 
     law: "MotionLaw"
@@ -122,23 +151,23 @@ class Appearing:
     end: float = inf
 
     def position(self, time: float) -> Point:
-        """Position at `time` [s]."""
+        """Return the position at `time` [s]."""
         x, y = self.law.position(time)
-        return (x, y) if self._there(time) else (x + AWAY, y)
+        return (x, y) if self._present(time) else (x + AWAY, y)
 
     def velocity(self, time: float) -> Point:
-        """Velocity at `time` [m/s]; none while it is away."""
-        return self.law.velocity(time) if self._there(time) else (0.0, 0.0)
+        """Return the velocity at `time` [m/s]; zero while the mover is away."""
+        return self.law.velocity(time) if self._present(time) else (0.0, 0.0)
 
-    def _there(self, time: float) -> bool:
-        return self.start <= time + INSTANT < self.end
+    def _present(self, time: float) -> bool:
+        return self.start <= time + SAME_TIME < self.end
 
 
 MotionLaw = Line | Shuttle | Circle | Passage | Wander | Appearing
 
 
 def pace(law: MotionLaw) -> float:
-    """Speed of a mover when it moves [m/s]."""
+    """Return the speed of a mover while it moves [m/s]."""
     match law:
         case Appearing():
             return pace(law.law)
@@ -150,86 +179,80 @@ def pace(law: MotionLaw) -> float:
 class Movers:
     """All moving obstacles of a layout, evaluated together.
 
-    Straight laws are one formula: a point walks `rate` along a lane of some length, which
-    is infinite when it never turns about. Circles are another; the rest is asked one by one.
+    Lines, shuttles and circles are evaluated as arrays, other laws one by one.
+
+    Args:
+        laws: in layout order.
     """
 
     def __init__(self, laws: tuple[MotionLaw, ...]) -> None:
-        """Take the laws in layout order."""
         self.laws = laws
-        straight = [k for k, law in enumerate(laws) if isinstance(law, Line | Shuttle)]
-        round_ = [k for k, law in enumerate(laws) if isinstance(law, Circle)]
+        straight = {k: _lane(w) for k, w in enumerate(laws) if isinstance(w, Line | Shuttle)}
+        circles = {k: law for k, law in enumerate(laws) if isinstance(law, Circle)}
         self._others = [
-            (k, w) for k, w in enumerate(laws) if isinstance(w, Passage | Wander | Appearing)
+            (k, law) for k, law in enumerate(laws) if isinstance(law, Passage | Wander | Appearing)
         ]
-        self._all_straight = len(straight) == len(laws)
-        self._straight = np.array(straight, dtype=np.intp)
-        self._round = np.array(round_, dtype=np.intp)
-        lanes = [_lane(laws[k]) for k in straight]
-        self._lanes = (
-            np.array([lane[0] for lane in lanes], dtype=float).reshape(-1, 2),
-            np.array([lane[1] for lane in lanes], dtype=float).reshape(-1, 2),
-            np.array([lane[2] for lane in lanes], dtype=float),
-            np.array([lane[3] for lane in lanes], dtype=float),
-            np.array([lane[4] for lane in lanes], dtype=float),
-        )
-        circles = [law for law in laws if isinstance(law, Circle)]
-        self._centre = np.array([c.centre for c in circles], dtype=float).reshape(-1, 2)
-        self._radius = np.array([c.radius for c in circles], dtype=float)
-        self._rim_speed = np.array([c.speed for c in circles], dtype=float)
-        self._angle = np.array([c.angle for c in circles], dtype=float)
+        self._straight = np.array(list(straight), dtype=np.intp)
+        lanes = np.array(list(straight.values()), dtype=float).reshape(-1, 7)
+        self._origin, self._direction = lanes[:, :2], lanes[:, 2:4]
+        self._speed, self._period, self._offset = lanes[:, 4], 2.0 * lanes[:, 5], lanes[:, 6]
+        self._circles = np.array(list(circles), dtype=np.intp)
+        rows = [(*c.centre, c.radius, c.speed, c.angle) for c in circles.values()]
+        table = np.array(rows, dtype=float).reshape(-1, 5)
+        self._centre, self._radius, self._angle = table[:, :2], table[:, 2:3], table[:, 4]
+        self._circle_speed, self._rate = table[:, 3:4], table[:, 3] / table[:, 2]
 
     def __len__(self) -> int:
         return len(self.laws)
 
     def positions(self, time: float | Array) -> Array:
-        """Positions at `time` [s], of any shape (...), in layout order (..., n, 2) [m]."""
+        """Return the positions at `time` [s] (...), in layout order (..., n, 2) [m]."""
         times = np.asarray(time, dtype=float)
-        found = motion_kernel.positions(times.ravel(), self._lanes)
-        straight: Array = found.reshape(*times.shape, -1, 2)
-        if self._all_straight:
-            return straight
-        angle = self._angle + self._rim_speed / self._radius * times[..., None]
-        rim = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-        both = self._ordered(straight, self._centre + self._radius[:, None] * rim)
+        positions = np.empty((*times.shape, len(self.laws), 2))
+        if len(self._straight):
+            travelled = np.mod(self._offset + self._speed * times[..., None], self._period)
+            along = np.minimum(travelled, self._period - travelled)[..., None]
+            positions[..., self._straight, :] = self._origin + along * self._direction
+        if len(self._circles):
+            angle = self._angle + self._rate * times[..., None]
+            unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+            positions[..., self._circles, :] = self._centre + self._radius * unit
         for k, law in self._others:
-            places = [law.position(instant) for instant in times.ravel().tolist()]
-            both[..., k, :] = np.reshape(places, both[..., k, :].shape)
-        return both
+            points = [law.position(instant) for instant in times.ravel().tolist()]
+            positions[..., k, :] = np.reshape(points, (*times.shape, 2))
+        return positions
 
     def velocities(self, time: float) -> Array:
-        """Velocities at `time` [s], layout order (n, 2) [m/s]."""
-        straight: Array = motion_kernel.velocities(time, self._lanes)
-        if self._all_straight:
-            return straight
-        angle = self._angle + self._rim_speed / self._radius * time
-        rim = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-        both = self._ordered(straight, self._rim_speed[:, None] * rim)
+        """Return the velocities at `time` [s], in layout order (n, 2) [m/s]."""
+        velocities = np.empty((len(self.laws), 2))
+        if len(self._straight):
+            travelled = np.mod(self._offset + self._speed * time, self._period)
+            rate = np.where(travelled < 0.5 * self._period, self._speed, -self._speed)
+            velocities[self._straight] = rate[:, None] * self._direction
+        if len(self._circles):
+            angle = self._angle + self._rate * time
+            unit = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+            velocities[self._circles] = self._circle_speed * unit
         for k, law in self._others:
-            both[k] = law.velocity(time)
-        return both
+            velocities[k] = law.velocity(time)
+        return velocities
 
     def top_speeds(self) -> Array:
-        """Greatest speed that each ever has, layout order (n,) [m/s]."""
+        """Return the maximum speed of each mover, in layout order (n,) [m/s]."""
         return np.array([pace(law) for law in self.laws], dtype=float)
 
-    def _ordered(self, straight: Array, rim: Array) -> Array:
-        both = np.empty((*straight.shape[:-2], len(self.laws), 2))
-        both[..., self._straight, :] = straight
-        both[..., self._round, :] = rim
-        return both
+
+def _between(start: Point, end: Point, fraction: float) -> Point:
+    """Return the point at a `fraction` of the line from `start` to `end`."""
+    return start[0] + fraction * (end[0] - start[0]), start[1] + fraction * (end[1] - start[1])
 
 
-def _lane(law: MotionLaw) -> tuple[Point, Point, float, float, float]:
-    """Origin, unit direction, speed, length and offset of a straight law."""
+def _lane(law: Line | Shuttle) -> tuple[float, ...]:
+    """Return origin, unit direction, speed, length and offset of a straight law."""
     if isinstance(law, Shuttle):
-        way = (
-            (law.end[0] - law.start[0]) / law.length,
-            (law.end[1] - law.start[1]) / law.length,
-        )
-        return law.start, way, law.speed, law.length, law.offset
-    if isinstance(law, Line):
-        speed = hypot(*law.rate)
-        way = (law.rate[0] / speed, law.rate[1] / speed) if speed > 0.0 else (0.0, 0.0)
-        return law.start, way, speed, inf, 0.0
-    raise TypeError(f"{type(law).__name__} is no straight law")
+        length = law.length
+        x, y = (law.end[0] - law.start[0]) / length, (law.end[1] - law.start[1]) / length
+        return *law.start, x, y, law.speed, length, law.offset
+    speed = hypot(*law.rate)
+    x, y = (law.rate[0] / speed, law.rate[1] / speed) if speed > 0.0 else (0.0, 0.0)
+    return *law.start, x, y, speed, inf, 0.0

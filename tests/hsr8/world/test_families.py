@@ -11,8 +11,7 @@ from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field import fairness
 from hsr8.world.field.attempt import Attempt, CrowdedError
 from hsr8.world.field.encounter import NominalWalk
-from hsr8.world.field.motion import Circle, Shuttle
-from hsr8.world.field.passage import Passage
+from hsr8.world.field.motion import Circle, Passage, Shuttle
 from hsr8.world.field.wander import Wander
 
 FAMILIES = (

@@ -11,8 +11,7 @@ from hsr8.scenario.world import ROBOT_RADIUS
 from hsr8.world.field.certificate import VIA_REACHED, certify, least_clearance, straight_length
 from hsr8.world.field.generator import draw_layout, draw_world
 from hsr8.world.field.layout import Layout, Obstacle
-from hsr8.world.field.motion import Circle, Shuttle
-from hsr8.world.field.passage import Passage
+from hsr8.world.field.motion import Circle, Passage, Shuttle
 from hsr8.world.field.wander import Wander
 
 SPEED = SpeedEnvelope()

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.world.field.motion import Appearing, Circle, Line, Movers, Shuttle, pace
-from hsr8.world.field.passage import Passage
+from hsr8.world.field.motion import Appearing, Circle, Line, Movers, Passage, Shuttle, pace
 from hsr8.world.field.wander import Wander, draw_wander
 
 coordinate = st.floats(-3.0, 3.0)
 point = st.tuples(coordinate, coordinate)
 speed = st.floats(0.02, 0.5)
 times = st.floats(0.0, 600.0)
+PASSAGE = Passage((-1.0, 0.0), (1.0, 1.5), 0.25, depart=4.0)
 
 
 @st.composite
@@ -138,3 +138,25 @@ def test_a_mover_goes_at_its_pace_or_rests(law, time):
     speed = hypot(*law.velocity(time))
     assert speed == pytest.approx(pace(law)) or speed == 0.0
     assert pace(Appearing(law, time)) == pace(law)
+
+
+def test_a_passage_waits_moves_and_stays():
+    assert PASSAGE.position(3.9) == PASSAGE.start
+    assert PASSAGE.velocity(3.9) == (0.0, 0.0)
+    assert PASSAGE.position(4.0 + 5.0) == pytest.approx((0.0, 0.75))
+    assert PASSAGE.position(4.0 + 10.0) == pytest.approx(PASSAGE.end)
+    assert PASSAGE.position(50.0) == PASSAGE.end
+    assert PASSAGE.velocity(50.0) == (0.0, 0.0)
+
+
+@given(st.floats(0.0, 60.0), st.floats(0.0, 60.0))
+def test_a_passage_never_exceeds_its_speed(one, other):
+    way = hypot(
+        *(b - a for a, b in zip(PASSAGE.position(one), PASSAGE.position(other), strict=True))
+    )
+    assert way <= PASSAGE.speed * abs(other - one) + 1e-12
+
+
+@given(st.floats(4.0, 13.99))
+def test_a_moving_passage_has_its_speed(time):
+    assert hypot(*PASSAGE.velocity(time)) == pytest.approx(PASSAGE.speed)
