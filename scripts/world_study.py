@@ -14,7 +14,7 @@ from hsr8.render.png import write_png
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.world import ROBOT_RADIUS
-from hsr8.world.field.certificate import least_clearance, straight_length
+from hsr8.world.field.certificate import min_clearance, straight_length
 from hsr8.world.field.encounter import NominalWalk
 from hsr8.world.field.generator import draw_world
 from hsr8.world.field.layout import Layout
@@ -66,7 +66,7 @@ def row(name: str, seeds: list[int]) -> str:
         hits += hits_blindly(scenario, world.layout)
         certificate, n = world.certificate, world.certificate.points
         straight = straight_length(world.layout, n)
-        clearance = least_clearance(world.layout, certificate.path)
+        clearance = min_clearance(world.layout, certificate.path)
         ways.append(
             (certificate.length, certificate.length / straight, certificate.time, clearance)
         )

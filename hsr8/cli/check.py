@@ -19,7 +19,7 @@ from hsr8.render.png import write_png
 from hsr8.scenario.loader import load_scenario
 from hsr8.scenario.schema import Scenario
 from hsr8.scenario.section import Section
-from hsr8.world.field.certificate import least_clearance, straight_length
+from hsr8.world.field.certificate import min_clearance, straight_length
 from hsr8.world.field.generator import FairWorld, draw_world
 from hsr8.world.field.motion import pace
 
@@ -64,7 +64,7 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
     layout, certificate, camera = world.layout, world.certificate, scenario.camera
     clearance = None
     if len(certificate.path) and layout.obstacles:
-        clearance = round(least_clearance(layout, certificate.path), 3)
+        clearance = round(min_clearance(layout, certificate.path), 3)
     fov = [round(camera.horizontal_fov_deg), round(camera.vertical_fov_deg)]
     x, y, heading = layout.start
     goal_heading = layout.goal_heading

@@ -69,8 +69,10 @@ class PlanView:
     def _obstacle(self, number: int, obstacle: Obstacle) -> None:
         motion = obstacle.motion
         if isinstance(motion, Appearing):
-            obstacle = replace(obstacle, position=motion.position(motion.start), motion=motion.law)
-            motion = motion.law
+            obstacle = replace(
+                obstacle, position=motion.position(motion.start), motion=motion.motion
+            )
+            motion = motion.motion
         self._canvas.disc(obstacle.position, obstacle.radius, _rgb(obstacle.color))
         if motion is not None:
             depart = motion.depart if isinstance(motion, Passage) else 0.0
@@ -117,7 +119,7 @@ class PlanView:
 
     def _lane(self, motion: MotionLaw) -> None:
         if isinstance(motion, Appearing):
-            motion = motion.law
+            motion = motion.motion
         if isinstance(motion, Shuttle | Passage):
             self._canvas.line((motion.start, motion.end), LANE)
         elif isinstance(motion, Line):

@@ -1,1 +1,1 @@
-"""The field: what stands and moves on it, drawn so that it is fair and can be crossed."""
+"""Field: obstacles, movers, beacons and waypoints, drawn fair and feasible."""

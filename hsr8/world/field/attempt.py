@@ -1,4 +1,4 @@
-"""One attempt at a world: things are drawn one after the other, each where it is fair."""
+"""One attempt to draw a world: objects are drawn one after the other, each at a fair position."""
 
 from collections.abc import Callable, Sequence
 from math import cos, pi, radians, sin
@@ -13,8 +13,8 @@ from hsr8.world.field.fairness import (
     LANE_TO_GOAL,
     LANE_TO_LANE,
     LANE_TO_STATIC,
-    OBSTACLE_TO_RIM,
-    POINT_TO_RIM,
+    OBSTACLE_TO_BORDER,
+    POINT_TO_BORDER,
     POINT_TO_STATIC,
     START_TO_MOVER,
     START_TO_STATIC,
@@ -38,25 +38,25 @@ Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
 COLORS = ("red", "green", "blue", "violet")
-BATCH = 64  # candidates drawn at a time
-TRIES = 30  # batches for one thing
-LANE_TRIES = 300  # for one mover
-BESIDE_ROUTE = 0.30  # a lane between walls has its middle so near the route, along x and y [m]
+BATCH = 64  # candidate positions drawn at a time
+MAX_BATCHES = 30  # per object
+MAX_LANES = 300  # per mover
+ROUTE_OFFSET = 0.30  # maximum offset of a lane between walls from the route, along x and y [m]
 
 
 class CrowdedError(Exception):
-    """One thing finds no place in this attempt."""
+    """No room for an object in this attempt."""
 
 
 class Attempt:
     """Draws one world.
 
     Args:
-        scenario: what is asked for.
+        scenario: with sections world, mission and robot.
         rng: draws everything.
 
     Attributes:
-        tried: lanes that were tried for movers, encounters not counted [1].
+        tried: lanes tried for movers, without encounters [1].
     """
 
     def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:
@@ -69,12 +69,10 @@ class Attempt:
         self._lanes: list[Lane] = []
 
     def layout(self) -> Layout:
-        """Lanes first, for they need most room; then what stands, the start and the points.
-
-        Collision courses come last, for they depend on all of it.
+        """Draw lanes, which need most room, then static obstacles, start, points and encounters.
 
         Raises:
-            CrowdedError: something finds no place.
+            CrowdedError: an object has no room.
         """
         world = self._world
         start = self._scenario.robot.start.position
@@ -84,10 +82,10 @@ class Attempt:
             Obstacle(o.position, o.radius, OBSTACLE_HEIGHT, o.color) for o in world.obstacle
         ]
         for wall in world.wall:
-            for k, place in enumerate(wall.positions()):
-                # Neighbours differ in colour, so that vision can tell them apart.
+            for k, position in enumerate(wall.positions()):
+                # Neighbours differ in colour, so that vision can separate them.
                 color = COLORS[k % len(COLORS)]
-                self._static.append(Obstacle(place, wall.radius, OBSTACLE_HEIGHT, color))
+                self._static.append(Obstacle(position, wall.radius, OBSTACLE_HEIGHT, color))
         for _ in range(world.n_moving):
             self._lanes.append(self._draw_mover(start, points))
         self._draw_static(start, points)
@@ -156,12 +154,12 @@ class Attempt:
                     free &= gap >= LANE_TO_STATIC
                 return free
 
-            room = radius + OBSTACLE_TO_RIM
-            position = self._draw_point("static obstacles", clear, room)
+            margin = radius + OBSTACLE_TO_BORDER
+            position = self._draw_point("static obstacles", clear, margin)
             self._static.append(Obstacle(position, radius, OBSTACLE_HEIGHT, self._color()))
 
     def _draw_points(self, start: Point) -> list[Point]:
-        """Via points of a tour, or via points and goal of a course."""
+        """Draw the via points of a tour, or the via points and the goal of a course."""
         mission = self._scenario.mission
         assert isinstance(mission, Tour | Course)
         shortest, longest = mission.leg
@@ -169,16 +167,15 @@ class Attempt:
         points: list[Point] = []
         for k in range(mission.via_points + course):
             last = points[-1] if points else start
-            # A tour comes back to the same places; a course never does.
-            apart = [start, *points] if course else [last]
-
+            # A tour may return to earlier points, a course never does.
+            others = [start, *points] if course else [last]
             is_goal = course and k == mission.via_points
 
             def clear(
-                p: Array, last: Point = last, apart: list[Point] = apart, is_goal: bool = is_goal
+                p: Array, last: Point = last, others: list[Point] = others, is_goal: bool = is_goal
             ) -> Mask:
                 free: Mask = self._static_gap(p) >= POINT_TO_STATIC
-                free &= distance(p, apart) >= shortest
+                free &= distance(p, others) >= shortest
                 free &= distance(p, [last]) <= longest
                 if is_goal:
                     for lane in self._lanes:
@@ -192,25 +189,25 @@ class Attempt:
     def _draw_mover(self, start: Point | None, points: Sequence[Point] | None) -> Lane:
         goal = points[-1] if points and self._has_goal() else None
         route = [start, *points] if start is not None and points else []
-        for _ in range(LANE_TRIES):
+        for _ in range(MAX_LANES):
             self.tried += 1
-            law = self._draw_law(route)
-            if law is None:
+            motion = self._draw_motion(route)
+            if motion is None:
                 continue
-            lane = Lane.of(law, self._radius(), self._color())
+            lane = Lane.of(motion, self._radius(), self._color())
             if self._lane_clear(lane, start, goal):
                 return lane
         raise CrowdedError("moving obstacles")
 
-    def _draw_law(self, route: Sequence[Point]) -> MotionLaw | None:
+    def _draw_motion(self, route: Sequence[Point]) -> MotionLaw | None:
         rng, world = self._rng, self._world
         x, y = rng.uniform(-self._half, self._half).tolist()
         if world.wall and route:
-            # Between walls a mover is of use only where the robot comes.
+            # Between walls only movers near the route matter.
             walk = NominalWalk(route, 1.0)
             (along_x, along_y), _ = walk.at(walk.duration * float(rng.random()))
-            x = along_x + float(rng.uniform(-BESIDE_ROUTE, BESIDE_ROUTE))
-            y = along_y + float(rng.uniform(-BESIDE_ROUTE, BESIDE_ROUTE))
+            x = along_x + float(rng.uniform(-ROUTE_OFFSET, ROUTE_OFFSET))
+            y = along_y + float(rng.uniform(-ROUTE_OFFSET, ROUTE_OFFSET))
         centre = (x, y)
         angle = float(rng.uniform(-pi, pi))
         length = float(rng.uniform(*world.lane))
@@ -231,7 +228,7 @@ class Attempt:
 
     def _lane_clear(self, lane: Lane, start: Point | None, goal: Point | None) -> bool:
         radius = lane.obstacle.radius
-        if (np.abs(lane.path) > self._half - radius - OBSTACLE_TO_RIM).any():
+        if (np.abs(lane.path) > self._half - radius - OBSTACLE_TO_BORDER).any():
             return False
         if (self._static_gap(lane.path) - radius < LANE_TO_STATIC).any():
             return False
@@ -243,7 +240,7 @@ class Attempt:
         return all(self._lanes_clear(lane, other) for other in self._lanes)
 
     def _lanes_clear(self, lane: Lane, other: Lane) -> bool:
-        """Lanes do not touch; where they may cross, the movers are never there together."""
+        """Return whether two lanes keep their distance, or cross without a meeting."""
         room = LANE_TO_LANE + lane.obstacle.radius + other.obstacle.radius
         if (distance(lane.path, other.path) >= room).all():
             return True
@@ -255,26 +252,26 @@ class Attempt:
             return
         top_speed = self._scenario.robot.speed.vx
         walk = NominalWalk([start, *points], encounters.pace * top_speed)
-        share = walk.duration / encounters.n
+        interval = walk.duration / encounters.n
         for k in range(encounters.n):
-            for _ in range(LANE_TRIES):
-                time = share * (k + float(self._rng.random()))
+            for _ in range(MAX_LANES):
+                time = interval * (k + float(self._rng.random()))
                 speed = top_speed * float(self._rng.uniform(*encounters.speed_ratio))
                 bearing = radians(float(self._rng.uniform(*encounters.bearing_deg)))
                 side = 1.0 if self._rng.random() < 0.5 else -1.0
                 radius = self._radius()
-                place, velocity = walk.at(time)
+                point, velocity = walk.at(time)
                 course = course_to(velocity, speed, side * bearing)
                 if course is None:
                     continue
-                reach_x, reach_y = (self._half - radius - 2.0 * OBSTACLE_TO_RIM).tolist()
-                law = passage_through(place, course, time, (reach_x, reach_y))
-                if law is None or _startles(law, walk, radius):
+                reach_x, reach_y = (self._half - radius - 2.0 * OBSTACLE_TO_BORDER).tolist()
+                motion = passage_through(point, course, time, (reach_x, reach_y))
+                if motion is None or _starts_near(motion, walk, radius):
                     continue
-                lane = Lane.of(law, radius, self._color())
-                # It stays where it arrives, which must be out of everybody's way.
-                apart = distance(lane.ends, points) - radius
-                if (apart >= LANE_TO_GOAL).all() and self._lane_clear(lane, start, None):
+                lane = Lane.of(motion, radius, self._color())
+                # The mover stays at its end, which must not block a point.
+                gaps = distance(lane.ends, points) - radius
+                if (gaps >= LANE_TO_GOAL).all() and self._lane_clear(lane, start, None):
                     self._lanes.append(lane)
                     break
             else:
@@ -288,21 +285,21 @@ class Attempt:
         return free
 
     def _draw_point(
-        self, what: str, clear: Callable[[Array], Mask], room: float = POINT_TO_RIM
+        self, objects: str, clear: Callable[[Array], Mask], margin: float = POINT_TO_BORDER
     ) -> Point:
-        reach = self._half - room
+        reach = self._half - margin
         if (reach <= 0.0).any():
-            raise CrowdedError(what)
-        for _ in range(TRIES):
+            raise CrowdedError(objects)
+        for _ in range(MAX_BATCHES):
             candidates = self._rng.uniform(-reach, reach, (BATCH, 2))
             free = np.flatnonzero(clear(candidates))
             if len(free):
                 x, y = candidates[free[0]].tolist()
                 return x, y
-        raise CrowdedError(what)
+        raise CrowdedError(objects)
 
     def _static_gap(self, p: Array) -> Array:
-        """Distance of points (n, 2) to the nearest surface of a static obstacle (n,)."""
+        """Return the distance of points (n, 2) to the nearest static surface (n,) [m]."""
         if not self._static:
             return np.full(len(p), np.inf)
         centres = np.array([o.position for o in self._static])
@@ -318,8 +315,8 @@ class Attempt:
         return COLORS[int(self._rng.integers(len(COLORS)))]
 
 
-def _startles(law: Passage, walk: NominalWalk, radius: float) -> bool:
-    """Whether a mover of some `radius` [m] sets off right beside the robot as it walks by."""
-    (x, y), _ = walk.at(law.depart)
-    gap = float(distance(np.array([law.start]), [(x, y)])[0]) - radius
-    return law.depart > 0.0 and gap < START_TO_MOVER
+def _starts_near(motion: Passage, walk: NominalWalk, radius: float) -> bool:
+    """Return whether a waiting mover of some `radius` [m] departs close to the nominal walk."""
+    (x, y), _ = walk.at(motion.depart)
+    gap = float(distance(np.array([motion.start]), [(x, y)])[0]) - radius
+    return motion.depart > 0.0 and gap < START_TO_MOVER

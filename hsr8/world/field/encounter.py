@@ -1,4 +1,4 @@
-"""Collision courses: movers that would meet a robot walking straight on at a nominal pace."""
+"""Encounters: movers on a collision course with a robot that walks straight at nominal speed."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -15,22 +15,22 @@ class NominalWalk:
     """Straight lines from the start through all points at constant speed.
 
     Args:
-        places: the start and the points (n, 2), n >= 2 [m].
+        points: the start and the waypoints (n, 2), n >= 2 [m].
         speed: [m/s].
     """
 
-    def __init__(self, places: Sequence[Point], speed: float) -> None:
-        self._legs = list(pairwise(places))
+    def __init__(self, points: Sequence[Point], speed: float) -> None:
+        self._legs = list(pairwise(points))
         self._speed = speed
         self._ends = np.cumsum([_length(leg) for leg in self._legs]) / speed
 
     @property
     def duration(self) -> float:
-        """Time at which it arrives at the last point [s]."""
+        """Arrival time at the last point [s]."""
         return float(self._ends[-1])
 
     def at(self, time: float) -> tuple[Point, Point]:
-        """Position [m] and velocity [m/s] at `time` [s], not after the last point."""
+        """Return position [m] and velocity [m/s] at `time` [s], up to the last point."""
         k = min(int(np.searchsorted(self._ends, time, side="right")), len(self._legs) - 1)
         leg = self._legs[k]
         length = _length(leg)
@@ -41,18 +41,18 @@ class NominalWalk:
 
 
 def course_to(velocity: Point, speed: float, bearing: float) -> Point | None:
-    """Velocity of a mover that a walking robot sees come under a constant bearing.
+    """Return the velocity of a mover that approaches a walking robot at a constant bearing.
 
-    Bearing and velocities make a triangle: seen from the robot the mover comes straight
-    towards it, at a rate k: v_mover = v_robot - k u(bearing), |v_mover| = speed.
+    Relative to the robot the mover closes in at a rate k: v_mover = v_robot - k u(bearing) with
+    |v_mover| = speed.
 
     Args:
         velocity: of the robot [m/s].
         speed: of the mover [m/s].
-        bearing: of the mover, from the robot's way, counter-clockwise [rad].
+        bearing: of the mover, from the direction of travel, counter-clockwise [rad].
 
     Returns:
-        The velocity [m/s]; None if a mover of that speed cannot come from there.
+        The velocity [m/s]; None if a mover of that speed cannot approach from there.
     """
     pace = hypot(*velocity)
     along = pace * cos(bearing)
@@ -63,41 +63,41 @@ def course_to(velocity: Point, speed: float, bearing: float) -> Point | None:
     if rate <= 0.0:
         return None
     ahead_x, ahead_y = velocity[0] / pace, velocity[1] / pace
-    see_x = ahead_x * cos(bearing) - ahead_y * sin(bearing)
-    see_y = ahead_x * sin(bearing) + ahead_y * cos(bearing)
-    return velocity[0] - rate * see_x, velocity[1] - rate * see_y
+    sight_x = ahead_x * cos(bearing) - ahead_y * sin(bearing)
+    sight_y = ahead_x * sin(bearing) + ahead_y * cos(bearing)
+    return velocity[0] - rate * sight_x, velocity[1] - rate * sight_y
 
 
-def passage_through(place: Point, velocity: Point, time: float, reach: Point) -> Passage | None:
-    """Passage that is at `place` at `time` and stays in a box around the origin.
+def passage_through(point: Point, velocity: Point, time: float, reach: Point) -> Passage | None:
+    """Return a passage through `point` at `time` within a box around the origin.
 
     Args:
-        place: where it meets [m].
-        velocity: with which it meets [m/s].
-        time: when it meets [s].
+        point: position at `time` [m].
+        velocity: [m/s].
+        time: [s].
         reach: half sides of the box for its axis [m].
 
     Returns:
-        The law, from rim to rim or from where it must be at time zero; None if `place`
-        is outside.
+        The passage, from border to border or from its position at time zero; None if `point` is
+        outside the box.
     """
-    if abs(place[0]) >= reach[0] or abs(place[1]) >= reach[1]:
+    if abs(point[0]) >= reach[0] or abs(point[1]) >= reach[1]:
         return None
-    before = min(time, _to_rim(place, (-velocity[0], -velocity[1]), reach))
-    after = _to_rim(place, velocity, reach)
+    before = min(time, _to_border(point, (-velocity[0], -velocity[1]), reach))
+    after = _to_border(point, velocity, reach)
     return Passage(
-        (place[0] - before * velocity[0], place[1] - before * velocity[1]),
-        (place[0] + after * velocity[0], place[1] + after * velocity[1]),
+        (point[0] - before * velocity[0], point[1] - before * velocity[1]),
+        (point[0] + after * velocity[0], point[1] + after * velocity[1]),
         hypot(*velocity),
         depart=time - before,
     )
 
 
-def _to_rim(place: Point, velocity: Point, reach: Point) -> float:
-    """Time until the rim of the box [s]."""
+def _to_border(point: Point, velocity: Point, reach: Point) -> float:
+    """Return the time until the border of the box [s]."""
     times = [
         ((r if v > 0.0 else -r) - p) / v if v else inf
-        for p, v, r in zip(place, velocity, reach, strict=True)
+        for p, v, r in zip(point, velocity, reach, strict=True)
     ]
     return min(times)
 

@@ -1,4 +1,4 @@
-"""Distances that make a world fair, between surfaces unless a point is named."""
+"""Minimum distances of a fair world, between surfaces except where a point is named."""
 
 from math import radians
 
@@ -10,7 +10,7 @@ START_TO_MOVER = 0.90  # from the start, a point [m]
 POINT_TO_STATIC = ROBOT_RADIUS + 0.25  # from via points and goal [m]
 LANE_TO_STATIC = 0.30  # between a mover and a static obstacle [m]
 LANE_TO_LANE = 0.05  # between two movers [m]
-LANE_TO_GOAL = ROBOT_RADIUS + 0.30  # between a turning mover and the goal, a point [m]
-POINT_TO_RIM = 0.35  # from the rim to points the robot must reach [m]
-OBSTACLE_TO_RIM = 0.05  # from the rim to obstacles [m]
-START_TURN = radians(60.0)  # the robot faces the first via point within this [rad]
+LANE_TO_GOAL = ROBOT_RADIUS + 0.30  # between a reversing mover and the goal, a point [m]
+POINT_TO_BORDER = 0.35  # from the border to points that the robot must reach [m]
+OBSTACLE_TO_BORDER = 0.05  # from the border to obstacles [m]
+START_TURN = radians(60.0)  # maximum angle between the start heading and the first via point [rad]

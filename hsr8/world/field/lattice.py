@@ -1,12 +1,12 @@
-"""Places and moves of a disc that walks among obstacles, and which are free when.
+"""Space-time lattice of a disc among obstacles: cells, moves and free cells over time.
 
-The robot is a disc on a square lattice with eight headings; it walks forward, turns on the
-spot, or stands. Walking backward and sideways are left out: a proof may do without. Time
-goes in layers. A move goes to a neighbour, or turns by 45 deg, in a whole number of layers,
-never faster than the robot can. During a move the disc is nearer than half the move to one of
-its two places, so both are asked to be free with that much to spare; standing obstacles
-are compared with the whole way instead. A mover is looked at in the middle of each layer,
-and its radius grows by the way it goes in half of one. So what is free here is free.
+The robot is a disc on a square lattice with eight headings. It walks forward, turns in place or
+stands; backward and sideways walking are left out, which a proof may do. Time has layers. A move
+leads to a neighbour, or turns by 45 deg, in a whole number of layers, never faster than the robot
+can. During a move the disc is closer than half the move to one of the two cells, so both must be
+free with that margin. Static obstacles are checked against the whole move instead. A mover is
+checked in the middle of each layer, with its radius enlarged by its motion in half a layer. A
+free cell is therefore free of collisions.
 """
 
 from dataclasses import dataclass
@@ -21,45 +21,45 @@ from hsr8.world.field.layout import Layout
 
 Array = NDArray[np.float64]
 Bits = NDArray[np.uint8]
-"""One byte for each place, one bit for each heading."""
+"""One byte per cell, one bit per heading."""
 
 ALL = 0xFF
-DISC = ROBOT_RADIUS + 0.02  # radius of the disc, the robot's and something to spare [m]
-WAYS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
+DISC = ROBOT_RADIUS + 0.02  # radius of the disc, with a margin [m]
+DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 HALF_MOVE = 0.5 * 2.0**0.5  # of the longest move [cell]
-LAYERS_PER_CELL = 2  # layers in which the robot walks one cell forward
+LAYERS_PER_CELL = 2  # layers of a straight move to a neighbour [1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Move:
-    """Forward from a place to its neighbour.
+    """Move forward to a neighbour.
 
     Attributes:
-        way: to the neighbour, in cells.
-        layers: how long it takes.
-        edge: states from which it can be made (n, m).
+        direction: to the neighbour [cells].
+        layers: duration [layers].
+        edge: states in which the move can start (n, m).
     """
 
-    way: tuple[int, int]
+    direction: tuple[int, int]
     layers: int
     edge: Bits
 
 
 class Lattice:
-    """The lattice of a world; the start is one of its places.
+    """Lattice of a world; the start is one of its cells.
 
     Args:
         layout: the world.
-        speed: what the robot can do.
+        speed: speed limits of the robot.
         cell: distance of neighbours [m].
 
     Attributes:
         cell: distance of neighbours [m].
         layer: duration of a layer [s].
-        moves: all that leave a place.
-        turn: layers that a turn by 45 deg takes.
-        x: coordinates of the places (n,) [m].
-        y: likewise (m,) [m].
+        moves: all moves from a cell.
+        turn: duration of a turn by 45 deg [layers].
+        x: coordinates of the cells along x (n,) [m].
+        y: coordinates of the cells along y (m,) [m].
         start: indices of the start.
     """
 
@@ -74,42 +74,37 @@ class Lattice:
         self._movers = layout.motion()
         reach = np.array([o.radius for o in layout.movers]) + DISC + HALF_MOVE * cell
         self._reach2 = (reach + 0.5 * self.layer * self._movers.top_speeds()) ** 2
-        self._standing = self._clear(layout, (0.0, 0.0))
+        self._static = self._clear(layout, (0.0, 0.0))
         self.moves = self._moves(layout, speed.vx)
 
     def free(self, layer: int) -> Bits:
-        """Places that are free during a layer (n, m), 0 or `ALL`."""
+        """Return the cells that are free during a layer (n, m), 0 or `ALL`."""
         if len(self._movers) == 0:
-            return self._standing
+            return self._static
         at = self._movers.positions((layer + 0.5) * self.layer)
         dx2, dy2 = (self.x - at[:, :1]) ** 2, (self.y - at[:, 1:]) ** 2
         hit = (dx2[:, :, None] + dy2[:, None, :] <= self._reach2[:, None, None]).any(axis=0)
-        return np.where(hit, np.uint8(0), self._standing)
+        return np.where(hit, np.uint8(0), self._static)
 
     def connected(self) -> Bits:
-        """Places that could be reached if nothing moved (n, m), 0 or `ALL`."""
-        n, m = self._standing.shape
-        found = np.zeros_like(self._standing)
-        found[self.start] = self._standing[self.start]
+        """Return the cells reachable among static obstacles alone (n, m), 0 or `ALL`."""
+        reached = np.zeros_like(self._static)
+        reached[self.start] = self._static[self.start]
         count = -1
-        while count != (count := int(np.count_nonzero(found))):
+        while count != (count := int(np.count_nonzero(reached))):
             for move in self.moves:
-                dx, dy = move.way
-                leave = np.where(move.edge, found, np.uint8(0))
-                found[max(dx, 0) : n + min(dx, 0), max(dy, 0) : m + min(dy, 0)] |= leave[
-                    max(-dx, 0) : n - max(dx, 0), max(-dy, 0) : m - max(dy, 0)
-                ]
-        return found
+                reached |= shifted(np.where(move.edge, reached, np.uint8(0)), move.direction)
+        return reached
 
     def near(self, point: tuple[float, float] | list[float], distance: float) -> Bits:
-        """Places within `distance` [m] of `point` (n, m), 0 or `ALL`."""
+        """Return the cells within `distance` [m] of `point` (n, m), 0 or `ALL`."""
         gap = np.hypot((self.x - point[0])[:, None], (self.y - point[1])[None])
         return _bits(gap <= distance)
 
     def _moves(self, layout: Layout, forward: float) -> tuple[Move, ...]:
         moves = []
-        for way, (dx, dy) in enumerate(WAYS):
-            edge = self._edge(layout, (dx, dy)) & np.uint8(1 << way)
+        for heading, (dx, dy) in enumerate(DIRECTIONS):
+            edge = self._edge(layout, (dx, dy)) & np.uint8(1 << heading)
             time = self.cell * (dx * dx + dy * dy) ** 0.5 / forward
             moves.append(Move((dx, dy), self._layers(time), edge))
         return tuple(moves)
@@ -117,35 +112,43 @@ class Lattice:
     def _layers(self, time: float) -> int:
         return ceil(time / self.layer - 1e-9)
 
-    def _edge(self, layout: Layout, way: tuple[int, int]) -> Bits:
-        """Places from which the neighbour in some way exists and is reached without contact."""
-        free = self._clear(layout, (self.cell * way[0], self.cell * way[1]))
-        (dx, dy), there = way, np.zeros_like(free)
-        n, m = free.shape
-        there[max(-dx, 0) : n - max(dx, 0), max(-dy, 0) : m - max(dy, 0)] = ALL
-        edge: Bits = free & there
+    def _edge(self, layout: Layout, direction: tuple[int, int]) -> Bits:
+        """Return the cells whose neighbour in a direction exists and can be reached."""
+        dx, dy = direction
+        free = self._clear(layout, (self.cell * dx, self.cell * dy))
+        edge: Bits = free & shifted(np.full_like(free, ALL), (-dx, -dy))
         return edge
 
     def _clear(self, layout: Layout, move: tuple[float, float]) -> Bits:
-        """Places from which a straight `move` [m] clears all standing obstacles."""
+        """Return the cells from which a straight `move` [m] clears all static obstacles."""
         clear = np.ones((len(self.x), len(self.y)), dtype=bool)
         square = move[0] ** 2 + move[1] ** 2
         for obstacle in layout.static:
             dx = (self.x - obstacle.position[0])[:, None]
             dy = (self.y - obstacle.position[1])[None]
-            # Share of the move at which it comes nearest.
-            share = np.clip(-(dx * move[0] + dy * move[1]) / (square or 1.0), 0.0, 1.0)
-            gap2 = (dx + share * move[0]) ** 2 + (dy + share * move[1]) ** 2
+            # Fraction of the move at the closest approach.
+            fraction = np.clip(-(dx * move[0] + dy * move[1]) / (square or 1.0), 0.0, 1.0)
+            gap2 = (dx + fraction * move[0]) ** 2 + (dy + fraction * move[1]) ** 2
             clear &= gap2 > (obstacle.radius + DISC) ** 2
         return _bits(clear)
 
 
+def shifted(bits: Bits, direction: tuple[int, int]) -> Bits:
+    """Return `bits` (..., n, m) moved by some cells along both axes, filled up with 0."""
+    (dx, dy), (n, m) = direction, bits.shape[-2:]
+    moved = np.zeros_like(bits)
+    moved[..., max(dx, 0) : n + min(dx, 0), max(dy, 0) : m + min(dy, 0)] = bits[
+        ..., max(-dx, 0) : n - max(dx, 0), max(-dy, 0) : m - max(dy, 0)
+    ]
+    return moved
+
+
 def _aligned(half: float, through: float, cell: float) -> tuple[Array, int]:
-    """Multiples of `cell` from `through` within +-`half` [m], and the index of `through`."""
+    """Return multiples of `cell` from `through` within +-`half` [m], and the index of `through`."""
     below = max(0, int((half + through) / cell + 1e-9))
     above = max(0, int((half - through) / cell + 1e-9))
-    places: Array = through + cell * np.arange(-below, above + 1, dtype=np.float64)
-    return places, below
+    coordinates: Array = through + cell * np.arange(-below, above + 1, dtype=np.float64)
+    return coordinates, below
 
 
 def _bits(mask: NDArray[np.bool_]) -> Bits:

@@ -1,4 +1,4 @@
-"""What stands and moves in the world of one run."""
+"""Layout of a world: obstacles, beacons, start and waypoints."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,20 +15,20 @@ Array = NDArray[np.float64]
 OBSTACLE_HEIGHT = 0.30  # [m]
 BEACON_RADIUS = 0.05  # [m]
 BEACON_HEIGHT = 0.60  # [m]
-BEACON_OFFSET = 0.3  # distance of the beacons from the rim of the field [m]
+BEACON_OFFSET = 0.3  # distance of the beacons from the border of the field [m]
 BEACON_COLORS = ("yellow", "cyan", "magenta")
 
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """An upright cylinder on the floor.
+    """Upright cylinder on the floor.
 
     Attributes:
-        position: its axis in W, of a mover at time zero [m].
+        position: axis in W, of a mover at time zero [m].
         radius: [m].
         height: [m].
-        color: name of its colour class.
-        motion: how it moves; None when it stands still.
+        color: name of the colour class.
+        motion: motion laws of a mover; None of a static obstacle.
     """
 
     position: Point
@@ -40,16 +40,16 @@ class Obstacle:
 
 @dataclass(frozen=True, slots=True)
 class Beacon:
-    """A two-coloured post at a place the robot knows, unless somebody moved it.
+    """Beacon: two-colour landmark at a known position.
 
     Attributes:
         name: ``top/bottom``.
-        position: its axis in W [m].
+        position: axis in W [m].
         top: colour of the upper half.
         bottom: colour of the lower half.
         radius: [m].
         height: [m].
-        known: where the robot takes it to be; None if it is there [m].
+        known: position on the robot's map, if it differs [m].
     """
 
     name: str
@@ -62,23 +62,23 @@ class Beacon:
 
     @property
     def believed(self) -> Point:
-        """Where the robot takes its axis to be in W [m]."""
+        """Position of the axis on the robot's map in W [m]."""
         return self.position if self.known is None else self.known
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layout:
-    """The world of one run.
+    """World of one run.
 
     Attributes:
         field_size: extent of the field along x and y, centred on the origin of W [m].
-        obstacles: static ones first, movers after.
-        beacons: known landmarks.
+        obstacles: static obstacles, then movers.
+        beacons: landmarks.
         start: x, y, heading of the robot at time zero [m, m, rad].
-        waypoints: points to pass in W (n, 2) [m]; empty when nothing is to be reached.
-        goal_heading: heading to arrive with at the last [rad]; None for any.
-        endless: the first point follows the last.
-        bumps: low discs on the floor, which are faults.
+        waypoints: points to pass in W (n, 2) [m]; empty without a destination.
+        goal_heading: required heading at the last waypoint [rad]; None for any.
+        endless: the first waypoint follows the last one.
+        bumps: low discs on the floor (faults).
     """
 
     field_size: Point
@@ -92,24 +92,24 @@ class Layout:
 
     @property
     def static(self) -> tuple[Obstacle, ...]:
-        """Obstacles that stand still."""
+        """Obstacles without motion."""
         return tuple(o for o in self.obstacles if o.motion is None)
 
     @property
     def movers(self) -> tuple[Obstacle, ...]:
-        """Obstacles that move."""
+        """Obstacles with a motion laws."""
         return tuple(o for o in self.obstacles if o.motion is not None)
 
     def motion(self) -> Movers:
-        """The laws of all movers."""
+        """Return the motion laws of all movers."""
         return Movers(tuple(o.motion for o in self.obstacles if o.motion is not None))
 
 
 def standard_beacons(field_size: Point) -> tuple[Beacon, ...]:
-    """Six beacons around a field, one for every ordered pair of the beacon colours.
+    """Return six beacons around a field, one for every ordered pair of the beacon colours.
 
-    They stand on the rectangle `BEACON_OFFSET` outside the rim, 60 deg apart as seen
-    from its centre, so that the same two colours never stand side by side.
+    They are on the rectangle `BEACON_OFFSET` outside the border, 60 deg apart as seen from its
+    centre, so that neighbours never have the same two colours.
     """
     half = 0.5 * np.asarray(field_size, dtype=float) + BEACON_OFFSET
     y, c, m = BEACON_COLORS
@@ -117,25 +117,25 @@ def standard_beacons(field_size: Point) -> tuple[Beacon, ...]:
     beacons = []
     for k, (top, bottom) in enumerate(pairs):
         angle = np.pi / 6.0 + k * np.pi / 3.0
-        way = np.array([np.cos(angle), np.sin(angle)])
-        x, y_ = (way * np.min(half / np.maximum(np.abs(way), 1e-9))).round(3).tolist()
+        unit = np.array([np.cos(angle), np.sin(angle)])
+        x, y_ = (unit * np.min(half / np.maximum(np.abs(unit), 1e-9))).round(3).tolist()
         beacons.append(Beacon(f"{top}/{bottom}", (x + 0.0, y_ + 0.0), top, bottom))
     return tuple(beacons)
 
 
 def with_first_moved(beacons: tuple[Beacon, ...], distance: float) -> tuple[Beacon, ...]:
-    """Beacons whose first one stands elsewhere than the robot knows, along the rim [m]."""
+    """Return the beacons with the first one moved along the border by `distance` [m]."""
     if distance == 0.0:
         return beacons
     first = beacons[0]
     x, y = first.position
-    share = distance / hypot(x, y)
-    moved = replace(first, position=(x - share * y, y + share * x), known=first.position)
+    ratio = distance / hypot(x, y)
+    moved = replace(first, position=(x - ratio * y, y + ratio * x), known=first.position)
     return (moved, *beacons[1:])
 
 
 def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:
-    """`layout` with the movers that appear and the bumps that `faults` put into it."""
+    """Return `layout` with the appearing movers and bumps of `faults`."""
     obstacles = list(layout.obstacles)
     first = len(layout.static)
     for fault in faults:
@@ -143,7 +143,9 @@ def with_faults(layout: Layout, faults: Sequence[Fault]) -> Layout:
             mover = obstacles[first + fault.mover]
             assert mover.motion is not None
             end = inf if fault.end is None else fault.end
-            law = Appearing(mover.motion, fault.begin, end)
-            obstacles[first + fault.mover] = replace(mover, position=law.position(0.0), motion=law)
+            motion = Appearing(mover.motion, fault.begin, end)
+            obstacles[first + fault.mover] = replace(
+                mover, position=motion.position(0.0), motion=motion
+            )
     bumps = tuple(fault for fault in faults if isinstance(fault, Bump))
     return replace(layout, obstacles=tuple(obstacles), bumps=bumps) if faults else layout

@@ -138,26 +138,26 @@ class Circle:
 
 @dataclass(frozen=True, slots=True)
 class Appearing:
-    """Another law during an interval; outside it the mover is far away.
+    """Another motion during an interval; outside it the mover is far away.
 
     Attributes:
-        law: while the mover is present.
+        motion: while the mover is present.
         start: of the interval [s].
         end: of the interval [s].
     """
 
-    law: "MotionLaw"
+    motion: "MotionLaw"
     start: float
     end: float = inf
 
     def position(self, time: float) -> Point:
         """Return the position at `time` [s]."""
-        x, y = self.law.position(time)
+        x, y = self.motion.position(time)
         return (x, y) if self._present(time) else (x + AWAY, y)
 
     def velocity(self, time: float) -> Point:
         """Return the velocity at `time` [m/s]; zero while the mover is away."""
-        return self.law.velocity(time) if self._present(time) else (0.0, 0.0)
+        return self.motion.velocity(time) if self._present(time) else (0.0, 0.0)
 
     def _present(self, time: float) -> bool:
         return self.start <= time + SAME_TIME < self.end
@@ -166,31 +166,32 @@ class Appearing:
 MotionLaw = Line | Shuttle | Circle | Passage | Wander | Appearing
 
 
-def pace(law: MotionLaw) -> float:
+def pace(motion: MotionLaw) -> float:
     """Return the speed of a mover while it moves [m/s]."""
-    match law:
+    match motion:
         case Appearing():
-            return pace(law.law)
+            return pace(motion.motion)
         case Line():
-            return hypot(*law.rate)
-    return abs(law.speed)
+            return hypot(*motion.rate)
+    return abs(motion.speed)
 
 
 class Movers:
     """All moving obstacles of a layout, evaluated together.
 
-    Lines, shuttles and circles are evaluated as arrays, other laws one by one.
+    Lines, shuttles and circles are evaluated as arrays, other motions one by one.
 
     Args:
-        laws: in layout order.
+        motions: in layout order.
     """
 
-    def __init__(self, laws: tuple[MotionLaw, ...]) -> None:
-        self.laws = laws
-        straight = {k: _lane(w) for k, w in enumerate(laws) if isinstance(w, Line | Shuttle)}
-        circles = {k: law for k, law in enumerate(laws) if isinstance(law, Circle)}
+    def __init__(self, motions: tuple[MotionLaw, ...]) -> None:
+        self.motions = motions
+        straight = {k: _lane(w) for k, w in enumerate(motions) if isinstance(w, Line | Shuttle)}
+        circles = {k: c for k, c in enumerate(motions) if isinstance(c, Circle)}
+        other = Passage | Wander | Appearing
         self._others = [
-            (k, law) for k, law in enumerate(laws) if isinstance(law, Passage | Wander | Appearing)
+            (k, motion) for k, motion in enumerate(motions) if isinstance(motion, other)
         ]
         self._straight = np.array(list(straight), dtype=np.intp)
         lanes = np.array(list(straight.values()), dtype=float).reshape(-1, 7)
@@ -203,12 +204,12 @@ class Movers:
         self._circle_speed, self._rate = table[:, 3:4], table[:, 3] / table[:, 2]
 
     def __len__(self) -> int:
-        return len(self.laws)
+        return len(self.motions)
 
     def positions(self, time: float | Array) -> Array:
         """Return the positions at `time` [s] (...), in layout order (..., n, 2) [m]."""
         times = np.asarray(time, dtype=float)
-        positions = np.empty((*times.shape, len(self.laws), 2))
+        positions = np.empty((*times.shape, len(self.motions), 2))
         if len(self._straight):
             travelled = np.mod(self._offset + self._speed * times[..., None], self._period)
             along = np.minimum(travelled, self._period - travelled)[..., None]
@@ -217,14 +218,14 @@ class Movers:
             angle = self._angle + self._rate * times[..., None]
             unit = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
             positions[..., self._circles, :] = self._centre + self._radius * unit
-        for k, law in self._others:
-            points = [law.position(instant) for instant in times.ravel().tolist()]
+        for k, motion in self._others:
+            points = [motion.position(instant) for instant in times.ravel().tolist()]
             positions[..., k, :] = np.reshape(points, (*times.shape, 2))
         return positions
 
     def velocities(self, time: float) -> Array:
         """Return the velocities at `time` [s], in layout order (n, 2) [m/s]."""
-        velocities = np.empty((len(self.laws), 2))
+        velocities = np.empty((len(self.motions), 2))
         if len(self._straight):
             travelled = np.mod(self._offset + self._speed * time, self._period)
             rate = np.where(travelled < 0.5 * self._period, self._speed, -self._speed)
@@ -233,13 +234,13 @@ class Movers:
             angle = self._angle + self._rate * time
             unit = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
             velocities[self._circles] = self._circle_speed * unit
-        for k, law in self._others:
-            velocities[k] = law.velocity(time)
+        for k, motion in self._others:
+            velocities[k] = motion.velocity(time)
         return velocities
 
     def top_speeds(self) -> Array:
         """Return the maximum speed of each mover, in layout order (n,) [m/s]."""
-        return np.array([pace(law) for law in self.laws], dtype=float)
+        return np.array([pace(motion) for motion in self.motions], dtype=float)
 
 
 def _between(start: Point, end: Point, fraction: float) -> Point:
@@ -247,12 +248,12 @@ def _between(start: Point, end: Point, fraction: float) -> Point:
     return start[0] + fraction * (end[0] - start[0]), start[1] + fraction * (end[1] - start[1])
 
 
-def _lane(law: Line | Shuttle) -> tuple[float, ...]:
-    """Return origin, unit direction, speed, length and offset of a straight law."""
-    if isinstance(law, Shuttle):
-        length = law.length
-        x, y = (law.end[0] - law.start[0]) / length, (law.end[1] - law.start[1]) / length
-        return *law.start, x, y, law.speed, length, law.offset
-    speed = hypot(*law.rate)
-    x, y = (law.rate[0] / speed, law.rate[1] / speed) if speed > 0.0 else (0.0, 0.0)
-    return *law.start, x, y, speed, inf, 0.0
+def _lane(motion: Line | Shuttle) -> tuple[float, ...]:
+    """Return origin, unit direction, speed, length and offset of a straight motion."""
+    if isinstance(motion, Shuttle):
+        length, start, end = motion.length, motion.start, motion.end
+        x, y = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+        return *motion.start, x, y, motion.speed, length, motion.offset
+    speed = hypot(*motion.rate)
+    x, y = (motion.rate[0] / speed, motion.rate[1] / speed) if speed > 0.0 else (0.0, 0.0)
+    return *motion.start, x, y, speed, inf, 0.0

@@ -1,29 +1,29 @@
-"""Where a robot that knows everything can be, layer of time after layer of time."""
+"""Reachability in the space-time lattice, layer by layer."""
 
 from math import ceil, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.world.field.lattice import ALL, WAYS, Bits, Lattice, Move
+from hsr8.world.field.lattice import ALL, DIRECTIONS, Bits, Lattice, Move, shifted
 
 Array = NDArray[np.float64]
 State = tuple[int, int, int, int]
-"""Points passed, indices of the place, heading."""
+"""Points passed, indices of the cell, heading."""
 
-EIGHTH = 2.0 * pi / len(WAYS)
-SHEETS = 2  # followed at a time
+EIGHTH = 2.0 * pi / len(DIRECTIONS)
+SHEETS = 2  # propagated at a time
 
 
 class Reachable:
-    """All states that are reached without contact, as sheets of places.
+    """All states that are reachable without contact, as sheets of cells.
 
-    One sheet holds the states after a number of points passed; a state at the next point
-    is in the next sheet as well. The two farthest sheets are followed: the first to reach
-    a point may be trapped there while those behind it are not.
+    One sheet holds the states after a number of passed points; a state at the next point is also
+    in the next sheet. The two farthest sheets are propagated: the first state at a point may be
+    trapped there while later ones are not.
 
     Args:
-        lattice: places and moves.
+        lattice: cells and moves.
         targets: states (n, m) that pass each point, in order.
 
     Attributes:
@@ -32,7 +32,7 @@ class Reachable:
 
     def __init__(self, lattice: Lattice, targets: list[Bits]) -> None:
         self._lattice, self._targets = lattice, targets
-        self._longest = max(lattice.turn, *(move.layers for move in lattice.moves))
+        self._max_layers = max(lattice.turn, *(move.layers for move in lattice.moves))
         self._free: list[Bits] = []
         self._states: list[Bits] = []
         self.passed = 0
@@ -44,19 +44,19 @@ class Reachable:
 
     @property
     def time(self) -> float:
-        """How far it was followed [s]."""
+        """Time of the last layer [s]."""
         return (len(self._states) - 1) * self._lattice.layer
 
-    def follow(self, heading: float, turn: float, layers: int) -> None:
-        """Follow all states until the last point is reached, none is left, or time is over.
+    def propagate(self, heading: float, turn: float, layers: int) -> None:
+        """Propagate all states until the last point is reached, none is left, or time is over.
 
         Args:
             heading: at the start [rad].
-            turn: time for the turn to the nearest heading of the lattice [s].
-            layers: to follow at most.
+            turn: duration of the turn to the nearest heading of the lattice [s].
+            layers: maximum number.
         """
-        places = len(self._lattice.x), len(self._lattice.y)
-        sheets = np.zeros((len(self._targets) + 1, *places), dtype=np.uint8)
+        shape = len(self._lattice.x), len(self._lattice.y)
+        sheets = np.zeros((len(self._targets) + 1, *shape), dtype=np.uint8)
         self._states.append(sheets)
         i, j = self._lattice.start
         begin, standing = ceil(turn / self._lattice.layer - 1e-9), True
@@ -66,9 +66,9 @@ class Reachable:
             standing = standing and bool(self._free[-1][i, j])
         if not standing:
             return
-        self._states[-1][0, i, j] = 1 << round(heading / EIGHTH) % len(WAYS)
+        self._states[-1][0, i, j] = 1 << round(heading / EIGHTH) % len(DIRECTIONS)
         self._pass_points(0, self._states[-1])
-        low, clear = 0, [np.full_like(sheets[0], ALL) for _ in range(self._longest + 1)]
+        low, clear = 0, [np.full_like(sheets[0], ALL) for _ in range(self._max_layers + 1)]
         while not self.arrived and len(self._states) <= layers:
             free = self._lattice.free(len(self._free))
             self._free.append(free)
@@ -78,19 +78,14 @@ class Reachable:
             self._states.append(states)
             self._pass_points(low, states)
             low = max(low, self.passed + 1 - SHEETS)
-            if not states[low:].any() and len(self._states) > begin + self._longest:
+            if not states[low:].any() and len(self._states) > begin + self._max_layers:
                 return
 
     def path(self) -> Array:
-        """A path to the last point: time, x, y, heading (n, 4) [s, m, m, rad].
+        """Return a path to the last point, which is reached: time, x, y, heading (n, 4).
 
-        It waits as late as it can, for else it would make ways that lead nowhere.
-
-        Raises:
-            ValueError: the last point is not reached.
+        Units [s, m, m, rad]. The path waits as late as possible, so that it has no detours.
         """
-        if not self.arrived:
-            raise ValueError("there is no path: the last point is not reached")
         layer, passed = len(self._states) - 1, self.passed
         i, j = (int(k[0]) for k in np.nonzero(self._states[layer][passed]))
         bits = int(self._states[layer][passed, i, j])
@@ -108,18 +103,17 @@ class Reachable:
         ]
         path = np.array(rows)
         path[:, 3] = np.unwrap(path[:, 3])
-        # Only where the motion changes.
+        # Keep the rows at which the motion changes.
         rates = np.diff(path[:, 1:], axis=0) / np.diff(path[:, :1], axis=0)
         bends = np.abs(np.diff(rates, axis=0)).max(axis=1) > 1e-9
         kept: Array = path[np.concatenate([[True], bends, [True]])]
         return kept
 
     def _next(self, low: int, clear: list[Bits]) -> Bits:
-        """States of the layer after the last."""
+        """Return the states of the next layer."""
         high = self.passed + 1
         states = np.zeros_like(self._states[-1])
         states[low:high] = self._states[-1][low:high] & clear[1]
-        n, m = clear[0].shape
         since: dict[int, Bits] = {}
         made: dict[int, Bits] = {}
         for layers in {self._lattice.turn, *(move.layers for move in self._lattice.moves)}:
@@ -129,18 +123,14 @@ class Reachable:
         for move in self._lattice.moves:
             if move.layers not in since:
                 continue
-            dx, dy = move.way
-            leave = since[move.layers] & move.edge
-            made[move.layers][:, max(dx, 0) : n + min(dx, 0), max(dy, 0) : m + min(dy, 0)] |= leave[
-                :, max(-dx, 0) : n - max(dx, 0), max(-dy, 0) : m - max(dy, 0)
-            ]
+            made[move.layers] |= shifted(since[move.layers] & move.edge, move.direction)
         turning = since.get(self._lattice.turn)
         if turning is not None:
             made[self._lattice.turn] |= (
                 (turning << 1) | (turning >> 7) | (turning >> 1) | (turning << 7)
             )
-        for layers, there in made.items():
-            states[low:high] |= there & clear[layers]
+        for layers, moved in made.items():
+            states[low:high] |= moved & clear[layers]
         return states
 
     def _pass_points(self, low: int, states: Bits) -> None:
@@ -153,7 +143,7 @@ class Reachable:
             self.passed += 1
 
     def _before(self, layer: int, state: State) -> tuple[int, State] | None:
-        """A state from which `state` was reached, and its layer; None at the start."""
+        """Return a predecessor of `state` and its layer; None at the start."""
         passed, i, j, heading = state
         if self._has(layer - 1, state) and self._clear(layer, 1, i, j):
             return layer - 1, state
@@ -166,22 +156,22 @@ class Reachable:
             if source is not None:
                 return source
         turn = self._lattice.turn
-        for other in ((heading + 1) % len(WAYS), (heading - 1) % len(WAYS)):
+        for other in ((heading + 1) % len(DIRECTIONS), (heading - 1) % len(DIRECTIONS)):
             if self._has(layer - turn, (passed, i, j, other)) and self._clear(layer, turn, i, j):
                 return layer - turn, (passed, i, j, other)
         return None
 
     def _source(self, layer: int, state: State, move: Move) -> tuple[int, State] | None:
         passed, i, j, heading = state
-        dx, dy = move.way
-        there = i - dx, j - dy
+        dx, dy = move.direction
+        cell = i - dx, j - dy
         n, m = self._targets[0].shape
-        if not (0 <= there[0] < n and 0 <= there[1] < m):
+        if not (0 <= cell[0] < n and 0 <= cell[1] < m):
             return None
-        before: State = (passed, *there, heading)
-        if not (int(move.edge[there]) & (1 << heading) and self._has(layer - move.layers, before)):
+        before: State = (passed, *cell, heading)
+        if not (int(move.edge[cell]) & (1 << heading) and self._has(layer - move.layers, before)):
             return None
-        clear = all(self._clear(layer, move.layers, *place) for place in (there, (i, j)))
+        clear = all(self._clear(layer, move.layers, *end) for end in (cell, (i, j)))
         return (layer - move.layers, before) if clear else None
 
     def _has(self, layer: int, state: State) -> bool:
@@ -189,5 +179,5 @@ class Reachable:
         return layer >= 0 and bool(int(self._states[layer][passed, i, j]) & (1 << heading))
 
     def _clear(self, layer: int, layers: int, i: int, j: int) -> bool:
-        """Whether a place was free during some layers before `layer`."""
+        """Return whether a cell was free during some layers before `layer`."""
         return all(self._free[k][i, j] for k in range(layer - layers, layer))

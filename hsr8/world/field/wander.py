@@ -1,4 +1,4 @@
-"""Wandering: round a smooth closed track that bends left and right, at constant speed."""
+"""Wandering movers: constant speed along a smooth closed track with left and right bends."""
 
 from dataclasses import dataclass
 from math import floor, pi
@@ -9,30 +9,30 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
-CORNERS = 192  # of the polygon that stands for the smooth track
-FINE = 1024  # points from which the corners are chosen
-ROUGH = 128  # points at which the bends of a track are looked at
-BEND = 0.08  # least radius of curvature [m]
-TRACKS = 24  # tracks drawn at a time, the first that bends gently enough is taken
+CORNERS = 192  # of the polygon that approximates the track
+FINE = 1024  # samples of the curve from which the corners are chosen
+COARSE = 128  # samples of the curve for its curvature
+MIN_BEND_RADIUS = 0.08  # [m]
+TRACKS = 24  # drawn at a time; the first one with gentle bends is used
 BATCHES = 8
-ORDER = np.arange(1, 4)  # of the waves that x and y are made of, once round being the first
-WAVES = np.array(
+ORDER = np.arange(1, 4)  # of the harmonics of x and y
+AMPLITUDES = np.array(
     [
         [[1.0, 0.3, 0.08], [1.0, 0.3, 0.08]],  # loops with dents
         [[1.0, 0.2, 0.05], [0.2, 0.8, 0.05]],  # figures of eight
     ]
-)  # greatest sizes of these waves [1]
+)  # maximum amplitudes of the harmonics [1]
 
 
 @dataclass(frozen=True, slots=True)
 class Wander:
-    """Round a closed polygon of equal, short sides at constant speed.
+    """Closed polygon with short sides of equal length, at constant speed.
 
     Attributes:
-        track: corners of the polygon, all sides of one length [m].
-        side: that length [m].
+        track: corners of the polygon [m].
+        side: length of every side [m].
         speed: [m/s].
-        offset: way it has gone at time zero, from the first corner [m].
+        offset: distance travelled before time zero, from the first corner [m].
     """
 
     track: tuple[Point, ...]
@@ -42,22 +42,22 @@ class Wander:
 
     @property
     def length(self) -> float:
-        """Once round [m]."""
+        """Length of the track [m]."""
         return self.side * len(self.track)
 
     def position(self, time: float) -> Point:
-        """Position at `time` [s]."""
-        (x, y), (x_next, y_next), share = self._where(time)
-        return x + share * (x_next - x), y + share * (y_next - y)
+        """Return the position at `time` [s]."""
+        (x, y), (x_next, y_next), fraction = self._segment(time)
+        return x + fraction * (x_next - x), y + fraction * (y_next - y)
 
     def velocity(self, time: float) -> Point:
-        """Velocity at `time` [m/s]; at a corner, the one it leaves with."""
-        (x, y), (x_next, y_next), _ = self._where(time)
+        """Return the velocity at `time` [m/s]; at a corner, the velocity after it."""
+        (x, y), (x_next, y_next), _ = self._segment(time)
         rate = self.speed / self.side
         return rate * (x_next - x), rate * (y_next - y)
 
-    def _where(self, time: float) -> tuple[Point, Point, float]:
-        """Corner behind, corner ahead, and the share of the side between that is gone."""
+    def _segment(self, time: float) -> tuple[Point, Point, float]:
+        """Return the corners before and after, and the travelled fraction of the side."""
         sides = (self.offset + self.speed * time) / self.side
         whole = floor(sides)
         n = len(self.track)
@@ -67,23 +67,26 @@ class Wander:
 def draw_wander(
     rng: np.random.Generator, centre: Point, extent: float, speed: float
 ) -> Wander | None:
-    """A mover that wanders about `centre`.
+    """Draw a mover that wanders around `centre`.
 
     Args:
-        rng: draws the track, the sense and where it begins.
-        centre: middle of the box around the track [m].
+        rng: draws track and offset.
+        centre: of the bounding box of the track [m].
         extent: longer side of that box [m].
         speed: [m/s].
 
     Returns:
-        The law; None if no track of that extent bends gently enough.
+        The law; None if no track of that extent has gentle bends.
     """
     for _ in range(BATCHES):
-        size = rng.uniform(0.5, 1.0, (TRACKS, 2, 3)) * WAVES[rng.integers(len(WAVES), size=TRACKS)]
+        size = (
+            rng.uniform(0.5, 1.0, (TRACKS, 2, 3))
+            * AMPLITUDES[rng.integers(len(AMPLITUDES), size=TRACKS)]
+        )
         shift = rng.uniform(-pi, pi, size.shape)
-        box, bend = _shape(size, shift, ROUGH)
+        box, bend = _shape(size, shift, COARSE)
         scale = extent / np.ptp(box, axis=2).max(axis=1)
-        gentle = np.flatnonzero(scale * bend >= BEND)
+        gentle = np.flatnonzero(scale * bend >= MIN_BEND_RADIUS)
         if len(gentle) == 0:
             continue
         k = gentle[0]
@@ -97,36 +100,36 @@ def draw_wander(
 
 
 def _curve(size: Array, shift: Array, n: int) -> Array:
-    """Points (..., n) of closed curves made of waves of some `size` and `shift` (..., h)."""
+    """Return points (..., n) of closed curves with harmonics of `size` and `shift` (..., h)."""
     phase = np.linspace(0.0, 2.0 * pi, n, endpoint=False)
-    waves = size[..., None] * np.cos(ORDER[:, None] * phase + shift[..., None])
-    points: Array = waves.sum(axis=-2)
+    harmonics = size[..., None] * np.cos(ORDER[:, None] * phase + shift[..., None])
+    points: Array = harmonics.sum(axis=-2)
     return points
 
 
 def _shape(size: Array, shift: Array, n: int) -> tuple[Array, Array]:
-    """`n` points (m, 2, n) of curves (m, 2, h) and their least radii of curvature (m,)."""
+    """Return `n` points (m, 2, n) of curves (m, 2, h) and their minimum bend radii (m,)."""
     points = _curve(size, shift, n)
     rate = _curve(size * ORDER, shift + 0.5 * pi, n)
     change = _curve(-size * ORDER**2, shift, n)
     speed = np.hypot(rate[:, 0], rate[:, 1])
     turn = np.abs(rate[:, 0] * change[:, 1] - rate[:, 1] * change[:, 0])
-    least: Array = (speed**3 / np.maximum(turn, 1e-12)).min(axis=1)
-    return points, least
+    radius: Array = (speed**3 / np.maximum(turn, 1e-12)).min(axis=1)
+    return points, radius
 
 
 def _equal_sides(curve: Array) -> tuple[Array, float]:
-    """Corners (CORNERS, 2) of a polygon with equal sides on a closed curve, and the side [m].
+    """Return a polygon (CORNERS, 2) with equal sides on a closed curve, and the side [m].
 
-    Equal arcs have nearly equal chords; a few corrections make them equal.
+    Equal arcs have nearly equal chords; a few iterations make them equal.
     """
     closed = np.vstack([curve, curve[:1]])
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
-    at = np.linspace(0.0, way[-1], CORNERS + 1)
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
+    at = np.linspace(0.0, arc[-1], CORNERS + 1)
     for _ in range(8):
-        corners = np.stack([np.interp(at, way, closed[:, k]) for k in (0, 1)], axis=1)
+        corners = np.stack([np.interp(at, arc, closed[:, k]) for k in (0, 1)], axis=1)
         chord = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
         at = np.interp(np.linspace(0.0, chord[-1], CORNERS + 1), chord, at)
-    corners = np.stack([np.interp(at, way, closed[:, k]) for k in (0, 1)], axis=1)
+    corners = np.stack([np.interp(at, arc, closed[:, k]) for k in (0, 1)], axis=1)
     sides = np.hypot(*np.diff(corners, axis=0).T)
     return corners[:-1], float(sides.mean())

@@ -9,7 +9,7 @@ from hsr8.errors import ScenarioError
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field import fairness
 from hsr8.world.field.attempt import Attempt
-from hsr8.world.field.generator import WORLDS, draw_layout
+from hsr8.world.field.generator import MAX_WORLDS, draw_layout
 
 SEEDS = range(1000, 1025)
 SAMPLED = 0.002  # the drawing takes lanes as points: its distances are this exact [m]
@@ -125,7 +125,7 @@ def test_movers_without_room_are_given_up_soon():
     with pytest.raises(ScenarioError, match="no fair world") as refused:
         draw_layout(load_scenario("course", ["world.n_moving=30"]), 0)
     attempts = int(re.search(r"(\d+) attempts", str(refused.value))[1])
-    assert 1 <= attempts < WORLDS / 2
+    assert 1 <= attempts < MAX_WORLDS / 2
 
 
 def test_things_placed_by_hand_stand_where_they_are_put():

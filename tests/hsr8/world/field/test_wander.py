@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.world.field.wander import BEND, CORNERS, draw_wander
+from hsr8.world.field.wander import CORNERS, MIN_BEND_RADIUS, draw_wander
 
 EXTENT = 1.4
 LAWS = [draw_wander(np.random.default_rng(k), (0.5, -0.2), EXTENT, 0.12) for k in range(12)]
@@ -38,7 +38,7 @@ def test_the_track_bends_gently(law):
     turns = np.abs(np.diff(heading))
     assert len(law.track) == CORNERS
     # The track was looked at in a few places, and a polygon turns at its corners only.
-    assert turns.max() <= 1.3 * law.side / BEND
+    assert turns.max() <= 1.3 * law.side / MIN_BEND_RADIUS
 
 
 def test_tracks_bend_to_both_sides():
