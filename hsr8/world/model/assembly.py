@@ -1,8 +1,8 @@
-"""Builds the MuJoCo model of a world: robot, floor, lights, obstacles, beacons.
+"""Assembly of the MuJoCo model of a world: robot, floor, lights, obstacles, beacons.
 
-The same world is compiled in two qualities that share joints, sensors and state:
-``vision`` is cheap and matt, for the robot's own camera; ``show`` is for people. What
-does not depend on the layout lies in ``models/field/``.
+A world is compiled in two qualities that share joints, sensors and state: ``vision``, matt and
+fast, for the camera of the robot; ``show`` for people. Parts that do not depend on the layout are
+in ``models/field/``.
 """
 
 from collections.abc import Callable
@@ -15,20 +15,22 @@ import numpy as np
 
 from hsr8.scenario.fault import Bump
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
-from hsr8.world.model.model_check import require_sound
+from hsr8.world.model.model_check import check_model
 from hsr8.world.model.models import models_dir, reading_models
 from vision.color import COLOR_CLASSES
 
 Quality = Literal["vision", "show"]
 
-RIM = 0.02  # half width of the line round the field [m]
-PAINT = 0.0005  # height of what is painted on the floor [m]
+BORDER = 0.02  # half width of the line around the field [m]
+PAINT_HEIGHT = 0.0005  # of painted lines above the floor [m]
 STRIPE = 0.010  # half height of the stripe that marks a mover, for people only [m]
-BRIGHTER = 0.7  # exponent of colours for people; vision's own are deep so that it tells them apart
-APRON = 1.5  # distance of the walls the robot sees from the rim of the field [m]
+SHOW_GAMMA = (
+    0.7  # exponent of colours for people; those for vision are deeper and easier to separate
+)
+APRON = 1.5  # distance of the walls from the border of the field [m]
 WALL_HEIGHT = 4.0  # [m]
-SHADOW_SIZE = 2048  # resolution of the shadows the robot sees [texel]
-USUAL_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
+SHADOW_SIZE = 2048  # resolution of the shadow map [texel]
+REFERENCE_SIDE = 5.0  # of the field that the lights of models/field/ are made for [m]
 HEAD_CAMERA = "egocentric"
 
 _SOLID: dict[str, Any] = {
@@ -38,18 +40,18 @@ _SOLID: dict[str, Any] = {
     "solref": [0.01, 1.0],
     "solimp": [0.9, 0.95, 0.001, 0.5, 2.0],
 }
-_SEEN_ONLY: dict[str, Any] = {"contype": 0, "conaffinity": 0, "mass": 0.0}
+_VISUAL: dict[str, Any] = {"contype": 0, "conaffinity": 0, "mass": 0.0}
 
 
 @dataclass(frozen=True, slots=True)
 class Optics:
-    """What rendering needs to know.
+    """Rendering options of a model.
 
     Attributes:
         width, height: of the offscreen buffer [pixel].
         vertical_fov: of the head camera [rad].
-        brightness: of all lights, 1 is normal.
-        shadows: the robot's camera sees cast shadows.
+        brightness: factor on all lights [1].
+        shadows: whether the camera of the robot sees cast shadows.
     """
 
     width: int = 320
@@ -63,12 +65,12 @@ class Optics:
 def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel:
     """Compile the world of `layout`.
 
-    Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00``
-    ..., beacons are ``beacon_<top>_<bottom>``, bumps are geoms ``bump_00`` ... of the world.
-    For people there are the cameras ``top`` and ``corner`` beside those of the robot.
+    Static obstacles are bodies ``obstacle_00`` ..., movers are mocap bodies ``mover_00`` ...,
+    beacons are ``beacon_<top>_<bottom>``, bumps are geoms ``bump_00`` ... of the world. The
+    cameras ``top`` and ``corner`` are for people.
 
     Raises:
-        ModelError: the files will not do.
+        ModelError: a model file is invalid.
     """
     spec = mujoco.MjSpec.from_file(str(models_dir() / "field" / f"{quality}.xml"))
     spec.modelname = f"hsr8_{quality}"
@@ -80,7 +82,7 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     camera = _part(spec.camera, HEAD_CAMERA)
     camera.fovy = float(np.degrees(optics.vertical_fov))
     camera.resolution = [optics.width, optics.height]
-    _add_rim(spec, layout.field_size)
+    _add_border(spec, layout.field_size)
     if quality == "vision":
         _add_room(spec, layout.field_size)
     _add_cameras(spec, layout.field_size)
@@ -93,74 +95,82 @@ def assemble(layout: Layout, quality: Quality, optics: Optics) -> mujoco.MjModel
     for i, bump in enumerate(layout.bumps):
         _add_bump(spec, f"bump_{i:02d}", bump)
     model = spec.compile()
-    require_sound(model)
+    check_model(model)
     return model
 
 
 def _part(find: Callable[[str], Any], name: str) -> Any:
-    found = find(name)
-    if found is None:
-        raise ValueError(f"there is no {find.__name__} {name!r}")
-    return found
+    part = find(name)
+    if part is None:
+        raise ValueError(f"{find.__name__} {name!r} is missing")
+    return part
 
 
 def _set_lights(spec: mujoco.MjSpec, brightness: float, side: float) -> None:
-    """Dim the lights, and raise them over a field larger than the usual one."""
+    """Scale the lights, and raise them over a large field."""
     head = spec.visual.headlight
     head.ambient = brightness * np.asarray(head.ambient)
     head.diffuse = brightness * np.asarray(head.diffuse)
     for light in spec.lights:
         light.diffuse = brightness * np.asarray(light.diffuse)
-        light.pos = max(1.0, side / USUAL_SIDE) * np.asarray(light.pos)
+        light.pos = max(1.0, side / REFERENCE_SIDE) * np.asarray(light.pos)
 
 
 def _cast_shadows(spec: mujoco.MjSpec, side: float) -> None:
-    """Let the sun cast shadows on the whole field."""
+    """Make the sun cast shadows on the whole field."""
     spec.visual.quality.shadowsize = SHADOW_SIZE
     spec.visual.map.shadowclip = (0.5 * side + APRON) / spec.stat.extent
     _part(spec.light, "sun").castshadow = True
 
 
-def _add_rim(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
-    """The line round the field."""
+def _add_border(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
+    """Add the line around the field."""
     x, y = (0.5 * side for side in field_size)
-    for name, place, half in (
-        ("front", (x, 0.0), (RIM, y + RIM)),
-        ("back", (-x, 0.0), (RIM, y + RIM)),
-        ("left", (0.0, y), (x - RIM, RIM)),
-        ("right", (0.0, -y), (x - RIM, RIM)),
-    ):
-        spec.worldbody.add_geom(
-            name=f"rim_{name}",
-            type=mujoco.mjtGeom.mjGEOM_BOX,
-            pos=[*place, 0.0],
-            size=[*half, PAINT],
-            material="line",
-            **_SEEN_ONLY,
-        )
+    halves = (BORDER, y + BORDER), (x - BORDER, BORDER)
+    _add_frame(spec, "rim", (x, y), halves, z=0.0, half_height=PAINT_HEIGHT, material="line")
 
 
 def _add_room(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
-    """A plain room around the field, so that the robot does not look into the void.
+    """Add plain walls around the field, so that the robot does not see empty space.
 
-    The floor is drawn inside it only: a plane drawn without end costs more than all the
-    rest of an image. To touch, every plane is endless.
+    The floor is rendered inside them only: an infinite plane costs more than the rest of an
+    image. For contacts every plane is infinite.
     """
     x, y = (0.5 * side + APRON for side in field_size)
     _part(spec.geom, "floor").size = [x, y, 1.0]
-    for name, place, half in (
-        ("front", (x, 0.0), (0.01, y)),
-        ("back", (-x, 0.0), (0.01, y)),
-        ("left", (0.0, y), (x, 0.01)),
-        ("right", (0.0, -y), (x, 0.01)),
+    z = 0.5 * WALL_HEIGHT
+    halves = (0.01, y), (x, 0.01)
+    _add_frame(spec, "wall", (x, y), halves, z=z, half_height=z, material="wall")
+
+
+def _add_frame(
+    spec: mujoco.MjSpec,
+    name: str,
+    distance: tuple[float, float],
+    halves: tuple[tuple[float, float], tuple[float, float]],
+    *,
+    z: float,
+    half_height: float,
+    material: str,
+) -> None:
+    """Add four boxes around the origin at some `distance` along x and y [m].
+
+    `halves` are the half sides of those in front and back, and of those left and right [m].
+    """
+    x, y = distance
+    for side, position, half in (
+        ("front", (x, 0.0), halves[0]),
+        ("back", (-x, 0.0), halves[0]),
+        ("left", (0.0, y), halves[1]),
+        ("right", (0.0, -y), halves[1]),
     ):
         spec.worldbody.add_geom(
-            name=f"wall_{name}",
+            name=f"{name}_{side}",
             type=mujoco.mjtGeom.mjGEOM_BOX,
-            pos=[*place, 0.5 * WALL_HEIGHT],
-            size=[*half, 0.5 * WALL_HEIGHT],
-            material="wall",
-            **_SEEN_ONLY,
+            pos=[*position, z],
+            size=[*half, half_height],
+            material=material,
+            **_VISUAL,
         )
 
 
@@ -169,22 +179,22 @@ def _add_cameras(spec: mujoco.MjSpec, field_size: tuple[float, float]) -> None:
     spec.worldbody.add_camera(
         name="top", pos=[0.0, 0.0, 1.55 * size], xyaxes=[0, -1, 0, 1, 0, 0], fovy=45.0
     )
-    # From a corner, looking at the middle of the field.
-    place = np.array([-0.80, -0.80, 0.62]) * size
-    away = place / np.linalg.norm(place)
+    # From a corner, towards the centre of the field.
+    position = np.array([-0.80, -0.80, 0.62]) * size
+    away = position / np.linalg.norm(position)
     right = np.array([-away[1], away[0], 0.0]) / hypot(away[0], away[1])
     spec.worldbody.add_camera(
-        name="corner", pos=place, xyaxes=[*right, *np.cross(away, right)], fovy=40.0
+        name="corner", pos=position, xyaxes=[*right, *np.cross(away, right)], fovy=40.0
     )
 
 
 def _paint(spec: mujoco.MjSpec, color: str, quality: Quality) -> str:
-    """Name of the material of a colour class, made when first asked for."""
+    """Return the name of the material of a colour class, which is created at first use."""
     name = f"paint_{color}"
     if spec.material(name) is None:
         rgb = np.asarray(COLOR_CLASSES[color].rgb)
         if quality == "show":
-            rgb = rgb**BRIGHTER
+            rgb = rgb**SHOW_GAMMA
         material = spec.add_material(name=name, rgba=[*rgb, 1.0])
         material.specular = 0.0 if quality == "vision" else 0.25
         material.shininess = 0.0 if quality == "vision" else 0.4
@@ -193,9 +203,9 @@ def _paint(spec: mujoco.MjSpec, color: str, quality: Quality) -> str:
 
 
 def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Quality) -> None:
-    moves = obstacle.motion is not None
+    is_mover = obstacle.motion is not None
     body = spec.worldbody.add_body(
-        name=name, pos=[*obstacle.position, 0.5 * obstacle.height], mocap=moves
+        name=name, pos=[*obstacle.position, 0.5 * obstacle.height], mocap=is_mover
     )
     body.add_geom(
         name=name,
@@ -204,14 +214,14 @@ def _add_obstacle(spec: mujoco.MjSpec, name: str, obstacle: Obstacle, quality: Q
         material=_paint(spec, obstacle.color, quality),
         **_SOLID,
     )
-    if moves and quality == "show":
+    if is_mover and quality == "show":
         body.add_geom(
             name=f"{name}_stripe",
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
             pos=[0.0, 0.0, 0.5 * obstacle.height - 4.0 * STRIPE],
             size=[obstacle.radius + 0.001, STRIPE, 0.0],
             material="stripe",
-            **_SEEN_ONLY,
+            **_VISUAL,
         )
 
 
@@ -231,7 +241,7 @@ def _add_beacon(spec: mujoco.MjSpec, beacon: Beacon, quality: Quality) -> None:
 
 
 def _add_bump(spec: mujoco.MjSpec, name: str, bump: Bump) -> None:
-    """A disc that sticks out of the floor, drawn as the rim is; it can be touched while it acts."""
+    """Add a disc on the floor in the colour of the lines; `WorldFaults` switches its contacts."""
     spec.worldbody.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,

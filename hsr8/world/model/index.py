@@ -1,4 +1,4 @@
-"""Names of the model resolved once, so that nothing looks them up inside the loop."""
+"""Addresses of named parts in a compiled model, resolved once."""
 
 from dataclasses import dataclass
 
@@ -16,10 +16,10 @@ PADS = ("fl", "fr", "bl", "br")
 
 @dataclass(frozen=True, slots=True)
 class ModelIndex:
-    """Addresses of everything the simulator touches in one compiled model.
+    """Addresses of the parts that the simulator uses in a compiled model.
 
     Attributes:
-        root_qpos, root_dof: where the free joint of the robot starts.
+        root_qpos, root_dof: addresses of the free joint of the robot.
         joint_qpos, joint_dof: addresses of the joints in the order of ``JOINT_NAMES`` (26,).
         actuators: addresses of the actuators in the same order (26,).
         foot_force: sensor addresses, left and right foot by pad (2, 4).
@@ -27,11 +27,11 @@ class ModelIndex:
         foot_sites: site ids of the left and the right foot.
         foot_geoms: geom ids of the left and the right sole.
         floor: geom id of the floor.
-        bumps: geom ids of what lies on the floor.
+        bumps: geom ids of the bumps on the floor.
         base_body: body id of ``base_link``.
         robot_geoms: ids of the robot's colliding geoms.
-        obstacle_of_geom: number of the obstacle or, after all obstacles, of the beacon of every
-            geom, -1 for anything else (ngeom,).
+        obstacle_of_geom: number of the obstacle of every geom, or of the beacon, counted after all
+            obstacles; -1 for other geoms (ngeom,).
         obstacle_geoms: geom id of every obstacle, layout order.
         beacon_geoms: geom ids of the lower and upper half of every beacon, layout order (n, 2).
         mover_mocap: mocap index of every mover, layout order.
@@ -58,10 +58,10 @@ class ModelIndex:
     @classmethod
     @reading_models()
     def of(cls, model: mujoco.MjModel, n_static: int, n_moving: int) -> "ModelIndex":
-        """Resolve the names in `model`, which holds so many static and moving obstacles.
+        """Resolve the names in `model` with some static and moving obstacles.
 
         Raises:
-            ModelError: the robot lacks one of them.
+            ModelError: a name is missing.
         """
         joints = [model.joint(name) for name in JOINT_NAMES]
         base = model.body("base_link").id

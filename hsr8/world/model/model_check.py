@@ -1,4 +1,4 @@
-"""What MuJoCo compiles without a word, though no robot can be meant by it."""
+"""Sanity checks for models that MuJoCo accepts but that are not valid robots."""
 
 import mujoco
 import numpy as np
@@ -19,30 +19,32 @@ FINITE = (
 )
 
 
-def require_sound(model: mujoco.MjModel) -> None:
-    """See to it that numbers are finite, joints limited, and servos push towards their set-points.
+def check_model(model: mujoco.MjModel) -> None:
+    """Check that numbers are finite, joints limited and servo gains positive.
 
     Raises:
-        ValueError: they are not; it names the attribute, the part and the value.
+        ValueError: a check failed; the message names the part, the attribute and the value.
     """
     for name in FINITE:
         if not np.isfinite(getattr(model, name)).all():
-            raise ValueError(f"a number in {name} is not finite")
+            raise ValueError(f"{name}: a value is not finite")
     for joint in (model.joint(i) for i in range(model.njnt)):
-        who = f"joint {joint.name!r}"
         if joint.type[0] != FREE and not model.jnt_limited[joint.id]:
-            raise ValueError(f"{who}: range must rise, it is {_told(joint.range)}")
+            raise ValueError(
+                f"joint {joint.name!r}: range: got {_text(joint.range)}; expected lower < upper"
+            )
         for name in ("armature", "damping", "frictionloss"):
             value = getattr(joint, name)
             if (value < 0.0).any():
-                raise ValueError(f"{who}: {name} must not be negative, it is {_told(value)}")
+                raise ValueError(f"joint {joint.name!r}: {name}: got {_text(value)}; expected >= 0")
     for servo in (model.actuator(i) for i in range(model.nu)):
         who = f"actuator {servo.name!r}"
         if not model.actuator_forcelimited[servo.id]:
-            raise ValueError(f"{who}: forcerange must rise, it is {_told(servo.forcerange)}")
+            forces = _text(servo.forcerange)
+            raise ValueError(f"{who}: forcerange: got {forces}; expected lower < upper")
         if servo.gainprm[0] <= 0.0:
-            raise ValueError(f"{who}: kp must be positive, it is {_told(servo.gainprm[:1])}")
+            raise ValueError(f"{who}: kp: got {servo.gainprm[0]:g}; expected > 0")
 
 
-def _told(values: np.ndarray) -> str:
+def _text(values: np.ndarray) -> str:
     return " ".join(f"{value:g}" for value in values.ravel())

@@ -1,4 +1,4 @@
-"""Where the MJCF models lie, in a checkout and in an installed wheel alike."""
+"""Location of the MJCF models, in a checkout or in an installed wheel."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,29 +10,29 @@ PACKAGE = Path(__file__).resolve().parents[2]
 
 
 def models_dir() -> Path:
-    """Folder that holds ``hsr8/hsr8.xml`` and ``field/``.
+    """Return the folder with ``hsr8/hsr8.xml`` and ``field/``.
 
     Raises:
         ModelError: the installation is incomplete.
     """
-    places = (PACKAGE / "_models", PACKAGE.parent / "models")
-    for place in places:
-        if (place / "hsr8" / "hsr8.xml").is_file():
-            return place
+    folders = (PACKAGE / "_models", PACKAGE.parent / "models")
+    for folder in folders:
+        if (folder / "hsr8" / "hsr8.xml").is_file():
+            return folder
     raise ModelError(
-        f"hsr8/hsr8.xml is in neither of {', '.join(map(str, places))}: install hsr8 again"
+        f"hsr8/hsr8.xml: missing in {' and '.join(map(str, folders))}; install hsr8 again"
     )
 
 
 @contextmanager
 def reading_models() -> Iterator[None]:
-    """Where models are read: whoever changed them is told what will not do.
+    """Context in which errors of model files become a `ModelError`.
 
     Raises:
-        ModelError: a file is damaged, or lacks a name that the program looks up.
+        ModelError: a file is damaged, or lacks a required name.
     """
     try:
         yield
-    except (ValueError, KeyError, SyntaxError) as error:  # the last one of what is no XML
+    except (ValueError, KeyError, SyntaxError) as error:  # SyntaxError: invalid XML
         reason = " ".join(str(error.args[0]).split())
-        raise ModelError(f"the models in {models_dir()} will not do: {reason}") from error
+        raise ModelError(f"invalid robot or field model in {models_dir()}: {reason}") from error
