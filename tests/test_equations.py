@@ -62,7 +62,7 @@ def test_docstrings_bear_the_number_of_their_equation(number):
 
 
 def test_keys_in_the_tables_are_keys_of_a_scenario():
-    known = PUBLIC | set(constant_names())
+    known = {*PUBLIC, *constant_names()}
     for section, key in set(
         re.findall(r"\(`(evaluation|univector|gaze|moving_obstacles)\.(\w+)`", TEXT)
     ):

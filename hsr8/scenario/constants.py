@@ -5,7 +5,6 @@ from dataclasses import asdict, is_dataclass
 from functools import cache
 from typing import Any, get_type_hints
 
-from hsr8.scenario.key_lines import Path
 from hsr8.scenario.presets import PROFILES, under
 from hsr8.scenario.problem import Problem
 from hsr8.scenario.public_keys import LIBRARIES, PUBLIC
@@ -17,31 +16,32 @@ Table = dict[str, Any]
 
 
 def misplaced(data: Table) -> Iterator[Problem]:
-    """Constants given as settings, and settings or unknown keys given as constants."""
-    for name in LIBRARIES:
-        for path in _leaves(data.get(name), (name,)):
-            if path not in _public() and path in _parameters():
-                key = ".".join(path)
-                yield Problem(path, f"a constant, not a setting; for studies, {CONSTANTS}.{key}")
-    for path in _leaves(data.get(CONSTANTS, {}), ()):
-        if not path:
-            yield Problem((CONSTANTS,), "must be a table")
-        elif path in _public():
-            yield Problem(
-                (CONSTANTS, *path), f"a setting, not a constant; expected {'.'.join(path)}"
-            )
-        elif path not in _parameters():
-            hint = suggestion(".".join(path), constant_names())
-            yield Problem((CONSTANTS, *path), f"unknown constant{hint}")
+    """Yield constants given as settings, and settings or unknown keys given as constants."""
+    for key in _flat({name: data[name] for name in LIBRARIES if name in data}):
+        if key in constant_names():
+            text = f"a constant, not a setting; for studies, {CONSTANTS}.{key}"
+            yield Problem(tuple(key.split(".")), text)
+    given = data.get(CONSTANTS, {})
+    if not isinstance(given, dict):
+        yield Problem((CONSTANTS,), "must be a table")
+        return
+    for key in _flat(given):
+        path = (CONSTANTS, *key.split("."))
+        if key in PUBLIC:
+            yield Problem(path, f"a setting, not a constant; expected {key}")
+        elif key not in constant_names():
+            yield Problem(path, f"unknown constant{suggestion(key, constant_names())}")
 
 
-def constant_names() -> list[str]:
+@cache
+def constant_names() -> tuple[str, ...]:
     """Return the dotted names of all constants."""
-    return sorted(".".join(path) for path in _parameters() - _public())
+    names = (n for library in LIBRARIES for n in _parameters(_annotation(library), library))
+    return tuple(name for name in names if name not in PUBLIC)
 
 
 def with_constants(data: Table) -> Table:
-    """Tables of a scenario with the constants at their places."""
+    """Return the tables of a scenario with the constants merged into their sections."""
     merged = {key: value for key, value in data.items() if key != CONSTANTS}
     for name, table in data.get(CONSTANTS, {}).items():
         settings = merged.get(name, {})
@@ -51,43 +51,36 @@ def with_constants(data: Table) -> Table:
 
 
 def separated(data: Table) -> Table:
-    """Tables of a complete scenario: its settings, and those constants that are not the default."""
-    settings, constants = dict(data), {}
-    for name in LIBRARIES:
-        settings[name] = _pruned(data[name], (name,))
-        if changed := _changed(data[name], _defaults(data, name), (name,)):
-            constants[name] = changed
-    return {**settings, CONSTANTS: constants} if constants else settings
+    """Return a complete scenario as its settings and the constants that are not at the default."""
+    libraries, settings, constants = {name: data[name] for name in LIBRARIES}, dict(data), {}
+    defaults = {name: asdict(Scenario.model_fields[name].default) for name in LIBRARIES}
+    defaults["navigation"] = asdict(PROFILES[data["navigation"]["profile"]]())
+    values, usual = _flat(libraries), _flat(defaults)
+    settings |= _nested({key: value for key, value in values.items() if key in PUBLIC})
+    constants = {k: v for k, v in values.items() if k not in PUBLIC and v != _plain(usual[k])}
+    return {**settings, CONSTANTS: _nested(constants)} if constants else settings
 
 
-def _defaults(data: Table, name: str) -> Table:
-    if name == "navigation":
-        return asdict(PROFILES[data[name]["profile"]]())
-    return asdict(Scenario.model_fields[name].default)
-
-
-def _pruned(table: Table, path: Path) -> Table:
-    """The public keys of a table."""
-    kept = {}
+def _flat(table: Table, prefix: str = "") -> Table:
+    """Values of nested tables by dotted key."""
+    flat: Table = {}
     for key, value in table.items():
-        if isinstance(value, dict):
-            if inner := _pruned(value, (*path, key)):
-                kept[key] = inner
-        elif (*path, key) in _public():
-            kept[key] = value
-    return kept
+        flat |= (
+            _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+        )
+    return flat
 
 
-def _changed(table: Table, defaults: Table, path: Path) -> Table:
-    """The constants of a table that differ from their defaults."""
-    kept = {}
-    for key, value in table.items():
-        if isinstance(value, dict):
-            if inner := _changed(value, defaults[key], (*path, key)):
-                kept[key] = inner
-        elif (*path, key) not in _public() and value != _plain(defaults[key]):
-            kept[key] = value
-    return kept
+def _nested(flat: Table) -> Table:
+    """Nested tables of values by dotted key."""
+    nested: Table = {}
+    for dotted, value in flat.items():
+        *tables, key = dotted.split(".")
+        table = nested
+        for name in tables:
+            table = table.setdefault(name, {})
+        table[key] = value
+    return nested
 
 
 def _plain(value: Any) -> Any:
@@ -95,32 +88,14 @@ def _plain(value: Any) -> Any:
     return [_plain(v) for v in value] if isinstance(value, list | tuple) else value
 
 
-def _leaves(data: Any, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """Paths of the values that are not tables."""
-    if not isinstance(data, dict):
-        yield path
-        return
-    for key, value in data.items():
-        yield from _leaves(value, (*path, key))
+def _annotation(library: str) -> Any:
+    return Scenario.model_fields[library].annotation
 
 
-@cache
-def _public() -> frozenset[tuple[str, ...]]:
-    return frozenset(tuple(key.split(".")) for key in PUBLIC)
-
-
-@cache
-def _parameters() -> frozenset[tuple[str, ...]]:
-    """Paths of all parameters of the libraries."""
-    hints = Scenario.model_fields
-    return frozenset(
-        path for name in LIBRARIES for path in _fields(hints[name].annotation, (name,))
-    )
-
-
-def _fields(annotation: Any, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+def _parameters(annotation: Any, name: str) -> Iterator[str]:
+    """Dotted names of the parameters of a dataclass."""
     if not is_dataclass(annotation):
-        yield path
+        yield name
         return
-    for name, hint in get_type_hints(annotation).items():
-        yield from _fields(hint, (*path, name))
+    for key, hint in get_type_hints(annotation).items():
+        yield from _parameters(hint, f"{name}.{key}")

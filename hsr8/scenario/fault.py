@@ -3,10 +3,11 @@
 from typing import Annotated, Literal
 
 from annotated_types import Interval
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from hsr8.scenario.disturbance import Impulse, PushDuration, PushedBody
 from hsr8.scenario.section import CONTROL_PERIOD_MS, Degrees, Point, Section
+from hsr8.suggestion import suggestion
 from walking.body.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 
 StartTime = Annotated[float, Interval(ge=0.0, le=7200.0)]
@@ -15,45 +16,25 @@ Offset = Annotated[float, Interval(ge=-0.5, le=0.5)]
 Fraction = Annotated[float, Interval(ge=0.0, le=1.0)]
 Angle = Annotated[float, Interval(ge=-0.5, le=0.5)]
 Foot = Literal["left", "right", "both"]
-Joint = Literal[
-    "all",
-    "legs",
-    "left_leg",
-    "right_leg",
-    "l_hip_yaw",
-    "l_hip_roll",
-    "l_hip_pitch",
-    "l_knee",
-    "l_ankle_pitch",
-    "l_ankle_roll",
-    "r_hip_yaw",
-    "r_hip_roll",
-    "r_hip_pitch",
-    "r_knee",
-    "r_ankle_pitch",
-    "r_ankle_roll",
-    "head_pan",
-    "head_tilt",
-    "l_shoulder_pitch",
-    "l_shoulder_roll",
-    "l_elbow_yaw",
-    "l_elbow_pitch",
-    "l_wrist_yaw",
-    "l_gripper",
-    "r_shoulder_pitch",
-    "r_shoulder_roll",
-    "r_elbow_yaw",
-    "r_elbow_pitch",
-    "r_wrist_yaw",
-    "r_gripper",
-]
 _GROUPS = {
     "all": JOINT_NAMES,
     "legs": (*JOINT_NAMES[LEFT_LEG], *JOINT_NAMES[RIGHT_LEG]),
     "left_leg": JOINT_NAMES[LEFT_LEG],
     "right_leg": JOINT_NAMES[RIGHT_LEG],
 }
+_JOINTS = (*_GROUPS, *JOINT_NAMES)
 _FEET = {"left": [0], "right": [1], "both": [0, 1]}
+
+
+def _known(joint: str) -> str:
+    if joint not in _JOINTS:
+        raise ValueError(f"must be one of {', '.join(_JOINTS)}{suggestion(joint, _JOINTS)}")
+    return joint
+
+
+Joint = Annotated[
+    str, AfterValidator(_known), WithJsonSchema({"type": "string", "enum": list(_JOINTS)})
+]
 
 
 def ticks(seconds: float) -> int:

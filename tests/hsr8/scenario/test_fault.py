@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hsr8.errors import ScenarioError
-from hsr8.scenario.fault import CameraBlack, Fault, Joint, ServoWeak
+from hsr8.scenario.fault import CameraBlack, Fault, ServoStuck
 from hsr8.scenario.loader import dump, load_scenario, loads
 from walking.body.joints import JOINT_NAMES
 
@@ -40,12 +40,16 @@ def fault_of(kind, **given):
     return "{" + ",".join([*(f"{k}={v}" for k, v in keys.items()), *more]) + "}"
 
 
-def test_joints_are_those_of_the_robot_and_their_groups():
-    assert get_args(Joint) == ("all", "legs", "left_leg", "right_leg", *JOINT_NAMES)
-    for joint in get_args(Joint):
-        fault = ServoWeak(kind="servo-weak", magnitude=0.5, joint=joint)
-        assert joint not in JOINT_NAMES or [JOINT_NAMES[k] for k in fault.joints] == [joint]
-    assert ServoWeak(kind="servo-weak", magnitude=0.5, joint="right_leg").joints == [*range(6, 12)]
+@pytest.mark.parametrize("joint", JOINT_NAMES)
+def test_every_joint_of_the_robot_can_fail(joint):
+    assert ServoStuck(kind="servo-stuck", joint=joint).joints == [JOINT_NAMES.index(joint)]
+
+
+def test_groups_of_joints():
+    counts = {"all": len(JOINT_NAMES), "legs": 12, "left_leg": 6, "right_leg": 6}
+    for joint, count in counts.items():
+        assert len(ServoStuck(kind="servo-stuck", joint=joint).joints) == count
+    assert ServoStuck(kind="servo-stuck", joint="right_leg").joints == [*range(6, 12)]
 
 
 def test_a_fault_acts_from_its_first_tick_to_its_last():

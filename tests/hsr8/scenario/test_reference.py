@@ -1,17 +1,4 @@
-from pathlib import Path
-
-from hsr8.scenario.public_keys import BASIC, EXPERIMENTAL, PUBLIC
 from hsr8.scenario.reference import json_schema, keys_at, node_at
-from hsr8.scenario.reference_page import ReferencePage
-
-FILE = Path(__file__).resolve().parents[3] / "docs" / "scenarios.md"
-
-
-def test_the_page_is_fresh_and_has_every_public_key():
-    """If this fails: python scripts/write_scenario_reference.py."""
-    page = ReferencePage()
-    assert FILE.read_text(encoding="utf-8") == page.text
-    assert page.keys.keys() >= PUBLIC | BASIC | EXPERIMENTAL
 
 
 def test_every_key_is_explained_and_every_quantity_has_a_unit():
