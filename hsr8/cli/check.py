@@ -1,14 +1,12 @@
 """``hsr8 check``: settings and world of a scenario, without running it."""
 
-import re
 import shlex
 from math import degrees
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
+from hsr8.cli import tables
 from hsr8.cli.command_line import command_words, run_options, settings
 from hsr8.cli.options import Check
 from hsr8.cli.output_file import require_file_name, writing
@@ -45,16 +43,9 @@ def main(options: Check) -> int:
     else:
         obstacles = summary.pop("obstacles")
         console = Console(highlight=False)
-        facts = Table(show_header=False)
-        for key, value in summary.items():
-            if value not in ({}, []):
-                facts.add_row(_label(key), escape(_text(value)))
-        console.print(facts)
+        console.print(tables.facts(summary))
         if obstacles:
-            table = Table(*map(_label, obstacles[0]), title="obstacles", title_justify="left")
-            for obstacle in obstacles:
-                table.add_row(*map(_text, obstacle.values()))
-            console.print(table)
+            console.print(tables.rows(obstacles, "obstacles"))
         print(f"run it      {shlex.join(command_words(run_options(options, scenario.seed)))}")
     return 0
 
@@ -112,23 +103,3 @@ def summarize(scenario: Scenario, world: FairWorld) -> dict[str, Any]:
 def _set_values(section: Section) -> dict[str, Any]:
     values = section.model_dump(mode="json", exclude_none=True)
     return {key: value for key, value in values.items() if value not in ([], {})}
-
-
-def _label(key: str) -> str:
-    """Return a key for people: ``speed_mps`` becomes ``speed [m/s]``."""
-    name = re.sub(r"_(m|s|mps|deg)$", r" [\1]", key).replace("[mps]", "[m/s]").replace("_", " ")
-    return escape(name)
-
-
-def _text(value: object) -> str:
-    if isinstance(value, list):
-        return ", ".join(map(_inner, value))
-    if isinstance(value, dict):
-        return ", ".join(f"{key} = {_inner(part)}" for key, part in value.items())
-    if value is None or isinstance(value, bool):
-        return {None: "none", True: "yes", False: "no"}[value]
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def _inner(value: object) -> str:
-    return f"({_text(value)})" if isinstance(value, list | dict) else _text(value)

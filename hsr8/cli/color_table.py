@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
-from rich.table import Table
 
 from hsr8.cli import options as cli
+from hsr8.cli import tables
 from hsr8.cli.output_file import require_file_name, writing
 from hsr8.errors import UsageError
 from hsr8.recorder.files import atomic
@@ -52,14 +52,8 @@ def main(options: cli.ColorTable) -> int:
     if options.json:
         print(atomic.dumps({"color_table": str(options.out), "classes": rows}))
         return 0
-    shown = Table(title=f"Color table from {len(pairs)} images", title_justify="left")
-    for heading in ("class", "pixels", "recognized %", "confused %"):
-        shown.add_column(heading, justify="left" if heading == "class" else "right")
-    for row in rows:
-        percents = [f"{100.0 * float(row[key]):.2f}" for key in ("recognized", "confused")]
-        shown.add_row(str(row["class"]), str(row["pixels"]), *percents)
     console = Console(highlight=False)
-    console.print(shown)
+    console.print(tables.rows(rows, f"color table from {len(pairs)} images"))
     console.print(f"use it      hsr8 run quick --set vision.color_table={options.out}")
     return 0
 

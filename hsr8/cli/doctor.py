@@ -8,10 +8,6 @@ import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
-
 from hsr8.cli.options import Doctor
 from hsr8.errors import Hsr8Error
 from hsr8.gl import APT_LINE, BACKENDS, REQUESTED, VULKAN_LINE, is_software
@@ -25,7 +21,6 @@ PROBE_LIMIT = 60.0  # an OpenGL that takes longer hangs [s]
 VULKAN_FOLDERS = ("/usr/share", "/usr/local/share", "/etc")
 MIN_DISK = 1.0  # [GB]
 PROBE = "from hsr8.gl import require_gl; print(require_gl())"
-COLORS = {"ok": "green", "note": "yellow", "missing": "red"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,11 +44,8 @@ def main(options: Doctor) -> int:
     if options.json:
         print(atomic.dumps({"findings": [asdict(finding) for finding in findings]}))
     else:
-        table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
         for finding in findings:
-            color = COLORS[finding.state]
-            table.add_row(f"[{color}]{finding.state}[/]", finding.name, escape(finding.text))
-        Console(highlight=False).print(table)
+            print(f"{finding.state:<9}{finding.name:<24}{finding.text}")
     return 2 if any(finding.state == "missing" for finding in findings) else 0
 
 

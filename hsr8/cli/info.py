@@ -1,14 +1,10 @@
 """``hsr8 info``: contents of a run folder."""
 
 from dataclasses import asdict
-from pathlib import Path
-from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
-from hsr8.cli import report
+from hsr8.cli import report, tables
 from hsr8.cli.options import Info
 from hsr8.errors import UsageError
 from hsr8.evaluation.verdict import Criterion, evaluate_criteria, exit_code
@@ -26,51 +22,47 @@ def main(options: Info) -> int:
         UsageError: there is no such run, or it is damaged.
     """
     run = open_run(options.run)
+    manifest, results, criteria, events = run.manifest, run.metrics(), _criteria(run), run.events()
+    files = {f.name: f.stat().st_size for f in sorted(run.path.iterdir()) if f.is_file()}
     if options.json:
-        criteria = _criteria(run)
+        met = exit_code(str(manifest.get("exit_reason")), criteria) == 0
         contents = {
             "run": str(run.path),
-            "manifest": run.manifest,
-            "metrics": run.metrics(),
-            "criteria_met": exit_code(run.manifest["exit_reason"], criteria) == 0,
+            "manifest": manifest,
+            "metrics": results,
+            "criteria_met": met if criteria else None,
             "criteria": [asdict(criterion) for criterion in criteria],
             "definitions": report.VERDICTS,
-            "events": run.events(),
-            "files": dict(_files(run.path)),
+            "events": events,
+            "files": files,
         }
         print(atomic.dumps(contents))
-    else:
-        _show(run)
-    return 0
-
-
-def _show(run: Run) -> None:
+        return 0
     console = Console(highlight=False)
-    manifest = run.manifest
-    made = Table(title=str(run.path), title_justify="left", show_header=False)
-    made.add_row("scenario", f"{manifest.get('scenario', '?')}, seed {run.seed}")
-    made.add_row("started", str(manifest.get("started", "?")))
-    reason = manifest.get("exit_reason")
-    running = "running, or killed; its records can be read"
-    made.add_row("state", running if reason == RUNNING else f"ended: {reason}")
-    made.add_row("made by", f"hsr8 {manifest.get('hsr8', '?')}, Python {manifest.get('python')}")
-    made.add_row("on", f"{manifest.get('machine', '?')}; camera: {manifest.get('renderer', '?')}")
-    for name, then, now in other_versions(manifest):
-        made.add_row("other version", f"{name} was {then}, is {now}")
-    console.print(made)
-    events = run.events()
+    shown = ("scenario", "seed", "started", "exit_reason", "hsr8", "python", "machine", "renderer")
+    made = {key: manifest.get(key) for key in shown}
+    if made["exit_reason"] == RUNNING:
+        made["exit_reason"] = "running, or killed; its records can be read"
+    others = {name: f"was {then}, is {now}" for name, then, now in other_versions(manifest)}
+    console.print(tables.facts(made | others, str(run.path)))
     if events:
-        console.print(_table(events))
-    files = ", ".join(f"{name} {_size(size)}" for name, size in _files(run.path))
-    console.print(f"files       {files}", soft_wrap=True)
+        title = f"the last {MAX_EVENTS} of {len(events)} events"
+        lines = [
+            {"time_s": event["time"], "kind": event["kind"], "event": event["text"]}
+            for event in events[-MAX_EVENTS:]
+        ]
+        console.print(tables.rows(lines, title if len(events) > MAX_EVENTS else "events"))
+    sizes = ", ".join(f"{name} {size / 1e3:.1f} kB" for name, size in files.items())
+    console.print(f"files       {sizes}", soft_wrap=True, markup=False)
     report.show(
         "results",
-        results=run.metrics(),
-        criteria=_criteria(run),
+        results=results,
+        criteria=criteria,
         path=run.path,
         command=str(manifest.get("command", "")),
         console=console,
     )
+    return 0
 
 
 def _criteria(run: Run) -> tuple[Criterion, ...]:
@@ -80,23 +72,3 @@ def _criteria(run: Run) -> tuple[Criterion, ...]:
         return evaluate_criteria(run.scenario().criteria, results) if results else ()
     except (UsageError, KeyError):  # made by another version
         return ()
-
-
-def _table(events: tuple[dict[str, Any], ...]) -> Table:
-    shown = events[-MAX_EVENTS:]
-    title = "events" if shown == events else f"the last {MAX_EVENTS} of {len(events)} events"
-    table = Table(title=title, title_justify="left")
-    table.add_column(escape("time [s]"), justify="right")
-    table.add_column("kind")
-    table.add_column("event")
-    for event in shown:
-        table.add_row(f"{event['time']:.2f}", event["kind"], escape(event["text"]))
-    return table
-
-
-def _files(folder: Path) -> list[tuple[str, int]]:
-    return sorted((file.name, file.stat().st_size) for file in folder.iterdir() if file.is_file())
-
-
-def _size(size: int) -> str:
-    return f"{size / 1e6:.1f} MB" if size >= 100_000 else f"{size / 1e3:.1f} kB"

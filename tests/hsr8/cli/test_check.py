@@ -54,11 +54,11 @@ def test_the_printed_command_makes_the_checked_run(capsys):
 @pytest.mark.parametrize(
     ("settings", "expected"),
     [
-        (["command.vx=0.3"], "vx = 0.3"),
-        (["command.footstep={forward=0.05}"], "forward = 0.05"),
-        (["command.random={stop_fraction=0.2}"], "stop_fraction = 0.2"),
-        (['fault=[{kind="push",start=1,magnitude=1}]'], "kind = push, start = 1"),
-        (["disturbance.random={}"], "impulse = (0.2, 0.8)"),
+        (["command.vx=0.3"], "vx 0.3"),
+        (["command.footstep={forward=0.05}"], "forward 0.05"),
+        (["command.random={stop_fraction=0.2}"], "stop_fraction 0.2"),
+        (['fault=[{kind="push",start=1,magnitude=1}]'], "kind push, start 1"),
+        (["disturbance.random={}"], "impulse (0.2, 0.8)"),
     ],
 )
 def test_commands_and_pushes_are_shown(settings, expected, capsys):

@@ -10,14 +10,14 @@ def test_every_built_in_scenario_is_listed(capsys):
     entries = json.loads(capsys.readouterr().out)["scenarios"]
     assert [e["name"] for e in entries] == built_in_names()
     paper = next(e for e in entries if e["name"] == "paper")
-    assert (paper["static"], paper["moving"], paper["duration"]) == (12, 4, 560.2)
+    assert (paper["static"], paper["moving"], paper["duration_s"]) == (12, 4, 560.2)
 
 
 def test_people_get_a_table(capsys):
     assert main(List()) == 0
     out = capsys.readouterr().out
     assert all(name in out for name in built_in_names())
-    assert "time [s]" in out
+    assert "duration [s]" in out
 
 
 def test_walls_and_encounters_are_counted(capsys):

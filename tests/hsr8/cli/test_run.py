@@ -95,7 +95,7 @@ def test_quiet_is_quiet(tmp_path, capsys):
 
 def test_a_run_that_meets_its_criteria_passes(tmp_path, capsys):
     assert _run(tmp_path, "--no-log", "--set", "criteria.goal_reached=false") == 0
-    assert "criteria_met: yes" in capsys.readouterr().out
+    assert "criteria_met  yes" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
