@@ -1,9 +1,7 @@
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
-from vision.split_kernel import MIN_COLUMNS, MIN_INNER, borders, pieces
+from vision.split_kernel import borders, pieces
 
 RNG = np.random.default_rng(0)
 
@@ -16,58 +14,24 @@ def outline(n=40):
     return envelope, RNG.random(n) < RNG.choice([0.6, 0.95, 1.0])
 
 
-def joined(starts, jumps, n):
-    """Starts of the pieces, those of too few columns joined to a neighbour."""
-    starts = list(starts)
-    while len(starts) > 1:
-        widths = np.diff([*starts, n])
-        k = int(np.argmin(widths))
-        if widths[k] >= MIN_COLUMNS:
-            break
-        before = jumps[starts[k] - 1] if k > 0 else np.inf
-        after = jumps[starts[k + 1] - 1] if k + 1 < len(starts) else np.inf
-        del starts[k if before <= after else k + 1]
-    return starts
-
-
-def plainly(envelope, usable, start, width, least, drop, nearest, *outer):
-    """The pieces by lists: ends, whether they are true, distance, azimuths and slopes."""
-    n = len(envelope)
-    jumps = np.abs(np.diff(envelope))
-    starts = joined([0, *(np.flatnonzero(jumps > least) + 1)], jumps, n)
-
-    def ends(last, beyond, at_border):
-        if not 0 <= beyond < n:
-            return at_border
-        return usable[[last, beyond]].all() and (envelope[beyond] > envelope[last]) == nearest
-
-    found = []
-    for a, b in pairwise([*starts, n]):
-        chosen = a + np.flatnonzero(usable[a:b])
-        if len(chosen) < MIN_COLUMNS or 2 * len(chosen) < b - a:
-            continue
-        inner = chosen[((chosen > a) | (a == 0)) & ((chosen < b - 1) | (b == n))]
-        chosen = inner if len(inner) >= MIN_INNER else chosen
-        if (envelope[chosen] * drop <= 0.0).any():
-            continue
-        run = np.quantile(drop / envelope[chosen], 0.1 if nearest else 0.9)
-        true = ends(a, a - 1, outer[0]), ends(b - 1, b, outer[1])
-        row = (start + a * width, start + b * width, *true, run, len(chosen))
-        found.append((row, start + width * (chosen + 0.5), envelope[chosen]))
-    return found
-
-
 @pytest.mark.parametrize("_", range(40))
-def test_pieces_are_those_found_by_lists_and_by_the_plain_kernel(_):
+def test_compiled_and_plain_pieces_agree(_):
     given = (*outline(), -0.4, 0.02, 0.03, RNG.choice([-0.5, -0.2, 0.2]))
     flags = [bool(flag) for flag in RNG.random(3) < 0.5]
-    table, azimuth, slope = pieces(*given, *flags)
-    for one, other in zip((table, azimuth, slope), pieces.py_func(*given, *flags), strict=True):
+    for one, other in zip(pieces(*given, *flags), pieces.py_func(*given, *flags), strict=True):
         assert np.array_equal(one, other)
-    wanted = plainly(*given, *flags)
-    assert np.allclose(table, np.array([row for row, *_ in wanted]).reshape(-1, 6), atol=1e-14)
-    assert np.array_equal(azimuth, np.concatenate([[], *(a for _, a, _ in wanted)]))
-    assert np.array_equal(slope, np.concatenate([[], *(s for *_, s in wanted)]))
+
+
+def test_a_piece_has_the_ends_and_the_distance_of_its_object():
+    """Two objects: the nearer one, on the left, occludes an end of the farther one."""
+    envelope, usable = np.repeat([-0.3, -0.6], [6, 8]), np.ones(14, bool)
+    table, azimuth, slope = pieces(envelope, usable, 0.1, 0.01, 0.1, -0.6, True, True, True)
+    assert table == pytest.approx(
+        np.array([[0.1, 0.16, 1.0, 0.0, 2.0, 5.0], [0.16, 0.24, 1.0, 1.0, 1.0, 7.0]])
+    )
+    inner = np.r_[0:5, 7:14]
+    assert azimuth == pytest.approx(0.1 + 0.01 * (inner + 0.5))
+    assert np.array_equal(slope, envelope[inner])
 
 
 def test_an_envelope_is_cut_at_its_steps_and_nowhere_else():

@@ -110,13 +110,6 @@ def test_rolling_keeps_what_is_known_in_its_place_in_the_world(view):
     assert np.all(rolled.age_at(points) == np.inf)
 
 
-@pytest.mark.parametrize("centre", [(4.0, 0.0), (0.0, 4.0), (0.0, -4.0)])
-def test_it_goes_with_the_robot_along_either_axis(view, centre):
-    grid = LocalMap(P, (0.0, 0.0), 0.0)
-    look(grid, 0.2, view(), pose=(*centre, 0.0))
-    assert occupancy_at(grid, [(centre[0] + 1.0, centre[1])])[0] < 0.5  # seen free
-
-
 def test_a_snapshot_stays_as_it_is(view):
     grid = LocalMap(P, (0.0, 0.0), 0.0)
     look(grid, 0.0, view(pan=0.0))

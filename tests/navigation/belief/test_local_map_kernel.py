@@ -34,12 +34,3 @@ def test_what_holds_is_the_cell_whose_square_a_point_is_in(grid):
     assert np.array_equal(found[:-3], padded[row, column])
     assert (found[-3:] == 7.0).all()
     assert 100 < (found != 7.0).sum() < 300
-
-
-def test_free_is_what_is_empty_with_its_four_neighbours(grid):
-    points, cells = grid
-    cross = CELL * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
-    around = [kernel.lookup(points + step, CORNER, CELL, cells, 7.0) < 0.0 for step in cross]
-    free = kernel.free(points, CORNER, CELL, cells)
-    assert np.array_equal(free, np.all(around, axis=0))
-    assert 0 < free.sum() < len(points)

@@ -27,26 +27,6 @@ def hidden(viewpoint, points, centres, radii):
     return ~viewpoint.in_clear_view(points, centres, radii, margin=0.0, occlusion_margin=0.0)
 
 
-def test_contains_agrees_with_projection(view):
-    rng = np.random.default_rng(0)
-    for _ in range(20):
-        camera = view(pan=rng.uniform(-1.5, 1.5), tilt=rng.uniform(-1.0, 0.2))
-        pose = rng.uniform(-3, 3, 3)
-        points = pose[:2] + rng.uniform(-3, 3, (200, 2))
-        heading = pose[2]
-        c, s = cos(heading), sin(heading)
-        in_R = np.column_stack([(points - pose[:2]) @ [[c, -s], [s, c]], np.zeros(200)])
-        rays = (in_R - camera.position) @ camera.rotation
-        image = (
-            (rays[:, 2] > 0)
-            & (np.abs(np.arctan2(rays[:, 0], rays[:, 2])) <= camera.horizontal_fov / 2)
-            & (np.abs(np.arctan2(rays[:, 1], rays[:, 2])) <= camera.vertical_fov / 2)
-        )
-        near = np.hypot(*(points - pose[:2]).T) <= 2.5
-        seen = contains(Viewpoint.of(camera, pose, 2.5), points)
-        assert np.array_equal(seen, image & near)
-
-
 def test_a_disc_hides_what_is_behind_it_and_nothing_else(around):
     centre, radius = np.array([[1.0, 0.0]]), np.array([0.1])
     angles = np.linspace(-0.3, 0.3, 61)
