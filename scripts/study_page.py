@@ -1,4 +1,4 @@
-"""What studies share: seeds on the command line, and the page that a table goes to."""
+"""Shared by the studies: seeds on the command line, and the header of a page of results."""
 
 import argparse
 import platform
@@ -19,12 +19,10 @@ STAND_INS = ("robot.body=kinematic", "camera.source=analytic")
 
 
 def seeds_of(text: str) -> tuple[int, ...]:
-    """Seeds as a sweep takes them, ``1000:1020`` or ``1,5,9``; or ``1000-1019``, both included.
-
-    No text, no seeds.
+    """Return the seeds of ``1000:1020``, ``1,5,9`` or ``1000-1019`` (inclusive); none of "".
 
     Raises:
-        ValueError: it is no such thing.
+        ValueError: `text` is malformed.
     """
     if not text:
         return ()
@@ -36,7 +34,7 @@ def seeds_of(text: str) -> tuple[int, ...]:
 
 
 class _Seeds(argparse.Action):
-    """Puts the seeds of several words into one list."""
+    """Collects the seeds of several words in one list."""
 
     def __call__(
         self,
@@ -49,7 +47,7 @@ class _Seeds(argparse.Action):
 
 
 def add_seeds(parser: argparse.ArgumentParser, default: Iterable[int] = (0,)) -> None:
-    """Let `parser` take ``--seeds 1000-1019`` or ``--seeds 1000 1001``, a list of integers."""
+    """Add ``--seeds 1000-1019`` or ``--seeds 1000 1001``, a list of integers, to `parser`."""
     parser.add_argument(
         "--seeds",
         action=_Seeds,
@@ -60,27 +58,12 @@ def add_seeds(parser: argparse.ArgumentParser, default: Iterable[int] = (0,)) ->
     )
 
 
-def options_of(description: str, duration: float, page: str) -> argparse.Namespace:
-    """Seeds, duration and whether to write `page`."""
-    parser = argparse.ArgumentParser(description=description)
-    add_seeds(parser)
-    parser.add_argument("--duration", type=float, default=duration, help="per seed and row [s]")
-    parser.add_argument("--write", action="store_true", help=f"write {page}")
-    return parser.parse_args()
-
-
 def environment(packages: Iterable[str] = PACKAGES) -> str:
-    """Versions of `packages` and of Python, and the kind of machine."""
+    """Return the versions of `packages` and of Python, and the architecture."""
     versions = ", ".join(f"{name} {version(name)}" for name in packages)
     return f"{versions}; Python {platform.python_version()}, {platform.machine()}"
 
 
 def command_line() -> str:
-    """The command that repeats this study, from the repository's root."""
+    """Return the command that repeats this study from the repository's root."""
     return shlex.join(["python", f"scripts/{Path(sys.argv[0]).name}", *sys.argv[1:]])
-
-
-def write_page(page: str, title: str, text: str, table: list[str]) -> None:
-    """Write a page of results with versions and the command that repeats them."""
-    lines = [f"# {title}", "", f"{environment()}.", "", text, "", f"    {command_line()}", ""]
-    (RESULTS / page).write_text("\n".join([*lines, *table, ""]))

@@ -1,10 +1,9 @@
 import argparse
 
 import pytest
-import study_page
 from hypothesis import given
 from hypothesis import strategies as st
-from study_page import add_seeds, environment, seeds_of
+from study_page import add_seeds, seeds_of
 
 
 def parsed(*words):
@@ -37,14 +36,3 @@ def test_a_study_refuses_it_too(capsys):
         parsed("--seeds", "five")
     assert end.value.code == 2
     assert "--seeds" in capsys.readouterr().err
-
-
-def test_a_page_says_what_made_it_and_how_to_repeat_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(study_page, "RESULTS", tmp_path)
-    monkeypatch.setattr("sys.argv", ["scripts/x_study.py", "--set", "a b"])
-    study_page.write_page("x.md", "X", "Text.", ["| a |", "|---|"])
-    lines = (tmp_path / "x.md").read_text().splitlines()
-    assert lines[0] == "# X"
-    assert "    python scripts/x_study.py --set 'a b'" in lines
-    assert lines[-2:] == ["| a |", "|---|"]
-    assert environment() + "." in lines
