@@ -150,7 +150,7 @@ def settings_of(name: str, size: float, seed: int) -> list[str]:
         start = _time_at(MOVER_X - MOVER_RADIUS - ROBOT_RADIUS - size, seed, common)
     if kind == "bump":
         common = [*common[:-1], *STRAIGHT[:-1], "world.mover=[]"]
-        fault += f",radius={BUMP_RADIUS},place=[{BUMP_X},0.0]"
+        fault += f",radius={BUMP_RADIUS},position=[{BUMP_X},0.0]"
     return [*common, f'fault=[{{kind="{kind}",start={start},{fault}}}]']
 
 

@@ -52,7 +52,7 @@ class PlanView:
         canvas = self._canvas
         canvas.field(FLOOR, INK, 2)
         for bump in self._layout.bumps:
-            canvas.ring(bump.place, bump.radius, INK)
+            canvas.ring(bump.position, bump.radius, INK)
         for obstacle in self._layout.obstacles:
             if obstacle.motion is not None:
                 self._lane(obstacle.motion)

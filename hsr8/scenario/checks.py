@@ -172,9 +172,9 @@ def _overlaps(scenario: Scenario) -> Iterator[Problem]:
                 yield Problem(path, f"overlaps world.obstacle[{k}] at {list(b.position)}")
     for path, radius, positions in cylinders:
         reach = radius + ROBOT_RADIUS
-        for name, place in places:
-            if any(_distance(position, place) < reach for position in positions):
-                yield Problem(path, f"must be at least {reach:g} m from {name} = {list(place)}")
+        for name, point in places:
+            if any(_distance(position, point) < reach for position in positions):
+                yield Problem(path, f"must be at least {reach:g} m from {name} = {list(point)}")
 
 
 def _movers(scenario: Scenario) -> Iterator[Problem]:

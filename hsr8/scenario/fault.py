@@ -240,15 +240,15 @@ class LowFriction(_Fault):
     kind: Literal["low-friction"]
     magnitude: Annotated[float, Interval(ge=0.01, le=2.0)]
     """Friction coefficient of the soles; normally 0.8 [1]."""
-    place: Point | None = None
+    position: Point | None = None
     """Centre of the slippery patch in W; default: everywhere [m]."""
     radius: Annotated[float, Interval(gt=0.0, le=20.0)] | None = None
     """Radius of the patch; default: 0.3 [m]."""
 
     @model_validator(mode="after")
     def _placed(self) -> "LowFriction":
-        if self.place is None and self.radius is not None:
-            raise ValueError("a radius needs a place; without place the whole floor is slippery")
+        if self.position is None and self.radius is not None:
+            raise ValueError("radius requires position; without both the whole floor is slippery")
         return self
 
     @property
@@ -263,7 +263,7 @@ class Bump(_Fault):
     kind: Literal["bump"]
     magnitude: Annotated[float, Interval(ge=0.001, le=0.05)]
     """Height [m]."""
-    place: Point
+    position: Point
     """Centre in W [m]."""
     radius: Annotated[float, Interval(ge=0.01, le=0.5)] = 0.1
     """Radius [m]."""

@@ -59,10 +59,10 @@ def fault_problems(scenario: Scenario) -> Iterator[Problem]:
             if fault.mover in appearing:
                 yield Problem(("fault", i, "mover"), f"mover {fault.mover} appears twice")
             appearing.add(fault.mover)
-        if isinstance(fault, Bump | LowFriction) and fault.place is not None:
+        if isinstance(fault, Bump | LowFriction) and fault.position is not None:
             x, y = (0.5 * side for side in world.size)
-            if abs(fault.place[0]) > x or abs(fault.place[1]) > y:
+            if abs(fault.position[0]) > x or abs(fault.position[1]) > y:
                 yield Problem(
-                    ("fault", i, "place"),
-                    f"{list(fault.place)} is outside the field from {[-x, -y]} to {[x, y]}",
+                    ("fault", i, "position"),
+                    f"{list(fault.position)} is outside the field from {[-x, -y]} to {[x, y]}",
                 )

@@ -52,7 +52,7 @@ def load_scenario(
 
     Raises:
         ScenarioError: the file or an override is wrong; the message lists every mistake with its
-            place and the allowed values.
+            line and the allowed values.
     """
     draft = _read(_find(name_or_path), ())
     for option, table in (options or {}).items():
@@ -114,7 +114,7 @@ class _Layer:
     source: str
     text: str | None  # of a file
 
-    def place(self, path: Path) -> str:
+    def location(self, path: Path) -> str:
         """File and line, or option, that gives the key at `path`."""
         line = None if self.text is None else line_of(self.text, path)
         return self.source if line is None else f"{self.source}:{line}"
@@ -174,7 +174,7 @@ class _Draft:
         if not deepest:
             return ""
         k = max(k for k, d in enumerate(depths) if d == deepest)
-        return f"{self.layers[k].place(path)}: "
+        return f"{self.layers[k].location(path)}: "
 
 
 def _merged(base: Table, over: Table) -> Table:
@@ -233,8 +233,8 @@ def _layered(
     data.setdefault("name", _name(stem))
     draft = _Draft()
     if "extends" in data:
-        place = f"{source}:{line_of(text, ('extends',))}: extends"
-        draft = _read(_parent(data.pop("extends"), place, folder, files), files)
+        key = f"{source}:{line_of(text, ('extends',))}: extends"
+        draft = _read(_parent(data.pop("extends"), key, folder, files), files)
     draft.add(data, source, text)
     return draft
 
@@ -244,51 +244,51 @@ def _name(stem: str) -> str:
     return (re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-") or "scenario")[:64]
 
 
-def _parent(name: object, place: str, folder: FilePath, files: tuple[FilePath, ...]) -> FilePath:
+def _parent(name: object, source: str, folder: FilePath, files: tuple[FilePath, ...]) -> FilePath:
     """File of the scenario that another one extends: built in, or in the same folder."""
     names = built_in_names()
     if not isinstance(name, str):
-        raise ScenarioError(f"{place}: must be the name of a scenario, got {name!r}")
+        raise ScenarioError(f"{source}: must be the name of a scenario, got {name!r}")
     if name in names:
         parent = BUILT_IN / f"{name}.toml"
     elif name.endswith(".toml") and FilePath(name).name == name:
         parent = folder / name
     else:
         raise ScenarioError(
-            f"{place}: unknown scenario {name!r}{suggestion(name, names)}; expected a .toml file "
+            f"{source}: unknown scenario {name!r}{suggestion(name, names)}; expected a .toml file "
             f"in the same folder or one of {', '.join(names)}"
         )
     if parent in files:
         chain = " -> ".join(str(f) for f in (*files, parent))
-        raise ScenarioError(f"{place}: scenarios extend each other in a loop: {chain}")
+        raise ScenarioError(f"{source}: scenarios extend each other in a loop: {chain}")
     return parent
 
 
 def _parse_override(override: str, data: Table, flag: str) -> Table:
     """Nested table of ``a.b=value``; lists are copied with one entry changed."""
-    place = f"{flag} {override}"
+    source = f"{flag} {override}"
     key, equals, text = override.partition("=")
     parts = key.strip().split(".")
     if not equals or not all(parts):
-        raise ScenarioError(f"{place}: expected key=value, for example {flag} camera.period_ms=80")
+        raise ScenarioError(f"{source}: expected key=value, for example {flag} camera.period_ms=80")
     if parts == ["extends"]:
-        raise ScenarioError(f"{place}: extends is allowed in files only")
+        raise ScenarioError(f"{source}: extends is allowed in files only")
     try:
         parsed = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):
         parsed = {"value": text.strip()}
     value = parsed["value"] if len(parsed) == 1 else text
     for k in range(len(parts) - 1, 0, -1):
-        value = _put(parts[k], value, _at(data, parts[:k]), place)
+        value = _put(parts[k], value, _at(data, parts[:k]), source)
     return {parts[0]: value}
 
 
-def _put(part: str, value: Any, old: Any, place: str) -> Any:
+def _put(part: str, value: Any, old: Any, source: str) -> Any:
     """`old` with one entry changed if it is a list, else a new table."""
     if not isinstance(old, list):
         return {part: value}
     if not part.isdecimal() or int(part) >= len(old):
-        raise ScenarioError(f"{place}: expected an index from 0 to {len(old) - 1}, got {part!r}")
+        raise ScenarioError(f"{source}: expected an index from 0 to {len(old) - 1}, got {part!r}")
     entry = old[int(part)]
     if isinstance(entry, dict) and isinstance(value, dict):
         value = _merged(entry, value)

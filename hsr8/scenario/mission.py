@@ -43,7 +43,7 @@ class Points(Section):
 
 
 class Walk(Section):
-    """No navigation: the robot walks as the section `command` says."""
+    """No navigation: the robot follows the section `command`."""
 
     kind: Literal["walk"]
 

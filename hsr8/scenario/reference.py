@@ -97,7 +97,7 @@ def keys_at(path: Path, data: Any) -> list[str]:
 
 
 def allowed(node: Node) -> str:
-    """Return the allowed values in words; empty if the type says it all."""
+    """Return the allowed values in words; empty if the type suffices."""
     if "enum" in node:
         return ", ".join(f'"{choice}"' for choice in node["enum"])
     if "const" in node:

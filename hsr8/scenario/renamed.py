@@ -13,6 +13,7 @@ RENAMED: dict[str, str] = {
     "belief.recognition": "belief.relocalization",
     "belief.tracking.top_speed": "belief.tracking.max_speed",
     "command.random.stops": "command.random.stop_fraction",
+    "fault.place": "fault.position",
     "fault.size": "fault.magnitude",
     "navigation.body": "navigation.velocity_mapping",
     "navigation.filter": "navigation.safety_filter",

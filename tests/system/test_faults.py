@@ -22,7 +22,7 @@ WELL = {  # what the robot gets over within a second, walking
     "servo-delay": "magnitude=0.005",
     "push": "magnitude=0.5",
     "low-friction": "magnitude=0.3",
-    "bump": "magnitude=0.003,place=[0.1,0.0],radius=0.2",
+    "bump": "magnitude=0.003,position=[0.1,0.0],radius=0.2",
 }
 TOLD = {  # the gyro turns away by 16 of its standard deviations a frame: the beacons set it right
     "gyro-bias": ["fault", "fault", "lost", "found"],
@@ -136,8 +136,8 @@ ALL = [
 PHYSICAL = [
     fault("servo-weak", "magnitude=0.7", start=0.3),
     fault("push", "magnitude=0.3,point=[0.0,0.1,0.05]", start=0.5, lasts=0.1),
-    fault("low-friction", "magnitude=0.3,place=[0.0,0.0],radius=3.0", start=0.4),
-    fault("bump", "magnitude=0.004,place=[0.0,0.0],radius=0.5", start=0.45),
+    fault("low-friction", "magnitude=0.3,position=[0.0,0.0],radius=3.0", start=0.4),
+    fault("bump", "magnitude=0.004,position=[0.0,0.0],radius=0.5", start=0.45),
 ]
 
 
@@ -148,6 +148,6 @@ def test_a_run_with_all_faults_is_computed_again_bit_for_bit(tmp_path, capsys):
     run = open_run(tmp_path)
     assert sum(event["kind"] == "fault" for event in run.events()) > 20
     capsys.readouterr()
-    assert entry(["check", "replay", str(run.path), "--json"]) == 0
+    assert entry(["verify", str(run.path), "--json"]) == 0
     stages = json.loads(capsys.readouterr().out)["stages"]
     assert all(stage["equal"] for stage in stages)

@@ -28,7 +28,7 @@ class WorldFaults:
         bumps = [f for f in faults if isinstance(f, Bump)]
         self._bumps = list(zip(bumps, index.bumps, strict=True))
         self._any = bool(self._weak or self._low_friction or self._bumps)
-        self._local = any(f.place is not None for f in self._low_friction)
+        self._local = any(f.position is not None for f in self._low_friction)
         self._torque = model.actuator_forcerange.copy()
         self._friction = [float(model.geom_friction[g, 0]) for g in index.foot_geoms]
         if self._low_friction:
@@ -60,6 +60,6 @@ class WorldFaults:
 
 
 def _within(slip: LowFriction, x: float, y: float) -> bool:
-    if slip.place is None:
+    if slip.position is None:
         return True
-    return hypot(x - slip.place[0], y - slip.place[1]) <= slip.reach
+    return hypot(x - slip.position[0], y - slip.position[1]) <= slip.reach

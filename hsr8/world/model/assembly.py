@@ -245,7 +245,7 @@ def _add_bump(spec: mujoco.MjSpec, name: str, bump: Bump) -> None:
     spec.worldbody.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-        pos=[*bump.place, 0.0],
+        pos=[*bump.position, 0.0],
         size=[bump.radius, bump.magnitude, 0.0],
         material="line",
         condim=4,

@@ -26,7 +26,7 @@ def test_y_points_up_and_x_to_the_right():
 
 
 def test_a_mover_that_appears_is_drawn_where_it_does_and_a_bump_where_it_lies():
-    bump = '{kind="bump",magnitude=0.01,place=[1.5,1.5],radius=0.2}'
+    bump = '{kind="bump",magnitude=0.01,position=[1.5,1.5],radius=0.2}'
     faults = '{kind="mover-appears",start=2.0},' + bump
     usual, faulty = (
         PlanView(draw_layout(load_scenario("quick", [f"fault=[{text}]"]), 2), 600).draw()

@@ -26,7 +26,7 @@ MAGNITUDES = {
     "low-friction": 0.2,
     "bump": 0.01,
 }
-MORE = {"servo-stuck": 'joint="l_knee"', "bump": "place=[0.5,0.0]"}
+MORE = {"servo-stuck": 'joint="l_knee"', "bump": "position=[0.5,0.0]"}
 KINDS = [kind.model_fields["kind"].annotation.__args__[0] for kind in get_args(get_args(Fault)[0])]
 
 
@@ -93,8 +93,8 @@ def test_all_kinds_can_be_given_together():
             [f"fault=[{fault_of('camera-black', start='99.0')}]"],
             "must be before the end of the run",
         ),
-        ([f"fault=[{fault_of('low-friction', radius='0.5')}]"], "a radius needs a place"),
-        ([f"fault=[{fault_of('low-friction', place='[9.0,0.0]')}]"], "outside the field"),
+        ([f"fault=[{fault_of('low-friction', radius='0.5')}]"], "radius requires position"),
+        ([f"fault=[{fault_of('low-friction', position='[9.0,0.0]')}]"], "outside the field"),
         ([f"fault=[{fault_of('mover-appears', mover='7')}]"], "unknown mover 7; expected 0 to 0"),
         ([f"fault=[{','.join([fault_of('mover-appears')] * 2)}]"], "mover 0 appears twice"),
         (['robot.body="kinematic"', f"fault=[{fault_of('bump')}]"], "requires robot.body"),

@@ -43,7 +43,7 @@ def test_weak_servos_have_a_share_of_their_torque_left_and_get_it_back():
 def test_a_patch_is_slippery_for_the_sole_on_it():
     (_, y), radius = (0.0, 0.045), 0.03
     model, data, index, faults = world(
-        LowFriction(kind="low-friction", magnitude=0.1, place=(0.01, y), radius=radius)
+        LowFriction(kind="low-friction", magnitude=0.1, position=(0.01, y), radius=radius)
     )
     faults.apply_fault(model, data, 0)
     assert model.geom_friction[list(index.foot_geoms), 0].tolist() == [0.1, 0.8]
@@ -66,7 +66,7 @@ def test_the_friction_of_a_slippery_floor_is_that_of_its_contacts():
 
 def test_a_bump_is_touched_while_it_acts_only():
     bump = Bump(
-        kind="bump", magnitude=0.01, place=(0.0, 0.045), radius=0.1, start=0.05, duration=0.05
+        kind="bump", magnitude=0.01, position=(0.0, 0.045), radius=0.1, start=0.05, duration=0.05
     )
     model, data, index, faults = world(bump)
     touched = []
