@@ -1,9 +1,9 @@
-"""Makes NumPy and OpenBLAS give the same bits on every x86-64 processor with AVX2 and FMA.
+"""Portable arithmetic: identical bits on every x86-64 processor with AVX2 and FMA.
 
-NumPy and OpenBLAS choose among kernels by the processor, and these differ in the last bit; a walk
-among movers makes another walk of that. Told to use no more than level 3 (AVX2 and FMA), they
-give the same bits on all. The package calls `choose_arithmetic` before anything of it imports
-NumPy, which reads the environment once, as OpenBLAS does.
+NumPy and OpenBLAS choose kernels by the processor. These kernels differ in the last bit, which
+changes the course of a run. Limited to level 3 (AVX2 and FMA), results are identical. NumPy and
+OpenBLAS read the environment once, so the package calls `choose_arithmetic` before it imports
+NumPy.
 """
 
 import os
@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 PORTABLE = "x86-64-v3"
-NATIVE = "native"  # of this processor alone
+NATIVE = "native"  # on this processor alone
 LEVEL_3 = {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"}
-BEYOND = {  # what NumPy dispatches to, and what the processor has if it can
+BEYOND = {  # targets of NumPy beyond level 3, and the features they need
     "X86_V4": {"avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"},
     "AVX512_ICL": {"avx512_vbmi2", "avx512_bitalg", "avx512_vpopcntdq"},
     "AVX512_SPR": {"avx512_fp16"},
@@ -22,14 +22,14 @@ _PROCESSOR = Path("/proc/cpuinfo")
 
 
 def choose_arithmetic(processor: Path = _PROCESSOR) -> str:
-    """Keep NumPy and OpenBLAS to level 3, unless the user's environment says otherwise.
+    """Limit NumPy and OpenBLAS to level 3, unless the environment of the user decides otherwise.
 
     Args:
-        processor: file with the features of the processor, as Linux gives it.
+        processor: file with the features of the processor, in the format of Linux.
 
     Returns:
-        `PORTABLE`, or `NATIVE` where the processor is another one, where NumPy was imported
-        before, or where the environment asks for something else.
+        `PORTABLE`, or `NATIVE` on other processors, after an earlier import of NumPy, or if the
+        environment decides otherwise.
     """
     features = _features(processor)
     if not features >= LEVEL_3:

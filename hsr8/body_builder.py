@@ -1,4 +1,4 @@
-"""Builds the world and the body in it for a scenario."""
+"""Builder of the world model and the body of a scenario."""
 
 import mujoco
 
@@ -15,7 +15,7 @@ from walking.parameters import CONTROL_PERIOD
 
 
 def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
-    """The world as the robot's camera sees it."""
+    """Return the world model of `scenario` for the camera of the robot."""
     camera = scenario.camera
     fov = camera.vertical_fov
     brightness = scenario.world.brightness
@@ -24,10 +24,10 @@ def build_model(scenario: Scenario, layout: Layout) -> mujoco.MjModel:
 
 
 def build_body(scenario: Scenario, seed: int, layout: Layout, model: mujoco.MjModel) -> Body:
-    """The robot's body in `model`; `seed` draws its noise and what disturbs it.
+    """Return the body of the robot in `model`; `seed` draws noise and random pushes.
 
     Raises:
-        ModelError: the model's physics step does not go with the control period.
+        ModelError: the control period is not a multiple of the physics step.
     """
     noise, rng = scenario.sensors, named_rng(seed, "body")
     if scenario.robot.body == "kinematic":

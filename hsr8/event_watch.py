@@ -1,4 +1,4 @@
-"""What happens in a run, as events: faults, contacts, falls, pushes, via points, the goal."""
+"""Events of a run: faults, collisions, falls, pushes, via points, goal, localization."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -9,11 +9,11 @@ from hsr8.world.truth.collision_counter import CollisionCounter
 from hsr8.world.truth.falls import Falls
 from hsr8.world.truth.truth import Truth
 
-INSTANT = 1e-6  # times nearer to one another are the same [s]
+SAME_TIME = 1e-6  # times closer than this are equal [s]
 
 
 class Event(NamedTuple):
-    """What happened, and when [s]."""
+    """Event with its time [s]."""
 
     time: float
     kind: str
@@ -28,9 +28,9 @@ class EventWatch:
     """
 
     def __init__(self, faults: Sequence[Fault]) -> None:
-        told = [(f.begin, f"{f.text()}: begins") for f in faults]
-        told += [(f.end, f"{f.text()}: ends") for f in faults if f.end is not None]
-        self._faults = sorted(told, key=lambda line: line[0])
+        events = [(f.begin, f"{f.text()}: begins") for f in faults]
+        events += [(f.end, f"{f.text()}: ends") for f in faults if f.end is not None]
+        self._faults = sorted(events, key=lambda event: event[0])
         self._pushes = 0
         self._collisions = CollisionCounter()
         self._falls = Falls()
@@ -39,9 +39,9 @@ class EventWatch:
         self._done = False
 
     def look(self, truth: Truth, frame: FrameRecord | None) -> Iterator[Event]:
-        """What changed since the last record; to be taken to its end."""
+        """Yield the events since the last record; exhaust the iterator."""
         now = truth.time
-        while self._faults and self._faults[0][0] <= now + INSTANT:
+        while self._faults and self._faults[0][0] <= now + SAME_TIME:
             time, text = self._faults.pop(0)
             yield Event(time, "fault", text)
         for push in truth.pushes:
@@ -66,4 +66,4 @@ class EventWatch:
             if self._lost:
                 yield Event(now, "lost", "localization is lost")
             else:
-                yield Event(now, "found", "localized again")
+                yield Event(now, "relocalized", "localized again")

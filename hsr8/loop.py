@@ -1,4 +1,4 @@
-"""The closed loop: world, sensors, robot, and back, one control tick after the other."""
+"""Closed loop of world and robot, one control tick at a time."""
 
 import hashlib
 from collections.abc import Sequence
@@ -31,19 +31,19 @@ from hsr8.world.truth.truth import Truth
 from walking.parameters import CONTROL_PERIOD
 from walking.phase import Phase
 
-GOAL_DWELL = 1.0  # the run goes on for so long after the goal is reached [s]
-FALL_DWELL = 0.6  # and for so long after a fall for good, so that it can be seen [s]
-TICKS_A_SECOND = round(1.0 / CONTROL_PERIOD)
+GOAL_DWELL = 1.0  # simulated time after the goal is reached [s]
+FALL_DWELL = 0.6  # simulated time after the final fall, so that it is visible [s]
+TICKS_PER_SECOND = round(1.0 / CONTROL_PERIOD)
 
 
 @dataclass(frozen=True, slots=True)
 class RunOutcome:
-    """How a run ended.
+    """Outcome of a run.
 
     Attributes:
         exit_reason: goal, timeout, completed, fall, diverged or interrupted.
         time: simulated time at the end [s].
-        state_hash: SHA-256 of the world's state and the robot's belief.
+        state_hash: SHA-256 of the state of the world and the belief of the robot.
     """
 
     exit_reason: str
@@ -52,9 +52,9 @@ class RunOutcome:
 
 
 class Simulation:
-    """One run of one scenario with one seed.
+    """Run of one scenario with one seed.
 
-    At once: ``outcome = Simulation(scenario, seed).run()``. Tick by tick:
+    As a whole: ``outcome = Simulation(scenario, seed).run()``. Tick by tick:
 
         with Simulation(scenario, seed) as simulation:
             while simulation.exit_reason is None:
@@ -62,27 +62,27 @@ class Simulation:
 
     Args:
         scenario: what to run.
-        seed: draws the world and every noise.
-        listeners: told of every record; they never change the run.
-        planner: plans the motion instead of the scenario's planner.
-        gaze: chooses the gaze instead of the scenario's.
+        seed: draws the world and all noise.
+        listeners: receive every record; they never change the run.
+        planner: replaces the motion planner of the scenario.
+        gaze: replaces the gaze planner of the scenario.
 
     Attributes:
-        scenario: what is run.
-        seed: drew the world and every noise.
-        listeners: told of every record; may be added to before the run.
-        tape: where set-points and hashes go, if anywhere.
-        layout: the world that was drawn.
-        model: MuJoCo model of it, with the robot.
-        exit_reason: goal, timeout, completed, fall, diverged or interrupted once the run has
-            ended; None before.
+        scenario: what to run.
+        seed: draws the world and all noise.
+        listeners: receive every record; extensible before the run.
+        tape: records setpoints and hashes, if set.
+        layout: the drawn world.
+        model: MuJoCo model of world and robot.
+        exit_reason: goal, timeout, completed, fall, diverged or interrupted after the run; None
+            before.
         tick: control ticks made so far.
 
     Raises:
-        ScenarioError: the seed is none, or the world cannot be drawn as asked.
-        ModelError: a model of robot or field is missing or damaged.
-        UsageError: `planner` or `gaze`, or one that the scenario names, will not do.
-        RenderingUnavailable: by ``with`` or `run`, the camera needs OpenGL and there is none.
+        ScenarioError: the seed is invalid, or the world cannot be drawn.
+        ModelError: the robot or field model is missing or invalid.
+        UsageError: the planner or gaze, given or named by the scenario, is invalid.
+        RenderingUnavailable: in ``with`` or `run`: the camera needs OpenGL, which is missing.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Simulation:
         self.exit_reason: str | None = None
         self.tick = 0
         self._body = build_body(scenario, self.seed, self.layout, self.model)
-        self._robot = self._built(planner, gaze)
+        self._robot = self._build_robot(planner, gaze)
         self._watch = EventWatch(scenario.fault)
         self._sensor_faults = SensorFaults(scenario.fault)
         self._servo_faults = ServoFaults(scenario.fault)
@@ -128,14 +128,14 @@ class Simulation:
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
 
-    def _built(self, planner: MotionPlanner | None, gaze: GazeController | None) -> Robot:
+    def _build_robot(self, planner: MotionPlanner | None, gaze: GazeController | None) -> Robot:
         scenario = self.scenario
         try:
             return build_robot(scenario, self.layout, self.seed, planner=planner, gaze=gaze)
         except (ValueError, ArithmeticError, MemoryError) as error:
             raise ScenarioError(
-                f"scenario {scenario.name!r}: the robot does not work with the parameters in "
-                f"walking, vision, belief and navigation: {error}"
+                f"scenario {scenario.name!r}: invalid parameters in walking, vision, belief or "
+                f"navigation: {error}"
             ) from error
 
     @property
@@ -149,41 +149,41 @@ class Simulation:
         return self._body.time
 
     def interrupt(self) -> None:
-        """Ask the run to end after the present tick."""
+        """End the run after the present tick."""
         self._interrupted = True
 
     def __enter__(self) -> Self:
-        cv2.setNumThreads(1)  # threads only wait for one another over images so small
+        cv2.setNumThreads(1)  # threads slow down work on small images
         try:
             if self._analytic is None:
                 self._rendered = RenderedCamera(
                     self.model, self.scenario.camera, self._camera_rng, self._camera_faults
                 )
-        except BaseException as error:  # who listens is to know that there is no run
+        except BaseException as error:  # listeners must be closed
             self.__exit__(type(error), error, None)
             raise
         self._open = True
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Close camera, tape and listeners; each is closed, also when another one fails."""
+        """Close camera, tape and listeners, also if one of them fails."""
         self._open = False
         if self.exit_reason is None:
             stopped = kind is None or issubclass(kind, KeyboardInterrupt)
             self.exit_reason = "interrupted" if stopped else "error"
-        with ExitStack() as farewell:
+        with ExitStack() as cleanup:
             if self._rendered is not None:
-                farewell.callback(self._rendered.close)
+                cleanup.callback(self._rendered.close)
             if self.tape is not None:
-                farewell.callback(self.tape.close)
+                cleanup.callback(self.tape.close)
             for listener in reversed(self.listeners):
-                farewell.callback(listener.close, self.exit_reason)
+                cleanup.callback(listener.close, self.exit_reason)
 
     def run(self) -> RunOutcome:
         """Run to the end and close the listeners.
 
         Raises:
-            SimulationDiverged: the physics blew up; the listeners are closed first.
+            SimulationDiverged: the physics diverged; the listeners are closed first.
         """
         with suppress(KeyboardInterrupt), self:
             while self.exit_reason is None:
@@ -191,44 +191,44 @@ class Simulation:
         return self.outcome()
 
     def outcome(self) -> RunOutcome:
-        """How the run ended.
+        """Return the outcome of the run.
 
         Raises:
-            RuntimeError: it has not.
+            RuntimeError: the run has not ended.
         """
         if self.exit_reason is None:
-            raise RuntimeError("the run has not ended: step on until `exit_reason` is set")
+            raise RuntimeError("the run has not ended: call step() until `exit_reason` is set")
         return RunOutcome(self.exit_reason, self._body.time, self.state_hash())
 
     def step(self) -> TickRecord | None:
         """Make one control tick.
 
         Returns:
-            What was published in it; None between two records.
+            The record of this tick; None between two records.
 
         Raises:
-            RuntimeError: the run has ended, or has not been entered by ``with``.
-            SimulationDiverged: the physics blew up.
+            RuntimeError: the run has ended, or ``with`` is missing.
+            SimulationDiverged: the physics diverged.
         """
         if not self._open or self.exit_reason is not None:
-            state = "has ended" if self.exit_reason else "is entered by `with simulation:`"
-            raise RuntimeError(f"the run {state}")
+            reason = "the run has ended" if self.exit_reason else "enter `with simulation:` first"
+            raise RuntimeError(f"step: {reason}")
         try:
             return self._step()
         except SimulationDiverged as error:
             self.exit_reason = "diverged"
-            self._tell(Event(self._body.time, "diverged", str(error)))
+            self._publish_event(Event(self._body.time, "diverged", str(error)))
             raise
         except Exception as error:
             error.add_note(f"at {self._body.time:.3f} s of simulated time")
             raise
 
     def state_hash(self) -> str:
-        """SHA-256 of the world's state and the robot's belief."""
-        return hashlib.sha256(self._body.state_bytes() + self._believed()).hexdigest()
+        """Return the SHA-256 of the state of the world and the belief of the robot."""
+        return hashlib.sha256(self._body.state_bytes() + self._belief_bytes()).hexdigest()
 
-    def _believed(self) -> bytes:
-        """All numbers of the pose and the tracks the robot believes in."""
+    def _belief_bytes(self) -> bytes:
+        """Return pose and tracks of the belief as bytes."""
         if self._robot.frame is None:
             return b""
         belief = self._robot.frame.belief
@@ -238,19 +238,19 @@ class Simulation:
         return b"".join(part.tobytes() for part in parts)
 
     def _mark(self, tick: int) -> None:
-        """Hash of everything, once a second and at the end."""
+        """Record the hash of the state, once per second and at the end."""
         if self.tape is not None:
-            self.tape.mark(tick, self._body.state_bytes(), self._believed())
+            self.tape.mark(tick, self._body.state_bytes(), self._belief_bytes())
 
     def _step(self) -> TickRecord | None:
         tick, record = self.tick, None
-        if tick % TICKS_A_SECOND == 0:
+        if tick % TICKS_PER_SECOND == 0:
             self._mark(tick)
         targets = self._robot.step(self._sense(tick))
         if tick % self._record_ticks == 0:
             truth = self._body.truth()
             record = self._publish(tick, truth)
-            self._end = self._end or self._ending(tick, truth)
+            self._end = self._end or self._scheduled_end(tick, truth)
         if self._interrupted:
             return self._finish("interrupted", record)
         if self._end is not None and tick >= self._end[0]:
@@ -272,21 +272,21 @@ class Simulation:
 
     def _sense(self, tick: int) -> SensorFrame:
         body, time = self._sensor_faults.apply_fault(self._body.sense(), tick), self._body.time
-        shutter, picture = self._feed.shutter(tick), self._feed.arrived(tick, self._take)
-        if picture is None:
+        shutter, frame = self._feed.shutter(tick), self._feed.arrived(tick, self._capture)
+        if frame is None:
             return SensorFrame(time, body, shutter)
-        image = None if picture.exposure is None else picture.exposure.image
-        return SensorFrame(time, body, shutter, picture.captured, image, picture.detections)
+        image = None if frame.exposure is None else frame.exposure.image
+        return SensorFrame(time, body, shutter, frame.captured, image, frame.detections)
 
-    def _take(self) -> CapturedFrame:
+    def _capture(self) -> CapturedFrame:
         body = self._body
         if self._rendered is not None:
             return CapturedFrame(body.time, self._rendered.capture(body))
         assert self._analytic is not None
         return CapturedFrame(body.time, detections=self._analytic.capture(body))
 
-    def _ending(self, tick: int, truth: Truth) -> tuple[int, str] | None:
-        """Tick and reason of an end that is now decided."""
+    def _scheduled_end(self, tick: int, truth: Truth) -> tuple[int, str] | None:
+        """Return tick and reason of the end once it is certain."""
         if truth.fallen and self._stays_down():
             return tick + round(FALL_DWELL / CONTROL_PERIOD), "fall"
         frame = self._robot.frame
@@ -295,7 +295,7 @@ class Simulation:
         return None
 
     def _stays_down(self) -> bool:
-        """Whether a fallen robot does not try to get up, or no longer."""
+        """Return whether a fallen robot does not try to get up, or has given up."""
         if not self.scenario.walking.get_up.enabled:
             return True
         return self._robot.walking_state().phase is Phase.FALLEN
@@ -304,7 +304,7 @@ class Simulation:
         frame = self._robot.frame if self._robot.frame is not self._published else None
         self._published = self._robot.frame
         for event in self._watch.look(truth, frame):
-            self._tell(event)
+            self._publish_event(event)
         record = TickRecord(
             tick=tick,
             time=self._body.time,
@@ -319,6 +319,6 @@ class Simulation:
             listener.on_record(record)
         return record
 
-    def _tell(self, event: Event) -> None:
+    def _publish_event(self, event: Event) -> None:
         for listener in self.listeners:
             listener.on_event(*event)

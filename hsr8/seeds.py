@@ -1,4 +1,4 @@
-"""Random numbers: every subsystem has a generator of its own, drawn from the run's seed."""
+"""Random generators of the subsystems, derived from the seed of a run."""
 
 import zlib
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def named_rng(seed: int, name: str) -> np.random.Generator:
-    """Generator of the subsystem `name`; independent of every other name's."""
+    """Return the generator of the subsystem `name`, independent of those of other names."""
     return np.random.default_rng(
         np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(name.encode()),))
     )

@@ -25,7 +25,7 @@ WELL = {  # what the robot gets over within a second, walking
     "bump": "magnitude=0.003,position=[0.1,0.0],radius=0.2",
 }
 TOLD = {  # the gyro turns away by 16 of its standard deviations a frame: the beacons set it right
-    "gyro-bias": ["fault", "fault", "lost", "found"],
+    "gyro-bias": ["fault", "fault", "lost", "relocalized"],
 }
 BADLY = {  # what makes it fall
     "attitude-bias": "magnitude=0.4",

@@ -1,38 +1,29 @@
-"""Falls counted as people count them: one lasts until the robot stays on its feet."""
+"""Fall counter: a fall lasts until the robot stays on its feet."""
 
-RECOVERED = 1.0  # a robot that has not lain for so long has got up [s]
+RECOVERY_TIME = 1.0  # upright time after which a fall is over [s]
 
 
 class Falls:
     """Counts the falls of a run.
 
-    On its way up the robot kneels and squats, and may fail and lie again: all of that is the
-    same fall.
+    Failed attempts to get up belong to the same fall.
 
     Attributes:
         count: falls so far.
     """
 
     def __init__(self) -> None:
-        self._lay_at: float | None = None
+        self._last_fallen: float | None = None
         self.count = 0
 
     def add(self, time: float, *, fallen: bool) -> bool:
-        """Take one record.
-
-        Args:
-            time: of it [s].
-            fallen: whether the robot lies.
-
-        Returns:
-            whether a fall begins with it.
-        """
+        """Add one record at `time` [s] and return whether a fall begins with it."""
         begins = fallen and not self.lasting(time)
         if fallen:
-            self._lay_at = time
+            self._last_fallen = time
         self.count += begins
         return begins
 
     def lasting(self, time: float) -> bool:
-        """Whether a fall is under way at `time` [s]."""
-        return self._lay_at is not None and time - self._lay_at < RECOVERED
+        """Return whether a fall lasts at `time` [s]."""
+        return self._last_fallen is not None and time - self._last_fallen < RECOVERY_TIME

@@ -1,4 +1,4 @@
-"""Ground truth of one instant: it leaves the world towards recorder and metrics only."""
+"""Ground truth of one instant, for recorder and metrics only."""
 
 from dataclasses import dataclass
 from math import degrees, hypot
@@ -14,15 +14,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """The robot touches an obstacle or a beacon.
+    """Contact of the robot with an obstacle or a beacon.
 
     Attributes:
-        obstacle: number of what it touches: the layout's obstacles, after them its beacons.
-        name: of what it touches, in words.
-        moving: whether that is a mover.
-        robot_geom: name of the robot's geom.
+        obstacle: number in the layout: obstacles, then beacons.
+        name: of the obstacle or beacon, for people.
+        moving: whether it is a mover.
+        robot_geom: name of the geom of the robot.
         force: normal force [N].
-        closing: the robot's own motion closes the gap.
+        closing: whether the motion of the robot closed the gap.
     """
 
     obstacle: int
@@ -35,15 +35,15 @@ class Contact:
 
 @dataclass(frozen=True, slots=True)
 class ActivePush:
-    """The world pushes the robot.
+    """Push that acts on the robot.
 
     Attributes:
         number: of the push in its run.
-        begin: when it began [s].
-        duration: how long it lasts in all [s].
+        begin: [s].
+        duration: total [s].
         body: name of the pushed body.
-        direction: from the robot's forward when it began, counter-clockwise [rad].
-        point: where it acted last in W (3,) [m].
+        direction: from the heading of the robot at the start, counter-clockwise [rad].
+        point: of the force in W (3,) [m].
         force: in W (3,) [N].
     """
 
@@ -61,7 +61,7 @@ class ActivePush:
         return hypot(*self.force.tolist()) * self.duration
 
     def text(self) -> str:
-        """The push in words."""
+        """Return a description for people."""
         return (
             f"{self.impulse:.2f} N s in {1000 * self.duration:.0f} ms on {self.body}, to "
             f"{degrees(self.direction):.0f} deg from forward"
@@ -78,14 +78,14 @@ class Truth:
         robot: x, y, heading of the robot frame R in W (3,) [m, m, rad].
         obstacle_positions: axes of all obstacles, layout order (n, 2) [m].
         obstacle_velocities: (n, 2) [m/s].
-        contacts: everything touched since the previous record.
-        clearance: distance from the robot's body to the nearest obstacle or beacon [m].
+        contacts: since the previous record.
+        clearance: distance of the robot to the nearest obstacle or beacon [m].
         joint_torque: (26,) [N m].
         foot_force: true normal force under the left and right foot (2,) [N].
         zmp: centre of pressure under both feet in W (2,) [m], NaN when airborne.
-        fallen: whether the robot lies.
-        pushes: those that acted since the previous record.
-        saturation: of the servos, since the start; it counts on. A body without dynamics has none.
+        fallen: whether the robot has fallen.
+        pushes: active since the previous record.
+        saturation: of the servos, updated every tick; None of a body without dynamics.
     """
 
     time: float

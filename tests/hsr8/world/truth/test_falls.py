@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hsr8.world.truth.falls import RECOVERED, Falls
+from hsr8.world.truth.falls import RECOVERY_TIME, Falls
 
 
 def count(record):
@@ -14,13 +14,13 @@ def count(record):
     return falls.count
 
 
-@given(st.lists(st.booleans(), max_size=round(RECOVERED / 0.02)))
+@given(st.lists(st.booleans(), max_size=round(RECOVERY_TIME / 0.02)))
 def test_kneeling_and_lying_again_are_the_same_fall(record):
     assert count(record) == any(record)
 
 
 def test_a_fall_after_standing_is_another():
-    stands = np.zeros(round(RECOVERED / 0.02) + 1, bool)
+    stands = np.zeros(round(RECOVERY_TIME / 0.02) + 1, bool)
     assert count([True, True, *stands, True, *stands, True]) == 3
 
 
@@ -30,4 +30,4 @@ def test_it_lasts_until_the_robot_has_stayed_up():
     falls.add(1.0, fallen=True)
     falls.add(1.5, fallen=False)
     assert falls.lasting(1.5)
-    assert not falls.lasting(1.0 + RECOVERED)
+    assert not falls.lasting(1.0 + RECOVERY_TIME)
