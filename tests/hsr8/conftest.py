@@ -61,9 +61,9 @@ def model(layout):
 
 def _track(layout, index, time, error=(0.0, 0.0), velocity=None):
     obstacle = layout.obstacles[index]
-    law = obstacle.motion
-    position = law.position(time) if law else obstacle.position
-    moving = (0.0, 0.0) if law is None else law.velocity(time)
+    motion = obstacle.motion
+    position = motion.position(time) if motion else obstacle.position
+    moving = (0.0, 0.0) if motion is None else motion.velocity(time)
     return Track(
         id=index,
         label=obstacle.color,
@@ -72,7 +72,7 @@ def _track(layout, index, time, error=(0.0, 0.0), velocity=None):
         covariance=np.diag([4e-4, 1e-4, 1e-4, 1e-4]),
         radius=obstacle.radius,
         radius_sigma=0.01,
-        motion=Motion.STATIC if law is None else Motion.MOVING,
+        motion=Motion.STATIC if motion is None else Motion.MOVING,
         hits=10,
         age=0.0,
         last_seen=np.array(position),

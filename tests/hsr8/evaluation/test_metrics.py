@@ -41,7 +41,7 @@ def _feed(metrics, records, reason="timeout"):
     return metrics.result(reason, "hash")
 
 
-def test_all_keys_are_there_even_of_a_run_that_never_began(metrics):
+def test_all_keys_are_present_also_without_records(metrics):
     results = metrics.result("interrupted", "")
     assert set(results) >= PROMISED
     assert results["success"] is False
@@ -60,7 +60,7 @@ def test_a_straight_walk(metrics, walk):
     assert results["max_tilt_deg"] == pytest.approx(np.degrees(np.hypot(0.01, 0.02)))
 
 
-def test_sway_is_no_way(metrics, fake):
+def test_sway_does_not_add_to_the_path(metrics, fake):
     """Swaying by 2 cm at the pace of the gait, on the spot, the path stays short."""
     records = (
         fake.record(0.02 * k, (0.0, 0.02 * np.sin(2 * pi * k / 50), 0.0)) for k in range(501)
@@ -87,7 +87,7 @@ def test_localization_errors_are_root_mean_squares(metrics, fake):
     assert results["nees_mean"] == pytest.approx(nees)
 
 
-def test_tracks_are_compared_with_the_nearest_obstacle_and_ghosts_with_none(metrics, fake):
+def test_tracks_are_compared_with_the_nearest_obstacle_if_any(metrics, fake):
     wrong = fake.track(2, 0.0, velocity=(0.03, 0.1))
     ghost = fake.track(0, 0.0, error=(-0.7, 1.0), velocity=(9.0, 9.0))
     frame = fake.frame(0.0, tracks=(wrong, ghost))
@@ -105,7 +105,7 @@ def test_collisions_by_kind(metrics, fake):
     assert results["collisions_at_fault"] == 1
 
 
-def test_lying_for_long_is_one_fall_and_its_tilt_does_not_count(metrics, fake):
+def test_lying_is_one_fall_and_its_tilt_does_not_count(metrics, fake):
     lying = fake.record(0.02, fallen=True)
     lying = replace(lying, walking=replace(lying.walking, roll=1.5))
     results = _feed(metrics, [fake.record(0.0), lying, replace(lying, time=0.04)], "fall")
@@ -135,8 +135,8 @@ def test_a_perfect_course_is_a_success(metrics, fake):
     assert results["success"] is True
 
 
-def test_what_is_only_believed_does_not_count(metrics, fake):
-    """The robot believes that it passed and arrived, but truly it is 40 cm beside."""
+def test_a_false_belief_does_not_count(metrics, fake):
+    """The robot believes that it passed and arrived, but it is 40 cm away."""
     results = _feed(metrics, _arrival(fake, (1.0, 0.4, 0.0), (1.5, 1.4, 1.0)), "goal")
     assert results["via_points_passed"] == 0
     assert results["via_points_missed"] == 1
@@ -144,19 +144,19 @@ def test_what_is_only_believed_does_not_count(metrics, fake):
     assert results["success"] is False
 
 
-def test_a_wrong_heading_is_no_arrival(metrics, fake):
+def test_a_wrong_heading_is_not_an_arrival(metrics, fake):
     results = _feed(metrics, _arrival(fake, (1.0, 0.0, 0.0), (1.5, 1.0, 1.4)), "goal")
     assert results["goal_reached"] is False
 
 
-def test_a_touch_spoils_success(metrics, fake):
+def test_a_collision_prevents_success(metrics, fake):
     records = _arrival(fake, (1.0, 0.0, 0.0), (1.5, 1.0, 1.0), contacts=(0,))
     results = _feed(metrics, records, "goal")
     assert results["goal_reached"] is True
     assert results["success"] is False
 
 
-def test_an_endless_tour_counts_rounds_and_succeeds_when_its_time_is_over(layout, fake):
+def test_an_endless_tour_counts_rounds_and_succeeds_at_its_end(layout, fake):
     metrics = Metrics(replace(layout, endless=True), 0.15, 0.05)
     places = ((1.0, 0.0, 0.0), (1.5, 1.0, 0.0), (1.0, 0.0, 0.0))
     records = [
@@ -170,7 +170,7 @@ def test_an_endless_tour_counts_rounds_and_succeeds_when_its_time_is_over(layout
     assert results["success"] is True
 
 
-def test_saccades_are_large_changes_of_the_wanted_gaze(metrics, fake):
+def test_saccades_are_large_changes_of_the_commanded_gaze(metrics, fake):
     records = []
     for k, pan in enumerate((0.0, 0.05, 0.6, 0.6, -0.3)):
         frame = fake.frame(0.06 * k)

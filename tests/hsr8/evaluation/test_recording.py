@@ -11,14 +11,14 @@ from hsr8.scenario.loader import load_scenario
 
 @pytest.fixture
 def uncollected():
-    """Nothing is freed but what nobody holds."""
+    """Only unreferenced objects are freed."""
     gc.disable()
     yield
     gc.enable()
 
 
 def recorded(path):
-    """A weak reference to the model of a run that is over."""
+    """Weak reference to the model of a finished run."""
     settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=1.2"]
     simulation = Simulation(load_scenario("quick", settings), 1)
     model = weakref.ref(simulation.model)
@@ -30,9 +30,9 @@ def recorded(path):
 
 
 @pytest.mark.usefixtures("uncollected")
-def test_a_run_that_is_over_is_gone_without_a_collection(tmp_path):
+def test_a_finished_run_is_freed_without_garbage_collection(tmp_path):
     first, second = tmp_path / "first", tmp_path / "second"
     first.mkdir()
     second.mkdir()
-    recorded(first)  # kernels that are compiled on the way hold on to the run they began in
+    recorded(first)  # kernels that are compiled during a run keep a reference to it
     assert recorded(second)() is None

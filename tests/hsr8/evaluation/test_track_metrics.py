@@ -19,13 +19,13 @@ def show(metrics, fake, time, *tracks):
     metrics.add(record.frame, record.truth)
 
 
-def test_nothing_seen_is_nothing_measured(metrics):
+def test_without_frames_nothing_is_measured(metrics):
     results = metrics.result()
     assert results.pop("movers_recognised_after_s") == []
     assert set(results.values()) == {None}
 
 
-def test_static_tracks_by_their_error_and_what_they_state(metrics, fake):
+def test_static_tracks_have_errors_and_consistency(metrics, fake):
     """Covariance diag(4e-4, 1e-4): 2 cm along x and 2 cm along y off."""
     show(metrics, fake, 0.0, fake.track(0, 0.0, error=(0.02, 0.0)))
     show(metrics, fake, DT, fake.track(0, DT, error=(0.0, 0.02)))
@@ -35,7 +35,7 @@ def test_static_tracks_by_their_error_and_what_they_state(metrics, fake):
     assert results["mover_track_rmse_m"] is None
 
 
-def test_a_mover_counts_when_it_was_in_view_for_a_second_and_is_known_to_move(metrics, fake):
+def test_a_mover_counts_after_a_second_in_view_if_recognised(metrics, fake):
     for k in range(40):
         time = DT * k
         motion = Motion.MOVING if k >= 10 else Motion.UNKNOWN
@@ -50,7 +50,7 @@ def test_a_mover_counts_when_it_was_in_view_for_a_second_and_is_known_to_move(me
     assert results["movers_recognised_after_s"] == [pytest.approx(10 * DT)]
 
 
-def test_a_mover_out_of_view_says_nothing(metrics, fake):
+def test_a_mover_out_of_view_does_not_count(metrics, fake):
     for k in range(40):
         show(metrics, fake, DT * k, replace(fake.track(2, DT * k), visible=False))
     assert metrics.result()["mover_velocity_rmse_mps"] is None

@@ -55,7 +55,7 @@ def results_of(stream):
 
 
 @pytest.mark.parametrize("velocity", [(0.3, 0.0, 0.0), (0.1, 0.05, 0.6), (-0.1, 0.0, -0.8)])
-def test_the_sway_of_the_gait_is_no_velocity(fake, velocity):
+def test_the_sway_of_the_gait_is_not_velocity(fake, velocity):
     results = results_of(records(fake, velocity, 8.0))
     assert list(results["mean_velocity"].values()) == pytest.approx(velocity, abs=0.004)
     assert list(results["velocity_error"]["commanded"].values()) == pytest.approx(
@@ -70,7 +70,7 @@ def test_errors_are_signed_and_from_the_commanded_and_the_applied_velocity(fake)
     assert list(error.values()) == pytest.approx([0.05, 0.0, -0.1], abs=0.003)
 
 
-def test_what_happens_in_the_first_seconds_does_not_count(fake):
+def test_the_first_seconds_do_not_count(fake):
     def late(stream):
         for record in stream:
             yield replace(record, command=VelocityCommand(9.0 if record.time < 2.98 else 0.2))
@@ -79,7 +79,7 @@ def test_what_happens_in_the_first_seconds_does_not_count(fake):
     assert error["vx"] == pytest.approx(0.0, abs=0.003)
 
 
-def test_a_fall_is_no_walk(fake):
+def test_a_fall_is_not_walking(fake):
     def thrown(stream):
         for record in stream:
             down = 4.0 <= record.time < 5.0
@@ -92,17 +92,17 @@ def test_a_fall_is_no_walk(fake):
     assert list(results["mean_velocity"].values()) == pytest.approx((0.2, 0.0, 0.0), abs=0.004)
 
 
-def test_a_robot_that_stands_has_no_velocity(fake):
+def test_a_standing_robot_has_no_velocity(fake):
     results = results_of(records(fake, (0.0, 0.0, 0.0), 6.0, steps=False))
     assert results["mean_velocity"]["wz"] == pytest.approx(0.0, abs=1e-9)
     assert results["steps"] == 0
 
 
-def test_a_run_too_short_to_tell_says_so(fake):
+def test_a_short_run_has_no_velocity(fake):
     assert results_of(records(fake, (0.2, 0.0, 0.0), 2.0))["mean_velocity"] is None
 
 
-def test_counts_are_shares_of_the_ticks(fake):
+def test_limits_are_fractions_of_the_ticks(fake):
     counters = WalkCounters()
     for limits in ((), (Limit.ACCELERATION,), (Limit.ACCELERATION, Limit.ZMP_REGION), ()):
         counters.add(SimpleNamespace(limits=limits, zmp_depth=0.01), 0.002)
@@ -113,7 +113,7 @@ def test_counts_are_shares_of_the_ticks(fake):
     assert "walk_tick_mean_ms" not in results
 
 
-def test_servos_and_time_are_told_of_a_body_that_has_them(fake):
+def test_servos_and_times_need_a_body_with_dynamics(fake):
     counters = WalkCounters()
     counters.add(SimpleNamespace(limits=(), zmp_depth=0.01), 0.002)
     ticks, peak = np.zeros(26, dtype=np.int64), np.zeros(26)

@@ -20,7 +20,7 @@ def integrated(start, velocity, time):
 
 
 @given(speeds, speeds, st.floats(-2.0, 2.0), st.floats(-3.0, 3.0))
-def test_the_velocity_of_an_arc_is_found_again(vx, vy, wz, yaw):
+def test_the_velocity_of_an_arc_is_recovered(vx, vy, wz, yaw):
     start = np.array([0.3, -1.0, yaw])
     end = integrated(start, (vx, vy, wz), 0.7)
     assert mean_velocity(start, end, 0.7) == pytest.approx([vx, vy, wz], abs=1e-6)

@@ -1,7 +1,7 @@
 from hsr8.recorder.record_buffer import RecordBuffer
 
 
-def test_records_wait_until_the_period_is_over_and_leave_in_order(fake):
+def test_records_are_taken_in_order_once_per_period(fake):
     block = RecordBuffer(0.1)
     records = [fake.record(0.02 * k) for k in range(12)]
     assert [block.add(record) for record in records[:6]] == [False] * 5 + [True]
@@ -9,7 +9,7 @@ def test_records_wait_until_the_period_is_over_and_leave_in_order(fake):
     assert block.take() == []
 
 
-def test_a_new_block_begins_with_its_first_record(fake):
+def test_a_period_begins_with_its_first_record(fake):
     block = RecordBuffer(0.1)
     block.add(fake.record(0.0))
     block.take()

@@ -4,7 +4,7 @@ from hsr8.recorder.walk_counters import WalkCounters
 from walking.command_limits import Limit
 
 
-def test_every_tick_is_counted_once_and_every_limit_that_bound_too():
+def test_ticks_and_active_limits_are_counted_once():
     counters = WalkCounters()
     for limits, depth in (
         ((), 0.02),

@@ -9,7 +9,7 @@ from hsr8.render import camera_overlay
 from hsr8.render.camera_overlay import CameraOverlay
 
 FOV = np.radians(60.0)
-FOCAL = 120.0 / np.tan(FOV / 2)  # of a picture 240 pixels high
+FOCAL = 120.0 / np.tan(FOV / 2)  # of a image 240 pixels high
 AWAY = {"gaze": (1.5, 0.0), "look": (-1.5, 0.0)}  # chosen behind the camera: no window is drawn
 
 
@@ -25,33 +25,33 @@ def summary(fake):
 
 
 def _drawn(frame, size=(320, 240)):
-    picture = np.zeros((size[1], size[0], 3), np.uint8)
-    CameraOverlay((320, 240), size, FOV).draw(picture, frame)
-    return picture
+    image = np.zeros((size[1], size[0], 3), np.uint8)
+    CameraOverlay((320, 240), size, FOV).draw(image, frame)
+    return image
 
 
-def _strokes(picture):
+def _strokes(image):
     """Rows and columns of the yellow strokes, whose edges are smooth."""
-    return np.nonzero(np.abs(picture - np.array(palette.VIEW)).sum(axis=-1) < 150)
+    return np.nonzero(np.abs(image - np.array(palette.VIEW)).sum(axis=-1) < 150)
 
 
-def _cross(picture):
+def _cross(image):
     """Middle of the window; its corners lie far from it."""
-    rows, columns = _strokes(picture[70:170, 110:210])
+    rows, columns = _strokes(image[70:170, 110:210])
     return 110 + 0.5 * (columns.min() + columns.max()), 70 + 0.5 * (rows.min() + rows.max())
 
 
 @pytest.mark.parametrize("tilt", [0.0, -0.1])
-def test_a_gaze_that_has_arrived_has_its_window_in_the_middle(summary, tilt):
+def test_the_window_of_a_reached_gaze_is_centred(summary, tilt):
     frame = summary(boxes=(), gaze=(0.2, tilt), look=(0.2, tilt))
-    picture = _drawn(frame)
-    rows, columns = _strokes(picture)
+    image = _drawn(frame)
+    rows, columns = _strokes(image)
     assert 0.5 * (columns.min() + columns.max()) == pytest.approx(160, abs=1)
-    assert _cross(picture) == pytest.approx((160, 120), abs=1)
+    assert _cross(image) == pytest.approx((160, 120), abs=1)
     assert 0.6 * 240 < rows.max() - rows.min() < 0.98 * 240
 
 
-def test_the_window_lies_where_the_pinhole_shows_the_chosen_gaze(summary):
+def test_the_window_follows_the_pinhole_projection(summary):
     left = _cross(_drawn(summary(boxes=(), gaze=(0.0, 0.0), look=(0.1, 0.0))))
     assert left[0] == pytest.approx(160 - FOCAL * np.tan(0.1), abs=4)
     up = _cross(_drawn(summary(boxes=(), gaze=(0.0, 0.0), look=(0.0, 0.1))))
@@ -63,18 +63,18 @@ def test_a_gaze_behind_the_camera_is_not_drawn(summary):
 
 
 @pytest.mark.parametrize("scale", [1, 2])
-def test_boxes_lie_where_vision_saw_them(summary, scale):
+def test_boxes_match_the_detections(summary, scale):
     frame = summary(**AWAY)
-    picture = _drawn(frame, (320 * scale, 240 * scale))
-    inside = picture[84 * scale : 156 * scale, 104 * scale : 136 * scale]
+    image = _drawn(frame, (320 * scale, 240 * scale))
+    inside = image[84 * scale : 156 * scale, 104 * scale : 136 * scale]
     assert not inside.any()
-    assert picture[81 * scale : 159 * scale, 100 * scale].any(axis=-1).all()
-    assert picture[160 * scale, 101 * scale : 139 * scale].any(axis=-1).all()
-    assert not picture[170 * scale :].any()
+    assert image[81 * scale : 159 * scale, 100 * scale].any(axis=-1).all()
+    assert image[160 * scale, 101 * scale : 139 * scale].any(axis=-1).all()
+    assert not image[170 * scale :].any()
 
 
-def test_a_wider_picture_shows_more_at_both_sides(summary):
-    """What vision saw fills the height and lies in the middle."""
+def test_a_wider_image_shows_more_at_both_sides(summary):
+    """The image of vision fills the height and is centred."""
     wide = _drawn(summary(**AWAY), (480, 240))
     assert np.array_equal(wide[100:, 80:400], _drawn(summary(**AWAY))[100:])
 
@@ -83,8 +83,8 @@ def _tags(frame, size=(640, 480)):
     """Rectangles of the dark plates of the tags, whatever is written on them."""
     plates = []
 
-    def noted(picture, place, text, color, letters):
-        plates.append((text, place[0], place[1] - letters, place[0] + 60, place[1]))
+    def noted(image, corner, text, color, letters):
+        plates.append((text, corner[0], corner[1] - letters, corner[0] + 60, corner[1]))
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(camera_overlay, "draw_text", noted)
@@ -93,7 +93,7 @@ def _tags(frame, size=(640, 480)):
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_no_distance_is_written_over_another(summary, seed):
+def test_distances_do_not_overlap(summary, seed):
     rng = np.random.default_rng(seed)
     blobs = []
     for number in range(14):
@@ -111,7 +111,7 @@ def test_no_distance_is_written_over_another(summary, seed):
             )
 
 
-def test_the_nearest_keeps_its_distance(summary):
+def test_the_nearest_detections_show_their_distance(summary):
     same = [Box("red", (100, 80, 140, 160), distance) for distance in (3.0, 0.7, 2.0, 1.5)]
     assert [text for text, *_ in _tags(summary(boxes=tuple(same), **AWAY))] == [
         "0.70 m",

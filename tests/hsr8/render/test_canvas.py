@@ -43,7 +43,7 @@ def test_the_field_lies_within_its_margin(canvas):
         assert canvas.image.shape[side] - pixels.max() == pytest.approx(100 * MARGIN, abs=1.5)
 
 
-def test_a_picture_of_another_shape_shows_the_whole_field():
+def test_an_image_of_any_shape_shows_the_whole_field():
     for size in ((600, 100), (100, 600)):
         canvas = Canvas(FIELD, size, PAPER)
         canvas.field(RED, RED, 1)
@@ -52,20 +52,20 @@ def test_a_picture_of_another_shape_shows_the_whole_field():
         assert (edge == PAPER).all()
 
 
-def test_a_copy_has_paper_of_its_own(canvas):
+def test_a_copy_is_independent(canvas):
     other = canvas.copy()
     other.disc((0.0, 0.0), 0.5, RED)
     assert (canvas.image == PAPER).all()
 
 
-def test_what_lies_below_shines_through(canvas):
+def test_areas_can_be_transparent(canvas):
     corners = ((-1.0, -0.5), (1.0, -0.5), (1.0, 0.5), (-1.0, 0.5))
     canvas.area(corners, RED)
     canvas.area(corners, BLUE, opacity=0.5)
     assert _at(canvas.image, 0.0, 0.0) == (100, 0, 100)
 
 
-def test_the_top_of_a_beacon_is_seen_on_its_bottom(canvas):
+def test_the_top_of_a_beacon_is_drawn_on_its_bottom(canvas):
     canvas.beacon((1.0, 0.0), RED, BLUE)
     assert _at(canvas.image, 1.0, 0.0) == RED
     top, bottom = ((canvas.image == c).all(axis=-1).sum() for c in (RED, BLUE))
@@ -73,7 +73,7 @@ def test_the_top_of_a_beacon_is_seen_on_its_bottom(canvas):
     assert bottom > 20
 
 
-def test_an_ellipse_turns_like_everything_else(canvas):
+def test_an_ellipse_turns_counter_clockwise(canvas):
     canvas.ellipse((0.0, 0.0), (0.6, 0.1), np.radians(30.0), RED)
     rows, columns = np.nonzero((canvas.image != PAPER).any(axis=-1))
     x, y = columns - columns.mean(), rows.mean() - rows
@@ -83,7 +83,7 @@ def test_an_ellipse_turns_like_everything_else(canvas):
     )
 
 
-def test_what_lies_far_outside_is_left_out(canvas):
+def test_drawings_far_outside_are_left_out(canvas):
     canvas.line(((0.0, 0.0), (1e9, 0.0)), RED)
     assert (canvas.image[canvas.image.shape[0] // 2, -1] != PAPER).any()
     canvas.disc((-1e9, 1e9), 0.1, BLUE)

@@ -30,33 +30,33 @@ def drawn(fake, layout):
 
 
 @pytest.mark.parametrize("size", [(64, 64), (192, 108), (960, 540), (1280, 720), (400, 1000)])
-def test_scene_and_eye_are_shown_where_there_is_room(drawn, size):
-    picture, board = drawn(size)
-    assert picture.shape == (size[1], size[0], 3)
+def test_scene_and_camera_are_shown_at_any_size(drawn, size):
+    image, board = drawn(size)
+    assert image.shape == (size[1], size[0], 3)
     width, height = board.scene_size
-    red = (picture[:height, :width] == (200, 0, 0)).all(axis=-1)
-    green = (picture[: board.camera_size[1], -board.camera_size[0] :] == (0, 200, 0)).all(axis=-1)
+    red = (image[:height, :width] == (200, 0, 0)).all(axis=-1)
+    green = (image[: board.camera_size[1], -board.camera_size[0] :] == (0, 200, 0)).all(axis=-1)
     assert red.mean() > 0.7
     assert green.mean() > 0.3
     assert abs(board.camera_size[0] / board.camera_size[1] - 4 / 3) < 0.1 or size[0] > size[1] * 1.7
 
 
-def test_collisions_are_told(drawn):
+def test_collisions_are_shown(drawn):
     calm, alarmed = drawn((1280, 720))[0], drawn((1280, 720), collisions=2)[0]
     rows, columns = np.nonzero((calm != alarmed).any(axis=-1))
     assert rows.min() > 660
     assert columns.max() - columns.min() < 60
 
 
-def test_pictures_are_not_drawn_over_each_other(drawn):
+def test_images_are_independent(drawn):
     assert np.array_equal(drawn((640, 360))[0], drawn((640, 360))[0])
 
 
 @pytest.mark.parametrize("size", [VideoOptions().size, (1280, 720), (1920, 1080)])
-def test_numbers_have_names_from_the_usual_size_on(drawn, size):
-    picture, board = drawn(size)
+def test_values_have_names_from_the_default_size_on(drawn, size):
+    image, board = drawn(size)
     width, height = board.scene_size
-    band = picture[height:, :width]
+    band = image[height:, :width]
     names = band[: round(0.4 * len(band))].max(axis=2) > 100
     assert names.any(axis=0).sum() > width // 10
     assert names[:, width // 2 :].any()

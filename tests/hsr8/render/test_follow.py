@@ -18,7 +18,7 @@ def test_a_standing_robot_is_seen_from_behind_and_from_the_side():
     assert np.isclose(camera.azimuth, np.degrees(0.7) + SIDE_ANGLE)
 
 
-def test_sway_does_not_shake_the_picture():
+def test_sway_does_not_shake_the_image():
     n = 200
     qpos = _walk(n, 0.2 * np.sin(np.arange(n) * 2 * np.pi / 8))
     qpos[:, 1] = 0.03 * np.sin(np.arange(n) * 2 * np.pi / 8)
@@ -42,7 +42,7 @@ def test_the_camera_does_not_lag_behind():
     assert abs(middle - 2.0 * 250 / 499) < 0.01
 
 
-def test_a_robot_that_turns_back_stays_in_a_fast_picture():
+def test_a_robot_that_turns_back_stays_in_a_fast_video():
     """Ten times as fast: 0.2 m/s for 15 s and back again, seen from less than 2 m away."""
     qpos = _walk(150, np.zeros(150))
     time = np.arange(150) * 10 / 25

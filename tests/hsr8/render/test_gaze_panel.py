@@ -19,22 +19,22 @@ def frame(fake):
 
 def _drawn(frame):
     panel = GazePanel(300, PAN, TILTS)
-    picture = np.full((panel.size[1] + 40, 360, 3), 90, np.uint8)
-    panel.draw(picture, (30, 20), frame)
-    return picture, panel
+    image = np.full((panel.size[1] + 40, 360, 3), 90, np.uint8)
+    panel.draw(image, (30, 20), frame)
+    return image, panel
 
 
-def _chosen(picture):
-    rows, columns = np.nonzero((picture == palette.BELIEF).all(axis=-1))
+def _chosen(image):
+    rows, columns = np.nonzero((image == palette.BELIEF).all(axis=-1))
     return columns.mean(), rows.mean()
 
 
-def test_it_stays_within_its_place(frame):
-    picture, panel = _drawn(frame)
-    inside = np.zeros(picture.shape[:2], bool)
+def test_the_panel_stays_within_its_rectangle(frame):
+    image, panel = _drawn(frame)
+    inside = np.zeros(image.shape[:2], bool)
     inside[20 : 20 + panel.size[1], 30 : 30 + panel.size[0]] = True
-    assert (picture[~inside] == 90).all()
-    assert (picture[inside] != 90).any(axis=-1).mean() > 0.99
+    assert (image[~inside] == 90).all()
+    assert (image[inside] != 90).any(axis=-1).mean() > 0.99
 
 
 def test_left_and_up_of_the_head_are_left_and_up(frame):
@@ -52,10 +52,10 @@ def test_a_gaze_beyond_the_map_is_drawn_at_its_rim(frame):
     assert far == pytest.approx(rim)
 
 
-def test_the_evaluations_fill_their_grooves(frame):
+def test_evaluations_are_bars_of_proportional_length(frame):
     def filled(psi):
-        picture = _drawn(replace(frame, psi=psi))[0]
-        return int((picture == palette.VIEW).all(axis=-1).sum())
+        image = _drawn(replace(frame, psi=psi))[0]
+        return int((image == palette.VIEW).all(axis=-1).sum())
 
     full = filled((1.0, 1.0, 1.0, 1.0))
     assert filled((0.0, 0.0, 0.0, 0.0)) == 0

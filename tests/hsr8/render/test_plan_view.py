@@ -7,7 +7,7 @@ from hsr8.world.field.motion import AWAY
 from vision.color import COLOR_CLASSES
 
 
-def test_every_thing_is_drawn_in_its_color():
+def test_every_object_is_drawn_in_its_color():
     layout = draw_layout(load_scenario("course"), 1)
     image = PlanView(layout, 600).draw()
     assert max(image.shape[:2]) == 600
@@ -25,7 +25,7 @@ def test_y_points_up_and_x_to_the_right():
     assert columns.mean() > 0.7 * image.shape[1]
 
 
-def test_a_mover_that_appears_is_drawn_where_it_does_and_a_bump_where_it_lies():
+def test_appearing_movers_and_bumps_are_drawn():
     bump = '{kind="bump",magnitude=0.01,position=[1.5,1.5],radius=0.2}'
     faults = '{kind="mover-appears",start=2.0},' + bump
     usual, faulty = (

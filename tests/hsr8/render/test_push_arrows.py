@@ -29,7 +29,7 @@ def test_pushes_are_distinguished_and_have_their_impulse(run):
     assert second.tip == pytest.approx([0.0, GAP, 0.3])
 
 
-def test_an_arrow_goes_with_the_robot_and_is_seen_for_a_while(run):
+def test_an_arrow_moves_with_the_robot_and_disappears(run):
     pushes = push_arrows(*run)[:1]
     base = np.array([1.5, 0.2, 0.0])
     ((tail, tip),) = arrows_at(pushes, 0.3, base, 1.0)

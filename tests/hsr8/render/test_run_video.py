@@ -20,7 +20,7 @@ def test_a_short_video_runs_in_real_time():
     np.testing.assert_allclose(np.diff(times), 0.04)
 
 
-def test_a_long_run_is_sped_up_until_it_is_short_enough():
+def test_a_long_run_is_sped_up_to_the_maximum_length():
     times, speed = instants(0.02 * np.arange(28011), VideoOptions())
     assert speed == 10.0
     assert len(times) == round(560.2 / 10 * 25)
@@ -43,7 +43,7 @@ def test_speed_and_cut_are_obeyed():
         VideoOptions(start=200.0),
     ],
 )
-def test_nothing_to_draw_is_a_usage_error(options):
+def test_an_empty_time_range_is_a_usage_error(options):
     with pytest.raises(UsageError, match="ended at 100 s"):
         instants(TIME, options)
 
@@ -95,7 +95,7 @@ def test_the_dashboard_fits_every_size(run, size, tmp_path):
 
 
 @pytest.mark.gl
-def test_an_unknown_camera_is_a_usage_error_that_names_the_others(run, tmp_path):
+def test_an_unknown_camera_is_answered_with_known_ones(run, tmp_path):
     with pytest.raises(UsageError, match="dashboard, follow, head, top, corner, front, egocentric"):
         render_run(run, VideoOptions(camera="side"), tmp_path / "v.mp4", lambda n, total: None)
     assert list(tmp_path.iterdir()) == []

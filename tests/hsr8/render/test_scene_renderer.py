@@ -3,7 +3,7 @@ import numpy as np
 from hsr8.render.scene_renderer import soften
 
 
-def test_edges_become_soft_and_the_rest_stays():
+def test_only_edges_are_softened():
     image = np.full((40, 40, 3), 60, np.uint8)
     image[np.tri(40, dtype=bool)] = 200
     hard = image.copy()
@@ -15,7 +15,7 @@ def test_edges_become_soft_and_the_rest_stays():
     assert set(np.unique(image[changed])) - {60, 200}
 
 
-def test_a_gentle_slope_is_no_edge():
+def test_a_gradient_is_not_an_edge():
     image = np.repeat(np.arange(0, 200, 5, dtype=np.uint8)[None, :, None], 20, axis=0)
     image = np.ascontiguousarray(np.repeat(image, 3, axis=2))
     before = image.copy()

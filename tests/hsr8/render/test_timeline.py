@@ -4,19 +4,19 @@ from hsr8.render.timeline import AHEAD, DONE, HEIGHT, MARKS, Timeline
 
 
 def strip_at(time, events=()):
-    picture = np.zeros((40, 101, 3), np.uint8)
-    Timeline(events, 10.0, 20.0).draw(picture, time)
-    assert not picture[: -round(HEIGHT * 40)].any()
-    return [tuple(pixel) for pixel in picture[-1].tolist()]
+    image = np.zeros((40, 101, 3), np.uint8)
+    Timeline(events, 10.0, 20.0).draw(image, time)
+    assert not image[: -round(HEIGHT * 40)].any()
+    return [tuple(pixel) for pixel in image[-1].tolist()]
 
 
-def test_what_is_over_is_bright():
+def test_elapsed_time_is_bright():
     strip = strip_at(15.0)
     assert strip[:50] == [DONE] * 50
     assert strip[51:] == [AHEAD] * 50
 
 
-def test_events_are_marked_where_they_happen_and_falls_cover_the_rest():
+def test_events_are_marked_at_their_time_and_falls_on_top():
     events = [
         {"time": 12.0, "kind": "push"},
         {"time": 12.0, "kind": "fall"},

@@ -41,7 +41,7 @@ def test_frames_do_not_leave_traces_in_later_ones(layout, summary):
     assert np.array_equal(first, above.draw(summary(), movers, np.zeros((0, 2))))
 
 
-def test_a_world_of_any_shape_fits(layout, summary):
+def test_an_image_of_any_shape_is_drawn(layout, summary):
     for size in ((64, 400), (400, 64)):
         image = TopDown(layout, size).draw(summary(), np.array([[9.0, 9.0]]), np.zeros((0, 2)))
         assert image.shape == (size[1], size[0], 3)

@@ -46,7 +46,7 @@ def test_every_phase_has_a_color_and_a_name():
     assert set(GAIT) == {str(phase) for phase in Phase}
 
 
-def test_a_foot_stands_between_its_swings(table):
+def test_a_foot_is_in_contact_between_its_swings(table):
     for foot in ("left", "right"):
         stands = walk_panels.contacts(table, foot)
         assert len(stands) in (9, 10)
@@ -55,7 +55,7 @@ def test_a_foot_stands_between_its_swings(table):
             assert table[f"{foot}_z"][first : last + 1].max() == 0.0
 
 
-def test_a_sole_is_drawn_where_the_foot_stood(table):
+def test_a_sole_is_drawn_at_its_contact(table):
     rows = walk_panels.contacts(table, "left")[3]
     corners = walk_panels.outline(table, "left", rows)
     yaw = table["left_yaw"][rows[0]]
@@ -92,7 +92,7 @@ def test_every_plot_is_drawn(table, what, tmp_path):
         assert [t.get_text() for t in panels[-1].get_yticklabels()] == ["gait phase", "balance"]
 
 
-def test_a_figure_is_the_same_each_time(table, tmp_path):
+def test_figures_are_reproducible(table, tmp_path):
     for name in ("one.svg", "two.svg"):
         save(draw(table, "tilt", "a walk"), tmp_path / name)
     assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()

@@ -6,12 +6,12 @@ import pytest
 from hsr8.recorder.files import atomic
 
 
-def test_what_is_not_finite_becomes_null_at_any_depth():
+def test_numbers_that_are_not_finite_become_null():
     value = {"a": float("nan"), "b": [1.0, float("inf")], "c": {"d": (float("-inf"), 2)}}
     assert json.loads(atomic.dumps(value)) == {"a": None, "b": [1.0, None], "c": {"d": [None, 2]}}
 
 
-def test_any_file_name_comes_back(tmp_path):
+def test_any_file_name_is_preserved(tmp_path):
     name = os.fsdecode(b"a\xffb\xc3\xbc")
     atomic.write_json(tmp_path / "x.json", {"command": name})
     text = (tmp_path / "x.json").read_text(encoding="utf-8")
@@ -19,7 +19,7 @@ def test_any_file_name_comes_back(tmp_path):
     assert "ü" in text
 
 
-def test_a_text_that_names_any_file_is_written(tmp_path):
+def test_a_text_with_any_file_name_is_written(tmp_path):
     atomic.write_text(tmp_path / "crash.txt", os.fsdecode(b"no file a\xffb"))
     assert (tmp_path / "crash.txt").read_bytes() == rb"no file a\udcffb"
 

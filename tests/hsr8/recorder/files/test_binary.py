@@ -44,9 +44,9 @@ def test_a_damaged_payload_is_located(tmp_path_factory, contents, data, flip):
     write(file, contents)
     k = data.draw(st.integers(0, len(contents) - 1))
     start = len(MAGIC) + sum(8 + len(c) for c in contents[:k]) + 8
-    place = start + data.draw(st.integers(0, len(contents[k]) - 1))
+    offset = start + data.draw(st.integers(0, len(contents[k]) - 1))
     damaged = bytearray(file.read_bytes())
-    damaged[place] ^= flip
+    damaged[offset] ^= flip
     file.write_bytes(damaged)
     with pytest.raises(UsageError, match=f"damaged in item {k}, at byte {start - 8}"):
         read(file, whole=False)

@@ -6,7 +6,7 @@ from hsr8.errors import UsageError
 from hsr8.recorder.files.json_lines import read_lines
 
 
-def test_a_line_that_a_kill_cut_off_is_left_out(tmp_path):
+def test_a_cut_line_is_left_out(tmp_path):
     file = tmp_path / "lines.jsonl"
     file.write_text('{"a": 1}\n{"a": 2}\n{"a": ')
     assert list(read_lines(file, json.loads)) == [{"a": 1}, {"a": 2}]

@@ -11,7 +11,7 @@ FOCAL, SIZE = 160.0, (320, 240)
 
 
 @pytest.mark.parametrize("head", [(0.0, 0.0), (0.9, -0.6), (-1.2, 0.3)])
-def test_where_the_head_looks_is_the_middle_of_the_image(head):
+def test_the_direction_of_the_head_is_the_centre_of_the_image(head):
     assert image_points(head, np.array([head]), FOCAL, SIZE)[0] == pytest.approx([160.0, 120.0])
 
 
@@ -22,13 +22,13 @@ def test_left_and_up_are_left_and_up_in_the_image():
     assert up == pytest.approx([160.0, 40.0])
 
 
-def test_what_lies_beyond_the_image_is_on_its_border():
+def test_directions_beyond_the_image_are_on_its_border():
     aside, above = image_points((0.0, -0.3), np.radians([[-85.0, 0.0], [0.0, 60.0]]), FOCAL, SIZE)
     assert aside[0] == 320.0
     assert above[1] == 0.0
 
 
-def test_nothing_is_drawn_of_what_is_behind():
+def test_directions_behind_the_camera_are_not_drawn():
     assert image_points((0.0, 0.0), np.array([[radians(170.0), 0.0]]), FOCAL, SIZE) is None
 
 
@@ -36,15 +36,15 @@ def test_nothing_is_drawn_of_what_is_behind():
     "gaze",
     [GazeParameters(), GazeParameters(max_pan=1.0, min_tilt=-0.8, max_tilt=0.11, step=0.13)],
 )
-def test_cells_of_the_gaze_map_are_where_its_picture_has_them(gaze):
+def test_pixels_of_the_gaze_map_match_its_cells(gaze):
     grid = GazeGrid(gaze, 1.5, 1.2)
     rows, columns = len(grid.tilt), len(grid.pan)
     pan, tilt = np.meshgrid(grid.pan, grid.tilt)
     cells = np.column_stack([pan.ravel(), tilt.ravel()])
-    # The picture shows left on its left and up above.
+    # The image shows left on its left and up above.
     v, u = np.mgrid[rows - 0.5 : 0.0 : -1.0, columns - 0.5 : 0.0 : -1.0]
-    found = map_points(cells, (rows, columns), gaze)
-    assert found == pytest.approx(np.column_stack([u.ravel(), v.ravel()]))
+    pixels = map_points(cells, (rows, columns), gaze)
+    assert pixels == pytest.approx(np.column_stack([u.ravel(), v.ravel()]))
 
 
 def test_directions_beyond_the_gaze_map_are_on_its_border():

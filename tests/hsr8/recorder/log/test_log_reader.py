@@ -29,7 +29,7 @@ def file(tmp_path_factory, model, layout, records):
     return _write(tmp_path_factory.mktemp("log") / "log.rrd", model, layout, records)
 
 
-def test_what_was_logged_is_read_back(file, records):
+def test_logged_rows_are_read_back(file, records):
     log = Log(file)
     frames = [r for r in records if r.frame is not None][::3]
     poses = log.table("/belief/pose", "Arrows3D:origins")
@@ -46,7 +46,7 @@ def test_curves_have_names(file):
         table["ψ"]
 
 
-def test_words_lines_and_images_are_read_too(file):
+def test_text_lines_and_images_are_read_too(file):
     log = Log(file)
     assert log.table("/events", "TextLog:text").rows[-1].tolist() == ["end: goal"]
     assert {s for row in log.table("/state/gait").rows for s in row} == {"left", "right"}
@@ -58,7 +58,7 @@ def test_words_lines_and_images_are_read_too(file):
     assert {a.dtype.kind for a in log.table("/belief/local_map", "GridMap:data").rows[0]} == {"u"}
 
 
-def test_what_stands_was_logged_once(file, layout):
+def test_static_objects_are_logged_once(file, layout):
     table = Log(file).table("/world/obstacles/cylinders", "Cylinders3D:centers")
     assert table.time.tolist() == [-np.inf]
     assert table.rows[0][:, :2] == pytest.approx(np.array([o.position for o in layout.static]))
@@ -75,21 +75,21 @@ def test_rows_of_different_lengths_make_no_array(tmp_path, model, layout, fake):
         table.array()
 
 
-def test_a_log_cut_off_in_a_message_is_told_with_the_cure(file, tmp_path):
+def test_a_cut_log_is_refused_with_the_remedy(file, tmp_path):
     cut = tmp_path / "log.rrd"
     cut.write_bytes(file.read_bytes()[:-3000])
     with pytest.raises(UsageError, match="rerun rrd optimize --continue-on-error"):
         Log(cut).table("/plots/tilt")
 
 
-def test_a_wrong_name_is_answered_with_the_right_one(file):
+def test_an_unknown_name_is_answered_with_known_ones(file):
     log = Log(file)
-    for entity, component, said in (
+    for entity, component, message in (
         ("/plots/partail", "", "/plots/partial"),
         ("/belief/pose", "", "Arrows3D:origins, Arrows3D:vectors"),
         ("/belief/pose", "Points3D:positions", "Arrows3D:origins"),
     ):
-        with pytest.raises(UsageError, match=said):
+        with pytest.raises(UsageError, match=message):
             log.table(entity, component)
     assert "Scalars:scalars" in log.entities()["/plots/partial"]
 
@@ -102,7 +102,7 @@ def test_a_missing_run_and_a_missing_log_are_usage_errors(tmp_path):
         read_log(tmp_path)
 
 
-def test_a_file_that_is_no_log_is_told(tmp_path):
+def test_another_file_is_not_a_log(tmp_path):
     other = tmp_path / "log.rrd"
     other.write_text("something else")
     with pytest.raises(UsageError, match=r"log\.rrd"):
@@ -121,7 +121,7 @@ def test_rows_without_instances_are_empty(tmp_path):
 
 
 @pytest.mark.parametrize("length", [0, 12, 20, 40, 100])
-def test_a_log_that_was_killed_as_it_began_is_refused_by_name(tmp_path, length):
+def test_a_log_cut_in_its_header_is_refused(tmp_path, length):
     file = tmp_path / "log.rrd"
     stream = rr.RecordingStream("hsr8", recording_id="x")
     stream.save(file)

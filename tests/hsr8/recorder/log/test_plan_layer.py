@@ -13,7 +13,7 @@ class Whirl:
 
 
 @pytest.mark.parametrize("position", [(0.0, 0.0), (0.11, -2.07)])
-def test_the_grid_surrounds_the_robot_and_stays_wposition_it_is(position):
+def test_the_grid_surrounds_the_robot_and_does_not_move(position):
     points = grid(np.array(position))
     assert np.hypot(*(points - position).T).max() <= plan_layer.REACH
     assert points / plan_layer.SPACING == pytest.approx(np.round(points / plan_layer.SPACING))

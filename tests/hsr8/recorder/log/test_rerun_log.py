@@ -24,7 +24,7 @@ from walking.command_limits import CommandLimits, Limit
 
 @pytest.fixture(autouse=True)
 def strict():
-    """Rerun swallows its errors unless told otherwise."""
+    """Rerun ignores its errors by default."""
     rr.set_strict_mode(True)
     yield
     rr.set_strict_mode(False)
@@ -85,7 +85,7 @@ def test_a_run_is_logged_at_its_rates(log, walk):
     assert 9 <= rows["/world/walking/support"] <= 11
 
 
-def test_a_minimal_log_has_poses_curves_and_events_alone(folder, model, layout, walk):
+def test_a_minimal_log_has_only_poses_curves_and_events(folder, model, layout, walk):
     rows = _rows(_logged(folder, model, layout, walk(1.0), level=LogLevel.MINIMAL))
     assert rows["/world/robot/ellipsoids"] == rows["/plots/tilt"] == 17 + 1
     assert rows["/state/planner"] == 1 + 1
@@ -151,7 +151,7 @@ def test_a_finished_log_is_verified_by_rerun(folder, model, layout, walk, level)
     assert done.returncode == 0, done.stderr
 
 
-def test_a_viewer_is_shown_what_the_file_holds(folder, model, layout, walk, monkeypatch):
+def test_a_viewer_receives_the_rows_of_the_file(folder, model, layout, walk, monkeypatch):
     asked = []
 
     def viewer(address):
@@ -186,7 +186,7 @@ def test_logs_one_after_the_other_leave_no_threads(folder, model, layout, walk):
     assert counts[-1] == counts[1]
 
 
-def test_a_log_that_takes_no_more_is_left_and_not_waited_for(log, walk, monkeypatch):
+def test_a_log_that_cannot_be_written_is_abandoned(log, walk, monkeypatch):
     _, listener = log
     left, asked = [], []
 
@@ -208,7 +208,7 @@ def test_a_log_that_takes_no_more_is_left_and_not_waited_for(log, walk, monkeypa
     assert [timeout for timeout in asked if timeout > 0.0] == [WRITE_TIMEOUT]
 
 
-def test_nothing_believed_nothing_seen_is_logged_too(log, fake):
+def test_an_empty_belief_is_logged(log, fake):
     path, listener = log
     frame = fake.frame(0.0, tracks=(), image=None)
     listener.on_record(fake.record(0.0, frame=frame, zmp=np.full(2, np.nan), clearance=np.inf))
@@ -241,20 +241,20 @@ os.kill(os.getpid(), 9)
 
 def _values(path, entity, component="Scalars:scalars"):
     """Times [s] and values of one component."""
-    found = []
+    values = []
     for chunk in RrdReader(str(path)).stream():
         batch = chunk.to_record_batch()
         if str(chunk.entity_path) == entity and component in batch.schema.names:
             if "sim_time" not in batch.schema.names:
                 continue
             times = batch.column("sim_time").to_numpy().astype("timedelta64[ns]")
-            found += zip(
+            values += zip(
                 times / np.timedelta64(1, "s"), batch.column(component).to_pylist(), strict=True
             )
-    return sorted(found)
+    return sorted(values)
 
 
-def test_pushes_and_altered_commands_are_logged_when_they_change(log, fake):
+def test_pushes_and_limits_are_logged_when_they_change(log, fake):
     path, listener = log
     asked, given = VelocityCommand(0.5), VelocityCommand(0.3)
     altered = CommandLimits(asked, given, (Limit.SPEED, Limit.LANDING_FROZEN))
@@ -272,7 +272,7 @@ def test_pushes_and_altered_commands_are_logged_when_they_change(log, fake):
     assert rows["/command_limits"] == 2
 
 
-def test_the_achieved_velocity_is_logged_once_a_footstep(log, walk):
+def test_the_achieved_velocity_is_logged_once_per_footstep(log, walk):
     path, listener = log
     for record in walk(4.0):
         listener.on_record(record)

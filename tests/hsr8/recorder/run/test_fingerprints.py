@@ -15,7 +15,7 @@ from hsr8.recorder.run.fingerprints import CHANNELS, DECISIONS, decision_fingerp
         ({"lost": True}, "state"),
     ],
 )
-def test_a_change_shows_in_its_channel_alone(fake, change, channel):
+def test_a_change_affects_only_its_channel(fake, change, channel):
     before = fake.frame(0.06).estimate
     after = replace(before, **change)
     differ = [
@@ -38,7 +38,7 @@ def test_a_change_shows_in_its_channel_alone(fake, change, channel):
         ("belief", {"lost": True}, "belief at the decision"),
     ],
 )
-def test_a_change_of_a_decision_shows_in_its_channel_alone(fake, part, change, channel):
+def test_a_change_of_a_decision_affects_only_its_channel(fake, part, change, channel):
     before = fake.frame(0.06).decision
     before = replace(before, gaze=replace(before.gaze, pan=0.0))
     after = replace(before, **{part: replace(getattr(before, part), **change)})

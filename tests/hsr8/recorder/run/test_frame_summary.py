@@ -14,7 +14,7 @@ def line(fake):
     return to_line(frame, fake.record(0.6, (0.11, 0.2, 0.3)).truth)
 
 
-def test_round_trip_keeps_what_the_dashboard_shows(line):
+def test_a_round_trip_preserves_the_belief(line):
     frame = from_line(line)
     assert frame.time == 0.6
     assert frame.pose == (0.1, 0.2, 0.3)
@@ -29,7 +29,7 @@ def test_round_trip_keeps_what_the_dashboard_shows(line):
     assert frame.tracks[0].covariance == (4e-4, 0.0, 1e-4)
 
 
-def test_round_trip_keeps_what_the_camera_saw_and_where_it_is_to_look(line):
+def test_a_round_trip_preserves_detections_and_gaze(line):
     frame = from_line(line)
     assert frame.captured == 0.6
     assert frame.look == (0.3, -0.3)
@@ -43,7 +43,7 @@ def test_round_trip_keeps_what_the_camera_saw_and_where_it_is_to_look(line):
     assert int((image > 0).sum()) == 50
 
 
-def test_numbers_of_tracks_are_rounded_and_may_be_none_or_endless(fake):
+def test_numbers_of_tracks_are_rounded_and_may_be_infinite(fake):
     frame = fake.frame(0.6, (0.1, 0.2, 0.3))
     track = replace(
         frame.belief.tracks[0],
@@ -54,14 +54,14 @@ def test_numbers_of_tracks_are_rounded_and_may_be_none_or_endless(fake):
     )
     decided = replace(frame.decision, belief=replace(frame.belief, tracks=(track,)))
     truth = fake.record(0.6).truth
-    (found,) = from_line(to_line(replace(frame, decision=decided), truth)).tracks
-    assert found.label == 'a "new" colour'
-    assert found.position == (1.2346, 0.0)
-    assert isnan(found.velocity[0])
-    assert (found.velocity[1], found.radius) == (-inf, inf)
+    (back,) = from_line(to_line(replace(frame, decision=decided), truth)).tracks
+    assert back.label == 'a "new" colour'
+    assert back.position == (1.2346, 0.0)
+    assert isnan(back.velocity[0])
+    assert (back.velocity[1], back.radius) == (-inf, inf)
 
 
-def test_a_gaze_map_is_told_when_it_is_new(line, fake):
+def test_only_new_gaze_maps_are_written(line, fake):
     frame = fake.frame(0.66, (0.1, 0.2, 0.3))
     same = to_line(frame, fake.record(0.66, (0.1, 0.2, 0.3)).truth, new_map=False)
     assert len(same) < len(line) - 20

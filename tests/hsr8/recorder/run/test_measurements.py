@@ -18,7 +18,7 @@ finite = st.floats(allow_nan=False, allow_infinity=False, width=64)
 )
 def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
     beacon, cut, occluded = flags
-    seen = Observation(
+    observation = Observation(
         "beacon" if beacon else "obstacle",
         label,
         *numbers[:2],
@@ -30,7 +30,7 @@ def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
     )
     file = tmp_path_factory.mktemp("m") / "m"
     frame = fake.frame(0.06, (0.1, 0.2, 0.3))
-    frame = replace(frame, measured=replace(frame.measured, observations=(seen,)))
+    frame = replace(frame, measured=replace(frame.measured, observations=(observation,)))
     writer = MeasurementWriter(file)
     writer.add(frame)
     writer.close()
@@ -42,10 +42,10 @@ def test_round_trip_is_exact(tmp_path_factory, fake, numbers, label, flags):
     assert np.array_equal(a.view.rotation, b.view.rotation)
     assert np.array_equal(a.view.position, b.view.position)
     assert (a.view.pan, a.view.tilt, a.view.yaw_sigma) == (b.view.pan, b.view.tilt, 0.0)
-    (found,) = a.observations
-    assert np.array_equal(found.covariance, seen.covariance)
-    assert np.array_equal(found.by_radius, seen.by_radius)
-    numbers = [replace(o, covariance=None, by_radius=None) for o in (found, seen)]
+    (back_observation,) = a.observations
+    assert np.array_equal(back_observation.covariance, observation.covariance)
+    assert np.array_equal(back_observation.by_radius, observation.by_radius)
+    numbers = [replace(o, covariance=None, by_radius=None) for o in (back_observation, observation)]
     assert astuple(numbers[0]) == astuple(numbers[1])
     assert back.fingerprints == fingerprints(frame.estimate)
     assert back.decision == decision_fingerprints(frame.decision)

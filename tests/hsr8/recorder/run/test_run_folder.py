@@ -78,7 +78,7 @@ def test_the_newest_run_below_a_folder_is_meant(tmp_path):
     assert open_run(tmp_path / "quick").seed == 2
 
 
-def test_no_run_is_a_usage_error_that_names_the_runs_there_are(tmp_path):
+def test_a_missing_run_is_a_usage_error_with_alternatives(tmp_path):
     path = RunFolder.create(tmp_path, "quick", 1)
     with pytest.raises(UsageError, match="no run in this folder"):
         open_run(path)
@@ -86,12 +86,12 @@ def test_no_run_is_a_usage_error_that_names_the_runs_there_are(tmp_path):
         open_run(tmp_path / "quick" / "1-abc")
 
 
-def test_a_name_that_no_folder_can_have_is_a_usage_error():
+def test_an_impossible_folder_name_is_a_usage_error():
     with pytest.raises(UsageError, match="too long"):
         open_run(Path("a" * 5000))
 
 
-def test_a_manifest_that_is_gone_is_no_run(tmp_path):
+def test_a_dangling_manifest_is_not_a_run(tmp_path):
     (tmp_path / run_folder.MANIFEST).symlink_to(tmp_path / "gone")
     with pytest.raises(UsageError, match="no run in this folder"):
         open_run(tmp_path)
@@ -132,7 +132,7 @@ def test_a_damaged_line_is_a_usage_error(folder, fake, name):
         run.events() if name == run_folder.EVENTS else run.frames()
 
 
-def test_a_folder_that_cannot_be_made_is_a_usage_error(tmp_path):
+def test_a_folder_that_cannot_be_created_is_a_usage_error(tmp_path):
     (tmp_path / "runs").write_text("a file, not a folder")
     with pytest.raises(UsageError, match="--out"):
         RunFolder.create(tmp_path / "runs", "quick", 1)

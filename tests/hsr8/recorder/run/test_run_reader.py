@@ -40,8 +40,8 @@ def bound_by_file_modes():
     assert libc.capset(header, held) == 0
 
 
-def said(command, run, capsys):
-    """Exit code and what a command says of a run."""
+def output(command, run, capsys):
+    """Exit code and error output of a command on a run."""
     words = [str(run) if word == "SAME" else word for word in command]
     code = entry([words[0], str(run), *words[1:]])
     return code, capsys.readouterr().err
@@ -58,23 +58,23 @@ def spoil(file, kind):
 @pytest.mark.usefixtures("bound_by_file_modes")
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
 @pytest.mark.parametrize("kind", ["folder", "unreadable"])
-def test_what_cannot_be_read_is_one_clear_error(
+def test_an_unreadable_file_is_one_clear_error(
     recorded, tmp_path, monkeypatch, capsys, command, kind
 ):
     monkeypatch.chdir(tmp_path)
     for name in sorted(file.name for file in recorded.iterdir()):
         run = shutil.copytree(recorded, tmp_path / "run")
         spoil(run / name, kind)
-        code, told = said(command, run, capsys)
+        code, error = output(command, run, capsys)
         assert code in (0, 2) or (code == 1 and "diff" in command)
-        assert "internal error" not in told
+        assert "internal error" not in error
         if code == 2:
-            assert told.count("hsr8: ") == 1
+            assert error.count("hsr8: ") == 1
         shutil.rmtree(run)
 
 
 @pytest.mark.usefixtures("bound_by_file_modes")
-def test_a_sweep_that_may_not_be_looked_at_is_one_clear_error(tmp_path, capsys):
+def test_an_unreadable_sweep_is_one_clear_error(tmp_path, capsys):
     closed = tmp_path / "closed"
     closed.mkdir(mode=0o000)
     assert entry(["compare", str(closed), str(closed)]) == 2
@@ -82,7 +82,7 @@ def test_a_sweep_that_may_not_be_looked_at_is_one_clear_error(tmp_path, capsys):
     assert error == f"hsr8: {closed}: cannot read: Permission denied\n"
 
 
-def test_only_a_run_that_ended_must_be_whole(tmp_path, walk):
+def test_only_a_run_that_ended_must_be_complete(tmp_path, walk):
     for end, ended in (
         ("goal", True),
         ("fall", True),

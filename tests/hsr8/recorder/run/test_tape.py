@@ -37,7 +37,7 @@ def test_round_trip_is_exact(tmp_path_factory, blocks):
     assert len({b.world for b in (*back, end)}) == len(back) + 1
 
 
-def test_world_and_robot_have_hashes_of_their_own(tmp_path):
+def test_world_and_robot_have_separate_hashes(tmp_path):
     def hashes(world, robot):
         file = tmp_path / f"{world!r}{robot!r}"
         file.unlink(missing_ok=True)
@@ -63,7 +63,7 @@ def test_a_second_mark_without_ticks_replaces_the_first(tmp_path):
 
 
 @given(cut=st.integers(9, 1000), whole=st.booleans())
-def test_a_tape_cut_anywhere_loses_its_last_block_alone(tmp_path_factory, cut, whole):
+def test_a_cut_tape_loses_only_its_last_block(tmp_path_factory, cut, whole):
     file = tmp_path_factory.mktemp("t") / "tape.bin"
     write(file, [np.ones((2, 26)), np.ones((1, 26))])
     content = file.read_bytes()
@@ -77,12 +77,12 @@ def test_a_tape_cut_anywhere_loses_its_last_block_alone(tmp_path_factory, cut, w
         assert len(read_tape(file, whole=whole)) == sum(end <= cut for end in ends[1:])
 
 
-@given(place=st.integers(8, 500), value=st.integers(1, 255))
-def test_damage_is_never_read_as_data(tmp_path_factory, place, value):
+@given(offset=st.integers(8, 500), value=st.integers(1, 255))
+def test_damage_is_never_read_as_data(tmp_path_factory, offset, value):
     file = tmp_path_factory.mktemp("t") / "tape.bin"
     write(file, [np.ones((2, 26)), np.ones((1, 26))])
     content = bytearray(file.read_bytes())
-    content[place] ^= value
+    content[offset] ^= value
     file.write_bytes(content)
     with pytest.raises(UsageError, match=r"damaged|cut off"):
         read_tape(file, whole=True)

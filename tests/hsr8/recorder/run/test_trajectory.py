@@ -30,7 +30,7 @@ def test_round_trip_is_exact(tmp_path, movers):
 
 
 @given(cut=st.integers(0, 400))
-def test_a_cut_file_loses_only_what_was_cut(tmp_path_factory, cut):
+def test_a_cut_file_loses_only_the_cut_rows(tmp_path_factory, cut):
     file = tmp_path_factory.mktemp("cut") / "t"
     qpos, _ = _write(file, 6)
     whole = file.read_bytes()

@@ -9,7 +9,6 @@ from hsr8.recorder.run.walking_table import (
     COLUMNS,
     OdometryToWorld,
     WalkingTableWriter,
-    _row_type,
     read_walking_table,
 )
 from hsr8.world.model.index import ModelIndex
@@ -30,7 +29,7 @@ def written(tmp_path, model, walk):
     return path, records
 
 
-def test_what_was_recorded_is_read_back(written):
+def test_a_written_table_is_read_back(written):
     path, records = written
     table = read_walking_table(path)
     assert table.time.tolist() == [r.time for r in records]
@@ -62,7 +61,7 @@ def test_a_cut_file_loses_its_last_row(written):
 )
 def test_an_impossible_row_is_refused(written, column, value):
     path, records = written
-    rows = _row_type(len(COLUMNS))
+    rows = np.dtype([("time", "<f8"), ("values", "<f4", (len(COLUMNS),))])
     content = path.read_bytes()
     start = len(content) - len(records) * rows.itemsize
     table = np.frombuffer(content[start:], rows).copy()
