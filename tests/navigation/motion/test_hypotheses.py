@@ -10,7 +10,7 @@ from navigation.parameters.motion import SafetyFilterParameters
 
 P = SafetyFilterParameters()
 SURE = 0.12 + 0.08 + 0.005 + P.margin
-"""Distance from the axis of a track of 0.08 m, give or take 0.005 m, at which it is touched [m]."""
+"""Collision distance of a track with a radius of 0.08 m and a sigma of 0.005 m [m]."""
 
 
 class LookedAt:
@@ -28,7 +28,7 @@ def build(*tracks, p=P, looked=np.inf):
     return collision_hypotheses(tracks, obstacles, 0.12, p, LookedAt(looked))
 
 
-def test_static_obstacles_matter_briefly_and_without_their_sigma(track):
+def test_static_obstacles_have_a_short_horizon_and_no_sigma(track):
     h = build(track((1, 0), sigma=0.05))
     assert h.radius == pytest.approx([SURE])
     assert h.horizon.tolist() == [P.static_horizon]
@@ -36,7 +36,7 @@ def test_static_obstacles_matter_briefly_and_without_their_sigma(track):
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.1, 0.0)])
-def test_the_less_sure_its_radius_the_more_room_it_gets(track, place):
+def test_uncertainty_of_the_radius_is_added(track, place):
     sure, unsure = (build(track((1, 0), place, radius_sigma=s)) for s in (0.005, 0.02))
     assert unsure.radius - sure.radius == pytest.approx(np.full(len(sure), 0.015))
 
@@ -63,8 +63,8 @@ def test_a_lost_mover_is_its_particles(track):
     assert h.weight == pytest.approx([1.0, 0.25 * P.particle_weight, 0.75 * P.particle_weight])
 
 
-def test_what_walks_a_bend_is_followed_along_its_chord_and_back_on_it(track):
-    """In two seconds about a quarter circle; turned back, it walks the same circle."""
+def test_a_turning_mover_follows_its_chord_and_reverses_on_its_circle(track):
+    """A quarter circle in two seconds."""
     turn = 0.25 * np.pi
     h = build(track((1, 0), (0.1, 0.0), turn_rate=turn))
     chord = 0.1 * 2.0 * np.sqrt(2.0) / np.pi / np.sqrt(2.0) * np.array([1.0, 1.0])
@@ -76,7 +76,7 @@ def test_what_walks_a_bend_is_followed_along_its_chord_and_back_on_it(track):
     assert build(lost).velocity[0] == pytest.approx(chord)
 
 
-def test_only_what_can_be_reached_in_time_is_kept(track):
+def test_only_discs_within_reach_are_kept(track):
     h = build(track((0.6, 0)), track((2, 0)), track((0, 2), (0.0, 0.1)), track((0, 2.5)))
     near = h.within_reach(np.zeros(2), 0.2)
     assert near.position.tolist() == [[0.6, 0], [0, 2]]
@@ -86,7 +86,7 @@ def test_no_tracks_are_no_hypotheses():
     assert len(build()) == 0
 
 
-def test_an_unseen_mover_can_have_gone_anywhere_near_until_its_place_is_looked_at(track):
+def test_an_unseen_mover_is_its_reachable_set_until_its_position_is_seen(track):
     p = replace(P, reachable=True, reversal_weight=0.0)
     plain = replace(p, reachable=False)
     for age, grown in ((0.2, None), (1.3, 0.1), (5.0, 0.4), (6.5, None)):
