@@ -29,20 +29,22 @@ def test_a_sighting_leads_back_to_the_landmark(x, y, heading, a, b):
 @given(metres, metres, headings, metres, metres)
 def test_points_are_seen_where_sightings_are(x, y, heading, a, b):
     distance, bearing = range_bearing((x, y, heading), (a, b))
-    seen = points_to_robot((x, y, heading), np.array([[a, b]]))
-    assert np.allclose(seen, [[distance * np.cos(bearing), distance * np.sin(bearing)]], atol=1e-9)
-    assert np.allclose(points_to_world(np.array([x, y, heading]), seen), [[a, b]], atol=1e-9)
+    observed = points_to_robot((x, y, heading), np.array([[a, b]]))
+    assert np.allclose(
+        observed, [[distance * np.cos(bearing), distance * np.sin(bearing)]], atol=1e-9
+    )
+    assert np.allclose(points_to_world(np.array([x, y, heading]), observed), [[a, b]], atol=1e-9)
 
 
 @given(metres, metres, headings)
 def test_pose_from_points_inverts_the_sightings(x, y, heading):
     landmarks = np.array([[2.0, 1.0], [-1.0, 3.0], [0.5, -2.0]])
-    seen = []
+    observed = []
     for landmark in landmarks:
         distance, bearing = range_bearing((x, y, heading), tuple(landmark.tolist()))
-        seen.append((distance * np.cos(bearing), distance * np.sin(bearing)))
+        observed.append((distance * np.cos(bearing), distance * np.sin(bearing)))
     for count in (2, 3):
-        pose = pose_from_points(np.array(seen[:count]), landmarks[:count])
+        pose = pose_from_points(np.array(observed[:count]), landmarks[:count])
         assert np.allclose(pose[:2], [x, y], atol=1e-8)
         assert abs(wrap(pose[2] - heading)) < 1e-8
 

@@ -66,12 +66,12 @@ def rays(camera: PinholeCamera, u: ArrayLike, v: ArrayLike) -> NDArray[np.float6
 
 
 def paint(
-    things: Sequence[Cylinder],
+    cylinders: Sequence[Cylinder],
     view: CameraPose,
     brightness: float = 1.0,
     camera: PinholeCamera = CAMERA,
 ) -> NDArray[np.uint8]:
-    """RGB image of `things`; sides are shaded by how much they face the camera."""
+    """RGB image of `things`; sides are shaded by the angle of incidence."""
     v, u = np.mgrid[0 : camera.height, 0 : camera.width]
     directions = rays(camera, u + 0.5, v + 0.5) @ view.rotation.T
     X, Y, Z = np.moveaxis(directions, -1, 0)
@@ -80,23 +80,23 @@ def paint(
     nearest = np.where(down, -pz / np.where(down, Z, -1.0), np.inf)
     image = np.where(down[..., None], FLOOR, SKY)
     a = np.maximum(X * X + Y * Y, 1e-12)
-    for thing in sorted(things, key=lambda c: (c.x, c.y, c.low)):
-        ox, oy = px - thing.x, py - thing.y
-        b, c = X * ox + Y * oy, ox * ox + oy * oy - thing.radius**2
+    for cylinder in sorted(cylinders, key=lambda c: (c.x, c.y, c.low)):
+        ox, oy = px - cylinder.x, py - cylinder.y
+        b, c = X * ox + Y * oy, ox * ox + oy * oy - cylinder.radius**2
         hit = b * b - a * c > 0.0
         side = (-b - np.sqrt(np.where(hit, b * b - a * c, 0.0))) / a
         z = pz + side * Z
-        hit &= (side > 0.0) & (z >= thing.low) & (z < thing.high) & (side < nearest)
-        facing = -(X * (ox + side * X) + Y * (oy + side * Y)) / (thing.radius * np.sqrt(a))
+        hit &= (side > 0.0) & (z >= cylinder.low) & (z < cylinder.high) & (side < nearest)
+        facing = -(X * (ox + side * X) + Y * (oy + side * Y)) / (cylinder.radius * np.sqrt(a))
         shade = 0.45 + 0.5 * np.clip(facing, 0.0, 1.0)
-        lid = np.where(down, (thing.high - pz) / np.where(down, Z, -1.0), -1.0)
+        lid = np.where(down, (cylinder.high - pz) / np.where(down, Z, -1.0), -1.0)
         on_lid = (
             (lid > 0.0)
-            & (np.hypot(ox + lid * X, oy + lid * Y) <= thing.radius)
+            & (np.hypot(ox + lid * X, oy + lid * Y) <= cylinder.radius)
             & (lid < nearest)
             & ~(hit & (side < lid))
         )
-        rgb = np.array(COLOR_CLASSES[thing.color].rgb)
+        rgb = np.array(COLOR_CLASSES[cylinder.color].rgb)
         image[hit] = rgb * shade[hit][:, None]
         image[on_lid] = rgb
         nearest = np.where(on_lid, lid, np.where(hit, side, nearest))
@@ -110,14 +110,14 @@ def at(distance: float, bearing_deg: float, color: str, radius: float = 0.08) ->
 
 
 def traced(
-    things: Sequence[Cylinder], view: CameraPose, min_area: int = 20
+    cylinders: Sequence[Cylinder], view: CameraPose, min_area: int = 20
 ) -> tuple[list[Blob], NDArray[np.uint8], list[Outline]]:
     """Blobs, padded labels and outlines of an image of `things`."""
-    labels = ColorTable().classify(paint(things, view))
+    labels = ColorTable().classify(paint(cylinders, view))
     blobs = find_blobs(labels, (min_area,) * len(COLOR_CLASSES))
     padded = np.pad(labels, 1, constant_values=OUTSIDE)
     return blobs, padded, trace(blobs, padded, View(CAMERA, view), 0.35)
 
 
-def true_polar(thing: Cylinder) -> tuple[float, float]:
-    return hypot(thing.x, thing.y), float(np.arctan2(thing.y, thing.x))
+def true_polar(cylinder: Cylinder) -> tuple[float, float]:
+    return hypot(cylinder.x, cylinder.y), float(np.arctan2(cylinder.y, cylinder.x))

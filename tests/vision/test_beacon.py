@@ -10,8 +10,8 @@ NAMES = ("", *COLOR_CLASSES)
 GAZE = pose(tilt=-0.1)
 
 
-def posts(things: list[Cylinder]) -> tuple[list[Blob], list[Post]]:
-    blobs, _, outlines = traced(things, GAZE, min_area=5)
+def posts(obstacles: list[Cylinder]) -> tuple[list[Blob], list[Post]]:
+    blobs, _, outlines = traced(obstacles, GAZE, min_area=5)
     indices = [k for k, b in enumerate(blobs) if COLOR_CLASSES[NAMES[b.label]].kind == "beacon"]
     return blobs, find_posts(blobs, outlines, indices, HEIGHT, VisionParameters())
 

@@ -84,5 +84,5 @@ def test_blobs_are_the_components_that_opencv_finds(seed: int, share: float) -> 
     for label in (1, 2):
         _, _, stats, _ = cv2.connectedComponentsWithStats((labels == label).astype(np.uint8))
         rows = ((x, y, x + w, y + h, n) for x, y, w, h, n in stats[1:].tolist() if n >= 2)
-        found = ((*b.box, area(b)) for b in blobs if b.label == label)
-        assert sorted(found) == sorted(rows)
+        result = ((*b.box, area(b)) for b in blobs if b.label == label)
+        assert sorted(result) == sorted(rows)

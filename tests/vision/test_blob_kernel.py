@@ -18,7 +18,7 @@ def test_compiled_and_plain_regions_agree(seed: int, share: float) -> None:
 
 
 @given(seed=st.integers(0, 10_000), width=st.integers(1, 50))
-def test_runs_end_where_the_label_changes_whatever_the_width(seed: int, width: int) -> None:
+def test_runs_end_where_the_label_changes_for_every_width(seed: int, width: int) -> None:
     rng = np.random.default_rng(seed)
     labels = np.repeat(rng.integers(0, 3, (5, width)), rng.integers(1, 24, width), axis=1)
     labels = labels.astype(np.uint8)

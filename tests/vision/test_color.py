@@ -18,7 +18,7 @@ def label_of(rgb: tuple[float, ...], light: float) -> str:
 @pytest.mark.parametrize("name", COLOR_CLASSES)
 @pytest.mark.parametrize("brightness", [0.4, 0.6, 0.8, 1.0, 1.3, 1.6])
 @pytest.mark.parametrize("shade", [0.4, 0.7, 1.0])
-def test_painted_things_keep_their_class_in_any_light(
+def test_painted_objects_keep_their_class_in_any_light(
     name: str, brightness: float, shade: float
 ) -> None:
     assert label_of(COLOR_CLASSES[name].rgb, brightness * shade) == name

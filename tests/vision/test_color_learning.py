@@ -33,18 +33,20 @@ def learnt() -> ColorTable:
 
 
 @pytest.mark.parametrize("brightness", [0.5, 1.0, 1.6])
-def test_a_learnt_table_sees_what_the_declared_one_sees(learnt, tmp_path, brightness) -> None:
+def test_a_learned_table_gives_the_detections_of_the_built_in_one(
+    learnt, tmp_path, brightness
+) -> None:
     save_table(learnt, tmp_path / "colours.npz")
     with_table = VisionParameters(color_table=str(tmp_path / "colours.npz"))
     image = noisy(paint(SCENE, VIEW, brightness), 2)
-    found, expected = (
+    result, expected = (
         {d.label: d for d in Detector(CAMERA, parameters).detect(image, VIEW)}
         for parameters in (with_table, VisionParameters())
     )
-    assert found.keys() == expected.keys()
-    assert len(found) == 7
+    assert result.keys() == expected.keys()
+    assert len(result) == 7
     for label, d in expected.items():
-        assert found[label].distance == pytest.approx(
+        assert result[label].distance == pytest.approx(
             d.distance, abs=3.0 * d.covariance[0, 0] ** 0.5
         )
 
@@ -55,7 +57,7 @@ def test_colors_unlike_every_label_are_background(learnt) -> None:
     assert not learnt.classify(np.full((4, 4, 3), 5, np.uint8)).any()
 
 
-def test_pixels_nobody_judged_teach_nothing() -> None:
+def test_unlabelled_pixels_are_ignored() -> None:
     image = paint(SCENE, VIEW)
     labels = ColorTable().classify(image)
     labels[labels == 1] = IGNORED

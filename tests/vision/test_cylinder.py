@@ -16,8 +16,8 @@ TYPICAL_RADIUS = (0.085, 0.02)
 NOISE = (0.01, 0.1, 3.5)  # roundness, correlation along an edge, deviation of a stray point
 
 
-def outline_of(thing: Cylinder, gaze: CameraPose) -> Outline:
-    _, _, (outline,) = traced([thing], gaze)
+def outline_of(obstacle: Cylinder, gaze: CameraPose) -> Outline:
+    _, _, (outline,) = traced([obstacle], gaze)
     return outline
 
 
@@ -37,11 +37,11 @@ def head_of(outline: Outline) -> RimCue:
     tilt=st.floats(-0.45, -0.25),
 )
 def test_foot_head_and_both_agree_within_their_uncertainty(distance, bearing, radius, tilt) -> None:
-    thing, gaze = at(distance, bearing, "red", radius), pose(tilt=tilt)
-    outline, view = outline_of(thing, gaze), View(CAMERA, gaze)
+    obstacle, gaze = at(distance, bearing, "red", radius), pose(tilt=tilt)
+    outline, view = outline_of(obstacle, gaze), View(CAMERA, gaze)
     foot, head = foot_of(outline), head_of(outline)
     sides = (outline.left, outline.right)
-    found = locate(
+    result = locate(
         [
             Candidate(*sides, rims, 0.30, *TYPICAL_RADIUS)
             for rims in ((foot,), (head,), (foot, head))
@@ -49,13 +49,13 @@ def test_foot_head_and_both_agree_within_their_uncertainty(distance, bearing, ra
         view,
         *NOISE,
     )
-    for cylinder in found:
+    for cylinder in result:
         sigma = np.sqrt(np.diag(cylinder.covariance))
         assert abs(cylinder.azimuth - radians(bearing)) < 4.0 * sigma[0]
         assert abs(cylinder.distance - distance) < 4.0 * sigma[1]
         assert abs(cylinder.radius - radius) < 4.0 * sigma[2]
         assert np.linalg.eigvalsh(cylinder.covariance).min() > 0.0
-    assert found[2].covariance[1, 1] <= min(c.covariance[1, 1] for c in found[:2])
+    assert result[2].covariance[1, 1] <= min(c.covariance[1, 1] for c in result[:2])
 
 
 def test_both_sides_alone_give_the_distance_of_the_typical_radius() -> None:
@@ -69,8 +69,8 @@ def test_both_sides_alone_give_the_distance_of_the_typical_radius() -> None:
 
 
 def test_one_side_is_enough_to_find_the_axis() -> None:
-    thing, gaze = at(1.2, 5.0, "green", 0.09), pose(tilt=-0.3)
-    outline, view = outline_of(thing, gaze), View(CAMERA, gaze)
+    obstacle, gaze = at(1.2, 5.0, "green", 0.09), pose(tilt=-0.3)
+    outline, view = outline_of(obstacle, gaze), View(CAMERA, gaze)
     middle = 0.5 * (outline.left.azimuth + outline.right.azimuth)
     hidden = replace(outline.left, azimuth=middle, trusted=False)
     rims = (foot_of(outline), head_of(outline))
@@ -99,15 +99,15 @@ def test_every_error_of_the_pose_makes_the_place_less_certain(error: str) -> Non
 
 
 def test_place_in_the_robot_frame_follows_the_camera() -> None:
-    thing = at(1.4, 35.0, "blue")
+    obstacle = at(1.4, 35.0, "blue")
     gaze = pose(pan=radians(20.0), tilt=-0.3, position=(0.2, -0.3, 0.45))
-    outline, view = outline_of(thing, gaze), View(CAMERA, gaze)
+    outline, view = outline_of(obstacle, gaze), View(CAMERA, gaze)
     rims = (foot_of(outline), head_of(outline))
     (cylinder,) = locate(
         [Candidate(outline.left, outline.right, rims, 0.30, *TYPICAL_RADIUS)], view, *NOISE
     )
     distance, bearing, covariance, by_radius = polar_in_robot(cylinder, view)
-    expected = true_polar(thing)
+    expected = true_polar(obstacle)
     assert abs(distance - expected[0]) < 4.0 * covariance[0, 0] ** 0.5
     assert abs(bearing - expected[1]) < 4.0 * covariance[1, 1] ** 0.5
     # The Jacobian to polar coordinates about R, by finite differences.
@@ -138,5 +138,5 @@ def test_cylinders_interpenetrate_when_their_axes_are_too_close() -> None:
             assert interpenetrate(there, here, shared) is near
 
 
-def test_nothing_is_located_from_nothing() -> None:
+def test_no_candidates_give_no_cylinders() -> None:
     assert locate([], View(CAMERA, pose()), *NOISE) == []

@@ -18,20 +18,20 @@ def rim_run(x, azimuth, sign):
 
 
 def candidates(seed, n, share=0.7):
-    """Edges of random cylinders, with pixel noise; a share of them is seen."""
+    """Edges of random cylinders, with pixel noise; a fraction of them is visible."""
     rng = np.random.default_rng(seed)
     made = []
     for _ in range(n):
         x = np.array([rng.uniform(-0.5, 0.5), rng.uniform(0.6, 3.0), rng.uniform(0.05, 0.12)])
-        half, seen = asin(x[2] / x[1]), rng.random(3) < share
+        half, observed = asin(x[2] / x[1]), rng.random(3) < share
         span = (-HEIGHT / (x[1] - x[2]), (0.3 - HEIGHT) / (x[1] + x[2]))
         sides = [
             (x[0] + sign * half + 5e-4 * rng.standard_normal(), 1e-3, rng.uniform(1, 9), *span, ok)
-            for sign, ok in ((1.0, seen[0] or not seen[1]), (-1.0, seen[1]))
+            for sign, ok in ((1.0, observed[0] or not observed[1]), (-1.0, observed[1]))
         ]
         rims = []
         for height, sign in ((0.0, 1.0), (0.3, -1.0)):
-            if sign > 0.0 or seen[2]:
+            if sign > 0.0 or observed[2]:
                 azimuth = x[0] + half * np.linspace(-0.9, 0.9, rng.integers(5, 40))
                 slope = (height - HEIGHT) / rim_run(x, azimuth, sign)
                 slope += 1e-3 * rng.standard_normal(len(slope))
@@ -73,16 +73,16 @@ def test_estimates_are_consistent():
 
 
 def one_side(seed, n, least):
-    """The only edge of each of n cylinders: at least a share of one side, whichever."""
+    """The only edge of each of n cylinders: at least a fraction of one side, left or right."""
     rng = np.random.default_rng(seed)
     made = []
     for _ in range(n):
         x = np.array([rng.uniform(-0.9, 0.9), rng.uniform(0.35, 1.2), rng.uniform(0.05, 0.12)])
         half, reach = asin(x[2] / x[1]), np.sqrt(x[1] ** 2 - x[2] ** 2)
-        seen, start = rng.uniform(least, 1.0), rng.random()
+        observed, start = rng.uniform(least, 1.0), rng.random()
         foot, head = -HEIGHT / reach, (0.3 - HEIGHT) / reach
-        low = foot + (1.0 - seen) * start * (head - foot)
-        span = (low, low + seen * (head - foot))
+        low = foot + (1.0 - observed) * start * (head - foot)
+        span = (low, low + observed * (head - foot))
         left = bool(rng.random() < 0.5)
         inner = x[0] - half * rng.uniform(-0.9, 0.9)  # where the border of the image cuts it
         azimuths = (x[0] + half, inner) if left else (inner, x[0] - half)
@@ -95,7 +95,7 @@ def one_side(seed, n, least):
 
 
 @pytest.mark.parametrize("least", [0.3, 0.6, 0.9])
-def test_a_side_alone_tells_the_distance_as_well_as_it_says(least):
+def test_the_distance_from_a_single_side_is_consistent(least):
     made = one_side(3, 200, least)
     results, covariances = locate(*packed(made))
     error = results[:, 1] - [c["truth"][1] for c in made]
@@ -130,7 +130,7 @@ def test_edges_of_no_cylinder_have_a_covariance_all_the_same():
     np.linalg.cholesky(covariances)
 
 
-def test_what_stands_beside_it_changes_no_cylinder():
+def test_a_cylinder_does_not_depend_on_other_candidates():
     made = candidates(7, 6)
     together, _ = locate(*packed(made))
     alone = np.concatenate([locate(*packed([candidate]))[0] for candidate in made])

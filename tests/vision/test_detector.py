@@ -17,17 +17,17 @@ from vision.parameters import VisionParameters
 DETECTOR = Detector(CAMERA, VisionParameters())
 
 
-def see(things, view=None, brightness=1.0) -> tuple[Detection, ...]:
+def see(obstacles, view=None, brightness=1.0) -> tuple[Detection, ...]:
     view = view or pose()
-    return DETECTOR.detect(paint(things, view, brightness), view)
+    return DETECTOR.detect(paint(obstacles, view, brightness), view)
 
 
-def assert_located(detection: Detection, thing: Cylinder, sigmas: float = 4.0) -> None:
+def assert_located(detection: Detection, obstacle: Cylinder, sigmas: float = 4.0) -> None:
     """The detection is right within its own standard deviations."""
-    distance, bearing = true_polar(thing)
+    distance, bearing = true_polar(obstacle)
     error = np.array([detection.distance - distance, detection.bearing - bearing])
     assert error @ np.linalg.solve(detection.covariance, error) < sigmas**2
-    assert abs(detection.radius - thing.radius) < sigmas * detection.radius_sigma
+    assert abs(detection.radius - obstacle.radius) < sigmas * detection.radius_sigma
 
 
 @settings(max_examples=60)
@@ -42,19 +42,19 @@ def assert_located(detection: Detection, thing: Cylinder, sigmas: float = 4.0) -
 def test_a_lone_obstacle_is_located_wherever_the_head_looks(
     distance, bearing, radius, tilt, roll, pan
 ) -> None:
-    thing = at(distance, degrees(pan) + bearing, "green", radius)
+    obstacle = at(distance, degrees(pan) + bearing, "green", radius)
     view = pose(pan, tilt, roll, position=(0.03, 0.01, 0.47))
-    found = [d for d in see([thing], view) if not d.cut]
-    if not found:  # it may leave the image at the edges of what is drawn
-        assert all(d.cut for d in see([thing], view))
+    result = [d for d in see([obstacle], view) if not d.cut]
+    if not result:  # it may leave the image at the edges of what is drawn
+        assert all(d.cut for d in see([obstacle], view))
         return
-    (detection,) = found
+    (detection,) = result
     assert detection.label == "green"
     assert not detection.occluded
     # Six: hypothesis looks for edges that run along the pixels, which err everywhere alike.
-    assert_located(detection, thing, sigmas=6.0)
+    assert_located(detection, obstacle, sigmas=6.0)
     assert abs(detection.distance - distance) < 0.02 + 0.03 * distance
-    assert abs(detection.bearing - np.arctan2(thing.y, thing.x)) < radians(0.6)
+    assert abs(detection.bearing - np.arctan2(obstacle.y, obstacle.x)) < radians(0.6)
 
 
 @pytest.mark.parametrize("color", [n for n, c in COLOR_CLASSES.items() if c.kind == "obstacle"])
@@ -77,15 +77,15 @@ def test_a_mirrored_scene_gives_mirrored_detections(distances, tilt) -> None:
     colors = ("red", "green", "blue")
     scene = [at(d, b, c) for d, b, c in zip(distances, bearings, colors, strict=True)]
     mirror = [Cylinder(c.x, -c.y, c.color, c.radius) for c in scene]
-    seen, seen_mirrored = see(scene, pose(tilt=tilt)), see(mirror, pose(tilt=tilt))
-    assert len(seen) == len(seen_mirrored) > 0
-    for a, b in zip(seen, seen_mirrored, strict=True):
+    observed, seen_mirrored = see(scene, pose(tilt=tilt)), see(mirror, pose(tilt=tilt))
+    assert len(observed) == len(seen_mirrored) > 0
+    for a, b in zip(observed, seen_mirrored, strict=True):
         assert (a.label, a.cut, a.occluded) == (b.label, b.cut, b.occluded)
         assert a.distance == pytest.approx(b.distance, abs=2e-3)
         assert a.bearing == pytest.approx(-b.bearing, abs=2e-3)
 
 
-def test_detections_are_sorted_and_independent_of_what_was_seen_before() -> None:
+def test_detections_are_sorted_and_independent_of_earlier_images() -> None:
     scene = [at(2.0, -20.0, "red"), at(0.8, 0.0, "green"), at(1.4, 18.0, "violet")]
     first = see(scene)
     see([at(1.0, 5.0, "blue")])
@@ -96,40 +96,40 @@ def test_detections_are_sorted_and_independent_of_what_was_seen_before() -> None
 
 def test_an_occluded_obstacle_is_still_located_and_flagged() -> None:
     front, back = at(0.9, 3.0, "red"), at(1.5, 0.0, "green")
-    found = {d.label: d for d in see([front, back], pose(tilt=-0.3))}
-    assert not found["red"].occluded
-    assert found["green"].occluded
-    assert_located(found["red"], front)
-    assert_located(found["green"], back)
+    result = {d.label: d for d in see([front, back], pose(tilt=-0.3))}
+    assert not result["red"].occluded
+    assert result["green"].occluded
+    assert_located(result["red"], front)
+    assert_located(result["green"], back)
 
 
 def test_an_obstacle_cut_by_the_border_is_flagged_and_less_certain() -> None:
-    thing = at(1.0, 0.0, "blue")
-    (whole,) = see([thing], pose(tilt=-0.3))
-    (cut,) = see([thing], pose(pan=radians(-45.0), tilt=-0.3))
+    obstacle = at(1.0, 0.0, "blue")
+    (whole,) = see([obstacle], pose(tilt=-0.3))
+    (cut,) = see([obstacle], pose(pan=radians(-45.0), tilt=-0.3))
     assert not whole.cut
     assert cut.cut
     assert cut.covariance[1, 1] > 4.0 * whole.covariance[1, 1]
-    assert_located(cut, thing)
+    assert_located(cut, obstacle)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("distance", [0.4, 0.45, 0.5])
 def test_an_obstacle_of_which_one_side_shows_is_located_by_how_much_of_it(distance, side) -> None:
-    """The head looks down and aside: what is close by leaves the image below and beside it."""
-    thing = at(distance, side * 144.0, "green", 0.08)
+    """The head points down and to the side: close obstacles are cut by the border."""
+    obstacle = at(distance, side * 144.0, "green", 0.08)
     view = pose(side * 1.5708, radians(-20.0), position=(0.0, 0.0, 0.45))
-    (detection,) = see([thing], view)
+    (detection,) = see([obstacle], view)
     assert detection.cut
-    assert_located(detection, thing)
+    assert_located(detection, obstacle)
     assert abs(detection.distance - distance) < 0.1 * distance
 
 
 def test_an_obstacle_whose_foot_is_out_of_the_image_is_located_by_its_head() -> None:
-    thing = at(0.45, 0.0, "violet", 0.1)
-    (detection,) = see([thing], pose(tilt=0.0))
+    obstacle = at(0.45, 0.0, "violet", 0.1)
+    (detection,) = see([obstacle], pose(tilt=0.0))
     assert detection.cut
-    assert_located(detection, thing)
+    assert_located(detection, obstacle)
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_an_obstacle_whose_foot_is_out_of_the_image_is_located_by_its_head() -> 
     ],
     ids=["beside", "behind", "far"],
 )
-def test_overlapping_obstacles_of_one_color_are_told_apart(near: Cylinder, far: Cylinder) -> None:
+def test_overlapping_obstacles_of_one_color_are_separated(near: Cylinder, far: Cylinder) -> None:
     first, second = see([near, far], pose(tilt=-0.3))
     assert_located(first, near)
     assert_located(second, far)
@@ -151,10 +151,10 @@ def test_overlapping_obstacles_of_one_color_are_told_apart(near: Cylinder, far: 
 
 def test_three_obstacles_of_one_color_in_a_row_are_three() -> None:
     scene = [at(0.8, 0.0, "red", 0.07), at(1.2, 5.0, "red", 0.07), at(1.9, 8.5, "red", 0.07)]
-    found = see(scene, pose(tilt=-0.3))
-    assert len(found) == 3
-    for detection, thing in zip(found, scene, strict=True):
-        assert_located(detection, thing)
+    result = see(scene, pose(tilt=-0.3))
+    assert len(result) == 3
+    for detection, obstacle in zip(result, scene, strict=True):
+        assert_located(detection, obstacle)
 
 
 def test_beacons_are_named_top_over_bottom_and_located() -> None:
@@ -184,9 +184,9 @@ def test_beacons_close_to_each_other_in_the_image_do_not_swap_colors() -> None:
     names = {"yellow/cyan", "magenta/yellow"}
     for y in np.linspace(0.0, 0.4, 9).tolist():
         scene = beacon(2.5, 0.0, "yellow", "cyan") + beacon(3.2, y, "magenta", "yellow")
-        seen = {d.label for d in see(scene, pose(tilt=-0.1))}
-        assert seen <= names
-    assert seen == names
+        observed = {d.label for d in see(scene, pose(tilt=-0.1))}
+        assert observed <= names
+    assert observed == names
 
 
 @pytest.mark.parametrize("rgb", [(0, 0, 0), (1, 1, 1), *(c.rgb for c in COLOR_CLASSES.values())])
@@ -196,12 +196,12 @@ def test_a_uniform_image_shows_nothing(rgb) -> None:
 
 
 def test_an_error_of_the_tilt_is_within_its_uncertainty() -> None:
-    thing = at(2.0, 8.0, "red")
-    image = paint([thing], pose(tilt=-0.25))
+    obstacle = at(2.0, 8.0, "red")
+    image = paint([obstacle], pose(tilt=-0.25))
     for error in (-1.0, 1.0):
         wrong = pose(tilt=-0.25 + radians(error), sigma=radians(0.7))
         (detection,) = DETECTOR.detect(image, wrong)
-        assert_located(detection, thing, sigmas=3.0)
+        assert_located(detection, obstacle, sigmas=3.0)
 
 
 @pytest.mark.parametrize("tilt", [-1.2, -0.4])
@@ -216,7 +216,7 @@ def test_noise_yields_nothing_but_finite_detections(tilt: float) -> None:
 
 
 @pytest.mark.parametrize("unknown", [{"tilt_sigma": 1e7}, {"height_sigma": 1e8}])
-def test_what_cannot_be_located_in_finite_numbers_is_not_detected(unknown) -> None:
+def test_an_infinite_uncertainty_gives_no_detection(unknown) -> None:
     view = pose(tilt=-0.1)
     image = paint([at(1.0, 5.0, "green"), at(2.0, -20.0, "red"), at(1.6, 20.0, "blue")], view)
     assert len(DETECTOR.detect(image, view)) == 3
@@ -224,13 +224,13 @@ def test_what_cannot_be_located_in_finite_numbers_is_not_detected(unknown) -> No
 
 
 def test_pixel_noise_moves_a_detection_by_no_more_than_its_uncertainty() -> None:
-    thing = at(1.4, -12.0, "violet")
-    image = paint([thing], pose(tilt=-0.2)).astype(float)
+    obstacle = at(1.4, -12.0, "violet")
+    image = paint([obstacle], pose(tilt=-0.2)).astype(float)
     rng = np.random.default_rng(3)
     for _ in range(5):
         noisy = np.clip(np.round(image + rng.normal(0.0, 6.0, image.shape)), 0, 255)
         (detection,) = DETECTOR.detect(noisy.astype(np.uint8), pose(tilt=-0.2))
-        assert_located(detection, thing)
+        assert_located(detection, obstacle)
 
 
 @pytest.mark.parametrize(
@@ -263,7 +263,7 @@ LEVEL_OR_NOT = [pose(), pose(0.5, -0.6), pose(0.0, -np.pi / 2), pose(0.1, -0.3, 
     boxes=st.lists(st.tuples(*[st.integers(-4, 68)] * 4, st.integers(0, 7)), max_size=30),
     smallest=st.sampled_from([1, 20]),
 )
-def test_whatever_an_image_shows_every_detection_is_one(size, view, boxes, smallest) -> None:
+def test_every_detection_in_an_arbitrary_image_is_valid(size, view, boxes, smallest) -> None:
     """Blobs at every border, many of them, of one pixel; a rim that looks level."""
     width, height = size
     labels = np.zeros((height, width), int)
@@ -272,8 +272,8 @@ def test_whatever_an_image_shows_every_detection_is_one(size, view, boxes, small
     camera = PinholeCamera.from_vertical_fov(width, height, 1.2)
     parameters = VisionParameters(min_area=smallest, min_beacon_area=smallest)
     image = np.round(255 * PAINTS[labels]).astype(np.uint8)
-    for found in Detector(camera, parameters).detect(image, view):
-        assert np.isfinite([found.distance, found.bearing, found.radius]).all()
-        assert np.linalg.eigvalsh(found.covariance)[0] > 0.0
-        assert 0 <= found.box[0] < found.box[2] <= width
-        assert 0 <= found.box[1] < found.box[3] <= height
+    for result in Detector(camera, parameters).detect(image, view):
+        assert np.isfinite([result.distance, result.bearing, result.radius]).all()
+        assert np.linalg.eigvalsh(result.covariance)[0] > 0.0
+        assert 0 <= result.box[0] < result.box[2] <= width
+        assert 0 <= result.box[1] < result.box[3] <= height

@@ -18,8 +18,8 @@ NAMES = ("", *COLOR_CLASSES)
 PIXEL = 1.0 / CAMERA.focal
 
 
-def outlines(things: list[Cylinder], gaze: CameraPose) -> dict[str, Outline]:
-    return outlines_in(paint(things, gaze), gaze)
+def outlines(obstacles: list[Cylinder], gaze: CameraPose) -> dict[str, Outline]:
+    return outlines_in(paint(obstacles, gaze), gaze)
 
 
 def outlines_in(image: np.ndarray, gaze: CameraPose) -> dict[str, Outline]:
@@ -35,10 +35,10 @@ def outlines_in(image: np.ndarray, gaze: CameraPose) -> dict[str, Outline]:
 @pytest.mark.parametrize("bearing", [-28.0, 0.0, 28.0])
 def test_sides_are_the_tangents_of_the_cylinder(roll: float, tilt: float, bearing: float) -> None:
     distance = 0.7 if tilt < -0.6 else 1.3
-    thing = at(distance, bearing, "green", 0.08)
-    outline = outlines([thing], pose(tilt=tilt, roll=roll)).get("green")
+    obstacle = at(distance, bearing, "green", 0.08)
+    outline = outlines([obstacle], pose(tilt=tilt, roll=roll)).get("green")
     assert outline is not None
-    azimuth = np.arctan2(thing.y, thing.x) - View(CAMERA, pose(tilt=tilt, roll=roll)).heading
+    azimuth = np.arctan2(obstacle.y, obstacle.x) - View(CAMERA, pose(tilt=tilt, roll=roll)).heading
     half = asin(0.08 / distance)
     for side, expected in ((outline.left, azimuth + half), (outline.right, azimuth - half)):
         if side.trusted:
@@ -56,33 +56,35 @@ def test_rims_lie_on_the_floor_and_at_the_height_of_the_head() -> None:
 
 def test_edges_next_to_another_color_are_not_taken_for_the_own() -> None:
     front, back = at(0.9, 4.0, "red", 0.09), at(1.6, 0.0, "green", 0.10)
-    seen = outlines([front, back], pose(tilt=-0.3))
-    assert seen["green"].left.occluded
-    assert not seen["red"].right.occluded
+    observed = outlines([front, back], pose(tilt=-0.3))
+    assert observed["green"].left.occluded
+    assert not observed["red"].right.occluded
     assert (
-        seen["green"].bottom.occlusion_fraction == 0.0
-        or seen["green"].bottom.occlusion_fraction < 1.0
+        observed["green"].bottom.occlusion_fraction == 0.0
+        or observed["green"].bottom.occlusion_fraction < 1.0
     )
     half = asin(0.10 / hypot(back.x, back.y))
-    for side, expected in ((seen["green"].left, half), (seen["green"].right, -half)):
+    for side, expected in ((observed["green"].left, half), (observed["green"].right, -half)):
         if side.trusted:
             assert side.azimuth == pytest.approx(expected, abs=1.5 * PIXEL)
 
 
-def test_a_foot_behind_another_thing_is_not_seen() -> None:
+def test_an_occluded_foot_is_not_visible() -> None:
     front, back = at(0.8, 0.0, "red", 0.12), at(1.6, 0.0, "violet", 0.05)
-    seen = outlines([front, back], pose(tilt=-0.3))
-    assert seen["violet"].bottom.occlusion_fraction == 1.0
-    assert seen["violet"].bottom.free().slope.size == 0
+    observed = outlines([front, back], pose(tilt=-0.3))
+    assert observed["violet"].bottom.occlusion_fraction == 1.0
+    assert observed["violet"].bottom.free().slope.size == 0
     label = NAMES.index("red")
-    assert seen["violet"].bottom.against(label).slope.size == seen["violet"].bottom.slope.size
+    assert (
+        observed["violet"].bottom.against(label).slope.size == observed["violet"].bottom.slope.size
+    )
 
 
 def test_a_side_beyond_the_border_is_not_trusted() -> None:
     edge = degrees(0.5 * CAMERA.horizontal_fov)
-    seen = outlines([at(1.0, edge + 2.0, "green", 0.1)], pose(tilt=-0.3))["green"]
-    assert not seen.left.trusted
-    assert seen.right.trusted
+    observed = outlines([at(1.0, edge + 2.0, "green", 0.1)], pose(tilt=-0.3))["green"]
+    assert not observed.left.trusted
+    assert observed.right.trusted
 
 
 @given(count=st.integers(1, 80), crossed=st.floats(0.0, 20.0))
@@ -96,8 +98,8 @@ def test_points_with_errors_of_their_own_are_one_at_least_and_all_at_most(count,
 
 def test_noise_at_the_border_of_the_image_makes_no_edge() -> None:
     """One unrecognised pixel in the last column is not the side of what the border cuts."""
-    thing, view = at(0.8, -43.0, "green", 0.10), pose(tilt=-0.4)
-    image = paint([thing], view)
+    obstacle, view = at(0.8, -43.0, "green", 0.10), pose(tilt=-0.4)
+    image = paint([obstacle], view)
     clean = outlines_in(image, view)["green"]
     assert not clean.right.trusted
     rows = np.flatnonzero(ColorTable().classify(image)[:, -1])

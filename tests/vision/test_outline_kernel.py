@@ -7,7 +7,7 @@ from vision.color import OUTSIDE
 from vision.outline_kernel import angles, envelopes, trace
 from vision.view import View
 
-THINGS = [
+OBSTACLES = [
     at(0.9, 4.0, "red", 0.09),
     at(1.6, 0.0, "green", 0.10),
     at(1.1, -30.0, "blue", 0.12),
@@ -15,16 +15,16 @@ THINGS = [
 ]
 
 
-def seen(pan, roll):
-    """Blobs, padded labels and packed view of the things."""
+def observed(pan, roll):
+    """Blobs, padded labels and packed view of the obstacles."""
     gaze = pose(pan=pan, tilt=-0.3, roll=roll)
-    blobs, padded, _ = traced(THINGS, gaze)
+    blobs, padded, _ = traced(OBSTACLES, gaze)
     return blobs, padded, View(CAMERA, gaze).packed
 
 
 @pytest.mark.parametrize(("pan", "roll"), [(0.0, 0.0), (0.2, 0.1), (-0.3, 1.5)])
 def test_compiled_and_plain_agree(pan, roll):
-    blobs, *rest = seen(pan, roll)
+    blobs, *rest = observed(pan, roll)
     assert len(blobs) >= 3
     boxes = np.array([blob.box for blob in blobs], np.int32)
     values = boxes, np.concatenate([blob.extents for blob in blobs]), *rest
@@ -38,7 +38,7 @@ def test_compiled_and_plain_agree(pan, roll):
 
 def test_envelopes_bound_the_directions_of_all_pixels():
     """Lowest and highest slope of a blob near each azimuth, from the middles of its pixels."""
-    blobs, padded, view = seen(0.1, 0.05)
+    blobs, padded, view = observed(0.1, 0.05)
     for blob in blobs:
         box = np.array(blob.box, np.int32)
         start, width, size, (low, high), _ = envelopes(box, blob.extents, blob.runs, padded, view)

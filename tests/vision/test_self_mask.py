@@ -31,8 +31,11 @@ def inside(polygon: np.ndarray, points: np.ndarray) -> np.ndarray:
 )
 def test_the_outline_contains_all_of_a_sphere(pan, tilt, roll, seed) -> None:
     view = pose(pan, tilt, roll, position=(0.0, 0.03, 0.47))
-    way = np.random.default_rng(seed).standard_normal((50, 3))
-    surface = SHOULDER.centres + SHOULDER.radii[0] * way / np.linalg.norm(way, axis=1)[:, None]
+    direction = np.random.default_rng(seed).standard_normal((50, 3))
+    surface = (
+        SHOULDER.centres
+        + SHOULDER.radii[0] * direction / np.linalg.norm(direction, axis=1)[:, None]
+    )
     points = SHOULDER.outline(CAMERA, view)
     if not len(points):
         return
@@ -58,7 +61,7 @@ def test_only_background_is_hidden() -> None:
     assert ((labels[:, 1::2] == 255) == (shown[:, 1::2] == 1)).all()
 
 
-def test_nothing_is_hidden_when_the_body_is_out_of_the_image() -> None:
+def test_the_mask_is_empty_if_the_body_is_outside_the_image() -> None:
     labels = np.zeros((CAMERA.height, CAMERA.width), np.uint8)
     view = pose(0.0, 0.0)
     assert not apply_self_mask((SHOULDER,), labels, camera=CAMERA, pose=view, label=255)
@@ -68,8 +71,8 @@ def test_nothing_is_hidden_when_the_body_is_out_of_the_image() -> None:
 @given(distance=st.floats(0.32, 0.42), bearing=st.floats(88.0, 92.0))
 def test_an_obstacle_behind_the_shoulder_is_located_by_its_upper_edge(distance, bearing) -> None:
     view = pose(radians(80.0), -0.35, position=(0.0, 0.03, 0.47))
-    thing = at(distance, bearing, "blue", 0.06)
-    image = paint([thing], view)
+    obstacle = at(distance, bearing, "blue", 0.06)
+    image = paint([obstacle], view)
     ground = paint([], view)
     # The shoulder as it looks: as grey as the ground, and smaller than what is masked.
     shoulder = replace(SHOULDER, radii=np.array([0.025]))
@@ -78,7 +81,7 @@ def test_an_obstacle_behind_the_shoulder_is_located_by_its_upper_edge(distance, 
     image[shown == 1] = ground[shown == 1]
     (naive,) = Detector(CAMERA, VisionParameters()).detect(image, view)
     (aware,) = Detector(CAMERA, VisionParameters(), (SHOULDER,)).detect(image, view)
-    true_distance, true_bearing = true_polar(thing)
+    true_distance, true_bearing = true_polar(obstacle)
     assert naive.distance > true_distance + 0.03
     assert abs(aware.distance - true_distance) < 0.015
     assert abs(aware.bearing - true_bearing) < 0.03

@@ -12,8 +12,8 @@ from vision.view import View
 GAZE = pose(tilt=-0.3)
 
 
-def parts_of(things: list[Cylinder]) -> list[Part]:
-    (blob,), padded, (outline,) = traced(things, GAZE)
+def parts_of(obstacles: list[Cylinder]) -> list[Part]:
+    (blob,), padded, (outline,) = traced(obstacles, GAZE)
     options = {"parameters": VisionParameters(), "radius": (0.085, 0.02)}
     return split(blob, outline, padded, view=View(CAMERA, GAZE), **options)
 
@@ -40,7 +40,7 @@ def test_the_nearer_of_two_is_whole_and_the_farther_is_occluded(offset: float) -
 
 
 def test_of_two_of_a_color_the_hidden_one_is_placed_as_well_as_it_says() -> None:
-    """In all positions to each other; a column beside a step belongs to neither."""
+    """In random relative positions."""
     rng = np.random.default_rng(0)
     detector = Detector(CAMERA, VisionParameters())
     errors = []
@@ -49,11 +49,14 @@ def test_of_two_of_a_color_the_hidden_one_is_placed_as_well_as_it_says() -> None
         far = rng.uniform(near + 0.4, 3.6)
         radii = rng.uniform(0.05, 0.12, 2)
         apart = np.degrees(rng.uniform(-1.1, 1.1) * (radii[0] / near + radii[1] / far))
-        place = rng.uniform(-20, 20)
-        things = [at(near, place, "red", radii[0]), at(far, place + apart, "red", radii[1])]
+        position = rng.uniform(-20, 20)
+        obstacles = [
+            at(near, position, "red", radii[0]),
+            at(far, position + apart, "red", radii[1]),
+        ]
         view = pose(pan=rng.uniform(-0.3, 0.3), tilt=rng.uniform(-0.45, -0.1), sigma=0.0009)
-        distance, bearing = far, np.radians(place + apart)
-        for d in detector.detect(paint(things, view), view):
+        distance, bearing = far, np.radians(position + apart)
+        for d in detector.detect(paint(obstacles, view), view):
             if abs(d.distance - far) < abs(d.distance - near):
                 error = np.array([d.distance - distance, d.bearing - bearing])
                 errors.append(error / np.sqrt(np.diag(d.covariance)))
@@ -62,7 +65,7 @@ def test_of_two_of_a_color_the_hidden_one_is_placed_as_well_as_it_says() -> None
     assert np.abs(errors).max() < 3.5
 
 
-def test_what_is_thicker_than_any_obstacle_stands_anywhere_within() -> None:
+def test_a_blob_wider_than_any_obstacle_has_an_inflated_covariance() -> None:
     """Two side by side at one distance leave no step in their outline."""
     view = pose(tilt=-0.3, sigma=0.0009)
     pair = [at(1.6, -2.7, "red", 0.08), at(1.6, 2.7, "red", 0.08)]

@@ -19,30 +19,30 @@ def made():
 
 def saw(relocalization, frame, observe, pose, odometry, names, time=0.0, moved=()):
     """Beacons seen from a true pose, remembered where odometry has them."""
-    places = BEACONS | dict(moved)
-    seen = [observe(pose, places[name], kind="beacon", label=name) for name in names]
-    taken = frame(time, odometry, seen)
-    for observation in seen:
+    positions = BEACONS | dict(moved)
+    observed = [observe(pose, positions[name], kind="beacon", label=name) for name in names]
+    taken = frame(time, odometry, observed)
+    for observation in observed:
         relocalization.remember(observation, taken)
     return taken
 
 
 @given(pose=poses, odometry=poses)
-def test_two_beacons_tell_the_pose_whatever_odometry_says(frame, observe, pose, odometry):
+def test_two_beacons_determine_the_pose_for_any_odometry(frame, observe, pose, odometry):
     lost = made()
     taken = saw(lost, frame, observe, pose, odometry, "ab")
-    found = lost.locate(taken, np.zeros(3))
-    assert found is not None
-    assert np.allclose(found[:2], pose[:2], atol=1e-9)
-    assert np.cos(found[2] - pose[2]) == pytest.approx(1.0)
+    result = lost.locate(taken, np.zeros(3))
+    assert result is not None
+    assert np.allclose(result[:2], pose[:2], atol=1e-9)
+    assert np.cos(result[2] - pose[2]) == pytest.approx(1.0)
 
 
 def test_beacons_seen_one_after_the_other_while_turning_count_together(frame, observe):
     lost = made()
     saw(lost, frame, observe, (0.3, 0.2, 0.0), (1.0, 1.0, 2.0), "a", time=0.0)
     taken = saw(lost, frame, observe, (0.3, 0.2, 1.5), (1.0, 1.0, 3.5), "b", time=2.0)
-    found = lost.locate(taken, np.zeros(3))
-    assert np.allclose(found, (0.3, 0.2, 1.5))
+    result = lost.locate(taken, np.zeros(3))
+    assert np.allclose(result, (0.3, 0.2, 1.5))
 
 
 def test_one_beacon_or_one_too_old_is_not_enough(frame, observe):
@@ -58,8 +58,8 @@ def test_the_one_that_was_moved_is_left_out_if_the_rest_agree_with_the_belief(fr
     lost = made()
     pose = (0.2, -0.3, 0.4)
     taken = saw(lost, frame, observe, pose, (0, 0, 0), "abcd", moved={"c": (-1.0, 1.0)})
-    found = lost.locate(taken, np.array(pose))
-    assert np.allclose(found, pose)
+    result = lost.locate(taken, np.array(pose))
+    assert np.allclose(result, pose)
     assert lost.displaced == {"c"}
     far = made()
     taken = saw(far, frame, observe, pose, (0, 0, 0), "abcd", moved={"c": (-1.0, 1.0)})
@@ -104,7 +104,7 @@ def test_an_outlier_is_forgiven_by_the_next_sighting_that_fits():
     assert not detector.displaced
 
 
-def test_what_was_seen_before_the_pose_went_wrong_is_forgotten(frame, observe):
+def test_detections_before_the_failure_are_dropped(frame, observe):
     lost = made()
     saw(lost, frame, observe, (0, 0, 0), (0, 0, 0), "a", time=0.0)
     lost.is_lost(1.0, [], ["b"])

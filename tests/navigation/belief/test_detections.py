@@ -16,12 +16,12 @@ def test_covariance_is_the_first_order_propagation(observe):
     rng = np.random.default_rng(0)
     for _ in range(20):
         pose = rng.uniform(-3, 3, 3)
-        place = tuple((pose[:2] + rng.uniform(0.5, 2, 2)).tolist())
+        position = tuple((pose[:2] + rng.uniform(0.5, 2, 2)).tolist())
         A = rng.standard_normal((3, 3)) * 0.02
         P = A @ A.T
-        o = observe(pose.tolist(), place, sigma=(0.05, 0.02))
-        seen = convert([o], pose, P)
-        assert np.allclose(seen.positions[0], place)
+        o = observe(pose.tolist(), position, sigma=(0.05, 0.02))
+        observed = convert([o], pose, P)
+        assert np.allclose(observed.positions[0], position)
 
         def f(v, o=o):
             return np.array(to_world(v[:3], o.distance + v[3], o.bearing + v[4]))
@@ -30,29 +30,31 @@ def test_covariance_is_the_first_order_propagation(observe):
         J = np.stack([(f(v + h * e) - f(v - h * e)) / (2 * h) for e in np.eye(5)], axis=1)
         whole = np.zeros((5, 5))
         whole[:3, :3], whole[3:, 3:] = P, o.covariance
-        assert np.allclose(seen.covariances[0], J @ whole @ J.T, atol=1e-8)
+        assert np.allclose(observed.covariances[0], J @ whole @ J.T, atol=1e-8)
 
 
 def test_a_radius_known_otherwise_is_conditioning_on_it(observe):
     """By sampling: place and radius are drawn together, and those with that radius chosen."""
     rng = np.random.default_rng(1)
-    pose, place = (0.5, -0.2, 0.7), (1.1, 0.4)
-    o = observe(pose, place, sigma=(0.02, 0.02), radius=0.085, radius_sigma=0.02)
+    pose, position = (0.5, -0.2, 0.7), (1.1, 0.4)
+    o = observe(pose, position, sigma=(0.02, 0.02), radius=0.085, radius_sigma=0.02)
     slope = np.array([0.4, -0.7])
     joint = np.zeros((3, 3))
     joint[:2, :2] = o.covariance + 0.02**2 * np.outer(slope, slope)
     joint[:2, 2] = joint[2, :2] = slope * 0.02**2
     joint[2, 2] = 0.02**2
-    seen = convert([replace(o, covariance=joint[:2, :2], by_radius=slope)], pose, np.zeros((3, 3)))
+    observed = convert(
+        [replace(o, covariance=joint[:2, :2], by_radius=slope)], pose, np.zeros((3, 3))
+    )
     drawn = rng.multivariate_normal([o.distance, o.bearing, o.radius], joint, 400_000)
     chosen = drawn[np.abs(drawn[:, 2] - 0.06) < 5e-4]
     points = np.array([to_world(np.array(pose), d, b) for d, b, _ in chosen])
-    moved, covariance = seen.given_radius(0, 0.06, 0.0)
+    moved, covariance = observed.given_radius(0, 0.06, 0.0)
     assert moved == pytest.approx(points.mean(axis=0), abs=2e-3)
     assert covariance == pytest.approx(np.cov(points.T), abs=5e-5)
-    same, whole = seen.given_radius(0, o.radius, o.radius_sigma)
-    assert np.array_equal(same, seen.positions[0])
-    assert whole == pytest.approx(seen.covariances[0])
+    same, whole = observed.given_radius(0, o.radius, o.radius_sigma)
+    assert np.array_equal(same, observed.positions[0])
+    assert whole == pytest.approx(observed.covariances[0])
 
 
 def test_a_lost_pose_does_not_drown_the_tracks(observe):
@@ -64,7 +66,7 @@ def test_a_lost_pose_does_not_drown_the_tracks(observe):
 
 
 def test_beacons_are_no_obstacles(observe):
-    seen = convert([observe((0, 0, 0), (1.0, 0.0), kind="beacon")], (0.0, 0.0, 0.0), np.eye(3))
-    assert seen.observations == ()
-    assert seen.positions.shape == (0, 2)
-    assert seen.covariances.shape == (0, 2, 2)
+    observed = convert([observe((0, 0, 0), (1.0, 0.0), kind="beacon")], (0.0, 0.0, 0.0), np.eye(3))
+    assert observed.observations == ()
+    assert observed.positions.shape == (0, 2)
+    assert observed.covariances.shape == (0, 2, 2)

@@ -39,17 +39,17 @@ def tour(observe, frame, track, rng, seconds, fov=1.5):
         for q, u in ((odometry, step), (pose, step + rng.normal(0, np.sqrt(MOTION)))):
             c, s = cos(q[2]), sin(q[2])
             q += [c * u[0] - s * u[1], s * u[0] + c * u[1], u[2]]
-        seen, numbers = [], []
+        observed, numbers = [], []
         for i, (x, y, label) in enumerate(POSTS):
             _, bearing = range_bearing(pose.tolist(), (x, y))
             if abs(bearing) < fov / 2:
-                seen.append(
+                observed.append(
                     observe(
                         pose.tolist(), (x, y), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA
                     )
                 )
                 numbers.append(i)
-        f = replace(frame(k * DT, odometry, seen), motion_covariance=np.diag(MOTION))
+        f = replace(frame(k * DT, odometry, observed), motion_covariance=np.diag(MOTION))
         slam.update(f)
         slam.map_landmarks(
             f,
@@ -72,7 +72,7 @@ def last(steps):
     return list(steps)[-1]
 
 
-def test_knows_where_it_is_better_than_odometry_and_says_how_well(observe, frame, track):
+def test_is_consistent_and_better_than_odometry(observe, frame, track):
     values, errors, blind = [], [], []
     for seed in range(4):
         for fov, away in ((1.5, errors), (0.0, blind)):
@@ -93,8 +93,8 @@ def test_covariance_of_all_stays_positive_definite(observe, frame, track):
     assert slam.faults == 0
 
 
-def test_a_landmark_shares_the_error_of_the_pose_that_mapped_it(observe, frame, track):
-    """Seen from the pose at which it was mapped, it tells nothing new of that pose."""
+def test_a_landmark_is_correlated_with_the_pose_that_mapped_it(observe, frame, track):
+    """Detected from the pose at which it was mapped, it adds no information."""
     slam = EkfSlam(BeliefParameters(), np.zeros(3))
     wander = replace(frame(0.1, (0, 0, 0), []), motion_covariance=np.diag([1e-2, 1e-2, 1e-3]))
     slam.update(frame(0.0, (0, 0, 0), []))
@@ -112,7 +112,7 @@ def test_a_landmark_shares_the_error_of_the_pose_that_mapped_it(observe, frame, 
     assert np.linalg.det(slam.covariance) == pytest.approx(before, rel=0.05)
 
 
-def test_what_no_longer_stands_still_is_forgotten(observe, frame, track):
+def test_landmarks_that_move_are_deleted(observe, frame, track):
     slam, _ = last(tour(observe, frame, track, np.random.default_rng(2), 20.0))
     pose, covariance = slam.pose, slam.covariance
     slam.map_landmarks(
@@ -142,15 +142,15 @@ def look_around(slam, observe, frame, track, rng, times, *, where=(0.0, 0.0, 0.0
         turn = 0.05 * k
         x, y, heading = where
         pose = (x, y, heading + turn)
-        seen, numbers = [], []
+        observed, numbers = [], []
         for i, (px, py, label) in enumerate(PLACES):
             distance, bearing = range_bearing(pose, (px, py))
             if abs(bearing) < 0.7 and distance < 2.5 and i not in hidden:
-                seen.append(
+                observed.append(
                     observe(pose, (px, py), label=label, noise=rng.normal(0, SIGMA), sigma=SIGMA)
                 )
                 numbers.append(i)
-        f = frame(DT * k, (0.0, 0.0, turn), seen)
+        f = frame(DT * k, (0.0, 0.0, turn), observed)
         slam.update(f)
         slam.map_landmarks(f, tuple(
             replace(track(PLACES[i][:2], id=i), label=PLACES[i][2]) for i in range(len(PLACES))
@@ -177,7 +177,7 @@ def mapped(observe, frame, track):
     return slam, go_on
 
 
-def test_carried_away_it_notices_and_recognises_the_place(mapped):
+def test_kidnapped_it_detects_the_failure_and_relocalizes(mapped):
     slam, go_on = mapped
     go_on(10, where=(0.4, -0.5, 1.9))
     assert slam.lost or slam.recoveries
@@ -189,7 +189,7 @@ def test_carried_away_it_notices_and_recognises_the_place(mapped):
     assert abs(wrap(float(slam.pose[2] - pose[2]))) < 0.03
 
 
-def test_a_fault_while_lost_begins_the_map_anew(mapped):
+def test_a_fault_while_lost_restarts_the_map(mapped):
     slam, go_on = mapped
     while not slam.lost:
         go_on(1, where=(0.4, -0.5, 1.9))
@@ -202,28 +202,30 @@ def test_a_fault_while_lost_begins_the_map_anew(mapped):
     assert slam._ids
 
 
-def test_one_landmark_gone_is_no_reason_to_be_lost(mapped):
+def test_one_missing_landmark_is_not_a_failure(mapped):
     slam, go_on = mapped
     go_on(130, hidden=(3,))
     assert not slam.lost
     assert slam.recoveries == 0
 
 
-def test_a_black_image_says_nothing(mapped):
+def test_frames_without_detections_are_not_a_failure(mapped):
     slam, go_on = mapped
     go_on(130, hidden=range(len(PLACES)))
     assert not slam.lost
 
 
 @pytest.mark.parametrize(("share", "landmarks"), [(0.9, 1), (1.1, 0)])
-def test_only_what_was_detected_near_its_track_is_mapped(observe, frame, track, share, landmarks):
+def test_only_a_detection_near_its_track_becomes_a_landmark(
+    observe, frame, track, share, landmarks
+):
     parameters = BeliefParameters()
     slam = EkfSlam(parameters, np.zeros(3))
     x, y, _ = POSTS[0]
     off = share * parameters.mapping.match_distance
-    seen = frame(0.0, (0, 0, 0), [observe((0, 0, 0), (x + off, y))])
-    slam.update(seen)
-    slam.map_landmarks(seen, tracks(track, [0]))
+    observed = frame(0.0, (0, 0, 0), [observe((0, 0, 0), (x + off, y))])
+    slam.update(observed)
+    slam.map_landmarks(observed, tracks(track, [0]))
     assert len(slam._ids) == landmarks
 
 

@@ -20,14 +20,14 @@ def frames(view, observe, frame, seconds, seed=0, kidnapped_at=np.inf):
         pose = (x, 0.0, 0.05 * np.sin(0.7 * t))
         truth = pose if t < kidnapped_at else (x + 0.5, 0.6, pose[2] - 0.5)
         pan = 0.2 * np.sin(t)
-        seen = [
+        observed = [
             observe(truth, p, kind="beacon", label=n, noise=rng.normal(0, [0.05, 0.01]),
                     sigma=(0.05, 0.01))
             for n, p in BEACONS.items()
         ]  # fmt: skip
         for label, p in (("red", STATIC), ("blue", (MOVER[0], MOVER[1] + 0.1 * t))):
-            seen.append(observe(truth, p, label=label, noise=rng.normal(0, [0.02, 0.01])))
-        yield frame(t, pose, seen, view(pan=pan))
+            observed.append(observe(truth, p, label=label, noise=rng.normal(0, [0.02, 0.01])))
+        yield frame(t, pose, observed, view(pan=pan))
 
 
 def estimator(seed=0):
@@ -112,7 +112,7 @@ def test_nonsense_in_frames_does_no_lasting_harm(view, observe, frame, seed):
     for _ in range(150):
         time += float(rng.choice([0.005, 0.06, 0.06, 3.0]))
         odometry += rng.normal(0, [0.05, 0.05, 0.3])
-        seen = [
+        observed = [
             observe(
                 np.zeros(3),
                 tuple(rng.uniform(-2.5, 2.5, 2).tolist()),
@@ -125,7 +125,7 @@ def test_nonsense_in_frames_does_no_lasting_harm(view, observe, frame, seed):
             for kind in rng.choice(["obstacle", "beacon"], int(rng.integers(0, 12)))
         ]
         camera = view(pan=rng.uniform(-1.5, 1.5), tilt=rng.uniform(-1.0, 0.3))
-        belief = e.update(frame(time, odometry, seen, camera))
+        belief = e.update(frame(time, odometry, observed, camera))
         assert np.isfinite(belief.pose).all()
         assert np.linalg.eigvalsh(belief.pose_covariance)[0] > 0
         assert len({t.id for t in belief.tracks}) == len(belief.tracks)

@@ -17,11 +17,11 @@ def one(moving=0.5, z=(1.0, 0.0), R=R):
     return Modes(*(a[None] for a in modes))
 
 
-def watch(modes, places, R=R, rng=None):
+def watch(modes, positions, R=R, rng=None):
     """Frames with a detection at each place."""
-    for place in places:
+    for position in positions:
         modes = imm.predict(modes, DT, P)
-        z = np.array([place]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
+        z = np.array([position]) + (0.0 if rng is None else rng.multivariate_normal((0, 0), R))
         imm_kernel.update(*modes, np.array([0]), z, R[None], P.max_log_ratio)
     return modes
 
@@ -32,7 +32,7 @@ def line(seconds, velocity, start=(1.0, 0.0)):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_tells_what_stands_from_what_moves(seed):
+def test_mode_probabilities_separate_static_from_moving_obstacles(seed):
     rng = np.random.default_rng(seed)
     still = watch(one(), line(2.0, (0.0, 0.0)), rng=rng)
     moving = watch(one(), line(1.0, (0.06, 0.05)), rng=rng)
@@ -57,17 +57,17 @@ def test_a_reversal_out_of_sight_is_weighed_against_going_on():
     assert back < 1.2 < on
     assert modes.weights[0, REVERSED] == pytest.approx(0.5 - 0.5 * np.exp(-2 * 3 / 12), abs=0.03)
     assert modes.covariances[0, REVERSED, 0, 0] > 4 * modes.covariances[0, FORWARD, 1, 1]
-    seen = watch(modes, [(1.15, 0.0)])
-    assert seen.weights[0, REVERSED] > 0.7
-    later = watch(seen, line(0.5, (-0.1, 0.0), (1.15, 0.0)))
+    observed = watch(modes, [(1.15, 0.0)])
+    assert observed.weights[0, REVERSED] > 0.7
+    later = watch(observed, line(0.5, (-0.1, 0.0), (1.15, 0.0)))
     assert later.weights[0, REVERSED] > 0.95
 
 
 def test_mirrored_worlds_have_mirrored_filters():
     flip = np.array([1.0, -1.0, 1.0, -1.0, -1.0])
-    places = np.random.default_rng(3).normal((1.0, 0.2), 0.05, (40, 2))
-    plain = watch(one(z=(1.0, 0.2)), places)
-    mirrored = watch(one(z=(1.0, -0.2)), places * flip[:2])
+    positions = np.random.default_rng(3).normal((1.0, 0.2), 0.05, (40, 2))
+    plain = watch(one(z=(1.0, 0.2)), positions)
+    mirrored = watch(one(z=(1.0, -0.2)), positions * flip[:2])
     assert np.allclose(mirrored.weights, plain.weights)
     assert np.allclose(mirrored.states, plain.states * flip)
     assert np.allclose(mirrored.covariances, plain.covariances * np.outer(flip, flip))
@@ -151,28 +151,28 @@ def test_one_look_changes_the_odds_by_the_likelihoods_but_no_more_than_the_limit
 
 
 @pytest.mark.parametrize("turn", [-0.3, 0.0, 0.2])
-def test_a_bend_is_found_and_followed(turn):
+def test_a_turn_rate_is_estimated(turn):
     """After four seconds of looks at what walks a circle at 0.1 m/s."""
     angle = turn * DT * np.arange(round(4.0 / DT) + 1)
-    way = 0.1 * DT * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    places = np.array([1.0, 0.0]) + np.cumsum(way, axis=0)
-    modes = watch(one(), places, R=1e-5 * np.eye(2))
+    direction = 0.1 * DT * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    positions = np.array([1.0, 0.0]) + np.cumsum(direction, axis=0)
+    modes = watch(one(), positions, R=1e-5 * np.eye(2))
     assert modes.states[0, FORWARD, 4] == pytest.approx(turn, abs=0.05)
     later = modes
     for _ in range(round(1.0 / DT)):
         later = imm.predict(later, DT, P)
     ahead = angle[-1] + turn * DT * np.arange(1, round(1.0 / DT) + 1)
-    met = places[-1] + 0.1 * DT * np.array([np.cos(ahead).sum(), np.sin(ahead).sum()])
+    met = positions[-1] + 0.1 * DT * np.array([np.cos(ahead).sum(), np.sin(ahead).sum()])
     assert later.states[0, FORWARD, :2] == pytest.approx(met, abs=0.01)
 
 
-def test_only_what_was_seen_is_corrected():
+def test_only_detected_obstacles_are_corrected():
     both = Modes(*(np.repeat(a, 2, axis=0) for a in one()))
     z = np.array([[1.01, 0.0]])
     imm_kernel.update(*both, np.array([1]), z, R[None], P.max_log_ratio)
-    seen = one()
-    imm_kernel.update(*seen, np.array([0]), z, R[None], P.max_log_ratio)
-    for parts, before, after in zip(both, one(), seen, strict=True):
+    observed = one()
+    imm_kernel.update(*observed, np.array([0]), z, R[None], P.max_log_ratio)
+    for parts, before, after in zip(both, one(), observed, strict=True):
         assert np.array_equal(parts, np.concatenate([before, after]))
 
 
@@ -180,9 +180,9 @@ def test_obstacles_join_the_rows_and_leave_them():
     first, second = (imm.initial(np.array([x, 0.0]), R, 0.4, P) for x in (1.0, 2.0))
     both = imm.empty().append([first]).append([second])
     for row, one_ in enumerate((first, second)):
-        for found, wanted in zip(both.at(row), one_, strict=True):
-            assert np.array_equal(found, wanted)
-    for found, wanted in zip(both.at(np.array([False, True])), second, strict=True):
-        assert np.array_equal(found, wanted[None])
+        for result, wanted in zip(both.at(row), one_, strict=True):
+            assert np.array_equal(result, wanted)
+    for result, wanted in zip(both.at(np.array([False, True])), second, strict=True):
+        assert np.array_equal(result, wanted[None])
     both.at(0).states[:] = 0.0
     assert not both.states[0].any()

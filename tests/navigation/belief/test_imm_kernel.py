@@ -79,13 +79,13 @@ def test_mixing_is_the_mixture_of_all_that_may_have_happened(seed):
         forth[..., None] * forth[..., None, :] / 3.0
     )
     inner[:, kernel.STATIC, FORWARD, (2, 3, 4), (2, 3, 4)] += (variance, variance, turning)
-    found = kernel.mix(weights, states, covariances, rates, dt, variance, turning)
-    assert found[0] == pytest.approx(joint.sum(axis=1))
-    assert found[1] == pytest.approx(mean)
-    assert found[2] == pytest.approx(np.einsum("nij,nijab->njab", share, inner))
+    actual = kernel.mix(weights, states, covariances, rates, dt, variance, turning)
+    assert actual[0] == pytest.approx(joint.sum(axis=1))
+    assert actual[1] == pytest.approx(mean)
+    assert actual[2] == pytest.approx(np.einsum("nij,nijab->njab", share, inner))
 
 
-def test_what_goes_straight_is_filterpys_kalman_filter():
+def test_without_turn_rate_it_is_the_kalman_filter_of_filterpy():
     rng = np.random.default_rng(0)
     dt, q = 0.06, 0.03
     x, P = rng.standard_normal((1, 3, 5)), random_covariances(rng, 1, 3, 5)
@@ -109,7 +109,7 @@ def test_what_goes_straight_is_filterpys_kalman_filter():
         assert np.array_equal(P, np.swapaxes(P, 2, 3))
 
 
-def test_what_stands_spreads_by_its_random_walk_alone():
+def test_a_static_obstacle_has_random_walk_noise_only():
     _, states, covariances, *_ = drawn(5)
     moved, spread = states.copy(), covariances.copy()
     kernel.predict(moved, spread, 0.5, 0.03, 2e-3, 0.9, 0.04)
@@ -140,15 +140,15 @@ def test_doubt_follows_the_slope_of_the_motion(turn):
 
 
 @pytest.mark.parametrize("turn", [-0.4, 1e-6, 0.25])
-def test_what_turns_walks_a_circle(turn):
+def test_a_constant_turn_rate_gives_a_circle(turn):
     """At constant speed about a fixed point, and in the end back where it came from."""
     x = [0.5, -0.1, 0.08, 0.06, turn]
     centre = np.array([0.5 - 0.06 / turn, -0.1 + 0.08 / turn])
     for dt in (0.3, 2.0, 7.0):
-        place, velocity = moved(x, dt)[:2], moved(x, dt)[2:4]
+        position, velocity = moved(x, dt)[:2], moved(x, dt)[2:4]
         assert np.hypot(*velocity) == pytest.approx(0.1)
-        assert np.hypot(*(place - centre)) == pytest.approx(0.1 / abs(turn))
-        assert velocity @ (place - centre) == pytest.approx(0.0, abs=1e-6)
+        assert np.hypot(*(position - centre)) == pytest.approx(0.1 / abs(turn))
+        assert velocity @ (position - centre) == pytest.approx(0.0, abs=1e-6)
     assert moved(x, 2.0 * np.pi / abs(turn)) == pytest.approx(x, abs=1e-8)
 
 
@@ -163,7 +163,7 @@ def test_predictions_add_up():
 
 
 def test_turn_rates_of_movers_keep_their_spread():
-    """What is forgotten comes in anew: the variance of all movers stays."""
+    """The stationary variance of the turn rate is invariant."""
     states, covariances = np.zeros((1, 3, 5)), np.zeros((1, 3, 5, 5))
     states[..., 4], covariances[..., 4, 4] = 0.3, 0.04
     kernel.predict(states, covariances, 2.0, 0.0, 0.0, 0.7, 0.04)
@@ -173,7 +173,7 @@ def test_turn_rates_of_movers_keep_their_spread():
 
 def test_costs_are_those_of_the_gaussian_mixture_up_to_their_constant():
     weights, states, covariances, z, R = drawn(3)
-    found = kernel.costs(weights, states, covariances, z, R, np.inf)
+    actual = kernel.costs(weights, states, covariances, z, R, np.inf)
     least = np.empty((4, 4))
     for k in range(4):
         for m in range(4):
@@ -182,7 +182,7 @@ def test_costs_are_those_of_the_gaussian_mixture_up_to_their_constant():
                 for x, P in zip(states[k], covariances[k], strict=True)
             ]
             likelihood = weights[k] @ [2 * np.pi * g.pdf(z[m]) for g in gaussians]
-            assert found[k, m] == pytest.approx(-2 * np.log(likelihood + 1e-30))
+            assert actual[k, m] == pytest.approx(-2 * np.log(likelihood + 1e-30))
             off = [(z[m] - g.mean, g.cov) for g in gaussians]
             least[k, m] = min(y @ np.linalg.solve(S, y) for y, S in off)
     assert kernel.nis(states, covariances, np.arange(4), z, R) == pytest.approx(np.diag(least))
@@ -193,10 +193,10 @@ def test_costs_are_those_of_the_gaussian_mixture_up_to_their_constant():
 
 @pytest.mark.parametrize("seed", range(3))
 def test_estimates_are_those_of_the_verdicts(seed):
-    """Of the mixture of both ways, or of what stands, with doubt that looking does not end."""
+    """Of the mixture of both moving modes, or of the static mode with its bias."""
     weights, states, covariances, _, best = drawn(seed)
     static = np.array([True, False, True, False])
-    place, velocity, covariance, turn = kernel.estimates(
+    position, velocity, covariance, turn = kernel.estimates(
         weights, states, covariances, static, best, 0.04, 1e-5
     )
     for k in range(4):
@@ -209,10 +209,10 @@ def test_estimates_are_those_of_the_verdicts(seed):
             mean, off = share @ states[k, FORWARD:], np.diff(states[k, FORWARD:], axis=0)[0, :4]
             spread = np.einsum("m,mab->ab", share, covariances[k, FORWARD:, :4, :4])
             spread += share[0] * share[1] * np.outer(off, off)
-        assert place[k] == pytest.approx(mean[:2])
+        assert position[k] == pytest.approx(mean[:2])
         assert velocity[k] == pytest.approx(mean[2:4])
         assert covariance[k] == pytest.approx(spread)
         assert turn[k] == pytest.approx(mean[4])
         moving = kernel.mean(weights[k], states[k])
         assert static[k] or moving == pytest.approx(mean)
-    assert kernel.positions(weights, states, static) == pytest.approx(place)
+    assert kernel.positions(weights, states, static) == pytest.approx(position)

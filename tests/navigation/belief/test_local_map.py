@@ -80,12 +80,14 @@ def test_only_the_footprint_of_the_camera_is_seen(view):
     n = len(grid.age)
     centres = grid.origin + (np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1) + 0.5) * P.cell
     viewpoint = Viewpoint.of(camera, np.zeros(3), P.range)
-    seen = viewpoint.in_clear_view(centres.reshape(-1, 2), *NONE, margin=0.0, occlusion_margin=0.0)
-    assert np.array_equal(grid.confidence.ravel() == 1.0, seen)
+    observed = viewpoint.in_clear_view(
+        centres.reshape(-1, 2), *NONE, margin=0.0, occlusion_margin=0.0
+    )
+    assert np.array_equal(grid.confidence.ravel() == 1.0, observed)
     assert np.array_equal(grid.confidence_at(centres.reshape(-1, 2)), grid.confidence.ravel())
 
 
-def test_what_stands_in_the_way_hides_the_floor_and_is_occupied(view):
+def test_an_obstacle_occludes_the_floor_and_is_occupied(view):
     grid = LocalMap(P, (0.0, 0.0), 0.0)
     obstacle = (np.array([[1.0, 0.0]]), np.array([0.1]))
     for k in range(5):
@@ -97,7 +99,7 @@ def test_what_stands_in_the_way_hides_the_floor_and_is_occupied(view):
     assert occupancy_at(grid, [behind])[0] == 0.5
 
 
-def test_rolling_keeps_what_is_known_in_its_place_in_the_world(view):
+def test_scrolling_keeps_cells_at_their_position_in_the_world(view):
     rolled = LocalMap(P, (0.0, 0.0), 0.0)
     look(rolled, 0.0, view(pan=0.3))
     points = np.random.default_rng(0).uniform(-2.2, 2.2, (400, 2))
@@ -121,7 +123,7 @@ def test_a_snapshot_stays_as_it_is(view):
     assert not np.array_equal(grid.confidence, confidence)
 
 
-def test_a_shifted_map_equals_one_computed_anew(view):
+def test_a_scrolled_map_equals_a_fixed_one(view):
     """The map that rolls with the robot, against a large one that never moves."""
     rng = np.random.default_rng(5)
     rolling = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
@@ -145,12 +147,12 @@ def test_a_shifted_map_equals_one_computed_anew(view):
 @pytest.mark.parametrize("rate", [10, 30])
 def test_occupancy_does_not_depend_on_the_frame_rate(view, rate):
     viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
-    place = np.array([[1.0, 0.0]])
+    position = np.array([[1.0, 0.0]])
     local_map = LocalMap(LocalMapParameters(), (0.0, 0.0), 0.0)
     for k in range(1, rate // 10 + 1):
-        local_map.update(k / rate, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+        local_map.update(k / rate, viewpoint, (0.0, 0.0), position, np.array([0.08]))
     odds = 15.0 * 0.1
-    assert occupancy_at(local_map, place) == pytest.approx(1 / (1 + np.exp(-odds)))
+    assert occupancy_at(local_map, position) == pytest.approx(1 / (1 + np.exp(-odds)))
     assert occupancy_at(local_map, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(6.0 * 0.1)))
 
 
@@ -171,12 +173,12 @@ def test_free_is_where_the_cell_and_its_four_neighbours_were_seen_empty(view):
 
 def test_evidence_of_one_look_and_of_all_is_bounded(view):
     viewpoint = Viewpoint.of(view(), np.zeros(3), 2.5)
-    place = np.array([[1.0, 0.0]])
+    position = np.array([[1.0, 0.0]])
     grid = LocalMap(P, (0.0, 0.0), 0.0)
-    grid.update(100.0, viewpoint, (0.0, 0.0), place, np.array([0.08]))
+    grid.update(100.0, viewpoint, (0.0, 0.0), position, np.array([0.08]))
     odds = min(P.max_look_time * P.occupied_rate, P.max_log_odds)
-    assert occupancy_at(grid, place) == pytest.approx(1 / (1 + np.exp(-odds)))
+    assert occupancy_at(grid, position) == pytest.approx(1 / (1 + np.exp(-odds)))
     for k in range(200):
-        grid.update(101.0 + k, viewpoint, (0.0, 0.0), place, np.array([0.08]))
-    assert occupancy_at(grid, place) == pytest.approx(1 / (1 + np.exp(-P.max_log_odds)))
+        grid.update(101.0 + k, viewpoint, (0.0, 0.0), position, np.array([0.08]))
+    assert occupancy_at(grid, position) == pytest.approx(1 / (1 + np.exp(-P.max_log_odds)))
     assert occupancy_at(grid, [[1.5, 0.5]]) == pytest.approx(1 / (1 + np.exp(P.max_log_odds)))

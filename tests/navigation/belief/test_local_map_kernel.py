@@ -22,15 +22,15 @@ def grid():
 def test_compiled_and_plain_agree(grid):
     points, cells = grid
     for function, arguments in ((kernel.lookup, (cells, 7.0)), (kernel.free, (cells,))):
-        found = function(points, CORNER, CELL, *arguments)
-        assert np.array_equal(found, function.py_func(points, CORNER, CELL, *arguments))
+        result = function(points, CORNER, CELL, *arguments)
+        assert np.array_equal(result, function.py_func(points, CORNER, CELL, *arguments))
 
 
-def test_what_holds_is_the_cell_whose_square_a_point_is_in(grid):
+def test_lookup_returns_the_cell_that_contains_a_point(grid):
     points, cells = grid
-    found = kernel.lookup(points, CORNER, CELL, cells, 7.0)
+    result = kernel.lookup(points, CORNER, CELL, cells, 7.0)
     padded = np.pad(cells, SIDE, constant_values=7.0)
     column, row = (np.floor(points[:-3] / CELL).astype(int) - CORNER + SIDE).T
-    assert np.array_equal(found[:-3], padded[row, column])
-    assert (found[-3:] == 7.0).all()
-    assert 100 < (found != 7.0).sum() < 300
+    assert np.array_equal(result[:-3], padded[row, column])
+    assert (result[-3:] == 7.0).all()
+    assert 100 < (result != 7.0).sum() < 300

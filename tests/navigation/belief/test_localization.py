@@ -27,8 +27,8 @@ def frame(time, odometry, observations, motion=(4e-6, 4e-6, 1e-6), yaw_sigma=0.0
     return Frame(time, np.array(odometry, float), np.diag(motion), view, tuple(observations))
 
 
-def beacon(pose, name, noise=(0.0, 0.0), place=None):
-    distance, bearing = range_bearing(pose, place or BEACONS[name])
+def beacon(pose, name, noise=(0.0, 0.0), position=None):
+    distance, bearing = range_bearing(pose, position or BEACONS[name])
     covariance = np.diag([0.05**2, 0.02**2])
     return Observation(
         "beacon", name, distance + noise[0], bearing + noise[1], covariance, 0.05, 0.01
@@ -50,8 +50,10 @@ def walk(rng, start, seconds, names_at, parameters=None, speed=0.15, turn=0.4):
             q[0] += DT * (cos(middle) * u[0] - sin(middle) * u[1])
             q[1] += DT * (sin(middle) * u[0] + cos(middle) * u[1])
             q[2] += DT * u[2]
-        seen = [beacon(pose, n, (rng.normal(0, 0.05), rng.normal(0, 0.02))) for n in names_at(k)]
-        localizer.update(frame(k * DT, odometry, seen, motion))
+        observed = [
+            beacon(pose, n, (rng.normal(0, 0.05), rng.normal(0, 0.02))) for n in names_at(k)
+        ]
+        localizer.update(frame(k * DT, odometry, observed, motion))
         yield localizer, pose
 
 
@@ -65,7 +67,7 @@ def test_eight_beacons_at_once_for_40_s_without_a_fault():
     assert np.hypot(*(localizer.pose - pose)[:2]) < 0.08
 
 
-def test_is_honest_whatever_the_heading():
+def test_is_consistent_for_every_heading():
     nees = []
     for seed in range(12):
         rng = np.random.default_rng(seed)
@@ -95,13 +97,13 @@ def updates(count, seed):
         step = rng.normal((0.01, 0.0, 0.02), np.sqrt(motion))
         c, s = cos(pose[2]), sin(pose[2])
         pose += [c * step[0] - s * step[1], s * step[0] + c * step[1], step[2]]
-        seen = []
+        observed = []
         for name in rng.choice(list(BEACONS), rng.integers(0, 4), replace=False).tolist():
             sigma = 10.0 ** rng.uniform(-4, -0.5, 2)
             scale = 1.0 if rng.random() > 0.02 else 100.0
             observation = beacon(pose, name, noise=scale * rng.normal(0, sigma))
-            seen.append(replace(observation, covariance=np.diag(sigma**2)))
-        localizer.update(frame(time, pose, seen, motion))
+            observed.append(replace(observation, covariance=np.diag(sigma**2)))
+        localizer.update(frame(time, pose, observed, motion))
         covariance = localizer.covariance
         assert np.array_equal(covariance, covariance.T)
         assert np.linalg.eigvalsh(covariance)[0] > 0.0
@@ -128,8 +130,8 @@ def test_rotating_the_world_rotates_the_estimate():
         localizer = Localizer(LocalizationParameters(), beacons, np.array([0, 0, turn]), P0)
         for k in range(1, 50):
             noise = (rng.normal(0, 0.03), rng.normal(0, 0.02))
-            seen = [beacon((0.02 * k, 0, 0), f"b{k % 8}", noise)]
-            localizer.update(frame(k * DT, (0.02 * k, 0, 0), seen))
+            observed = [beacon((0.02 * k, 0, 0), f"b{k % 8}", noise)]
+            localizer.update(frame(k * DT, (0.02 * k, 0, 0), observed))
         return localizer.pose, localizer.covariance, R
 
     plain, P, _ = final(0.0)
@@ -145,8 +147,8 @@ def test_the_order_of_beacons_in_a_frame_does_not_matter():
     results = []
     for order in permutations(["b0", "b2", "b5"]):
         localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-        seen = [beacon((0.02, -0.01, 0.015), n) for n in order]
-        localizer.update(frame(0.1, (0, 0, 0), seen))
+        observed = [beacon((0.02, -0.01, 0.015), n) for n in order]
+        localizer.update(frame(0.1, (0, 0, 0), observed))
         results.append((localizer.pose, localizer.covariance))
     for pose, covariance in results[1:]:
         assert np.allclose(pose, results[0][0], atol=1e-3)
@@ -160,8 +162,8 @@ def test_updates_of_one_frame_add_their_information():
     for count in (1, 2, 4):
         beacons = {n: (3.0, 0.0) for n in names[:count]}
         localizer = Localizer(LocalizationParameters(), beacons, np.zeros(3), P0)
-        seen = [beacon((0, 0, 0), n, place=(3.0, 0.0)) for n in beacons]
-        localizer.update(frame(0.1, (0, 0, 0), seen))
+        observed = [beacon((0, 0, 0), n, position=(3.0, 0.0)) for n in beacons]
+        localizer.update(frame(0.1, (0, 0, 0), observed))
         sigma.append(localizer.covariance[0, 0])
     expected = [1 / (1 / 4e-4 + n / 0.05**2) for n in (1, 2, 4)]
     assert np.allclose(sigma, expected, rtol=0.02)
@@ -209,10 +211,10 @@ def test_kidnapped_is_noticed_and_recovered_from_beacons():
 
 def test_one_beacon_out_of_place_does_not_lose_the_robot():
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    moved = beacon((0, 0, 0), "b0", position=(3.0, 0.5))
     for k in range(1, 60):
-        seen = [moved, beacon((0, 0, 0), "b1"), beacon((0, 0, 0), "b2")]
-        localizer.update(frame(k * DT, (0, 0, 0), seen))
+        observed = [moved, beacon((0, 0, 0), "b1"), beacon((0, 0, 0), "b2")]
+        localizer.update(frame(k * DT, (0, 0, 0), observed))
         assert not localizer.lost
     assert np.allclose(localizer.pose, 0, atol=0.02)
 
@@ -223,8 +225,8 @@ def test_a_broken_filter_is_counted_and_started_again():
     assert localizer.faults == 1
     assert localizer.lost
     for k in range(1, 4):
-        seen = [beacon((0, 0, 0), "b0"), beacon((0, 0, 0), "b2")]
-        localizer.update(frame(k * DT, (0, 0, 0), seen))
+        observed = [beacon((0, 0, 0), "b0"), beacon((0, 0, 0), "b2")]
+        localizer.update(frame(k * DT, (0, 0, 0), observed))
     assert not localizer.lost
     assert localizer.faults == 1
 
@@ -237,19 +239,19 @@ def test_an_old_frame_is_refused():
 
 
 def test_the_shared_error_of_a_frame_is_counted_once():
-    """Four bearings with the same error of the camera's direction tell the heading no better."""
+    """Four bearings with a common error of the camera's yaw do not improve the heading."""
     sigmas = {}
     for shared in (0.0, 0.0198):
         localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-        seen = [beacon((0, 0, 0), f"b{i}") for i in (0, 2, 4, 6)]
-        localizer.update(frame(0.1, (0, 0, 0), seen, yaw_sigma=shared))
+        observed = [beacon((0, 0, 0), f"b{i}") for i in (0, 2, 4, 6)]
+        localizer.update(frame(0.1, (0, 0, 0), observed, yaw_sigma=shared))
         sigmas[shared] = np.sqrt(localizer.covariance[2, 2])
     prior = 0.02
     assert sigmas[0.0] == pytest.approx((prior**-2 + 4 * 0.02**-2) ** -0.5, rel=0.1)
     assert sigmas[0.0198] > 0.9 * (prior**-2 + 0.02**-2) ** -0.5
 
 
-def test_what_a_frame_tells_is_added_with_all_correlations():
+def test_the_information_of_a_frame_is_added_with_all_correlations():
     """Against the linear filter in its information form, the shared error between all bearings."""
     names, shared = ("b0", "b3", "b5"), 0.015
     H, R = [], np.zeros((6, 6))
@@ -261,8 +263,8 @@ def test_what_a_frame_tells_is_added_with_all_correlations():
     H = np.array(H)
     expected = np.linalg.inv(np.linalg.inv(P0) + H.T @ np.linalg.solve(R, H))
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-    seen = [beacon((0, 0, 0), name) for name in names]
-    localizer.update(frame(0.1, (0, 0, 0), seen, yaw_sigma=shared))
+    observed = [beacon((0, 0, 0), name) for name in names]
+    localizer.update(frame(0.1, (0, 0, 0), observed, yaw_sigma=shared))
     np.testing.assert_allclose(localizer.covariance, expected, atol=0.01 * expected.max())
 
 
@@ -277,9 +279,9 @@ def test_a_filter_with_a_number_that_is_none_is_started_again(part):
     assert np.isfinite(localizer.covariance).all()
 
 
-def test_a_moved_beacon_is_found_out_and_no_longer_misleads():
+def test_a_displaced_beacon_is_detected_and_ignored():
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    moved = beacon((0, 0, 0), "b0", position=(3.0, 0.5))
     for k in range(1, 40):
         localizer.update(frame(k * DT, (0, 0, 0), [moved, beacon((0, 0, 0), "b1")]))
     assert localizer._relocalization.displaced == {"b0"}
@@ -291,12 +293,12 @@ def test_a_moved_beacon_is_found_out_and_no_longer_misleads():
 
 def test_a_moved_beacon_does_not_spoil_finding_back():
     localizer = Localizer(LocalizationParameters(), BEACONS, np.zeros(3), P0)
-    moved = beacon((0, 0, 0), "b0", place=(3.0, 0.5))
+    moved = beacon((0, 0, 0), "b0", position=(3.0, 0.5))
     for k in range(1, 30):
         localizer.update(frame(k * DT, (0, 0, 0), [moved]))
     assert localizer.lost
-    seen = [moved, beacon((0, 0, 0), "b2"), beacon((0, 0, 0), "b5")]
-    localizer.update(frame(3.0, (0, 0, 0), seen[1:]))
-    localizer.update(frame(3.1, (0, 0, 0), seen))
+    observed = [moved, beacon((0, 0, 0), "b2"), beacon((0, 0, 0), "b5")]
+    localizer.update(frame(3.0, (0, 0, 0), observed[1:]))
+    localizer.update(frame(3.1, (0, 0, 0), observed))
     assert not localizer.lost
     assert np.hypot(*localizer.pose[:2]) < 0.05

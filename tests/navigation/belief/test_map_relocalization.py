@@ -11,50 +11,53 @@ LABELS = ["red", "green", "red", "blue", "green", "red"]
 PLACES = np.array([(1.5, 0.2), (0.9, 1.3), (-0.4, 1.6), (-1.4, 0.3), (-0.7, -1.2), (0.8, -1.0)])
 
 
-def recognise(observe, frame, pose, indices, *, labels=LABELS, places=PLACES, **parameters):
+def recognise(observe, frame, pose, indices, *, labels=LABELS, positions=PLACES, **parameters):
     relocalization = MapRelocalization(RelocalizationParameters(**parameters), 6.0)
-    seen = frame(
+    observed = frame(
         1.0, (4, 5, 6), [observe(pose, PLACES[i].tolist(), label=LABELS[i]) for i in indices]
     )
-    relocalization.remember(seen.observations, seen)
-    return relocalization.locate(seen, labels, places)
+    relocalization.remember(observed.observations, observed)
+    return relocalization.locate(observed, labels, positions)
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_three_things_tell_where_it_is(observe, frame, seed):
+def test_four_landmarks_determine_the_pose(observe, frame, seed):
     rng = np.random.default_rng(seed)
     pose = np.array([*rng.uniform(-1, 1, 2), rng.uniform(-pi, pi)])
-    found = recognise(observe, frame, pose.tolist(), rng.permutation(6)[:4].tolist())
-    assert np.allclose(found[:2], pose[:2], atol=1e-6)
-    assert wrap(float(found[2] - pose[2])) == pytest.approx(0.0, abs=1e-6)
+    result = recognise(observe, frame, pose.tolist(), rng.permutation(6)[:4].tolist())
+    assert np.allclose(result[:2], pose[:2], atol=1e-6)
+    assert wrap(float(result[2] - pose[2])) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_two_are_too_few(observe, frame):
     assert recognise(observe, frame, (0, 0, 0), [0, 1]) is None
     assert (
-        recognise(observe, frame, (0, 0, 0), range(6), labels=[], places=np.empty((0, 2))) is None
+        recognise(observe, frame, (0, 0, 0), range(6), labels=[], positions=np.empty((0, 2)))
+        is None
     )
 
 
-def test_what_was_never_mapped_is_not_recognised(observe, frame):
-    assert recognise(observe, frame, (0, 0, 0), range(4), places=1.4 * PLACES) is None
+def test_an_unmapped_constellation_is_not_matched(observe, frame):
+    assert recognise(observe, frame, (0, 0, 0), range(4), positions=1.4 * PLACES) is None
 
 
 def test_the_place_may_have_changed_by_as_much_as_is_tolerated(observe, frame):
     changed = PLACES + 0.04 * np.array([(1, 0), (-1, 0), (0, 1), (0, -1), (1, 0), (0, 1)])
     for tolerance, known in ((0.06, True), (0.02, False)):
-        found = recognise(
-            observe, frame, (0, 0, 0), range(6), places=changed, match_distance=tolerance
+        result = recognise(
+            observe, frame, (0, 0, 0), range(6), positions=changed, match_distance=tolerance
         )
-        assert (found is not None) == known
+        assert (result is not None) == known
 
 
-def test_two_places_alike_are_not_told_apart(observe, frame):
+def test_an_ambiguous_constellation_is_rejected(observe, frame):
     angle = 2.0
     turn = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
     twice = np.concatenate([PLACES, PLACES @ turn + (6.0, 1.0)])
     assert recognise(observe, frame, (0, 0, 0), range(4)) is not None
-    assert recognise(observe, frame, (0, 0, 0), range(4), labels=2 * LABELS, places=twice) is None
+    assert (
+        recognise(observe, frame, (0, 0, 0), range(4), labels=2 * LABELS, positions=twice) is None
+    )
 
 
 def test_moved_world_moved_pose(observe, frame):
@@ -62,15 +65,17 @@ def test_moved_world_moved_pose(observe, frame):
     c, s = cos(angle), sin(angle)
     moved = PLACES @ np.array([[c, s], [-s, c]]) + (0.7, -2.0)
     plain = recognise(observe, frame, (0.3, 0.1, 0.4), range(5))
-    there = recognise(observe, frame, (0.3, 0.1, 0.4), range(5), places=moved)
+    there = recognise(observe, frame, (0.3, 0.1, 0.4), range(5), positions=moved)
     x, y = plain[:2].tolist()
     assert np.allclose(there[:2], [c * x - s * y + 0.7, s * x + c * y - 2.0])
     assert wrap(float(there[2] - plain[2] - angle)) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_what_was_seen_long_ago_counts_no_more(observe, frame):
+def test_old_detections_are_dropped(observe, frame):
     relocalization = MapRelocalization(RelocalizationParameters(), 6.0)
     for k, i in enumerate((0, 1, 3)):
-        seen = frame(5.0 * k, (0, 0, 0), [observe((0, 0, 0), PLACES[i].tolist(), label=LABELS[i])])
-        relocalization.remember(seen.observations, seen)
-    assert relocalization.locate(seen, LABELS, PLACES) is None
+        observed = frame(
+            5.0 * k, (0, 0, 0), [observe((0, 0, 0), PLACES[i].tolist(), label=LABELS[i])]
+        )
+        relocalization.remember(observed.observations, observed)
+    assert relocalization.locate(observed, LABELS, PLACES) is None

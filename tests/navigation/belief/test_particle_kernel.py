@@ -24,12 +24,12 @@ def test_compiled_and_plain_agree(cloud):
         (kernel.moments, (positions, velocities, weights)),
         (kernel.costs, (positions, weights, z, variance, 0.03, positions[0], 0.4, 0.2)),
     ):
-        found, plain = function(*arguments), function.py_func(*arguments)
-        for a, b in zip(found, plain, strict=True):
+        result, plain = function(*arguments), function.py_func(*arguments)
+        for a, b in zip(result, plain, strict=True):
             assert np.allclose(a, b, rtol=1e-12, atol=1e-15)
 
 
-def test_only_what_is_drawn_turns_back(cloud):
+def test_only_drawn_particles_reverse(cloud):
     positions, velocities, *_ = cloud
     draws = np.linspace(0, 1, 16, endpoint=False)
     straight = np.zeros(16)
@@ -41,7 +41,7 @@ def test_only_what_is_drawn_turns_back(cloud):
     assert moved == pytest.approx(positions + 0.5 * sign * velocities)
 
 
-def test_what_turns_back_walks_the_same_bend_back(cloud):
+def test_a_reversed_particle_returns_on_its_path(cloud):
     positions, velocities, weights, *_ = cloud
     rates, never, always = 20.0 * (weights - 0.06), np.ones(16), np.zeros(16)
     there = kernel.advance(positions, velocities, rates, never, never, (1.0, 0.0), 0.5, 0.1)
@@ -53,7 +53,7 @@ def test_what_turns_back_walks_the_same_bend_back(cloud):
     assert back[2] == pytest.approx(-rates)
 
 
-def test_turn_rates_are_forgotten_and_come_in_anew(cloud):
+def test_turn_rates_are_autocorrelated_noise(cloud):
     positions, velocities, weights, *_ = cloud
     rates, bends, never = weights - 0.06, velocities[:, 0].copy(), np.ones(16)
     _, _, after = kernel.advance(positions, velocities, rates, bends, never, (0.9, 0.1), 0.5, 0.1)
@@ -79,6 +79,6 @@ def test_the_likelihood_is_a_kernel_density_mixed_with_a_uniform_one(cloud):
     reach, uniform = 0.4, 0.2
     flat = uniform * 2.0 / reach**2 * (np.hypot(*(z - z[0]).T) < reach)
     wanted = -2.0 * np.log((1.0 - uniform) * density + flat)
-    found = kernel.costs(positions, weights, z, variance, 0.03, z[0], reach, uniform)
-    assert found == pytest.approx(wanted)
+    result = kernel.costs(positions, weights, z, variance, 0.03, z[0], reach, uniform)
+    assert result == pytest.approx(wanted)
     assert 1 < np.count_nonzero(flat) < 5

@@ -47,7 +47,7 @@ def test_particles_have_the_moments_of_the_filter(rng):
     assert cloud.weights.sum() == pytest.approx(1.0)
 
 
-def test_as_many_stand_still_as_is_probable(rng):
+def test_particles_are_static_in_proportion_to_the_probability(rng):
     cloud = track_particles.spawn(modes(still=0.5), 16, rng)
     standing = np.hypot(*cloud.velocities.T) < 1e-4
     assert standing.sum() == 8
@@ -102,11 +102,11 @@ def test_copies_of_one_particle_spread_by_the_jitter(rng):
     p = TrackingParameters(position_jitter=0.2, velocity_jitter=0.05)
     weights = np.zeros(4000)
     weights[7] = 1.0
-    places, velocities = rng.standard_normal((2, 4000, 2))
+    locations, velocities = rng.standard_normal((2, 4000, 2))
     drawn = track_particles.resample(
-        Particles(places, velocities, rng.standard_normal(4000), weights), p, rng
+        Particles(locations, velocities, rng.standard_normal(4000), weights), p, rng
     )
-    assert np.std(drawn.positions - places[7], axis=0) == pytest.approx(0.2, rel=0.1)
+    assert np.std(drawn.positions - locations[7], axis=0) == pytest.approx(0.2, rel=0.1)
     assert np.std(drawn.velocities - velocities[7], axis=0) == pytest.approx(0.05, rel=0.1)
     assert np.ptp(drawn.turn_rates) == 0.0
 

@@ -93,7 +93,7 @@ def test_each_verdict_publishes_its_own_filter():
     assert not static.visible
 
 
-def test_the_worst_case_grows_with_age_unless_it_stands_still():
+def test_the_reach_grows_with_age_unless_static():
     for motion, growth in ((Motion.STATIC, 0.0), (Motion.MOVING, P.max_speed)):
         o = make(motion=motion)
         known = P.reach_sigmas * 0.01
@@ -101,7 +101,7 @@ def test_the_worst_case_grows_with_age_unless_it_stands_still():
         assert published(o, 8.0).reach == pytest.approx(known + 3.0 * growth)
 
 
-def test_the_worst_case_does_not_depend_on_the_axes_of_the_world():
+def test_the_reach_does_not_depend_on_the_axes_of_the_world():
     reach = []
     for turn in (0.0, 0.4, 0.8, 2.0):
         c, s = np.cos(turn), np.sin(turn)
@@ -110,7 +110,7 @@ def test_the_worst_case_does_not_depend_on_the_axes_of_the_world():
     assert np.allclose(reach, P.reach_sigmas * 0.03)
 
 
-def test_the_faster_it_was_the_farther_off_it_is_looked_for():
+def test_the_search_radius_grows_with_speed():
     for speed in (0.0, 0.03, 0.2):
         o, modes = make(), filters(1.0, (speed, 0.0))
         assert o.search_radius(5.0, modes, P) == P.path_width
@@ -132,7 +132,7 @@ def test_a_cloud_is_published_by_its_moments():
     assert track.covariance[0, 0] == pytest.approx(0.1875)
 
 
-def test_what_is_published_does_not_change_later():
+def test_a_published_track_does_not_change_later():
     o, modes = make(motion=Motion.MOVING), filters()
     track = published(o, 5.0, modes)
     modes.states[:] = 0.0

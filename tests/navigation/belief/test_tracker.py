@@ -26,20 +26,20 @@ class Stage:
         self.time = 0.0
         self.tracks = ()
 
-    def show(self, *places, pan=0.0, noise=0.02, **details):
+    def show(self, *locations, pan=0.0, noise=0.02, **details):
         """One frame with an obstacle detected at each place, (x, y) or (x, y, label)."""
         self.time += DT
         pose = np.zeros(3)
-        seen = []
-        for place in places:
-            label = place[2] if len(place) > 2 else "red"
-            distance = hypot(place[0], place[1])
+        observed = []
+        for location in locations:
+            label = location[2] if len(location) > 2 else "red"
+            distance = hypot(location[0], location[1])
             error = self.rng.normal(0, [noise, noise / distance])
             sigma = (noise, noise / distance)
-            seen.append(
-                self.observe(pose, place[:2], label=label, noise=error, sigma=sigma, **details)
+            observed.append(
+                self.observe(pose, location[:2], label=label, noise=error, sigma=sigma, **details)
             )
-        sightings = in_world(seen, pose, EXACT, max_pose_sigma=0.1)
+        sightings = in_world(observed, pose, EXACT, max_pose_sigma=0.1)
         viewpoint = Viewpoint.of(self.view(pan=pan), pose, self.parameters.detection_range)
         self.tracks = self.tracker.update(
             self.time, sightings, viewpoint, np.zeros(len(sightings.radii), bool)
@@ -84,7 +84,7 @@ def test_far_away_no_track_begins_but_one_goes_on(stage):
     assert track.visible
 
 
-def test_single_false_blobs_leave_nothing(stage):
+def test_single_false_detections_leave_no_track(stage):
     for k in range(200):
         a = 0.6 * np.sin(12.9 * k)
         assert len(stage.show((1.5, a) if k % 12 == 0 else (1.0, 0.0))) <= 1
@@ -92,7 +92,7 @@ def test_single_false_blobs_leave_nothing(stage):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_what_stands_still_is_static_after_two_seconds_and_never_moving(view, observe, seed):
+def test_a_static_obstacle_is_static_after_two_seconds_and_never_moving(view, observe, seed):
     stage = Stage(view, observe, seed)
     stage.show((1.2, 0.2))
     verdicts = [stage.show((1.2, 0.2))[0].motion for _ in range(100)]
@@ -138,14 +138,14 @@ def test_a_reversal_out_of_sight_turns_the_velocity_round(stage):
 
 def test_neighbours_of_one_color_keep_their_identity(stage):
     stage.watch(3.0, (1.2, 0.0, 0.0, 0.0), (1.2, 0.4, 0.0, 0.0), (0.9, 0.2, 0.0, 0.0))
-    places = {t.id: t.position for t in stage.tracks}
+    locations = {t.id: t.position for t in stage.tracks}
     for k in range(100):
         shown = [(1.2, 0.0), (1.2, 0.4), (0.9, 0.2)]
         shown.pop(k % 4) if k % 4 < 3 else None
         stage.show(*shown)
-    assert {t.id for t in stage.tracks} == set(places)
+    assert {t.id for t in stage.tracks} == set(locations)
     for t in stage.tracks:
-        assert np.hypot(*(t.position - places[t.id])) < 0.03
+        assert np.hypot(*(t.position - locations[t.id])) < 0.03
 
 
 def test_a_mover_survives_passing_behind_another_obstacle(stage):
@@ -231,7 +231,7 @@ def test_a_static_track_ends_when_its_place_is_seen_empty_but_not_when_hidden(st
 
 
 @pytest.mark.parametrize("flag", ["cut", "occluded"])
-def test_a_part_changes_the_radius_only_if_it_tells_something_about_it(stage, flag):
+def test_a_partly_visible_obstacle_changes_the_radius_only_if_precise(stage, flag):
     stage.watch(2.0, (1.0, 0.0, 0.0, 0.0))
     radius = stage.tracks[0].radius
     for _ in range(20):
@@ -243,8 +243,8 @@ def test_a_part_changes_the_radius_only_if_it_tells_something_about_it(stage, fl
 
 
 def test_a_part_is_placed_by_the_radius_that_the_track_knows(view, observe):
-    """Only its near side shows: who takes the radius for greater puts the axis farther away."""
-    places = []
+    """Only its near side is visible: a larger radius places the axis farther away."""
+    locations = []
     for slope in (0.0, 1.0):
         stage = Stage(view, observe)
         stage.watch(4.0, (1.0, 0.0, 0.0, 0.0), radius=0.06, radius_sigma=0.002)
@@ -252,9 +252,9 @@ def test_a_part_is_placed_by_the_radius_that_the_track_knows(view, observe):
         for _ in range(100):
             stage.show((1.02, 0.0), noise=0.025, **details)
         (track,) = stage.tracks
-        places.append(float(track.position[0]))
-    assert places[0] - places[1] == pytest.approx(0.02, abs=0.01)
-    assert places[1] == pytest.approx(1.0, abs=0.01)
+        locations.append(float(track.position[0]))
+    assert locations[0] - locations[1] == pytest.approx(0.02, abs=0.01)
+    assert locations[1] == pytest.approx(1.0, abs=0.01)
 
 
 def test_radius_is_fused(stage):
@@ -280,8 +280,8 @@ def test_the_order_of_detections_does_not_matter(view, observe):
     def run(reverse):
         stage = Stage(view, observe)
         for k in range(60):
-            places = [(1.0, 0.0), (1.2, 0.5), (0.8, -0.4 + 0.006 * k)]
-            stage.show(*(reversed(places) if reverse else places), noise=1e-9)
+            locations = [(1.0, 0.0), (1.2, 0.5), (0.8, -0.4 + 0.006 * k)]
+            stage.show(*(reversed(locations) if reverse else locations), noise=1e-9)
         return sorted((*t.position.round(6).tolist(), t.motion) for t in stage.tracks)
 
     for a, b in zip(run(False), run(True), strict=True):
@@ -289,7 +289,7 @@ def test_the_order_of_detections_does_not_matter(view, observe):
         assert a[2] == b[2]
 
 
-def test_a_seed_determines_everything_whatever_is_copied(view, observe):
+def test_a_seed_determines_everything_even_after_a_copy(view, observe):
     def run(*, copied=False):
         stage = Stage(view, observe, 5)
         for seconds, *movers in (
@@ -325,13 +325,13 @@ def test_a_turn_in_view_is_seen_within_a_second_by_noisy_looks(view, observe, se
     assert track.velocity[1] < 0.0
 
 
-def test_what_appears_where_the_floor_was_empty_is_taken_for_the_lost_mover(view, observe):
+def test_a_detection_on_free_floor_is_assigned_to_the_lost_mover(view, observe):
     ids = []
     for freed in (False, True):
         stage = Stage(view, observe)
         stage.watch(3.0, (1.0, -0.4, 0.0, 0.12))
         stage.look_away(8.0)
-        seen = in_world(
+        observed = in_world(
             [observe(np.zeros(3), (1.6, -0.8))],
             np.zeros(3),
             EXACT,
@@ -339,6 +339,8 @@ def test_what_appears_where_the_floor_was_empty_is_taken_for_the_lost_mover(view
         )
         viewpoint = Viewpoint.of(view(), np.zeros(3), 2.2)
         for k in range(1, 4):
-            tracks = stage.tracker.update(stage.time + k * DT, seen, viewpoint, np.array([freed]))
+            tracks = stage.tracker.update(
+                stage.time + k * DT, observed, viewpoint, np.array([freed])
+            )
         ids.append([t.id for t in tracks if t.visible])
     assert ids == [[2], [1]]

@@ -15,7 +15,7 @@ def ahead(view):
 
 @pytest.fixture
 def around(view):
-    """Sees everything, so that what it does not expect is hidden."""
+    """Omnidirectional: points that are not in clear view are occluded."""
     return Viewpoint.of(view(hfov=2.0 * pi, vfov=pi), np.zeros(3), 9.0)
 
 
@@ -27,7 +27,7 @@ def hidden(viewpoint, points, centres, radii):
     return ~viewpoint.in_clear_view(points, centres, radii, margin=0.0, occlusion_margin=0.0)
 
 
-def test_a_disc_hides_what_is_behind_it_and_nothing_else(around):
+def test_a_disc_occludes_points_behind_it_only(around):
     centre, radius = np.array([[1.0, 0.0]]), np.array([0.1])
     angles = np.linspace(-0.3, 0.3, 61)
     behind = 2.0 * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -59,5 +59,5 @@ def test_an_omnidirectional_camera_contains_everything_in_range(view):
     rng = np.random.default_rng(2)
     points = rng.uniform(-3.0, 3.0, (50, 2))
     wide = view(0.4, -0.3, hfov=2.0 * np.pi, vfov=np.pi)
-    seen = contains(Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5), points, 0.1)
-    np.testing.assert_array_equal(seen, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)
+    observed = contains(Viewpoint.of(wide, np.array([0.3, -0.2, 1.0]), 1.5), points, 0.1)
+    np.testing.assert_array_equal(observed, np.hypot(*(points - [0.3, -0.2]).T) <= 1.5)

@@ -72,8 +72,8 @@ def test_cells_agree_with_the_formulas_over_arrays(scene, seed):
     points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     apart = np.hypot(*(points[:, None] - centres).transpose(2, 0, 1))
     on = (apart < radii + 0.5 * cell).any(axis=1)
-    seen = np.where(hidden(points, v, centres, radii, 0.0), kernel.UNSEEN, kernel.FREE)
-    wanted = contained(points, v, 0.0) * np.where(on, kernel.OCCUPIED, seen)
+    observed = np.where(hidden(points, v, centres, radii, 0.0), kernel.UNSEEN, kernel.FREE)
+    wanted = contained(points, v, 0.0) * np.where(on, kernel.OCCUPIED, observed)
     assert np.array_equal(marks.ravel(), wanted)
     assert set(wanted.tolist()) == {kernel.UNSEEN, kernel.FREE, kernel.OCCUPIED}
 
