@@ -1,4 +1,4 @@
-"""Bad input by chance: values of scenarios, and files that are not what they were."""
+"""Random bad input: values of scenarios, and damaged files."""
 
 import random
 import re
@@ -29,7 +29,7 @@ VALUE = re.compile(rb'(?<=[:,\[])\s*(-?[\d.e+-]+|"[^"]*"|true|false|null|\[\]|\{
 
 
 def value(rng: random.Random, depth: int = 0) -> Any:
-    """Any value that TOML can write."""
+    """Return a random TOML value."""
     kind = rng.randrange(9 if depth < 3 else 7)
     if kind == 7:
         return [value(rng, depth + 1) for _ in range(rng.randrange(4))]
@@ -47,7 +47,7 @@ def value(rng: random.Random, depth: int = 0) -> Any:
 
 
 def near(rng: random.Random, node: dict[str, Any]) -> Any:
-    """A value about where the limits of a key are, or any at all."""
+    """Return a value near the limits of a key, or any value."""
     if rng.random() < 0.1:
         return value(rng)
     if "$ref" in node:
@@ -72,11 +72,11 @@ def near(rng: random.Random, node: dict[str, Any]) -> Any:
         high = node.get("maximum", node.get("exclusiveMaximum", 1e6))
         edges = (low, high, low - 1, high + 1, low + 1e-9, 0.5 * (low + high))
         inner = low + (high - low) * 10.0 ** rng.uniform(-12.0, 0.0)
-        found = rng.choice((*edges, rng.uniform(low, high), inner))
+        number = rng.choice((*edges, rng.uniform(low, high), inner))
         if kind == "integer":
             step = node.get("multipleOf", 1)
-            return round(found / step) * step
-        return float(found)
+            return round(number / step) * step
+        return float(number)
     if kind == "boolean":
         return rng.random() < 0.5
     if kind == "string":
@@ -85,55 +85,55 @@ def near(rng: random.Random, node: dict[str, Any]) -> Any:
 
 
 def keys() -> list[tuple[str, dict[str, Any]]]:
-    """Every key of a scenario by its name with dots, with its schema."""
-    found: list[tuple[str, dict[str, Any]]] = []
+    """Return every key of a scenario, dotted, and its schema."""
+    nodes: list[tuple[str, dict[str, Any]]] = []
 
     def descend(prefix: str, node: dict[str, Any]) -> None:
         if "$ref" in node:
             node = {**resolve(node, None), "default": None}
         for key, inner in node.get("properties", {}).items():
-            found.append((f"{prefix}{key}", inner))
+            nodes.append((f"{prefix}{key}", inner))
             descend(f"{prefix}{key}.", inner)
 
     descend("", json_schema())
-    return found
+    return nodes
 
 
 def mutated(rng: random.Random, raw: bytes) -> bytes:
-    """`raw` with some bytes changed, moved, repeated or cut off."""
+    """Return `raw` with some bytes changed, repeated or removed."""
     content = bytearray(raw)
     for _ in range(rng.randrange(1, 4)):
-        place, length = rng.randrange(len(content) + 1), rng.choice((1, 1, 4, 8, 64))
+        start, length = rng.randrange(len(content) + 1), rng.choice((1, 1, 4, 8, 64))
         kind = rng.randrange(6)
         if kind == 0:
-            content[place : place + length] = rng.randbytes(length)
+            content[start : start + length] = rng.randbytes(length)
         elif kind == 1:
-            del content[place : place + length]
+            del content[start : start + length]
         elif kind == 2:
-            content[place:place] = content[place : place + length]
+            content[start:start] = content[start : start + length]
         elif kind == 3:
-            del content[place:]
+            del content[start:]
         elif kind == 4:
-            content[place:place] = rng.choice(TOKENS).encode()
+            content[start:start] = rng.choice(TOKENS).encode()
         else:
-            content[place : place + 8] = rng.choice((b"\xff" * 8, b"\0" * 8, b"\x7f" * 8))
+            content[start : start + 8] = rng.choice((b"\xff" * 8, b"\0" * 8, b"\x7f" * 8))
     return bytes(content)
 
 
 def values_changed(rng: random.Random, raw: bytes) -> bytes:
-    """JSON with a value replaced by another one."""
-    places = list(VALUE.finditer(raw))
-    if not places:
+    """Return JSON with one value replaced."""
+    values = list(VALUE.finditer(raw))
+    if not values:
         return raw
-    place = rng.choice(places)
+    old = rng.choice(values)
     other = rng.choice(
         ("null", "-1", "1e400", "1e308", '"x"', "[]", "{}", "true", "[" * 3000, "NaN", "1" * 5000)
     )
-    return raw[: place.start()] + other.encode() + raw[place.end() :]
+    return raw[: old.start()] + other.encode() + raw[old.end() :]
 
 
 def written(given: Any) -> str:
-    """TOML of any value."""
+    """Return a value as TOML, also if it is not valid TOML."""
     if isinstance(given, bool):
         return str(given).lower()
     if isinstance(given, list):
@@ -144,7 +144,7 @@ def written(given: Any) -> str:
 
 
 def model_changed(rng: random.Random, text: str) -> str:
-    """An MJCF file cut, garbled, or with a line, a number or a name that is not what it was."""
+    """Return an MJCF file cut, garbled, or with another line, number or name."""
     kind = rng.randrange(5)
     if kind == 0:
         return text[: rng.randrange(len(text))]
@@ -152,10 +152,10 @@ def model_changed(rng: random.Random, text: str) -> str:
         return mutated(rng, text.encode()).decode("utf-8", errors="replace")
     if kind == 2:
         lines = text.splitlines(keepends=True)
-        place = rng.randrange(len(lines))
-        lines[place : place + 1] = rng.choice(([], [rng.choice(lines), lines[place]]))
+        k = rng.randrange(len(lines))
+        lines[k : k + 1] = rng.choice(([], [rng.choice(lines), lines[k]]))
         return "".join(lines)
     pattern = r'(?<=[" ])-?\d+\.?\d*(?=[" ])' if kind == 3 else r'(?<=name=")\w+(?=")'
-    found = rng.choice(list(re.finditer(pattern, text)))
+    old = rng.choice(list(re.finditer(pattern, text)))
     other = rng.choice(("nan", "inf", "-1", "0", "1e300", "1e-300", "x")) if kind == 3 else "other"
-    return text[: found.start()] + other + text[found.end() :]
+    return text[: old.start()] + other + text[old.end() :]

@@ -1,8 +1,8 @@
-"""Give the program bad input, many times: every answer is a good one or an error that says where.
+"""Fuzz test: each random input must work or be refused with a message.
 
     python scripts/fuzz.py --cases 50000
 
-A run and a sweep to damage are made first, short ones with a log.
+A short run and a short sweep are made first; their files are then damaged.
 """
 
 import argparse
@@ -30,10 +30,10 @@ from vision.errors import VisionError
 
 from bad_input import keys, model_changed, mutated, near, value, values_changed, written
 
-TICKS = 100  # of a run that is begun
-FIRST = 20  # of one with a damaged model
+TICKS = 100  # of a run
+MODEL_TICKS = 20  # of a run with a damaged model
 MODELS = ("hsr8/hsr8.xml", "field/vision.xml")
-SLOW = 10.0  # a case that takes more processor time hangs [s]
+SLOW = 10.0  # processor time of a case above which it is reported [s]
 COMMANDS: tuple[tuple[str, ...], ...] = (
     ("info", "RUN"),
     ("info", "RUN", "--json"),
@@ -50,7 +50,7 @@ ON_SWEEPS: tuple[tuple[str, ...], ...] = (
     ("compare", "OTHER", "SWEEP", "--json"),
     ("sweep", "quick", "--seeds", "0:2", "--duration", "0.1", "--quiet", "--out", "SWEEP"),
 )
-RARE = {"verify": 0.15, "plot": 0.1, "render": 0.1}  # these take their time
+RARE = {"verify": 0.15, "plot": 0.1, "render": 0.1}  # probability of the slow commands
 RARE |= {"check": 0.3, "sweep": 0.02}
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
 KINDS = ("text", "table", "setting", "start", "model", "folder", "sweep", "colours")
@@ -68,14 +68,14 @@ FILES = (
 
 
 def text_case(rng: random.Random) -> None:
-    """A built-in scenario with its text damaged."""
+    """Load a built-in scenario with damaged text."""
     name = rng.choice(built_in_names())
     raw = mutated(rng, (BUILT_IN / f"{name}.toml").read_bytes())
     loads(raw.decode("utf-8", errors="replace"), name)
 
 
 def table_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
-    """A built-in scenario with some keys set to what they nearly allow."""
+    """Load a built-in scenario with some keys near their limits."""
     settings = []
     for key, node in rng.sample(schema, rng.randrange(1, 4)):
         settings.append(f"{key}={written(near(rng, node))}")
@@ -83,7 +83,7 @@ def table_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> 
 
 
 def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
-    """The first ticks of a run with some keys set to what they nearly allow."""
+    """Run the first ticks with some keys near their limits."""
     settings = ['camera.source="analytic"', "camera.width=64", "camera.height=48"]
     for key, node in rng.sample(schema, rng.randrange(1, 3)):
         settings.append(f"{key}={written(near(rng, node))}")
@@ -97,7 +97,7 @@ def start_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> 
 
 
 def model_case(rng: random.Random) -> None:
-    """The first ticks of a run whose model of robot or field is damaged."""
+    """Run the first ticks with a damaged model of the robot or the field."""
     body = rng.choice(("full", "kinematic"))
     scenario = load_scenario("quick", (f'robot.body="{body}"', 'camera.source="analytic"'))
     with tempfile.TemporaryDirectory() as scratch:
@@ -109,13 +109,13 @@ def model_case(rng: random.Random) -> None:
             patch.object(models, "PACKAGE", copy.parent / "hsr8"),
             Simulation(scenario, 0) as simulation,
         ):
-            for _ in range(FIRST):
+            for _ in range(MODEL_TICKS):
                 if simulation.exit_reason is None:
                     simulation.step()
 
 
 def setting_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -> None:
-    """``--set`` with anything on both sides."""
+    """Load a scenario with a damaged ``--set``."""
     key = rng.choice(schema)[0]
     word = f"{key}={written(value(rng))}"
     if rng.random() < 0.7:
@@ -124,12 +124,12 @@ def setting_case(rng: random.Random, schema: list[tuple[str, dict[str, Any]]]) -
 
 
 class Folders:
-    """Damages copies of a run, a sweep and a colour table, and asks the program about them.
+    """Damaged copies of a run, a sweep and a colour table, and commands on them.
 
     Args:
         run: complete run folder.
-        scratch: where the copies go.
-        sweep: folder of a sweep, for the cases that need one.
+        scratch: folder of the copies.
+        sweep: folder of a sweep; None for cases without one.
     """
 
     def __init__(self, run: Path, scratch: Path, sweep: Path | None = None) -> None:
@@ -143,7 +143,7 @@ class Folders:
         self._colors = contents_of(scratch, ("colours.npz",))
 
     def damaged(self, rng: random.Random, whole: dict[str, bytes]) -> Path:
-        """A new copy in which one or two files are not what they were."""
+        """Return a new copy with one or two damaged files."""
         path = self._scratch / "copy"
         shutil.rmtree(path, ignore_errors=True)
         path.mkdir()
@@ -163,10 +163,10 @@ class Folders:
         return path
 
     def case(self, rng: random.Random, commands: tuple[tuple[str, ...], ...] = ()) -> None:
-        """One command on a damaged run or sweep.
+        """Run a command on a damaged run or sweep.
 
         Raises:
-            AssertionError: it answered as it must not.
+            AssertionError: as `ask`.
         """
         commands = commands or COMMANDS
         of_run = commands is not ON_SWEEPS
@@ -183,32 +183,32 @@ class Folders:
         ask([*words[0].split(), *words[1:]])
 
     def colours_case(self, rng: random.Random) -> None:
-        """A damaged colour table, read."""
+        """Read a damaged colour table."""
         load_table(self.damaged(rng, self._colors) / "colours.npz")
 
 
 def contents_of(folder: Path, names: tuple[str, ...]) -> dict[str, bytes]:
-    """Bytes of the files that there are."""
+    """Return the bytes of the files that exist."""
     return {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
 
 
 def ask(words: list[str]) -> None:
-    """Give the program a command line.
+    """Run a command line.
 
     Raises:
-        AssertionError: it ended neither well nor with an error that people can use.
+        AssertionError: the exit code is not 0, 1 or 2, or there is a traceback or no message.
     """
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         code = entry(words)
-    said = err.getvalue()
-    assert code in (0, 1, 2), f"{words}: exit {code}: {said[-500:]}"
-    assert "Traceback" not in said, f"{words}: {said[-500:]}"
-    assert code != 2 or said.strip(), f"{words}: exit 2 without a word"
+    message = err.getvalue()
+    assert code in (0, 1, 2), f"{words}: exit {code}: {message[-500:]}"
+    assert "Traceback" not in message, f"{words}: {message[-500:]}"
+    assert code != 2 or message.strip(), f"{words}: exit 2 without a message"
 
 
 def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any]) -> str:
-    """One case; ``valid`` or ``refused``."""
+    """Run one case; return ``valid`` or ``refused``."""
     try:
         if kind == "text":
             text_case(rng)
@@ -227,12 +227,12 @@ def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any
             else:
                 folders.case(rng, ON_SWEEPS if kind == "sweep" else COMMANDS)
     except (ScenarioError, SimulationDiverged, UsageError, VisionError) as error:
-        return "refused" if str(error).strip() else "BUG: an error without a word"
+        return "refused" if str(error).strip() else "BUG: an error without a message"
     return "valid"
 
 
 def made(scratch: Path) -> tuple[Path, Path]:
-    """A run as a kill leaves it, with its log, and a sweep of two runs."""
+    """Make a run as a kill leaves it, with its log, and a sweep of two runs."""
     short = ("quick", *LIGHT, "--quiet", "--duration")
     ask(["run", *short, "1.2", "--out", str(scratch)])
     (run,) = (scratch / "quick").iterdir()
@@ -257,18 +257,18 @@ def main() -> None:
             kind = arguments.kinds[number % len(arguments.kinds)]
             began = clock.process_time()
             try:
-                found = one(random.Random(number), kind, folders, schema)
+                result = one(random.Random(number), kind, folders, schema)
             except KeyboardInterrupt:
                 raise
-            except BaseException as error:  # a bug found; Rust's panics are no exceptions
-                found = "BUG"
+            except BaseException as error:  # a bug; panics of Rust are not Exceptions
+                result = "BUG"
                 text = f"{type(error).__name__}: {error}".replace("\n", " | ")
                 print(f"case {number} ({kind}): {text[:700]}", flush=True)
             took = clock.process_time() - began
             slowest = max(slowest, (took, kind))
             if took > SLOW:
                 print(f"case {number} ({kind}): took {took:.1f} s", flush=True)
-            counts[f"{kind}, {found}"] += 1
+            counts[f"{kind}, {result}"] += 1
     took, kind = slowest
     print(f"{arguments.cases} cases, slowest {took:.1f} s ({kind}): {dict(sorted(counts.items()))}")
 

@@ -1,4 +1,4 @@
-"""Bad input of every kind: a good answer, or an error that says where; never anything else."""
+"""Random bad input works or is refused with a message."""
 
 import importlib
 import json
@@ -37,13 +37,13 @@ SCHEMA = fuzz.keys()
 
 @pytest.mark.parametrize("kind", ["text", "table", "setting"])
 def test_any_scenario_is_valid_or_refused(kind):
-    found = {fuzz.one(random.Random(number), kind, None, SCHEMA) for number in range(CASES)}
-    assert found == {"valid", "refused"}
+    results = {fuzz.one(random.Random(number), kind, None, SCHEMA) for number in range(CASES)}
+    assert results == {"valid", "refused"}
 
 
-def test_any_model_is_walked_with_or_refused():
-    found = {fuzz.one(random.Random(number), "model", None, SCHEMA) for number in range(60)}
-    assert found == {"valid", "refused"}
+def test_any_model_is_used_or_refused():
+    results = {fuzz.one(random.Random(number), "model", None, SCHEMA) for number in range(60)}
+    assert results == {"valid", "refused"}
 
 
 @pytest.fixture(scope="module")
@@ -68,9 +68,9 @@ def test_any_run_folder_is_read_or_refused(run, tmp_path, monkeypatch):
 
 def test_any_color_table_is_read_or_refused(tmp_path):
     folders = fuzz.Folders(tmp_path, tmp_path)
-    found = {fuzz.one(random.Random(k), "colours", folders, SCHEMA) for k in range(100)}
-    assert "refused" in found
-    assert found <= {"valid", "refused"}
+    results = {fuzz.one(random.Random(k), "colours", folders, SCHEMA) for k in range(100)}
+    assert "refused" in results
+    assert results <= {"valid", "refused"}
 
 
 def test_any_sweep_is_read_or_refused(run, tmp_path, monkeypatch):
@@ -97,7 +97,7 @@ NUMBERS = [
     key=st.sampled_from(NUMBERS),
     value=st.sampled_from(["1e300", "-1e300", "9223372036854775807", "nan"]),
 )
-def test_no_number_is_out_of_all_bounds(key, value):
+def test_every_number_has_bounds(key, value):
     with pytest.raises(ScenarioError, match=key.split(".")[-1]):
         load_scenario("quick", (f"{key}={value}",))
 
@@ -121,7 +121,7 @@ def test_no_number_is_out_of_all_bounds(key, value):
         "world.n_moving=1000000",
     ],
 )
-def test_what_would_take_all_memory_or_time_is_refused_by_name(setting):
+def test_values_of_unbounded_cost_are_refused_by_name(setting):
     with pytest.raises(ScenarioError, match=setting.split("=")[0]):
         load_scenario("quick", (setting,))
 
@@ -137,7 +137,7 @@ def test_what_would_take_all_memory_or_time_is_refused_by_name(setting):
         "navigation.gaze.min_tilt=-2.0",
     ],
 )
-def test_a_run_bears_what_is_just_allowed(setting):
+def test_a_run_works_at_the_limits(setting):
     scenario = load_scenario(
         "course", ['robot.body="kinematic"', 'camera.source="analytic"', setting]
     )
@@ -147,7 +147,7 @@ def test_a_run_bears_what_is_just_allowed(setting):
     assert np.isfinite(simulation._robot.frame.belief.pose).all()
 
 
-def test_seeds_without_end_are_refused():
+def test_too_many_seeds_are_refused():
     with pytest.raises(UsageError, match="at most"):
         parse_seeds("0:1000000000")
 
@@ -165,19 +165,19 @@ def test_a_color_table_runs_no_code(tmp_path):
         load_table(code)
 
 
-def test_a_viewer_listens_to_this_machine_alone(tmp_path):
+def test_a_viewer_listens_on_the_loopback_interface_only(tmp_path):
     words = viewer.command(9876, str(tmp_path / "log.rrd"))
     assert words[words.index("--bind") + 1] == "127.0.0.1"
 
 
 @pytest.mark.parametrize("words", [["verify"], ["render"]])
-def test_a_key_of_another_version_is_named_with_both_versions(run, tmp_path, capfd, words):
+def test_a_key_of_another_version_is_reported_with_both_versions(run, tmp_path, capfd, words):
     copy = tmp_path / "copy"
     shutil.copytree(run, copy)
     file = copy / "scenario.toml"
     file.write_text(file.read_text().replace("footstep_time", "step_time"))
     assert entry([*words, str(copy)]) == 2
-    said = capfd.readouterr().err
-    assert "walking.gait.step_time: unknown key" in said
-    assert "was made by hsr8 0." in said
-    assert "this is hsr8 0." in said
+    error = capfd.readouterr().err
+    assert "walking.gait.step_time: unknown key" in error
+    assert "was made by hsr8 0." in error
+    assert "this is hsr8 0." in error
