@@ -51,7 +51,7 @@ class Canvas:
         """Draw the field with its rim, `width` [pixel] wide."""
         corners = self._half * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
         self.area(corners, floor)
-        self.outline(corners, rim, width)
+        self.line(corners, rim, width, closed=True)
 
     def beacon(self, at: Point, top: Color, bottom: Color) -> None:
         """Draw a beacon: the top half on the bottom half."""
@@ -66,15 +66,10 @@ class Canvas:
         """Draw a circle, `width` [pixel] wide; `radius` in [m]."""
         self._circle(at, radius, color, width)
 
-    def line(self, points: Points, color: Color, width: int = 1) -> None:
-        """Draw lines between points, `width` [pixel] wide."""
-        cv2.polylines(
-            self.image, [self._pixels(points)], False, color, width, cv2.LINE_AA, SUBPIXEL
-        )
-
-    def outline(self, points: Points, color: Color, width: int = 1) -> None:
-        """Draw a closed polygon, `width` [pixel] wide."""
-        cv2.polylines(self.image, [self._pixels(points)], True, color, width, cv2.LINE_AA, SUBPIXEL)
+    def line(self, points: Points, color: Color, width: int = 1, *, closed: bool = False) -> None:
+        """Draw lines between points, back to the first if `closed`, `width` [pixel] wide."""
+        pixels = [self._pixels(points)]
+        cv2.polylines(self.image, pixels, closed, color, width, cv2.LINE_AA, SUBPIXEL)
 
     def area(self, points: Points, color: Color, opacity: float = 1.0) -> None:
         """Draw a filled polygon, transparent if `opacity` is less than 1."""

@@ -128,7 +128,7 @@ class PlanView:
         elif isinstance(motion, Circle):
             self._canvas.ring(motion.centre, motion.radius, LANE)
         elif isinstance(motion, Wander):
-            self._canvas.outline(motion.track, LANE)
+            self._canvas.line(motion.track, LANE, closed=True)
 
     def _robot(self) -> None:
         x, y, heading = self._layout.start

@@ -79,7 +79,7 @@ class TopDown:
         canvas.line((frame.pose[:2], frame.target), palette.TARGET, width)
         canvas.disc(frame.target, 0.05, palette.TARGET)
         canvas.area(_robot(frame.pose), palette.BELIEF)
-        canvas.outline(_robot(frame.truth), INK, width)
+        canvas.line(_robot(frame.truth), INK, width, closed=True)
         self._draw_covariance(canvas, frame.pose[:2], frame.covariance)
         shown: Image = cv2.resize(canvas.image, self._size, interpolation=cv2.INTER_AREA)
         return shown

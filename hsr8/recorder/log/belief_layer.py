@@ -45,48 +45,23 @@ class BeliefLayer:
         self._target_position: list[float] = []
         solid = rr.components.FillMode.Solid
         lines = rr.components.FillMode.MajorWireframe
-        arrows, cylinders = rr.Arrows3D, rr.Cylinders3D
-        self._pose = Channel(
-            stream,
-            "/belief/pose",
-            arrows.columns,
-            arrows.from_fields(colors=[palette.BELIEF], radii=[0.015]),
-        )
-        self._uncertainty = Channel(
-            stream, "/belief/uncertainty", rr.Ellipsoids3D.columns, _rings(lines)
-        )
-        self._tracks = Channel(
-            stream, "/belief/tracks", cylinders.columns, cylinders.from_fields(fill_mode=solid)
-        )
-        self._track_uncertainty = Channel(
-            stream, "/belief/track_uncertainty", rr.Ellipsoids3D.columns, _rings(lines)
-        )
-        self._velocities = Channel(
-            stream,
-            "/belief/velocities",
-            arrows.columns,
-            arrows.from_fields(colors=[palette.BELIEF], radii=[0.01]),
-        )
-        self._virtual = Channel(
-            stream,
-            "/belief/virtual_obstacles",
-            cylinders.columns,
-            cylinders.from_fields(colors=[palette.VIRTUAL], fill_mode=lines, line_radii=[0.006]),
-        )
-        self._view = Channel(
-            stream,
-            "/belief/view",
-            rr.LineStrips3D.columns,
-            rr.LineStrips3D.from_fields(colors=[palette.VIEW], radii=[0.008]),
-        )
-        self._target = Channel(
-            stream,
-            "/belief/target",
-            rr.Points3D.columns,
-            rr.Points3D.from_fields(colors=[palette.TARGET], radii=[0.05]),
-        )
-        self._particles = Channel(stream, "/belief/particles", rr.Points3D.columns)
-        self._map = Channel(stream, "/belief/local_map", rr.GridMap.columns)
+        blue, arrows, cylinders = [palette.BELIEF], rr.Arrows3D, rr.Cylinders3D
+        rings = {"colors": blue, "fill_mode": lines, "line_radii": [0.004]}
+        virtual = {"colors": [palette.VIRTUAL], "fill_mode": lines, "line_radii": [0.006]}
+
+        def channel(name: str, archetype: type, **style: object) -> Channel:
+            return Channel(stream, f"/belief/{name}", archetype, **style)
+
+        self._pose = channel("pose", arrows, colors=blue, radii=[0.015])
+        self._uncertainty = channel("uncertainty", rr.Ellipsoids3D, **rings)
+        self._tracks = channel("tracks", cylinders, fill_mode=solid)
+        self._track_uncertainty = channel("track_uncertainty", rr.Ellipsoids3D, **rings)
+        self._velocities = channel("velocities", arrows, colors=blue, radii=[0.01])
+        self._virtual = channel("virtual_obstacles", cylinders, **virtual)
+        self._view = channel("view", rr.LineStrips3D, colors=[palette.VIEW], radii=[0.008])
+        self._target = channel("target", rr.Points3D, colors=[palette.TARGET], radii=[0.05])
+        self._particles = channel("particles", rr.Points3D)
+        self._map = channel("local_map", rr.GridMap)
 
     def add(self, frames: Sequence[FrameRecord]) -> None:
         """Take camera frames."""
@@ -224,10 +199,6 @@ def _map_style(cell: float, shape: tuple[int, ...]) -> rr.GridMap:
         opacity=0.35,
         colormap=rr.components.Colormap.Grayscale,
     )
-
-
-def _rings(fill: rr.components.FillMode) -> rr.Ellipsoids3D:
-    return rr.Ellipsoids3D.from_fields(colors=[palette.BELIEF], fill_mode=fill, line_radii=[0.004])
 
 
 def _wedges(poses: Array, views: Sequence[CameraView]) -> Array:

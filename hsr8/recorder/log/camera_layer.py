@@ -65,15 +65,16 @@ class CameraLayer:
         # A table, because OpenCV computes it at every call.
         ramp = np.arange(256, dtype=np.uint8)[:, None]
         self._heat = cv2.applyColorMap(ramp, cv2.COLORMAP_MAGMA)[:, 0]
-        self._pose = Channel(stream, "/world/camera", rr.Transform3D.columns)
-        self._image = _images(stream, "/world/camera/image", "jpeg")
-        self._boxes = Channel(stream, "/world/camera/detections", rr.Boxes2D.columns)
-        self._gaze_map = _images(stream, "/gaze/map", "png")
-        self._window = _lines(stream, "/gaze/window", 0.12)
-        self._image_window = _lines(stream, "/world/camera/gaze_window", 1.2)
-        self._choice = Channel(
-            stream, "/gaze/choice", rr.Points2D.columns, rr.Points2D.from_fields(radii=[0.5])
+        self._pose = Channel(stream, "/world/camera", rr.Transform3D)
+        image, lines, yellow = rr.EncodedImage, rr.LineStrips2D, [palette.VIEW]
+        self._image = Channel(stream, "/world/camera/image", image, media_type="image/jpeg")
+        self._boxes = Channel(stream, "/world/camera/detections", rr.Boxes2D)
+        self._gaze_map = Channel(stream, "/gaze/map", image, media_type="image/png")
+        self._window = Channel(stream, "/gaze/window", lines, colors=yellow, radii=[0.12])
+        self._image_window = Channel(
+            stream, "/world/camera/gaze_window", lines, colors=yellow, radii=[1.2]
         )
+        self._choice = Channel(stream, "/gaze/choice", rr.Points2D, radii=[0.5])
 
     def add_poses(self, times: Sequence[float], positions: Array, rotations: Array) -> None:
         """Add true poses: positions (n, 3) [m] and MuJoCo's rotations (n, 9)."""
@@ -176,16 +177,6 @@ def image_points(
         [0.5 * size[0] - focal * left / depth, 0.5 * size[1] + focal * down / depth]
     )
     return np.clip(pixels, 0.0, size)
-
-
-def _images(stream: BlockStream, path: str, kind: str) -> Channel:
-    style = rr.EncodedImage.from_fields(media_type=f"image/{kind}")
-    return Channel(stream, path, rr.EncodedImage.columns, style)
-
-
-def _lines(stream: BlockStream, path: str, radius: float) -> Channel:
-    style = rr.LineStrips2D.from_fields(colors=[palette.VIEW], radii=[radius])
-    return Channel(stream, path, rr.LineStrips2D.columns, style)
 
 
 def _jpeg(image: Image, quality: int) -> NDArray[np.uint8]:

@@ -1,6 +1,6 @@
 """Rows of Rerun entities, sent in batches: thirty times cheaper than one call per row."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import accumulate
 from typing import Any, Protocol
 
@@ -32,22 +32,20 @@ class Channel:
     Args:
         stream: recording.
         path: of the entity.
-        columns: builds the columns from components, for example ``rr.Points3D.columns``.
-        style: components that never change, if any.
+        archetype: Rerun's archetype, for example ``rr.Points3D``.
+        style: components that never change.
     """
 
-    def __init__(
-        self, stream: Stream, path: str, columns: Callable[..., Any], style: Any = None
-    ) -> None:
+    def __init__(self, stream: Stream, path: str, archetype: Any, **style: Any) -> None:
         self.path = path
-        self._columns = columns
+        self._columns = archetype.columns
         self._types: dict[str, tuple[rr.ComponentDescriptor, pa.DataType]] = {}
         self._times: list[float] = []
         self._counts: list[int] = []
         self._components: dict[str, list[Any]] = {}
         stream.add_channel(self)
-        if style is not None:
-            stream.log(path, style, static=True)
+        if style:
+            stream.log(path, archetype.from_fields(**style), static=True)
 
     def add(self, time: float, **components: Sequence[Any] | np.ndarray) -> None:
         """Add one row; every component has one element per instance, or none."""

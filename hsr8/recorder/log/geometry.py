@@ -162,8 +162,9 @@ class Scene:
         for batch in self._robot:
             style = shapes(model, batch)
             path = f"/world/robot/{batch.kind}"
-            self._channels.append(Channel(stream, path, type(style).columns, style))
-        self._mover_channel = Channel(stream, "/world/movers", rr.Cylinders3D.columns)
+            stream.log(path, style, static=True)
+            self._channels.append(Channel(stream, path, type(style)))
+        self._mover_channel = Channel(stream, "/world/movers", rr.Cylinders3D)
         for batch in self._movers:
             stream.log("/world/movers", shapes(model, batch), static=True)
         for path, prefix in STATIC.items():

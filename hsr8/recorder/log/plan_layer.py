@@ -36,24 +36,10 @@ class PlanLayer:
         self._throttle = Throttle(period)
         self._motion: MotionDecision | None = None
         self._shown = False
-        self._field = Channel(
-            stream,
-            "/plan/field",
-            rr.Arrows3D.columns,
-            rr.Arrows3D.from_fields(colors=[palette.FIELD], radii=[0.008]),
-        )
-        self._path = Channel(
-            stream,
-            "/plan/path",
-            rr.LineStrips3D.columns,
-            rr.LineStrips3D.from_fields(colors=[palette.PLAN], radii=[0.007]),
-        )
-        self._decision = Channel(
-            stream,
-            "/plan/decision",
-            rr.Arrows3D.columns,
-            rr.Arrows3D.from_fields(colors=[palette.PLAN], radii=[0.011]),
-        )
+        field, plan = [palette.FIELD], [palette.PLAN]
+        self._field = Channel(stream, "/plan/field", rr.Arrows3D, colors=field, radii=[0.008])
+        self._path = Channel(stream, "/plan/path", rr.LineStrips3D, colors=plan, radii=[0.007])
+        self._decision = Channel(stream, "/plan/decision", rr.Arrows3D, colors=plan, radii=[0.011])
 
     def add(self, frames: Sequence[FrameRecord]) -> None:
         """Take camera frames."""

@@ -48,8 +48,8 @@ class Curves:
         self, stream: BlockStream, path: str, curves: Sequence[tuple[str, palette.Color]]
     ) -> None:
         names, colors = zip(*curves, strict=True)
-        style = rr.SeriesLines(names=list(names), colors=list(colors))
-        self._channel = Channel(stream, path, rr.Scalars.columns, style)
+        stream.log(path, rr.SeriesLines(names=list(names), colors=list(colors)), static=True)
+        self._channel = Channel(stream, path, rr.Scalars)
 
     def add(self, times: Sequence[float], values: Array) -> None:
         """Add the values of all curves at n times (n, curves); NaN leaves a gap."""
@@ -67,7 +67,8 @@ class Lane:
 
     def __init__(self, stream: BlockStream, path: str, states: dict[str, palette.Color]) -> None:
         style = rr.StateConfiguration(values=list(states), colors=list(states.values()))
-        self._channel = Channel(stream, path, rr.StateChange.columns, style)
+        stream.log(path, style, static=True)
+        self._channel = Channel(stream, path, rr.StateChange)
         self._state = ""
 
     def add(self, time: float, state: str) -> None:

@@ -110,8 +110,8 @@ class RerunLog:
             )
         self._plots = PlotLayer(self._stream)
         self._walk = WalkLayer(self._stream)
-        self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D.columns)
-        self._path = Channel(self._stream, "/world/path", rr.LineStrips3D.columns)
+        self._footsteps = Channel(self._stream, "/world/footsteps", rr.LineStrips3D)
+        self._path = Channel(self._stream, "/world/path", rr.LineStrips3D)
         self._trail: list[list[float]] = []
         self._log_waypoints(layout)
         self._buffer = RecordBuffer(LIVE_PERIOD if live else PERIOD)

@@ -47,25 +47,14 @@ class WalkLayer:
         self._points = Channel(
             stream,
             "/world/walking/points",
-            rr.Arrows3D.columns,
-            rr.Arrows3D.from_fields(
-                colors=[color for _, color in POINTS],
-                radii=[0.003],
-                vectors=np.tile([0.0, 0.0, FLOOR - PIN], (len(POINTS), 1)),
-            ),
+            rr.Arrows3D,
+            colors=[color for _, color in POINTS],
+            radii=[0.003],
+            vectors=np.tile([0.0, 0.0, FLOOR - PIN], (len(POINTS), 1)),
         )
-        self._support = Channel(
-            stream,
-            "/world/walking/support",
-            rr.LineStrips3D.columns,
-            rr.LineStrips3D.from_fields(colors=[palette.TARGET], radii=[0.0025]),
-        )
-        self._pushes = Channel(
-            stream,
-            "/world/pushes",
-            rr.Arrows3D.columns,
-            rr.Arrows3D.from_fields(colors=[RED], radii=[0.012]),
-        )
+        edge = {"colors": [palette.TARGET], "radii": [0.0025]}
+        self._support = Channel(stream, "/world/walking/support", rr.LineStrips3D, **edge)
+        self._pushes = Channel(stream, "/world/pushes", rr.Arrows3D, colors=[RED], radii=[0.012])
         curves = (*POINTS, ("edge of the soles", GREY), ("edge of the soles", GREY))
         self._zmp = tuple(
             Curves(stream, f"/plots/zmp_{axis}", curves) for axis in ("forward", "left")
@@ -88,7 +77,7 @@ class WalkLayer:
         self._torque = tuple(self._torque_curves(stream, group) for group in TORQUES)
         self._tilt = Curves(stream, "/plots/tilt", (("roll [deg]", BLUE), ("pitch [deg]", ORANGE)))
         self._phase = Lane(stream, "/state/gait", GAIT)
-        self._limits = Channel(stream, "/command_limits", rr.TextLog.columns)
+        self._limits = Channel(stream, "/command_limits", rr.TextLog)
         self._meter = _Speedometer()
         self._interval: tuple[str, int] | None = None
         self._active: tuple[Limit, ...] = ()

@@ -10,7 +10,7 @@ from hsr8.recorder.log.log_reader import Log
 def test_the_rows_of_a_channel_are_sent_once(tmp_path):
     stream = BlockStream("test")
     stream.save(tmp_path / "log.rrd")
-    channel = Channel(stream, "/plots/x", rr.Scalars.columns)
+    channel = Channel(stream, "/plots/x", rr.Scalars)
     for block in range(3):
         for k in range(2):
             channel.add(float(2 * block + k), scalars=[float(block)])

@@ -28,11 +28,11 @@ def transform(_):
 
 
 KINDS = (
-    (rr.Points3D.columns, points),
-    (rr.LineStrips3D.columns, strips),
-    (rr.EncodedImage.columns, blob),
-    (rr.Transform3D.columns, transform),
-    (rr.StateChange.columns, lambda n: {"state": [f"state {n}"]}),
+    (rr.Points3D, points),
+    (rr.LineStrips3D, strips),
+    (rr.EncodedImage, blob),
+    (rr.Transform3D, transform),
+    (rr.StateChange, lambda n: {"state": [f"state {n}"]}),
 )
 
 
@@ -49,9 +49,9 @@ def taken(channel):
     return times[TIMELINE], {str(component): values for component, values in rows.items()}
 
 
-@pytest.mark.parametrize(("columns", "rows"), KINDS)
-def test_later_batches_equal_those_of_rerun(columns, rows):
-    taught, fresh = (Channel(Stream(), "/there", columns) for _ in range(2))
+@pytest.mark.parametrize(("archetype", "rows"), KINDS)
+def test_later_batches_equal_those_of_rerun(archetype, rows):
+    taught, fresh = (Channel(Stream(), "/there", archetype) for _ in range(2))
     taught.add(0.0, **rows(3))
     taught.take()
     batch = [(0.1 * k, rows(n)) for k, n in enumerate((2, 0, 4, 1))]
@@ -68,7 +68,7 @@ def test_later_batches_equal_those_of_rerun(columns, rows):
 
 def test_rows_added_together_equal_rows_added_singly():
     counts = [4, 0, 1, 3]
-    together, singly = (Channel(Stream(), "/there", rr.Points3D.columns) for _ in range(2))
+    together, singly = (Channel(Stream(), "/there", rr.Points3D) for _ in range(2))
     for _ in range(2):
         rows = [points(n) for n in counts]
         together.add_rows(
@@ -86,4 +86,4 @@ def test_rows_added_together_equal_rows_added_singly():
 
 
 def test_without_rows_there_is_nothing_to_take():
-    assert Channel(Stream(), "/there", rr.Points3D.columns).take() is None
+    assert Channel(Stream(), "/there", rr.Points3D).take() is None

@@ -225,7 +225,7 @@ from hsr8.recorder.log.block_stream import BlockStream
 from hsr8.recorder.log.channel import Channel
 stream = BlockStream("killed")
 stream.save(sys.argv[1])
-channel = Channel(stream, "/plots/x", rr.Scalars.columns)
+channel = Channel(stream, "/plots/x", rr.Scalars)
 for k in range(100):
     channel.add(0.02 * k, scalars=[float(k)])
 stream.send()
