@@ -6,10 +6,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 
-from hsr8.cli import report, termination
+from hsr8.cli import report
 from hsr8.cli.crash import crash_report
 from hsr8.cli.options import Run
 from hsr8.cli.progress import Progress
+from hsr8.cli.termination import like_ctrl_c, on_signals
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.evaluation.verdict import exit_code
 from hsr8.loop import Simulation
@@ -40,9 +41,15 @@ def start(options: Run, scenario: Scenario, log: LogLevel | None, command: Seque
     manifest = Manifest.now(scenario.name, scenario.seed, command, renderer_of(scenario))
     simulation = Simulation(scenario, scenario.seed)
     recording = Recording(simulation, () if options.quiet else (Progress(scenario.duration),))
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        """End the run after the current tick; a second signal ends it at once."""
+        signal.signal(number, signal.default_int_handler)
+        simulation.interrupt()
+
     with _view(options) as view:
         path = RunFolder.create(options.out, scenario.name, scenario.seed)
-        with crash_report(path), _interruptible(simulation):
+        with crash_report(path), on_signals(SIGNALS, interrupt):
             recording.into(path, manifest, log=log, live=view.address if view else "")
             result = recording.run()
         code = _report(options, result, manifest)
@@ -59,7 +66,7 @@ def _view(options: Run) -> Iterator[LiveView | None]:
     if options.view is None:
         yield None
         return
-    with termination.like_ctrl_c(), live_view(options.view) as view:
+    with like_ctrl_c(), live_view(options.view) as view:
         if view.page:
             print(f"open in a browser on this machine:  {view.page}", file=sys.stderr)
         yield view
@@ -82,19 +89,3 @@ def _report(options: Run, result: Result, manifest: Manifest) -> int:
             command=manifest.command,
         )
     return exit_code(result.exit_reason, result.criteria)
-
-
-@contextmanager
-def _interruptible(simulation: Simulation) -> Iterator[None]:
-    """Let Ctrl-C or SIGTERM end the run after the current tick, a second one at once."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        signal.signal(number, signal.default_int_handler)
-        simulation.interrupt()
-
-    before = {number: signal.signal(number, interrupt) for number in SIGNALS}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -22,7 +22,7 @@ class Idle:
         return GazeDecision(0.0, 0.0)
 
 
-def test_nothing_is_written_unless_it_is_told_where(tmp_path, monkeypatch):
+def test_nothing_is_written_by_default(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = hsr8.run("quick", seed=3, settings=STAND_INS)
     assert list(tmp_path.iterdir()) == []
@@ -54,7 +54,7 @@ def test_the_command_in_the_folder_makes_the_same_run(tmp_path):
     assert repeated("loaded", loaded, seed=4)
 
 
-def test_the_folder_names_a_planner_and_a_gaze_of_ones_own(tmp_path):
+def test_the_folder_names_custom_planner_and_gaze(tmp_path):
     result = hsr8.run("quick", settings=STAND_INS, out=tmp_path, planner=Idle(), gaze=Idle())
     called = f"hsr8.run(planner={__name__}.Idle, gaze={__name__}.Idle)"
     assert open_run(result.folder).manifest["command"] == called
@@ -82,24 +82,24 @@ def test_ctrl_c_ends_the_loop_around_a_run_and_leaves_its_folder(tmp_path):
     assert 0.3 < run.trajectory().time[-1] < 1.0
 
 
-def test_the_log_holds_as_much_as_it_is_told_to(tmp_path):
-    found = {}
+def test_the_log_follows_its_level(tmp_path):
+    first = {}
     for level in ("minimal", "full"):
         result = hsr8.run("quick", settings=STAND_INS, out=tmp_path / level, log=level)
-        found[level] = (hsr8.read_log(result.folder).entities(), result.metrics["state_hash"])
-    (minimal, one), (full, other) = found.values()
+        first[level] = (hsr8.read_log(result.folder).entities(), result.metrics["state_hash"])
+    (minimal, one), (full, other) = first.values()
     assert one == other
     assert minimal.keys() < full.keys()
     assert "/belief/tracks" in full.keys() - minimal.keys()
 
 
-def test_a_level_that_there_is_not_is_told_before_the_run(tmp_path):
+def test_an_unknown_level_is_refused_before_the_run(tmp_path):
     with pytest.raises(UsageError, match="minimal, standard, full"):
         hsr8.run("quick", settings=STAND_INS, out=tmp_path, log="all")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_where_nothing_can_be_drawn_no_folder_is_left(tmp_path, monkeypatch):
+def test_without_opengl_no_folder_is_left(tmp_path, monkeypatch):
     def none(scenario):
         raise RenderingUnavailable("no OpenGL")
 
@@ -128,16 +128,18 @@ def test_a_wrong_setting_is_named():
         hsr8.run("quick", settings={"world.n_statics": 3})
 
 
-def test_a_run_that_meets_its_criteria_passes():
+def test_criteria_met():
     settings = STAND_INS | {"criteria.goal_reached": False}
     assert hsr8.run("quick", settings=settings).criteria_met
 
 
-def test_an_unknown_name_is_no_part_of_the_package():
+def test_unknown_and_former_names_are_refused():
     with pytest.raises(AttributeError, match="nonsense"):
         hsr8.nonsense  # noqa: B018
+    with pytest.raises(AttributeError, match="renamed to load_scenario"):
+        hsr8.load  # noqa: B018
 
 
-def test_what_can_be_had_is_listed():
+def test_the_public_names_are_listed():
     assert set(hsr8.__all__) <= set(dir(hsr8))
     assert all(hasattr(hsr8, name) for name in dir(hsr8))

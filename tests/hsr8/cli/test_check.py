@@ -22,7 +22,7 @@ def test_json_holds_world_and_certificate(capsys):
 
 
 @pytest.mark.parametrize("name", ["course", "paper", "walk", "fig4c"])
-def test_people_get_a_table(capsys, name):
+def test_a_table_is_printed(capsys, name):
     assert main(Check(name)) == 0
     assert "certified" in capsys.readouterr().out
 
@@ -40,9 +40,9 @@ def test_an_image_is_drawn(tmp_path, capsys):
 
 def test_columns_have_their_units(capsys):
     main(Check("quick"))
-    said = capsys.readouterr().out
+    message = capsys.readouterr().out
     for unit in ("position [m]", "radius [m]", "speed [m/s]", "duration [s]"):
-        assert unit in said
+        assert unit in message
 
 
 def test_the_printed_command_makes_the_checked_run(capsys):

@@ -12,7 +12,7 @@ from vision.color_file import load_table
 
 
 @pytest.fixture
-def picture(tmp_path):
+def image_path(tmp_path):
     """A red square on grey with its mask; returns the path of the image."""
     rng = np.random.default_rng(0)
     image = rng.normal(140.0, 3.0, (40, 50, 3))
@@ -24,33 +24,33 @@ def picture(tmp_path):
     return tmp_path / "a.png"
 
 
-def test_a_table_is_learnt_written_and_named_in_a_scenario(picture, tmp_path, capsys):
+def test_a_learned_table_is_used_in_a_scenario(image_path, tmp_path, capsys):
     out = tmp_path / "colours.npz"
-    assert main(ColorTable((picture,), out, json=True)) == 0
+    assert main(ColorTable((image_path,), out, json=True)) == 0
     rows = {r["class"]: r for r in json.loads(capsys.readouterr().out)["classes"]}
     assert rows["red"]["pixels"] == 200
     assert rows["red"]["recognized"] > 0.99
     assert rows["background"]["recognized"] > 0.99
     assert load_table(out).labels.max() == 1
     assert load_scenario("quick", [f"vision.color_table={out}"]).vision.color_table == str(out)
-    assert main(ColorTable((picture,), out)) == 0
+    assert main(ColorTable((image_path,), out)) == 0
     assert "red" in capsys.readouterr().out
 
 
-def test_a_mask_color_that_marks_nothing_is_told_with_its_place(picture):
-    path = picture.with_name("a.mask.png")
+def test_an_unknown_mask_color_is_refused_with_its_pixel(image_path):
+    path = image_path.with_name("a.mask.png")
     mask = cv2.imread(str(path))
     mask[3, 7] = (0, 0, 250)
     cv2.imwrite(str(path), mask)
     with pytest.raises(UsageError, match=r"\(7, 3\).*\(250, 0, 0\).*red"):
-        main(ColorTable((picture,)))
+        main(ColorTable((image_path,)))
 
 
-def test_what_is_missing_or_no_image_is_told(picture, tmp_path):
+def test_missing_and_invalid_images_are_refused(image_path, tmp_path):
     with pytest.raises(UsageError, match=r"b\.png: cannot be read"):
         main(ColorTable((tmp_path / "b.png",)))
-    picture.with_name("a.mask.png").write_bytes(b"no image")
+    image_path.with_name("a.mask.png").write_bytes(b"no image")
     with pytest.raises(UsageError, match="not an image"):
-        main(ColorTable((picture,)))
+        main(ColorTable((image_path,)))
     with pytest.raises(UsageError, match="npz"):
-        main(ColorTable((picture,), tmp_path / "table.txt"))
+        main(ColorTable((image_path,), tmp_path / "table.txt"))

@@ -31,10 +31,10 @@ def test_two_runs_are_compared(runs, capsys):
 
 def test_json_is_the_only_output(runs, capsys):
     assert entry(["compare", *runs[:2], "--json", "--metric", "sim_time_s"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["common_seeds"] == 1
-    assert told["settings"] == {"camera.period_ms": ["60", "80"]}
-    assert told["results"]["sim_time_s"]["difference"] == 0.0
+    output = json.loads(capsys.readouterr().out)
+    assert output["common_seeds"] == 1
+    assert output["settings"] == {"camera.period_ms": ["60", "80"]}
+    assert output["results"]["sim_time_s"]["difference"] == 0.0
 
 
 @pytest.mark.parametrize(
@@ -45,6 +45,6 @@ def test_runs_of_other_seeds_are_refused(runs, capsys, more, word):
     assert word in capsys.readouterr().err
 
 
-def test_a_folder_of_something_else_is_refused(tmp_path, runs, capsys):
+def test_another_folder_is_refused(tmp_path, runs, capsys):
     assert entry(["compare", str(tmp_path), runs[0]]) == 2
     assert "not a folder of a sweep or a run" in capsys.readouterr().err

@@ -14,7 +14,7 @@ RUN = ["run", "quick", "--body", "kinematic", "--camera", "analytic", "--duratio
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """A run, and one that differs by a setting from its second second on."""
+    """Two runs that differ by a fault after 1 s."""
     out = tmp_path_factory.mktemp("runs")
     black = 'fault=[{kind="camera-black",start=1.0,duration=0.5}]'
     for name, more in (("a", []), ("b", ["--set", black])):
@@ -29,24 +29,24 @@ def diff(capsys, a, b):
 
 def test_a_run_does_not_differ_from_its_copy(recorded, tmp_path, capsys):
     copy = shutil.copytree(recorded[0], tmp_path / "copy")
-    code, told = diff(capsys, recorded[0], copy)
-    assert (code, told["equal"], told["first"], told["differences"]) == (0, True, None, [])
+    code, result = diff(capsys, recorded[0], copy)
+    assert (code, result["equal"], result["first"], result["differences"]) == (0, True, None, [])
     assert entry(["diff", str(recorded[0]), str(copy)]) == 0
     assert "bit for bit" in capsys.readouterr().out
 
 
 def test_the_first_difference_is_where_the_setting_acts(recorded, capsys):
-    code, told = diff(capsys, *recorded)
+    code, result = diff(capsys, *recorded)
     assert code == 1
-    first = told["first"]
+    first = result["first"]
     assert (first["record"], first["channel"], first["tick"]) == ("events", "kind of event 0", 200)
     assert (first["a"], first["b"]) == (None, "fault")
-    first = next(d for d in told["differences"] if d["record"] == "measurements")
+    first = next(d for d in result["differences"] if d["record"] == "measurements")
     assert 1.0 <= first["time"] < 1.1
     assert first["tick"] == round(first["time"] / 0.005)
     assert "number of observations" in first["channel"]
     assert first["a"] > first["b"] == 0
-    keys = {d["channel"] for d in told["differences"] if d["record"] == "settings"}
+    keys = {d["channel"] for d in result["differences"] if d["record"] == "settings"}
     assert keys == {f"fault.0.{key}" for key in ("kind", "start", "duration")}
 
 
@@ -56,7 +56,7 @@ def test_the_order_of_the_runs_only_swaps_the_values(recorded, capsys):
     assert (one["first"]["a"], one["first"]["b"]) == (other["first"]["b"], other["first"]["a"])
 
 
-def test_one_bit_of_a_set_point_is_named_with_tick_and_joint(recorded, tmp_path, capsys):
+def test_one_changed_bit_of_a_setpoint_is_found_with_tick_and_joint(recorded, tmp_path, capsys):
     copy = shutil.copytree(recorded[0], tmp_path / "copy")
     file = copy / "tape.bin"
     content = bytearray(file.read_bytes())
@@ -64,29 +64,22 @@ def test_one_bit_of_a_set_point_is_named_with_tick_and_joint(recorded, tmp_path,
     content[16 + 40 + 8 * (26 * 77 + 3)] ^= 1
     struct.pack_into("<II", content, 8, length, zlib.crc32(content[16 : 16 + length]))
     file.write_bytes(content)
-    code, told = diff(capsys, recorded[0], copy)
+    code, result = diff(capsys, recorded[0], copy)
     assert code == 1
-    assert told["first"]["tick"] == 77
-    assert re.fullmatch(r"setpoint of [lr]_\w+ \[rad\]", told["first"]["channel"])
-    assert told["first"]["a"] != told["first"]["b"]
+    assert result["first"]["tick"] == 77
+    assert re.fullmatch(r"setpoint of [lr]_\w+ \[rad\]", result["first"]["channel"])
+    assert result["first"]["a"] != result["first"]["b"]
 
 
-def test_people_read_the_first_difference_in_a_line(recorded, capsys):
+def test_the_first_difference_is_printed_in_one_line(recorded, capsys):
     assert entry(["diff", *map(str, recorded)]) == 1
     out = capsys.readouterr().out
     assert re.search(r"differ      at tick \d+ \(\d\.\d{3} s\)", out)
     assert "settings" in out
 
 
-def test_a_run_without_a_tape_is_a_usage_error(recorded, tmp_path, capsys):
-    copy = shutil.copytree(recorded[0], tmp_path / "copy")
-    (copy / "tape.bin").unlink()
-    assert entry(["diff", str(recorded[0]), str(copy)]) == 2
-    assert "cannot read the tape" in capsys.readouterr().err
-
-
 def _killed(run, to):
-    """Copy of a run that did not come to note its end."""
+    """Copy a run and mark it as killed."""
     copy = shutil.copytree(run, to)
     file = copy / "manifest.json"
     file.write_text(json.dumps(json.loads(file.read_text()) | {"exit_reason": "running"}))
@@ -102,26 +95,26 @@ def _killed(run, to):
         ("measurements.bin", "measurements", "number of frames"),
     ],
 )
-def test_a_record_that_holds_less_differs(recorded, tmp_path, capsys, name, record, channel):
+def test_a_shorter_record_differs(recorded, tmp_path, capsys, name, record, channel):
     copy = _killed(recorded[0], tmp_path / "copy")
     content = (copy / name).read_bytes()
     (copy / name).write_bytes(content[: len(content) // 2])
-    code, told = diff(capsys, recorded[0], copy)
+    code, result = diff(capsys, recorded[0], copy)
     assert code == 1
-    (found,) = [d for d in told["differences"] if d["record"] in (record, "tape")]
-    assert (found["record"], found["channel"]) == (record, channel)
-    assert found["a"] > found["b"] > 0
-    assert found["time"] == pytest.approx(1.0, abs=0.2)
+    (first,) = [d for d in result["differences"] if d["record"] in (record, "tape")]
+    assert (first["record"], first["channel"]) == (record, channel)
+    assert first["a"] > first["b"] > 0
+    assert first["time"] == pytest.approx(1.0, abs=0.2)
 
 
 @pytest.mark.parametrize("name", ["trajectory.bin", "walking.bin", "frames.jsonl", "tape.bin"])
-def test_a_record_of_a_run_that_ended_is_not_read_short(recorded, tmp_path, capsys, name):
+def test_a_cut_record_of_an_ended_run_is_refused(recorded, tmp_path, capsys, name):
     copy = shutil.copytree(recorded[0], tmp_path / "copy")
     content = (copy / name).read_bytes()
     (copy / name).write_bytes(content[: len(content) // 2])
     assert entry(["diff", str(recorded[0]), str(copy)]) == 2
-    assert f"{name}" in (said := capsys.readouterr().err)
-    assert "cut off" in said
+    assert f"{name}" in (message := capsys.readouterr().err)
+    assert "cut off" in message
     assert entry(["verify", str(copy)]) == 2
     assert "cut off" in capsys.readouterr().err
 
@@ -141,9 +134,9 @@ def test_values_of_walking_and_events_are_compared(recorded, tmp_path, capsys):
     (copy / "walking.bin").write_bytes(content)
     with (copy / "events.jsonl").open("a") as events:
         events.write('{"time": 1.5, "kind": "collision", "text": "made up"}\n')
-    code, told = diff(capsys, recorded[0], copy)
+    code, result = diff(capsys, recorded[0], copy)
     assert code == 1
-    found = {d["record"]: d for d in told["differences"]}
-    assert found.keys() == {"walking", "events"}
-    assert found["walking"]["channel"].startswith("torque_")
-    assert (found["events"]["channel"], found["events"]["tick"]) == ("kind of event 0", 300)
+    first = {d["record"]: d for d in result["differences"]}
+    assert first.keys() == {"walking", "events"}
+    assert first["walking"]["channel"].startswith("torque_")
+    assert (first["events"]["channel"], first["events"]["tick"]) == ("kind of event 0", 300)

@@ -25,13 +25,13 @@ def test_one_backend_is_enough(renderers, states):
     assert [f.state for f in doctor.opengl(renderers)] == states
 
 
-def test_without_any_backend_the_cure_is_printed_and_the_code_is_2(monkeypatch, capsys):
+def test_without_a_backend_the_remedy_is_printed_and_the_code_is_2(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "probe", lambda backend: None)
     assert entry(["doctor"]) == 2
     assert APT_LINE in " ".join(capsys.readouterr().out.split())
 
 
-def test_json_names_everything(monkeypatch, capsys):
+def test_json_has_all_findings(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
     assert entry(["doctor", "--json"]) == 0
     findings = {f["name"]: f for f in json.loads(capsys.readouterr().out)["findings"]}
@@ -40,7 +40,7 @@ def test_json_names_everything(monkeypatch, capsys):
     assert "processor" in findings["OpenGL egl"]["text"]
 
 
-def test_models_that_are_nowhere_are_missing(monkeypatch, capsys, tmp_path):
+def test_missing_models_are_reported(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
     monkeypatch.setattr(models, "PACKAGE", tmp_path / "hsr8")
     assert entry(["doctor", "--json"]) == 2
@@ -55,7 +55,7 @@ def test_a_backend_that_fails_is_a_note_not_an_error(monkeypatch):
     assert doctor.probe("egl") == "a renderer"
 
 
-def test_a_backend_that_is_asked_for_must_draw(monkeypatch, capsys):
+def test_a_requested_backend_must_draw(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "REQUESTED", "osmesa")
     monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe" if backend == "egl" else None)
     assert entry(["doctor"]) == 2
@@ -64,9 +64,7 @@ def test_a_backend_that_is_asked_for_must_draw(monkeypatch, capsys):
     assert entry(["doctor"]) == 0
 
 
-def test_the_viewer_of_logs_needs_vulkan_which_is_no_obstacle_to_a_run(
-    monkeypatch, capsys, tmp_path
-):
+def test_missing_vulkan_is_a_note(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(doctor, "probe", lambda backend: "llvmpipe")
     monkeypatch.setattr(doctor, "VULKAN_FOLDERS", (str(tmp_path),))
     assert entry(["doctor"]) == 0

@@ -15,26 +15,26 @@ def run(tmp_path, capsys):
     return open_run(tmp_path)
 
 
-def test_json_holds_what_the_folder_holds(run, capsys):
+def test_json_has_all_contents_of_the_folder(run, capsys):
     assert entry(["info", str(run.path), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["manifest"] == run.manifest
-    assert told["metrics"] == run.metrics()
-    assert told["files"] == {f.name: f.stat().st_size for f in run.path.iterdir()}
-    assert {c["name"]: c["met"] for c in told["criteria"]} == {
+    result = json.loads(capsys.readouterr().out)
+    assert result["manifest"] == run.manifest
+    assert result["metrics"] == run.metrics()
+    assert result["files"] == {f.name: f.stat().st_size for f in run.path.iterdir()}
+    assert {c["name"]: c["met"] for c in result["criteria"]} == {
         "falls": True,
         "goal reached": False,
     }
 
 
-def test_people_read_how_it_ended_and_how_to_repeat_it(run, capsys):
+def test_end_and_command_are_printed(run, capsys):
     assert entry(["info", str(run.path)]) == 0
-    told = capsys.readouterr().out
-    assert "timeout" in told
-    assert run.manifest["command"] in told
+    result = capsys.readouterr().out
+    assert "timeout" in result
+    assert run.manifest["command"] in result
 
 
-def test_another_version_is_told(run, capsys):
+def test_other_versions_are_printed(run, capsys):
     manifest = json.loads((run.path / "manifest.json").read_text())
     manifest["libraries"]["mujoco"] = "0.0.1"
     (run.path / "manifest.json").write_text(json.dumps(manifest))
@@ -42,10 +42,10 @@ def test_another_version_is_told(run, capsys):
     assert "was 0.0.1" in capsys.readouterr().out
 
 
-def test_a_killed_run_and_one_of_another_version_are_no_obstacle(run, capsys):
+def test_killed_runs_and_unreadable_scenarios_are_shown(run, capsys):
     manifest = json.loads((run.path / "manifest.json").read_text()) | {"exit_reason": "running"}
     (run.path / "manifest.json").write_text(json.dumps(manifest))
-    (run.path / "scenario.toml").write_text("what = 1\n")
+    (run.path / "scenario.toml").write_text("unknown = 1\n")
     assert entry(["info", str(run.path)]) == 0
     assert "running, or killed" in capsys.readouterr().out
     (run.path / "metrics.json").unlink()

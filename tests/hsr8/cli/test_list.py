@@ -13,7 +13,7 @@ def test_every_built_in_scenario_is_listed(capsys):
     assert (paper["static"], paper["moving"], paper["duration_s"]) == (12, 4, 560.2)
 
 
-def test_people_get_a_table(capsys):
+def test_a_table_is_printed(capsys):
     assert main(List()) == 0
     out = capsys.readouterr().out
     assert all(name in out for name in built_in_names())

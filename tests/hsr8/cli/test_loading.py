@@ -14,7 +14,7 @@ def _as_before():
     gc.enable()
 
 
-def test_what_is_loaded_is_never_looked_through(monkeypatch):
+def test_imported_objects_are_frozen(monkeypatch):
     before = gc.get_freeze_count()
     with loading():
         assert not gc.isenabled()
@@ -24,14 +24,14 @@ def test_what_is_loaded_is_never_looked_through(monkeypatch):
     assert gc.isenabled()
 
 
-def test_what_a_command_left_behind_is_not_kept_by_the_next_one():
+def test_nothing_is_frozen_without_an_import():
     gc.unfreeze()
     with loading():
         pass
     assert gc.get_freeze_count() == 0
 
 
-def test_the_collector_goes_on_after_a_failed_import():
+def test_the_collector_is_enabled_after_a_failed_import():
     with pytest.raises(ImportError), loading():
         raise ImportError
     assert gc.isenabled()

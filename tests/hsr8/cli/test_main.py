@@ -154,8 +154,8 @@ def test_a_full_disk_under_standard_output_is_one_message(arguments):
         done = subprocess.run(
             [*PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
-    said = "hsr8: cannot write: No space left on device\n"
-    assert (done.returncode, done.stderr) == (3, said)
+    message = "hsr8: cannot write: No space left on device\n"
+    assert (done.returncode, done.stderr) == (3, message)
 
 
 def test_a_name_of_any_bytes_is_printed_in_a_strict_locale(tmp_path):

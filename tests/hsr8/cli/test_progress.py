@@ -17,7 +17,7 @@ def test_without_a_terminal_there_is_a_plain_line_every_ten_seconds(walk):
     assert "\x1b" not in stream.getvalue()
 
 
-def test_the_line_says_what_goes_on(fake):
+def test_the_line_has_time_counts_and_situation(fake):
     progress = Progress(30.0, io.StringIO())
     progress.on_event(1.0, "collision", "l_sole touches obstacle 1")
     record = fake.record(2.0, frame=fake.frame(2.0, index=3))
@@ -36,13 +36,13 @@ def test_a_lost_robot_is_called_lost(fake):
     assert progress.line(record).endswith("lost")
 
 
-def test_a_terminal_gets_a_live_line_that_goes_away(fake, monkeypatch):
+def test_a_terminal_gets_a_live_line_that_is_erased(fake, monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm")
     stream = io.StringIO()
     monkeypatch.setattr("hsr8.cli.progress.REFRESH", 0.0)
     progress = Progress(30.0, stream)
-    assert HIDE_CURSOR not in stream.getvalue(), "a run that does not begin leaves the cursor"
+    assert HIDE_CURSOR not in stream.getvalue(), "the cursor is hidden only once the run begins"
     progress.on_record(fake.record(2.0))
     progress.on_event(1.0, "fall", "the robot has fallen")
     assert "2.0 / 30.0 s" in stream.getvalue()

@@ -16,7 +16,7 @@ def run(tmp_path, walk):
     return path
 
 
-def test_without_a_display_it_says_how_to_look_elsewhere(run, capsys, monkeypatch):
+def test_without_a_display_alternatives_are_printed(run, capsys, monkeypatch):
     (run / run_folder.LOG).touch()
     monkeypatch.setattr("hsr8.render.viewer.has_display", lambda: False)
     assert entry(["replay", str(run)]) == 2
@@ -25,7 +25,7 @@ def test_without_a_display_it_says_how_to_look_elsewhere(run, capsys, monkeypatc
     assert "rerun-sdk==" in printed
 
 
-def test_the_screenshot_is_of_the_middle_unless_asked_for(run, monkeypatch, capsys):
+def test_the_screenshot_shows_the_middle_of_the_run_by_default(run, monkeypatch, capsys):
     asked = []
 
     def screenshot(log, time, size):
@@ -43,9 +43,7 @@ def test_the_screenshot_is_of_the_middle_unless_asked_for(run, monkeypatch, caps
 
 
 @pytest.mark.parametrize("time", ["nan", "inf", "-inf", "1e300", "-1", "1.01"])
-def test_a_time_that_the_run_has_not_is_refused_before_anything_is_drawn(
-    run, monkeypatch, capsys, time
-):
+def test_a_time_outside_the_run_is_refused_before_drawing(run, monkeypatch, capsys, time):
     (run / run_folder.LOG).touch()
     monkeypatch.setattr("hsr8.render.viewer.screenshot", lambda *_: pytest.fail("was drawn"))
     picture = str(run / "log.png")

@@ -17,7 +17,7 @@ def _run(tmp_path, *more):
     return entry([*FAST, "--out", str(tmp_path), *more])
 
 
-def test_json_is_all_there_is_on_standard_output(tmp_path, capsys):
+def test_json_is_the_only_output(tmp_path, capsys):
     code = _run(tmp_path, "--json", "--no-log")
     printed = capsys.readouterr().out
     results = json.loads(printed)
@@ -32,7 +32,7 @@ def test_json_is_all_there_is_on_standard_output(tmp_path, capsys):
     assert run.log_file is None
 
 
-def test_the_log_is_as_large_as_asked_for(tmp_path):
+def test_the_size_of_the_log_follows_its_level(tmp_path):
     sizes = []
     for level in ("minimal", "full"):
         _run(tmp_path / level, "--quiet", "--duration", "0.5", "--log-level", level)
@@ -41,7 +41,7 @@ def test_the_log_is_as_large_as_asked_for(tmp_path):
     assert sizes[0] < 0.8 * sizes[1]
 
 
-def test_the_log_changes_nothing(tmp_path, capsys):
+def test_the_log_does_not_change_the_run(tmp_path, capsys):
     hashes = set()
     for more in (["--no-log", "--quiet"], ["--quiet"], []):
         _run(tmp_path, "--seed", "5", *more)
@@ -51,7 +51,7 @@ def test_the_log_changes_nothing(tmp_path, capsys):
     assert log.stat().st_size > 10_000
 
 
-def test_the_folder_says_how_to_repeat_the_run(tmp_path, capsys):
+def test_the_folder_has_the_command_to_repeat_the_run(tmp_path, capsys):
     _run(tmp_path, "--no-log", "--seed", "9", "--set", "world.n_moving=0", "world.n_static=3")
     run = open_run(tmp_path)
     printed = capsys.readouterr().out
@@ -100,7 +100,7 @@ def test_a_run_that_meets_its_criteria_passes(tmp_path, capsys):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys, number):
-    """The signal comes while the run goes on; it ends after the present tick."""
+    """The signal arrives during the run, which ends after the current tick."""
     step = Simulation.step
 
     def interrupting(self):
@@ -120,7 +120,7 @@ def test_ctrl_c_leaves_a_whole_folder(tmp_path, monkeypatch, capsys, number):
     assert len(run.trajectory()) > 20
 
 
-def test_ctrl_c_while_the_run_is_set_up_leaves_a_whole_folder(tmp_path, monkeypatch, capsys):
+def test_ctrl_c_during_setup_leaves_a_whole_folder(tmp_path, monkeypatch, capsys):
     def interrupted(*_):
         os.kill(os.getpid(), signal.SIGINT)
 
@@ -132,7 +132,7 @@ def test_ctrl_c_while_the_run_is_set_up_leaves_a_whole_folder(tmp_path, monkeypa
     assert run.manifest["exit_reason"] == run.metrics()["exit_reason"] == "interrupted"
 
 
-def test_a_diverged_run_is_told_and_recorded(tmp_path, monkeypatch, capsys):
+def test_a_diverged_run_is_reported_and_recorded(tmp_path, monkeypatch, capsys):
     def diverging(self):
         raise SimulationDiverged("the physics diverged at tick 12")
 
@@ -144,7 +144,7 @@ def test_a_diverged_run_is_told_and_recorded(tmp_path, monkeypatch, capsys):
     assert open_run(tmp_path).manifest["exit_reason"] == "diverged"
 
 
-def test_a_mistake_of_ours_leaves_its_traceback_in_the_run_folder(tmp_path, monkeypatch, capsys):
+def test_an_internal_error_leaves_its_traceback_in_the_run_folder(tmp_path, monkeypatch, capsys):
     def broken(self):
         raise ZeroDivisionError("oh no")
 
@@ -158,12 +158,6 @@ def test_a_mistake_of_ours_leaves_its_traceback_in_the_run_folder(tmp_path, monk
     assert "ZeroDivisionError: oh no" in (run.path / "crash.txt").read_text()
 
 
-def test_an_unwritable_folder_is_a_usage_error(tmp_path, capsys):
-    (tmp_path / "runs").write_text("a file")
-    assert _run(tmp_path / "runs") == 2
-    assert "--out" in capsys.readouterr().err
-
-
-def test_what_is_set_goes_over_the_other_options(tmp_path, capsys):
+def test_set_overrides_the_other_options(tmp_path, capsys):
     _run(tmp_path, "--no-log", "--quiet", "--set", "duration=0.4")
     assert open_run(tmp_path).metrics()["sim_time_s"] == pytest.approx(0.4)
