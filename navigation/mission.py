@@ -58,38 +58,27 @@ class Mission:
         if not self._done:
             # Each waypoint at most once: a whole tour may be within r_via.
             for _ in self._points:
-                if not self._pass_via(x, y):
+                if self._at_goal_point() or self._distance(x, y) >= self._parameters.r_via:
                     break
+                self._passed += 1
             if self._at_goal_point():
                 self._approach_goal(x, y, heading)
         return self._task(x, y)
 
-    def _target(self) -> tuple[float, float]:
+    def _distance(self, x: float, y: float) -> float:
+        """Return the distance to the present waypoint [m]."""
         tx, ty = self._points[self._passed % len(self._points)].tolist()
-        return tx, ty
+        return hypot(tx - x, ty - y)
 
     def _at_goal_point(self) -> bool:
         return not self._endless and self._passed == len(self._points) - 1
 
-    def _pass_via(self, x: float, y: float) -> bool:
-        if self._at_goal_point():
-            return False
-        tx, ty = self._target()
-        if hypot(tx - x, ty - y) >= self._parameters.r_via:
-            return False
-        self._passed += 1
-        return True
-
     def _approach_goal(self, x: float, y: float, heading: float) -> None:
-        tx, ty = self._target()
-        distance = hypot(tx - x, ty - y)
-        reach = self._parameters.r_release if self._aligning else self._parameters.r_goal
-        self._aligning = distance < reach
+        p = self._parameters
+        self._aligning = self._distance(x, y) < (p.r_release if self._aligning else p.r_goal)
         if self._aligning:
-            error = 0.0
-            if self._goal_heading is not None:
-                error = abs(wrap(self._goal_heading - heading))
-            self._done = error < self._parameters.heading_tolerance
+            goal_heading = heading if self._goal_heading is None else self._goal_heading
+            self._done = abs(wrap(goal_heading - heading)) < p.heading_tolerance
 
     def _task(self, x: float, y: float) -> Task:
         index = self._passed % len(self._points)
@@ -105,7 +94,7 @@ class Mission:
         if is_goal and self._goal_heading is not None:
             heading = wrap(self._goal_heading)
         return Task(
-            target=target,
+            target=target.copy(),
             heading=heading,
             is_goal=is_goal,
             index=self._passed,

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.baselines.planning_scene import BodyEnvelope, PlanningScene
+from navigation.baselines.planning_scene import PlanningScene
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, SpeedLimits, Task
 from navigation.motion.facing import arriving
@@ -49,13 +49,10 @@ class BaselinePlanner:
             limits: of the walking layer.
             avoidance: of the baseline.
         """
-        p = self._parameters = parameters
+        self._parameters = parameters
         self._limits = limits
         self._avoidance = avoidance
-        self._envelope = BodyEnvelope(
-            limits, p.velocity_mapping.turn_gain, p.safety_filter.turn_change
-        )
-        self._arrival = ArrivalSide(p.univector)
+        self._arrival = ArrivalSide(parameters.univector)
         self._body = np.zeros(3)
 
     def plan(self, belief: Belief, task: Task) -> MotionDecision:
@@ -71,8 +68,7 @@ class BaselinePlanner:
             self._body = idle_velocity(not task.done, turn_rate, self._limits)
             return MotionDecision(self._body.copy(), heading)
         scene = self._scene(belief, task)
-        limits = self._envelope
-        self._body = np.clip(self._avoidance.decide(scene), limits.low(), limits.high())
+        self._body = np.clip(self._avoidance.decide(scene), scene.low(), scene.high())
         vx, vy, _ = self._body.tolist()
         speed = hypot(vx, vy)
         direction = wrap(heading + atan2(vy, vx)) if speed > 1e-9 else scene.course
@@ -97,8 +93,8 @@ class BaselinePlanner:
             speed=speed,
             facing=task.heading if turning else None,
             side=side,
-            envelope=self._envelope,
-            s_robot=p.univector.s_robot,
+            limits=self._limits,
+            parameters=p,
         )
 
     def _move_to_goal(self, pose: Array, task: Task) -> tuple[float, float, int]:

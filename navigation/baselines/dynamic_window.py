@@ -26,7 +26,7 @@ class DynamicWindow(Avoidance):
 
     def decide(self, scene: PlanningScene) -> Array:
         s, p = scene, self._parameters
-        limits = s.envelope.limits
+        limits = s.limits
         window = self._window(s)
         steps = max(1, round(p.horizon / limits.footstep))
         constant = np.broadcast_to(window[:, None], (len(window), steps, 3))
@@ -37,7 +37,7 @@ class DynamicWindow(Avoidance):
         gap = gaps(position, s, s.s_robot + s.radii(p.margin), p.clearance)
         facing = s.course if s.facing is None else s.facing
         wz = window[:, 2]
-        stopping = 0.5 * wz * np.abs(wz) / s.envelope.turn_change * limits.footstep
+        stopping = 0.5 * wz * np.abs(wz) / s.turn_change * limits.footstep
         heading_error = np.abs(wrap_array(facing - heading[:, 0] - stopping))
         cost = (
             np.hypot(error[:, 0], error[:, 1]) / (horizon * limits.vx)
@@ -50,7 +50,7 @@ class DynamicWindow(Avoidance):
 
     def _window(self, s: PlanningScene) -> Array:
         """Return velocities within reach (n, 3), with zero components where possible."""
-        low, high, change = s.envelope.low(), s.envelope.high(), s.envelope.change()
+        low, high, change = s.low(), s.high(), s.change()
         low, high = np.maximum(low, s.body - change), np.minimum(high, s.body + change)
         axes = [
             np.linspace(a, b, n)

@@ -30,7 +30,7 @@ class Orca(Avoidance):
         box = self._box(s)
         wanted, own = s.wanted().tolist(), s.velocity().tolist()
         planes = [*box, *self._planes(s, (own[0], own[1]))]
-        v_max = s.envelope.limits.max_speed
+        v_max = s.limits.max_speed
         return s.walk(np.array(solve(planes, len(box), (wanted[0], wanted[1]), v_max)))
 
     def _planes(self, s: PlanningScene, own: tuple[float, float]) -> list[HalfPlane]:
@@ -48,7 +48,7 @@ class Orca(Avoidance):
         ):
             horizon = p.static_horizon if static else p.horizon
             gap = hypot(ox - x, oy - y) - radius
-            if gap > horizon * (hypot(u, w) + s.envelope.limits.max_speed):
+            if gap > horizon * (hypot(u, w) + s.limits.max_speed):
                 continue
             plane = orca_plane(
                 (ox - x, oy - y),
@@ -56,7 +56,7 @@ class Orca(Avoidance):
                 own,
                 radius=radius,
                 horizon=horizon,
-                footstep=s.envelope.limits.footstep,
+                footstep=s.limits.footstep,
                 responsibility=p.responsibility,
             )
             planes.append((gap, plane))
@@ -64,7 +64,7 @@ class Orca(Avoidance):
 
     def _box(self, s: PlanningScene) -> list[HalfPlane]:
         """Return the half-planes of the speed limits at the present heading."""
-        limits = s.envelope.limits
+        limits = s.limits
         c, n = cos(float(s.pose[2])), sin(float(s.pose[2]))
         return [
             HalfPlane(c * limits.vx, n * limits.vx, -n, c),

@@ -47,7 +47,7 @@ class PathIntegral(Avoidance):
     def _samples(self, s: PlanningScene) -> Array:
         """Return samples around the plan (k, t, 3), mirrored in pairs, the plan and zeros."""
         p = self._parameters
-        low, high, change = s.envelope.low(), s.envelope.high(), s.envelope.change()
+        low, high, change = s.low(), s.high(), s.change()
         white = self._rng.standard_normal((p.samples // 2, p.steps, 3))
         noise = p.spread * high * np.einsum("ts,ksi->kti", self._correlation, white)
         zeros = np.zeros((1, p.steps, 3))
@@ -62,7 +62,7 @@ class PathIntegral(Avoidance):
 
     def _cost(self, s: PlanningScene, body: Array) -> Array:
         """Return the cost of every sequence (k,)."""
-        p, limits = self._parameters, s.envelope.limits
+        p, limits = self._parameters, s.limits
         position, heading = rollout(s.pose, body, limits.footstep)
         to_go = s.task.target - position
         distance = np.hypot(to_go[..., 0], to_go[..., 1])

@@ -9,37 +9,10 @@ from numpy.typing import NDArray
 from navigation.decision import SpeedLimits, Task
 from navigation.motion.velocity_mapping import body_velocity
 from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.navigation import NavigationParameters
 from navigation.transform import velocity_in_world
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class BodyEnvelope:
-    """Velocities within reach of the body.
-
-    Attributes:
-        limits: of speed and acceleration, and the footstep for which a command is latched.
-        turn_gain: turn rate per heading error [1/s].
-        turn_change: maximum change of the turn rate between footsteps [rad/s].
-    """
-
-    limits: SpeedLimits
-    turn_gain: float
-    turn_change: float
-
-    def low(self) -> Array:
-        """Return minimum vx, vy, wz (3,) [m/s, m/s, rad/s]."""
-        return np.array([-self.limits.vx_backward, -self.limits.vy, -self.limits.wz])
-
-    def high(self) -> Array:
-        """Return maximum vx, vy, wz (3,) [m/s, m/s, rad/s]."""
-        return np.array([self.limits.vx, self.limits.vy, self.limits.wz])
-
-    def change(self) -> Array:
-        """Return maximum changes between footsteps of vx, vy, wz (3,) [m/s, m/s, rad/s]."""
-        step = self.limits.acceleration * self.limits.footstep
-        return np.array([step, step, self.turn_change])
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +29,8 @@ class PlanningScene:
         speed: desired speed along the course [m/s].
         facing: target heading; None for the direction of motion [rad].
         side: of the arrival, see `move_to_goal`.
-        envelope: of the body.
-        s_robot: radius of the robot [m].
+        limits: of the walking layer.
+        parameters: profile.
     """
 
     pose: Array
@@ -69,8 +42,31 @@ class PlanningScene:
     speed: float
     facing: float | None
     side: int
-    envelope: BodyEnvelope
-    s_robot: float
+    limits: SpeedLimits
+    parameters: NavigationParameters
+
+    @property
+    def s_robot(self) -> float:
+        """Radius of the robot [m]."""
+        return self.parameters.univector.s_robot
+
+    @property
+    def turn_change(self) -> float:
+        """Maximum change of the turn rate between footsteps [rad/s]."""
+        return self.parameters.safety_filter.turn_change
+
+    def low(self) -> Array:
+        """Return minimum vx, vy, wz (3,) [m/s, m/s, rad/s]."""
+        return np.array([-self.limits.vx_backward, -self.limits.vy, -self.limits.wz])
+
+    def high(self) -> Array:
+        """Return maximum vx, vy, wz (3,) [m/s, m/s, rad/s]."""
+        return np.array([self.limits.vx, self.limits.vy, self.limits.wz])
+
+    def change(self) -> Array:
+        """Return maximum changes between footsteps of vx, vy, wz (3,) [m/s, m/s, rad/s]."""
+        step = self.limits.acceleration * self.limits.footstep
+        return np.array([step, step, self.turn_change])
 
     def wanted(self) -> Array:
         """Return the desired velocity in W (2,) [m/s]."""
@@ -97,7 +93,7 @@ class PlanningScene:
 
     def predicted(self) -> "PlanningScene":
         """Return the scene after one footstep, when the command takes effect."""
-        dt = self.envelope.limits.footstep
+        dt = self.limits.footstep
         pose = self.pose + dt * np.array([*self.velocity().tolist(), float(self.body[2])])
         position = self.obstacles.position + dt * self.obstacles.velocity
         return replace(self, pose=pose, obstacles=replace(self.obstacles, position=position))
@@ -116,6 +112,6 @@ class PlanningScene:
             speed,
             float(self.pose[2]),
             course if self.facing is None else self.facing,
-            limits=self.envelope.limits,
-            turn_gain=self.envelope.turn_gain,
+            limits=self.limits,
+            turn_gain=self.parameters.velocity_mapping.turn_gain,
         )

@@ -26,7 +26,7 @@ class PotentialField(Avoidance):
 
     def decide(self, scene: PlanningScene) -> Array:
         s = scene.predicted()
-        limits = s.envelope.limits
+        limits = s.limits
         total = s.wanted() + limits.vx * self._repulsion(s)
         speed = float(np.hypot(*total))
         return s.walk(total * min(1.0, limits.vx / max(speed, 1e-9)))
@@ -40,7 +40,7 @@ class PotentialField(Avoidance):
         gap = distance - s.s_robot - s.radii(self.margin)
         relative = s.obstacles.velocity - s.velocity()
         approach = np.maximum(0.0, np.sum(relative * out, axis=1))
-        braking = p.reaction * approach + approach**2 / (2.0 * s.envelope.limits.acceleration)
+        braking = p.reaction * approach + approach**2 / (2.0 * s.limits.acceleration)
         braking = np.where(s.obstacles.speed > 0.0, braking, 0.0)
         effective = np.maximum(p.min_gap, gap - braking)
         strength = p.gain * np.maximum(0.0, 1.0 / effective - 1.0 / p.influence)

@@ -38,7 +38,7 @@ def gaps(position: Array, scene: PlanningScene, radii: Array, max_gap: float) ->
         max_gap: upper bound of the gap [m].
     """
     k, t, _ = position.shape
-    limits, obstacles = scene.envelope.limits, scene.obstacles
+    limits, obstacles = scene.limits, scene.obstacles
     dt = limits.footstep
     offset = obstacles.position - scene.pose[:2]
     reach = t * dt * (obstacles.speed + limits.max_speed) + radii + max_gap

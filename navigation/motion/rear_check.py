@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.belief.belief import Belief, Motion, Track
+from navigation.belief.belief import Belief, Motion
 from navigation.motion import rear_check_kernel
 from navigation.parameters.motion import RearCheckParameters
 from navigation.value import value
@@ -131,7 +131,16 @@ class RearCheck:
         )
         for track in belief.tracks:
             if track.particles is not None:
-                lost = self._lost_urgency(track, belief.pose, course, speed)
+                lost = rear_check_kernel.cloud_urgency(
+                    track.particles.positions,
+                    track.particles.weights,
+                    (track.age, track.radius, max(self._parameters.rings)),
+                    belief.pose,
+                    course,
+                    self._extent,
+                    speed,
+                    self._threat,
+                )
                 urgency = np.maximum(urgency, lost)
         return urgency
 
@@ -145,21 +154,6 @@ class RearCheck:
                 if hypot(u - x, v - y) < reach + track.radius:
                     return True
         return False
-
-    def _lost_urgency(self, track: Track, pose: Array, course: float, speed: float) -> Array:
-        """Return the urgency of a look at each sector for a lost track (4,)."""
-        cloud = track.particles
-        assert cloud is not None
-        return rear_check_kernel.cloud_urgency(
-            cloud.positions,
-            cloud.weights,
-            (track.age, track.radius, max(self._parameters.rings)),
-            pose,
-            course,
-            self._extent,
-            speed,
-            self._threat,
-        )
 
 
 def sectors(parameters: RearCheckParameters, reach: float) -> tuple[Sector, ...]:

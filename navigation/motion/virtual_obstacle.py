@@ -79,11 +79,7 @@ def path_point(robot: Array, obstacle: Array, velocity: Array) -> PathPoint | No
 
 
 def printed_path_length(
-    relative_speed: float,
-    psi: float,
-    omega_dist: float,
-    eta_vo: float,
-    eta_imp: float,
+    relative_speed: float, psi: float, omega_dist: float, eta_vo: float, eta_imp: float
 ) -> float:
     """Return delta_dist = omega_dist (eta_vo |v_ro| + eta_imp (psi_sf + psi_ob)) (eq. (11)) [m]."""
     return omega_dist * (eta_vo * relative_speed + eta_imp * psi)

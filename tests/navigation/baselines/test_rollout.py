@@ -3,10 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navigation.baselines.planning_scene import BodyEnvelope, PlanningScene
+from navigation.baselines.planning_scene import PlanningScene
 from navigation.baselines.rollout import contact_cost, gaps, rollout
 from navigation.decision import Task
 from navigation.obstacle_set import ObstacleSet
+from navigation.parameters.navigation import NavigationParameters
 
 DT = 0.34
 
@@ -23,8 +24,8 @@ def scene(tracks, limits, pose=(0.0, 0.0, 0.0), body=(0.0, 0.0, 0.0)):
         speed=0.2,
         facing=None,
         side=0,
-        envelope=BodyEnvelope(limits, 1.5, 0.4),
-        s_robot=0.12,
+        limits=limits,
+        parameters=NavigationParameters(),
     )
 
 
