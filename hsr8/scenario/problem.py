@@ -87,7 +87,7 @@ def _unknown(path: Path, data: Mapping[str, Any]) -> str:
     key, known = str(path[-1]), keys_at(path[:-1], data)
     elsewhere = ".".join(_elsewhere(key, data))
     hint = suggestion(key, known) or (f"; did you mean '{elsewhere}'?" if elsewhere else "")
-    return f"unknown key{hint} (known here: {', '.join(known)})"
+    return f"unknown key{hint} (allowed: {', '.join(known)})"
 
 
 def _elsewhere(key: str, data: Any) -> Sequence[str]:

@@ -56,7 +56,7 @@ mode = "deadlin"
     report = "\n".join(lines)
     for pattern in (
         r"file\.toml:1: duration: must be greater than 0, got -1 \(allowed: > 0 and ≤ 7200\)",
-        r"file\.toml:4: world\.n_statics: unknown key; did you mean 'n_static'\? \(known here: ",
+        r"file\.toml:4: world\.n_statics: unknown key; did you mean 'n_static'\? \(allowed: ",
         r"file\.toml:5: world\.radius\[1\]: must be greater than 0, got -0\.2",
         r"file\.toml:7: camera\.period_ms: must be a multiple of 5, got 33",
         r'file\.toml:8: camera\.source: must be one of "rendered", "analytic", "omnidirectional", '
