@@ -142,11 +142,6 @@ def test_plugins_of_a_scenario_decide_as_the_same_objects_in_python(folder):
     assert from_file.metrics["state_hash"] != usual.metrics["state_hash"]
 
 
-def test_a_class_without_the_method_is_refused(folder):
-    with pytest.raises(UsageError, match="Silent has no method plan"):
-        hsr8.run("quick", settings=[*SETTINGS, "plugin.planner=mine.py:Silent"])
-
-
 def test_a_run_records_the_digest_and_can_be_verified(folder, capsys):
     plugins = ("--set", "plugin.planner=mine.py:Ahead", "plugin.gaze=mine.py:Down", "duration=3.0")
     assert entry(["run", "quick", *FAST, *plugins, "--no-log", "--out", "runs"]) == 1
