@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from navigation.obstacle_set import ObstacleSet
-from navigation.parameters.belief import LocalMapParameters
 from navigation.parameters.gaze import EvaluationParameters
 from navigation.parameters.navigation import NavigationParameters
 from navigation.partial_evaluation import (
@@ -47,19 +46,9 @@ def test_psi_lm_grows_with_the_under_confident_points(p):
     assert values[57] == pytest.approx(1.0 if p is PRINTED else 0.5)
 
 
-def test_a_cell_is_under_confident_five_seconds_after_the_last_look():
-    rate = LocalMapParameters().attenuation
-    ages = np.array([4.9, 5.1])
-    m = psi_local_map(1.0 + rate * ages, np.zeros(2, bool), E)
-    assert m.under_confident.tolist() == [False, True]
-
-
-def test_a_point_just_confident_enough_is_confident():
-    m = psi_local_map(np.array([E.lambda_cf, E.lambda_cf - 1e-9]), np.zeros(2, bool), E)
-    assert m.under_confident.tolist() == [False, True]
-
-
-def test_points_in_the_gaze_region_do_not_count():
+def test_only_points_below_the_threshold_and_outside_the_gaze_region_count():
+    threshold = np.array([E.lambda_cf, E.lambda_cf - 1e-9])
+    assert psi_local_map(threshold, np.zeros(2, bool), E).under_confident.tolist() == [False, True]
     m = psi_local_map(np.zeros(4), np.array([True, False, False, True]), E)
     assert m.under_confident.tolist() == [False, True, True, False]
     assert m.counted.sum() == 2
@@ -80,9 +69,12 @@ def test_psi_sf_is_the_ratio_to_its_threshold():
     assert psi_self(covariance(2 * E.t_sf), E) == 1.0
     assert psi_self(covariance(0.4 * E.t_sf), E) == pytest.approx(0.4)
     assert psi_self(covariance(0.4 * E.t_sf, angle=1.1), E) == pytest.approx(0.4)
+    for position in (0.3, 0.7):
+        P = covariance(position * E.t_sf, turn=0.6 * E.t_heading)
+        assert psi_self(P, E) == pytest.approx(max(position, 0.6))
 
 
-def test_psi_sf_hears_the_heading_only_in_extended():
+def test_psi_sf_includes_the_heading_in_extended_only():
     assert psi_self(covariance(0.0, turn=E.t_heading), E) == pytest.approx(1.0)
     assert psi_self(covariance(0.0, turn=E.t_heading), PRINTED) == 0.0
 
@@ -98,7 +90,7 @@ def test_psi_ob_scales_with_sigma_and_inverse_distance(track):
     assert psi(0.0, 10.0) == 1.0
 
 
-def test_psi_ob_is_about_relative_speed(track):
+def test_psi_ob_depends_on_relative_speed(track):
     o = ObstacleSet.from_tracks([track((1, 0), (0.1, 0)), track((1, 0))])
     assert psi_obstacle(o, HERE, np.array([0.1, 0.0]), E)[0] == 0.0
     assert psi_obstacle(o, HERE, np.array([0.1, 0.0]), E)[1] > 0.0
@@ -112,8 +104,8 @@ def test_free_distance_ends_at_the_nearest_shape():
     assert obstacle_free_distance(HERE, centres, radii, 0.8) == pytest.approx(0.3)
     assert obstacle_free_distance(HERE, np.zeros((0, 2)), np.zeros(0), 0.8) == 0.8
     assert obstacle_free_distance(np.array([0.0, 0.4]), centres, radii, 0.8) == 0.0
-    assert psi_way(0.8, E) == 1.0
-    assert psi_way(0.0, E) == 0.0
+    ratios = [psi_way(f * E.d_n_thres, E) for f in (-1.0, 0.0, 0.25, 1.0, 2.0)]
+    assert ratios == pytest.approx([0.0, 0.0, 0.25, 1.0, 1.0])
 
 
 def test_psi_way_is_lipschitz():
@@ -126,20 +118,6 @@ def test_psi_way_is_lipschitz():
             psi_way(obstacle_free_distance(x, centres, radii, E.d_n_thres), E) for x in (a, b)
         )
         assert abs(pa - pb) <= np.hypot(*(a - b)) / E.d_n_thres + 1e-12
-
-
-def test_the_set_o_is_frontal_or_closing(track):
-    walking = np.array([0.1, 0.0])
-    cases = [
-        (track((-1, 0)), False),  # static behind a robot walking away
-        (track((1, 0)), True),
-        (track((-1, 0), (0.15, 0)), True),  # closing from behind
-        (track((-1, 0), (0.05, 0)), False),
-        (track((3, 0)), False),  # too far
-    ]
-    o = ObstacleSet.from_tracks([t for t, _ in cases])
-    found = attended(o, np.zeros(3), walking, E.attention_range)
-    assert found.tolist() == [wanted for _, wanted in cases]
 
 
 def test_the_set_o_does_not_depend_on_the_frame(track):
@@ -158,26 +136,20 @@ def test_the_set_o_does_not_depend_on_the_frame(track):
     )
 
 
-def test_frontal_is_up_to_abeam(track):
-    def seen(degrees, speed=0.0):
+def test_the_set_o_is_frontal_or_closing(track):
+    def member(degrees, speed=0.0, distance=1.0):
         a = np.radians(degrees)
         outward = np.array([np.cos(a), np.sin(a)])
-        o = ObstacleSet.from_tracks([track(outward, speed * outward)])
+        o = ObstacleSet.from_tracks([track(distance * outward, speed * outward)])
         return bool(attended(o, np.zeros(3), STILL, 2.0)[0])
 
-    assert [seen(d) for d in (85, 95, -85, -95, 170)] == [True, False, True, False, False]
-    assert seen(170, -0.1)
+    assert [member(d) for d in (85, 95, -85, -95, 170)] == [True, False, True, False, False]
+    assert member(170, -0.1)
+    assert not member(0, distance=2.1)
     abeam = ObstacleSet.from_tracks([track((0, 1))])
     assert not attended(abeam, np.zeros(3), STILL, 2.0)[0]
-    assert not seen(170, 0.1)
-
-
-def test_psi_way_is_the_share_of_its_threshold():
-    assert psi_way(0.25 * E.d_n_thres, E) == pytest.approx(0.25)
-    assert psi_way(-1.0, E) == 0.0
-    assert psi_way(2.0 * E.d_n_thres, E) == 1.0
-
-
-def test_psi_sf_is_the_worse_of_place_and_heading():
-    assert psi_self(covariance(0.3 * E.t_sf, turn=0.6 * E.t_heading), E) == pytest.approx(0.6)
-    assert psi_self(covariance(0.7 * E.t_sf, turn=0.6 * E.t_heading), E) == pytest.approx(0.7)
+    assert not member(170, 0.1)
+    walking = np.array([0.1, 0.0])
+    for speed, closing in ((0.15, True), (0.05, False), (0.0, False)):
+        o = ObstacleSet.from_tracks([track((-1, 0), (speed, 0))])
+        assert attended(o, np.zeros(3), walking, 2.0)[0] == closing

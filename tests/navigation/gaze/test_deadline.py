@@ -116,13 +116,6 @@ def test_ground_votes_on_its_rings_within_the_reach_of_the_gaze(belief):
     assert scene.camera_height / np.tan(-v.tilt) == pytest.approx(np.repeat([2.0, 0.4], 5))
 
 
-def test_mirror_symmetry(belief, track):
-    left = votes(belief([track((1, 0.4), (-0.1, 0.05), age=0.5)]), 0.3)
-    right = votes(belief([track((1, -0.4), (-0.1, -0.05), age=0.5)]), -0.3)
-    assert left.pan == pytest.approx(-right.pan)
-    assert left.value == pytest.approx(right.value)
-
-
 def test_self_urgency_depends_on_position_and_heading(belief):
     assert self_urgency(belief(sigma=0.025, turn_sigma=0.0), P) == pytest.approx(0.5)
     assert self_urgency(belief(sigma=0.0, turn_sigma=0.03), P) == pytest.approx(0.5)

@@ -50,12 +50,6 @@ def test_stale_ground_on_both_sides_votes_ahead_in_paper_and_sideways_in_extende
     assert v.value[:-1].sum() <= EXTENDED.gaze.w_lm + 1e-12
 
 
-def test_mirrored_ground_mirrors_the_candidate(belief, task):
-    left = votes(belief(sigma=0.0, confidence=lambda x, y: float(y + 0.3 * x > 0.2)), task())
-    right = votes(belief(sigma=0.0, confidence=lambda x, y: float(-y + 0.3 * x > 0.2)), task())
-    assert left.pan[0] == pytest.approx(-right.pan[0])
-
-
 def test_printed_votes_of_obstacles_are_a_mean_and_extended_a_sum(belief, task, track):
     places = [(0.6, 0.1 * i) for i in range(4)]
     tracks = [track(x, (-0.1, 0.0), sigma=0.2, id=i) for i, x in enumerate(places)]

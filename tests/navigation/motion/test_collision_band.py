@@ -60,19 +60,6 @@ def test_contact_time_is_the_first_touch():
     assert Encounter(0.1, 0.0, 0.1, 0.0, 0.3).contact_time(0.0) == inf
 
 
-def test_roots_touch():
-    rng = np.random.default_rng(2)
-    found = 0
-    for e in encounters(rng, 500):
-        for v in e.crossing_speeds():
-            u, w = e.forward - v, e.left
-            if u * u + w * w > 1e-6:
-                cross = abs(e.along * w - e.across * u) / hypot(u, w)
-                assert cross == pytest.approx(e.radius, abs=1e-6)
-                found += 1
-    assert found > 200
-
-
 def test_the_band_is_where_a_standing_robot_is_hit():
     rng = np.random.default_rng(3)
     for e in encounters(rng, 3000):

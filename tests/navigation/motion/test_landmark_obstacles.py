@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from navigation.belief.belief import Motion
 from navigation.motion.landmark_obstacles import LandmarkObstacles
 from navigation.obstacle_set import ObstacleSet
 from navigation.parameters.motion import LandmarkParameters
@@ -39,15 +38,17 @@ def test_near_ones_are_added_and_nothing_else_is_changed(landmarks, belief, trac
     assert counts >= {0, 1, 2}
 
 
-def test_they_stand_where_they_are_known_to_and_are_as_wide(landmarks, belief):
-    added = ObstacleSet.from_tracks(landmarks.added_to(belief(pose=(2.3, 0.1, 1.0))).tracks)
+def test_they_are_static_at_their_known_positions(landmarks, belief):
+    b = belief(pose=(2.3, 0.1, 1.0))
+    added = ObstacleSet.from_tracks(landmarks.added_to(b).tracks)
     assert added.position.tolist() == [list(PLACES["east"]), list(PLACES["by"])]
     assert added.static.all()
+    assert LandmarkObstacles({}, 0.05, PARAMETERS).added_to(b) is b
     assert np.all(added.radius == 0.05)
     assert np.all(added.sigma < 0.01)
 
 
-def test_their_ids_are_no_tracks_and_stay_the_same(landmarks, belief):
+def test_their_ids_are_negative_and_stay_the_same(landmarks, belief):
     def ids(*pose):
         return {t.label: t.id for t in landmarks.added_to(belief(pose=(*pose, 0.0))).tracks}
 
@@ -55,14 +56,3 @@ def test_their_ids_are_no_tracks_and_stay_the_same(landmarks, belief):
     assert len({id for some in met for id in some.values()}) == len(PLACES)
     assert all(id < 0 for some in met for id in some.values())
     assert met[2] == met[3]
-
-
-def test_without_landmarks_nothing_is_added(belief, track):
-    before = belief([track((0.5, 0.0))])
-    assert LandmarkObstacles({}, 0.05, PARAMETERS).added_to(before) is before
-
-
-def test_they_are_verdicts_not_guesses(landmarks, belief):
-    (north,) = landmarks.added_to(belief(pose=(0.0, 2.5, 0.0))).tracks
-    assert north.motion is Motion.STATIC
-    assert north.particles is None

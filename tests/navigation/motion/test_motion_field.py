@@ -101,16 +101,6 @@ def test_receding_or_static_obstacles_have_no_virtual_obstacle(track):
         assert field.uncapped_obstacles(np.zeros(3), np.zeros(2), scene([t])) == ()
 
 
-def test_the_printed_form_enters_the_sum_as_an_obstacle(track):
-    field = MotionField(PAPER.univector, PAPER.moving_obstacles)
-    s = scene([track((0.8, -0.2), (-0.1, 0.06))], PAPER)
-    (active,) = field.printed_obstacles(np.zeros(3), np.array([0.15, 0.0]), s, (0,))
-    assert active.obstacle.radius <= np.hypot(*active.obstacle.position) + 1e-12
-    with_it = field.at(np.zeros(2), 0.0, s, (active,))
-    without = field.at(np.zeros(2), 0.0, s, ())
-    assert with_it != pytest.approx(without)
-
-
 def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(track):
     field = MotionField(EXTENDED.univector, EXTENDED.moving_obstacles)
     s = scene([track((0.5, 0.0), (-0.1, 0.0))], target=(0.3, 0.0), heading=np.pi)

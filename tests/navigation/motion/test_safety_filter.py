@@ -99,24 +99,6 @@ def test_a_standing_robot_leaves_the_band_of_a_mover(limits):
     assert abs(v[1]) > 0.02
 
 
-def test_the_penalty_turns_with_the_scene(limits, rotation):
-    rng = np.random.default_rng(1)
-    filter_ = filter_of(limits)
-    for _ in range(20):
-        places, velocities = rng.uniform(-1, 1, (8, 2)), rng.normal(0, 0.1, (8, 2))
-        heading, a = float(rng.uniform(-3, 3)), float(rng.uniform(-3, 3))
-        r, wanted = rotation(a), rng.normal(0, 0.1, 2)
-        course = float(np.arctan2(wanted[1], wanted[0]))
-        one, other = (
-            filter_.penalty(start((0, 0, h), (0.1, 0.0, 0.2), c), filter_.candidates(v, c), d)
-            for h, v, c, d in (
-                (heading, wanted, course, discs(places, velocities)),
-                (heading + a, r @ wanted, course + a, discs(places @ r.T, velocities @ r.T)),
-            )
-        )
-        assert one == pytest.approx(other, abs=1e-6)
-
-
 def test_without_footsteps_the_path_is_turn_then_straight(limits):
     candidates = np.array([[-0.2, 0.0], [0.2, 0.0], [0.0, 0.05]])
     velocity, duration = filter_of(limits, steps=0).rollout(start(), candidates)

@@ -17,21 +17,22 @@ def unit(angle):
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
-def test_normalizing_keeps_directions_and_zero():
-    assert normalized(np.array([[3.0, 4.0], [0.0, 0.0]])) == pytest.approx(
-        np.array([[0.6, 0.8], [0, 0]])
-    )
+def blended(goal, u_auf, ramp):
+    return blended_sum(unit(goal), u_auf, np.array(ramp), *NO_VIRTUAL, virtual_weight=1.5)
 
 
-def test_without_obstacles_only_the_goal_counts():
+def test_without_active_obstacles_only_the_goal_counts():
     u = unit(0.7)
     assert normalized(weighted_sum(u, np.zeros((3, 2)), 0.75, 0.25)) == pytest.approx(u)
-    assert blended_sum(
-        u, np.zeros((3, 2)), np.zeros(3), *NO_VIRTUAL, virtual_weight=1.5
-    ) == pytest.approx(u)
-    assert blended_sum(
-        u, np.zeros((0, 2)), np.zeros(0), *NO_VIRTUAL, virtual_weight=1.5
-    ) == pytest.approx(u)
+    for ramp in ([], [0.0, 0.0], [1.0]):  # none, far ones, one behind the robot
+        assert blended(0.7, np.zeros((len(ramp), 2)), ramp) == pytest.approx(u)
+    opposite = unit(np.array([np.pi / 2, -np.pi / 2]))
+    assert blended(0.7, opposite, [1.0, 1.0]) == pytest.approx(u)
+
+
+def test_an_obstacle_at_hand_decides_alone():
+    u_auf = unit(np.array([2.0]))
+    assert normalized(blended(0.0, u_auf, [1.0])) == pytest.approx(u_auf[0])
 
 
 def test_the_printed_weights_turn_at_most_19_5_degrees():
@@ -48,23 +49,6 @@ def test_nearness_falls_from_one_to_zero():
     assert np.all(ramp[rho > 0.75 + 1e-9] == 0.0)
     assert np.all(np.diff(ramp) <= 0.0)
     assert np.abs(np.diff(ramp)).max() < 0.01
-
-
-def test_an_obstacle_at_hand_decides_alone():
-    u_auf = unit(np.array([2.0]))
-    total = blended_sum(unit(0.0), u_auf, np.ones(1), *NO_VIRTUAL, virtual_weight=1.5)
-    assert normalized(total) == pytest.approx(u_auf[0])
-
-
-def test_an_obstacle_that_does_not_act_has_no_say():
-    total = blended_sum(unit(0.3), np.zeros((1, 2)), np.ones(1), *NO_VIRTUAL, virtual_weight=1.5)
-    assert total == pytest.approx(unit(0.3))
-
-
-def test_opposite_obstacles_that_cancel_leave_the_goal():
-    u_auf = unit(np.array([np.pi / 2, -np.pi / 2]))
-    total = blended_sum(unit(0.0), u_auf, np.ones(2), *NO_VIRTUAL, virtual_weight=1.5)
-    assert total == pytest.approx(unit(0.0))
 
 
 def test_a_goal_near_an_obstacle_shrinks_it_but_never_into_the_bodies():
@@ -89,8 +73,7 @@ def test_the_printed_sum_weighs_the_goal_against_the_direction_of_all_obstacles(
 
 def test_obstacles_count_by_the_square_of_their_nearness():
     """Two at right angles, of nearness 0.8 and 0.4: the nearer one counts four times."""
-    u_auf, ramp = unit(np.array([0.0, np.pi / 2])), np.array([0.8, 0.4])
-    total = blended_sum(unit(1.0), u_auf, ramp, *NO_VIRTUAL, virtual_weight=1.5)
+    total = blended(1.0, unit(np.array([0.0, np.pi / 2])), [0.8, 0.4])
     avoid = np.array([4.0, 1.0]) / np.hypot(4.0, 1.0)
     assert total == pytest.approx(0.2 * unit(1.0) + 0.8 * avoid)
 
@@ -107,7 +90,7 @@ def test_virtual_obstacles_join_in_with_their_weight():
     assert alone == pytest.approx(0.2 * unit(1.0) + 0.8 * u_virtual[0])
 
 
-def test_near_the_goal_the_radius_leaves_its_share_of_the_room():
+def test_near_the_goal_the_radius_leaves_its_fraction_of_the_room():
     p = UnivectorParameters(goal_fraction=0.5, min_goal_gap=0.02, min_goal_offset=0.03, d_e=0.2)
     s_oe, s_phys = np.full(3, 0.3), np.full(3, 0.2)
     s, d_e = shrunk_for_goal(s_oe, s_phys, np.array([0.21, 0.3, 0.45]), p)

@@ -64,6 +64,9 @@ def test_beyond_its_length_the_path_is_free():
     assert printed_radius(foot(0.81, 0.2), 0.3, 0.8, 0.6) is None
     assert printed_radius(foot(0.5, 0.0), 0.3, 0.8, 0.6) == 0.0
     assert printed_path_length(0.2, 0.5, 12.0, 0.5, 0.05) == pytest.approx(1.5)
+    assert printed_path_length(0.0, 0.5, 12.0, 0.5, 0.05) == pytest.approx(0.3)
+    assert printed_radius(foot(0.4, 0.9), 0.3, 0.8, 0.6) == pytest.approx(0.6 * 0.3)
+    assert printed_radius(foot(0.4, 0.1), 0.3, 0.8, 0.6) == pytest.approx(0.1)
 
 
 def test_the_side_is_kept_until_the_robot_is_well_over():
@@ -83,30 +86,6 @@ def test_near_the_path_the_goal_decides_the_side():
     sides.update(1, foot(1.0, -0.02), across)
     sides.keep(set())
     assert sides.update(1, foot(1.0, -0.02), (0.0, -1.0)) == -1
-
-
-def test_the_foot_does_not_depend_on_the_frame(rotation):
-    a, shift = 0.8, np.array([3.0, -1.0])
-    r = rotation(a)
-    rng = np.random.default_rng(3)
-    for robot in rng.uniform((0.1, -1.0), (1.0, 1.0), (20, 2)):
-        here = foot(*robot, VELOCITY)
-        there = foot(*(r @ robot + shift), r @ VELOCITY, shift)
-        assert (there.along, there.lateral) == pytest.approx((here.along, here.lateral))
-        assert (there.x, there.y) == pytest.approx(r @ [here.x, here.y] + shift)
-        for side in (1, -1):
-            assert there.normal(side) == pytest.approx(r @ here.normal(side))
-        sides = [
-            VirtualSides(MovingObstacleParameters()).update(1, f, tuple(u))
-            for f, u in ((here, [0.6, 0.8]), (there, r @ [0.6, 0.8]))
-        ]
-        assert sides[0] == sides[1]
-
-
-def test_the_printed_radius_is_the_oval_of_the_obstacle():
-    assert printed_radius(foot(0.4, 0.9), 0.3, 0.8, 0.6) == pytest.approx(0.6 * 0.3)
-    assert printed_radius(foot(0.4, 0.1), 0.3, 0.8, 0.6) == pytest.approx(0.1)
-    assert printed_path_length(0.0, 0.5, 12.0, 0.5, 0.05) == pytest.approx(0.3)
 
 
 def test_far_from_the_path_the_present_side_decides():
