@@ -82,18 +82,10 @@ def _rim_distance(rims: Array, points: Table, slope: Array, h: float, radius: fl
 
 @njit(cache=True)
 def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
-    """Return the distance to the only trusted side, from the visible span of the side.
+    """Return the distance to the only trusted side and its standard deviation, 0, 0 if none [m].
 
-    The span lies between foot and head. Of a close cylinder at the border of the image often
-    neither is visible.
-
-    Args:
-        sides: as for `locate`, of one candidate.
-        height: of the candidate [m].
-        h: height of the camera [m].
-
-    Returns:
-        Distance and its standard deviation [m]; 0, 0 if the span gives none.
+    The visible span of the side lies between foot and head. Of a close cylinder at the border
+    of the image often neither is visible.
     """
     if (sides[0, 5] != 0.0) == (sides[1, 5] != 0.0):
         return 0.0, 0.0
@@ -109,14 +101,7 @@ def _span(sides: Array, height: float, h: float) -> tuple[float, float]:
 
 @njit(cache=True)
 def _guess(x: Array, sides: Array, known: Array, distance: float) -> None:
-    """Write the initial azimuth, distance and radius of a candidate; see `locate`.
-
-    Args:
-        x: output (3,).
-        sides: of the candidate.
-        known: of the candidate.
-        distance: initial distance, 0 if unknown [m].
-    """
+    """Write the initial azimuth, distance and radius x (3,); `distance` 0 if unknown [m]."""
     left, right, radius = sides[0, 0], sides[1, 0], known[0]
     left_trusted, right_trusted = sides[0, 5] != 0.0, sides[1, 5] != 0.0
     half = min(max(0.5 * (left - right), MIN_HALF), MAX_HALF)
@@ -136,15 +121,10 @@ def _guess(x: Array, sides: Array, known: Array, distance: float) -> None:
 def _keep_inner(
     keep: Bools, mean_sigma: Array, x: Array, edges: Edges, h: float, common: float
 ) -> int:
-    """Select the rim points away from the ends; return their number.
+    """Select the rim points away from the ends of their rim; return their number.
 
-    Args:
-        keep: output, which points are used.
-        mean_sigma: output, standard deviation of the mean slope of each rim (3,) [1].
-        x: initial azimuth, distance and radius.
-        edges: rims of one candidate and their points as for `locate`.
-        h: height of the camera [m].
-        common: correlation of the errors of two points of one edge [1].
+    Writes which points to `keep`, and the standard deviation of the mean slope of each rim (3,)
+    to `mean_sigma` [1].
     """
     theta, d, r = x[0], x[1], x[2]
     rims, points, azimuth, slope = edges
@@ -230,15 +210,14 @@ def _covariance(
     known: Array,
     rims: Array,
     mean_sigma: Array,
-    pose_variance: Array,
-    smear: Array,
+    pose: Array,
     roundness: float,
-    h: float,
     span_sigma: float,
 ) -> None:
     """Write the measurement covariance (7, 7): pixels, motion blur, roundness, camera pose."""
     theta, d, r = x[0], x[1], x[2]
     s, c = sin(theta), cos(theta)
+    h, pose_variance, smear = pose[0], pose[1:5], pose[5:]
     R[:] = 0.0
     G[:] = 0.0  # Jacobian by tilt, roll, yaw and height of the camera
     for j in range(SIDES):
@@ -395,8 +374,7 @@ def locate(
             trusted[j] = side[j, 5] != 0.0
         for _ in range(ITERATIONS):
             _linearise(H, residual, point_residual, x, side, known[k, 0], keep, edges, h, span)
-            for j in range(MAX_RIMS):
-                means[j] = residual[SIDES + j]
+            means[:] = residual[SIDES:PRIOR]
             # A side visible beyond foot or head is not an edge of the cylinder.
             reach = sqrt(x[1] * x[1] - x[2] * x[2])
             for j in range(SIDES):
@@ -416,10 +394,8 @@ def locate(
                 known[k],
                 rim,
                 mean_sigma,
-                pose[1:5],
-                pose[5:],
+                pose,
                 roundness,
-                h,
                 span_sigma,
             )
             _whiten(R, H, residual)

@@ -78,11 +78,6 @@ class Detector:
             for c in self._table.classes
         )
         self._beacon_label = (False, *(c.kind == "beacon" for c in self._table.classes))
-        # Mean and standard deviation of a uniform distribution.
-        self._radius = (
-            0.5 * (parameters.min_radius + parameters.max_radius),
-            (parameters.max_radius - parameters.min_radius) / sqrt(12.0),
-        )
         self._padded = np.full((camera.height + 2, camera.width + 2), OUTSIDE, dtype=np.uint8)
 
     def detect(self, image: NDArray[np.uint8], pose: CameraPose) -> tuple[Detection, ...]:
@@ -146,7 +141,9 @@ class Detector:
                 rims.append(RimCue(outline.top, head, near=False))
             left, right = outline.left, outline.right
             if rims or left.trusted or right.trusted:
-                candidate = Candidate(left, right, tuple(rims), head, *self._radius)
+                candidate = Candidate(
+                    left, right, tuple(rims), head, *self._parameters.radius_prior
+                )
                 occluded = self._occluded(outline, candidate)
                 hypotheses.append(_Hypothesis("obstacle", (blob,), outline, candidate, occluded))
         return hypotheses
@@ -177,14 +174,7 @@ class Detector:
     def _split(self, hypothesis: _Hypothesis, view: View) -> list[_Hypothesis]:
         """Return the obstacles of a merged blob, empty if it cannot be segmented."""
         (blob,) = hypothesis.blobs
-        parts = split(
-            blob,
-            hypothesis.outline,
-            self._padded,
-            view=view,
-            parameters=self._parameters,
-            radius=self._radius,
-        )
+        parts = split(blob, hypothesis.outline, self._padded, view, self._parameters)
         return [
             replace(hypothesis, candidate=part.candidate, occluded=part.occluded) for part in parts
         ]
@@ -250,7 +240,7 @@ class Detector:
         beacon = hypothesis.kind == "beacon"
         limit = parameters.max_beacon_range if beacon else parameters.max_obstacle_range
         if not beacon:
-            cylinder = _inflated_if_too_wide(cylinder, parameters.max_radius, self._radius[0])
+            cylinder = _inflated_if_too_wide(cylinder, parameters)
         distance, bearing, covariance, by_radius = polar_in_robot(cylinder, view)
         certain = covariance[0, 0] <= (parameters.max_relative_sigma * distance) ** 2
         if not (distance <= limit and certain):  # also if NaN
@@ -276,19 +266,14 @@ def _bounding_box(blobs: tuple[Blob, ...]) -> tuple[int, int, int, int]:
     return min(lefts), min(tops), max(rights), max(bottoms)
 
 
-def _inflated_if_too_wide(cylinder: Cylinder, max_radius: float, mean_radius: float) -> Cylinder:
+def _inflated_if_too_wide(cylinder: Cylinder, parameters: VisionParameters) -> Cylinder:
     """Inflate the covariance of a cylinder wider than any obstacle.
 
     The blob is an obstacle merged with another object; the obstacle is somewhere in it.
-
-    Args:
-        cylinder: as located.
-        max_radius: of obstacles [m].
-        mean_radius: of obstacles [m].
     """
-    if cylinder.radius <= max_radius + 2.0 * sqrt(float(cylinder.covariance[2, 2])):
+    if cylinder.radius <= parameters.max_radius + 2.0 * sqrt(float(cylinder.covariance[2, 2])):
         return cylinder
-    excess = cylinder.radius - mean_radius
+    excess = cylinder.radius - parameters.radius_prior[0]
     spread = np.diag([(excess / cylinder.distance) ** 2, excess * excess, excess * excess])
     return replace(cylinder, covariance=cylinder.covariance + spread)
 

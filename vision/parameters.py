@@ -1,6 +1,7 @@
 """Parameters of the detector."""
 
 from dataclasses import dataclass, field
+from math import sqrt
 from typing import Annotated
 
 from annotated_types import Interval
@@ -73,3 +74,9 @@ class VisionParameters:
     """Segmentation of merged blobs."""
     pose: PoseParameters = field(default_factory=PoseParameters)
     """Uncertainty of the camera pose."""
+
+    @property
+    def radius_prior(self) -> tuple[float, float]:
+        """Mean and standard deviation of the uniform prior of an obstacle's radius [m]."""
+        low, high = self.min_radius, self.max_radius
+        return 0.5 * (low + high), (high - low) / sqrt(12.0)

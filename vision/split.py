@@ -60,13 +60,7 @@ class Part:
 
 
 def split(
-    blob: Blob,
-    outline: Outline,
-    padded: Labels,
-    *,
-    view: View,
-    parameters: VisionParameters,
-    radius: tuple[float, float],
+    blob: Blob, outline: Outline, padded: Labels, view: View, parameters: VisionParameters
 ) -> list[Part]:
     """Segment a merged blob; return its cylinders, empty if the outline has no steps.
 
@@ -76,7 +70,6 @@ def split(
         padded: labels of the image with a border of `OUTSIDE` one pixel wide.
         view: camera and pose.
         parameters: sizes of obstacles.
-        radius: mean radius and its standard deviation [m].
     """
     grid = _Grid(blob, outline, padded, view)
     step = parameters.outline_step
@@ -87,19 +80,9 @@ def split(
         upper = grid.pieces(head, step, nearest=False)
     if len(lower) < 2 and len(upper) < 2:
         return []
-    groups = _match(
-        lower,
-        upper,
-        view=view,
-        pixel=grid.pixel,
-        tolerance=parameters.split.side_tolerance * grid.azimuth_step,
-        parameters=parameters,
-    )
+    groups = _match(lower, upper, grid, view, parameters)
     feet = [low for low, high in groups if low is not None and high is None]
-    parts = [
-        _part(low, _over(low, high, feet), grid, view=view, parameters=parameters, radius=radius)
-        for low, high in groups
-    ]
+    parts = [_part(low, _over(low, high, feet), grid, view, parameters) for low, high in groups]
     return [part for part in parts if part is not None]
 
 
@@ -147,14 +130,13 @@ class _Grid:
 def _match(
     lower: Sequence[_Piece],
     upper: Sequence[_Piece],
-    *,
+    grid: _Grid,
     view: View,
-    pixel: float,
-    tolerance: float,
     parameters: VisionParameters,
 ) -> list[tuple[_Piece | None, _Piece | None]]:
     """Return foot and head of each cylinder, None for an occluded one."""
     costs = []
+    tolerance = parameters.split.side_tolerance * grid.azimuth_step
     fall = view.height - parameters.obstacle_height
     for i, low in enumerate(lower):
         for j, high in enumerate(upper):
@@ -162,7 +144,7 @@ def _match(
             shorter = min(low.left - low.right, high.left - high.right)
             if common < 0.5 * shorter:
                 continue
-            margin = parameters.split.radius_tolerance + pixel * (
+            margin = parameters.split.radius_tolerance + grid.pixel * (
                 low.run**2 / view.height + high.run**2 / fall
             )
             radius = 0.5 * (high.run - low.run)
@@ -178,8 +160,8 @@ def _match(
             ]
             if any(gap > tolerance for gap in gaps):
                 continue
-            middle = 0.5 * (parameters.min_radius + parameters.max_radius)
-            costs.append((abs(radius - middle) / margin + sum(gaps) / tolerance, i, j))
+            mean_radius, _ = parameters.radius_prior
+            costs.append((abs(radius - mean_radius) / margin + sum(gaps) / tolerance, i, j))
     pairs: list[tuple[int, int]] = []
     feet, heads = set(range(len(lower))), set(range(len(upper)))
     for _, i, j in sorted(costs):
@@ -227,13 +209,7 @@ def _rim(piece: _Piece, sigma: float) -> Rim:
 
 
 def _part(
-    low: _Piece | None,
-    high: _Piece | None,
-    grid: _Grid,
-    *,
-    view: View,
-    parameters: VisionParameters,
-    radius: tuple[float, float],
+    low: _Piece | None, high: _Piece | None, grid: _Grid, view: View, parameters: VisionParameters
 ) -> Part | None:
     """Return one cylinder from foot, head or both, None if neither side is visible."""
     pieces = [p for p in (low, high) if p is not None]
@@ -241,6 +217,7 @@ def _part(
     lefts = [p.left for p in pieces if p.left_true]
     if not rights and not lefts:
         return None
+    radius = parameters.radius_prior
     head = parameters.obstacle_height - view.height
     near = low.run if low is not None else max(pieces[0].run - 2.0 * radius[0], 0.1)
     far = high.run if high is not None else near + 2.0 * radius[0]

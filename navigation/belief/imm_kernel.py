@@ -37,7 +37,7 @@ def mix(
     start_variance: float,
     turn_variance: float,
 ) -> Parts:
-    """Mix the modes by their transition probabilities (Blom & Bar-Shalom).
+    """Return weights, states and covariances mixed by the transitions (Blom & Bar-Shalom).
 
     Args:
         weights: probabilities (n, 3).
@@ -47,9 +47,6 @@ def mix(
         dt: time since the last mixing [s].
         start_variance: of the velocity of an obstacle that starts to move [m²/s²].
         turn_variance: of its turn rate [rad²/s²].
-
-    Returns:
-        Weights, states and covariances, new.
     """
     n = len(weights)
     mixed_weights, mixed = np.zeros((n, 3)), np.zeros((n, 3, SIZE))
@@ -199,12 +196,7 @@ def mahalanobis(u: float, v: float, xx: float, xy: float, yy: float) -> tuple[fl
 def nis(states: Array, covariances: Array, rows: Rows, z: Array, R: Array) -> Array:
     """Return the normalized innovation squared of detections under their nearest modes (m,).
 
-    Args:
-        states: (n, 3, 5).
-        covariances: (n, 3, 5, 5).
-        rows: of the detected obstacles (m,).
-        z: detected positions (m, 2) [m].
-        R: their covariances (m, 2, 2) [m²].
+    Arguments as for `update`.
     """
     min_nis = np.empty(len(rows))
     for k in range(len(rows)):
@@ -325,28 +317,6 @@ def update(
 
 
 @njit(cache=True)
-def positions(weights: Array, states: Array, static: Mask) -> Array:
-    """Return the positions of obstacles, given their motion class (n, 2) [m].
-
-    Args:
-        weights: (n, 3).
-        states: (n, 3, 5).
-        static: whether each obstacle is static (n,).
-    """
-    position = np.empty((len(weights), 2))
-    for k in range(len(weights)):
-        on, back = weights[k, FORWARD], weights[k, REVERSED]
-        for a in range(2):
-            if static[k]:
-                position[k, a] = states[k, STATIC, a]
-            else:
-                position[k, a] = (on * states[k, FORWARD, a] + back * states[k, REVERSED, a]) / (
-                    on + back
-                )
-    return position
-
-
-@njit(cache=True)
 def mean(weights: Array, states: Array) -> Array:
     """Return the mean (5,) of one obstacle, given that it moves; weights (3,), states (3, 5)."""
     moving = weights[FORWARD] + weights[REVERSED]
@@ -359,14 +329,18 @@ def mean(weights: Array, states: Array) -> Array:
 
 
 @njit(cache=True)
-def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, Array]:
-    """Return mean (5,) and covariance (5, 5) of one obstacle, given that it moves.
+def positions(weights: Array, states: Array, static: Mask) -> Array:
+    """Return the positions of obstacles, given their motion class (n, 2) [m]; see `estimates`."""
+    position = np.empty((len(weights), 2))
+    for k in range(len(weights)):
+        average = states[k, STATIC] if static[k] else mean(weights[k], states[k])
+        position[k, 0], position[k, 1] = average[0], average[1]
+    return position
 
-    Args:
-        weights: (3,).
-        states: (3, 5).
-        covariances: (3, 5, 5).
-    """
+
+@njit(cache=True)
+def moments(weights: Array, states: Array, covariances: Array) -> tuple[Array, Array]:
+    """Return mean (5,) and covariance (5, 5) of one obstacle, given that it moves; see `mean`."""
     on = weights[FORWARD] / (weights[FORWARD] + weights[REVERSED])
     back = weights[REVERSED] / (weights[FORWARD] + weights[REVERSED])
     average, covariance = np.empty(SIZE), np.empty((SIZE, SIZE))

@@ -14,8 +14,7 @@ GAZE = pose(tilt=-0.3)
 
 def parts_of(obstacles: list[Cylinder]) -> list[Part]:
     (blob,), padded, (outline,) = traced(obstacles, GAZE)
-    options = {"parameters": VisionParameters(), "radius": (0.085, 0.02)}
-    return split(blob, outline, padded, view=View(CAMERA, GAZE), **options)
+    return split(blob, outline, padded, View(CAMERA, GAZE), VisionParameters())
 
 
 @settings(max_examples=40)
