@@ -122,56 +122,40 @@ def test_a_changed_scenario_changes_the_belief(run, capsys):
     assert "of frame 1" in capsys.readouterr().out
 
 
-def test_damaged_cut_and_missing_files_are_one_clear_error(run, capsys):
-    file = run / "measurements.bin"
+def offset_of(content, index):
+    return list(payloads(content))[index][0]
+
+
+@pytest.mark.parametrize(
+    ("name", "damage", "expected"),
+    [
+        (
+            "measurements.bin",
+            lambda c: c[: (n := offset_of(c, 5) + 99)] + b"?" + c[n + 1 :],
+            "frame 5",
+        ),
+        ("measurements.bin", lambda c: c[: offset_of(c, 9) + 20], "cut off in frame 9"),
+        ("measurements.bin", lambda c: c[: offset_of(c, 9) + 3], "cut off in frame 9"),
+        ("measurements.bin", lambda c: c[:8], "cut off, it holds 0 of"),
+        ("measurements.bin", lambda c: b"something else", "not a file of measurements"),
+        ("measurements.bin", None, "cannot read the file of measurements"),
+        ("tape.bin", lambda c: c[:1000] + b"?" + c[1001:], "damaged in block 0"),
+        ("tape.bin", lambda c: c[:-1], "cut off in block"),
+        ("tape.bin", lambda c: b"HSR8TAP9" + c[8:], "tape of format 9, hsr8"),
+        ("tape.bin", None, "cannot read the tape"),
+    ],
+)
+def test_damaged_cut_and_missing_files_are_one_error(run, capsys, name, damage, expected):
+    file = run / name
     content = file.read_bytes()
-    places = [offset for offset, _ in payloads(content)]
-
-    def refused(text):
-        assert entry(["verify", str(run)]) == 2
-        printed = capsys.readouterr()
-        assert text in printed.err
-        assert printed.err.count("\n") == 1
-        assert printed.out.splitlines() == [f"run         {run}"]
-
-    file.write_bytes(content[: places[5] + 100] + b"?" + content[places[5] + 101 :])
-    refused("damaged in frame 5")
-    file.write_bytes(content[: places[9] + 20])
-    refused("cut off in frame 9")
-    file.write_bytes(content[: places[9] + 3])
-    refused("cut off in frame 9")
-    file.write_bytes(content[:8])
-    refused("cut off, it holds 0 of")
-    manifest = run / "manifest.json"
-    ended = manifest.read_text()
-    manifest.write_text(json.dumps(json.loads(ended) | {"exit_reason": "running"}))
-    assert entry(["verify", str(run), "--json"]) == 0  # there is still the physics
-    manifest.write_text(ended)
-    capsys.readouterr()
-    file.write_bytes(b"something else")
-    refused("not a file of measurements")
     file.unlink()
-    refused("cannot read the file of measurements")
-
-
-def test_a_damaged_cut_or_missing_tape_is_one_clear_error(run, capsys):
-    file = run / "tape.bin"
-    content = file.read_bytes()
-
-    def refused(text):
-        assert entry(["verify", str(run)]) == 2
-        assert text in capsys.readouterr().err
-
-    file.write_bytes(content[:1000] + b"?" + content[1001:])
-    refused("damaged in block 0")
-    file.write_bytes(content[:-1])
-    refused("cut off in block")
-    file.write_bytes(b"something else")
-    refused("not a tape")
-    file.write_bytes(b"HSR8TAP9" + content[8:])
-    refused("tape of format 9, hsr8")
-    file.unlink()
-    refused("cannot read the tape")
+    if damage:
+        file.write_bytes(damage(content))
+    assert entry(["verify", str(run)]) == 2
+    printed = capsys.readouterr()
+    assert expected in printed.err
+    assert printed.err.count("\n") == 1
+    assert printed.out.splitlines() == [f"run         {run}"]
 
 
 def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
@@ -181,3 +165,6 @@ def test_a_killed_run_is_checked_as_far_as_it_got(run, capsys):
     manifest.write_text(manifest.read_text().replace('"timeout"', '"running"'))
     assert entry(["verify", str(run), "--json"]) == 0
     assert stages(capsys)["estimator"]["count"] == 32
+    file.write_bytes(content[:8])
+    assert entry(["verify", str(run), "--json"]) == 0
+    assert stages(capsys)["physics"]["count"] == 401
