@@ -1,8 +1,8 @@
-"""Tunes every baseline planner with the same budget, in the 2-D loop of the decision study.
+"""Tune every baseline planner with the same budget, in the 2-D loop of the decision study.
 
 Each baseline gets `candidates` parameter sets, the first by hand and the others drawn, on
 `seeds` worlds; the best `finalists` get `more` worlds, and the best over all of them wins.
-A run scores the share of its legs walked without contact, one for a success. The worlds are
+The score of a run is the fraction of its legs without a collision, 1 for a success. The worlds are
 the course with twice its movers. Sensing is without a camera but not perfect: correlated
 errors of pose, positions and velocities, velocities that lag, and no sight beyond 2.5 m.
 
@@ -72,7 +72,7 @@ TUNING_HEAD = """\
 | planner | score by hand | tuned | successes by hand | tuned | time by hand [s] | tuned | values |
 |---|---|---|---|---|---|---|---|"""
 COMPARISON_HEAD = """\
-| scenario | planner | successes | % [95 %] | contacts | time-outs | median time [s] | median \
+| scenario | planner | successes | % [95 %] | contacts | timeouts | median time [s] | median \
 clearance [cm] | CPU per decision [ms] |
 |---|---|---|---|---|---|---|---|---|"""
 
@@ -128,7 +128,7 @@ class Blurred(Run):
         }
 
     def _blurred(self, time: float) -> Belief:
-        """What is believed one footstep after the last call."""
+        """Return the belief one footstep after the previous call."""
         dt = self.step_ticks * TICK
         keep = float(np.exp(-dt / ERROR_TIME))
         fresh = float(np.sqrt(1.0 - keep**2))
@@ -150,8 +150,8 @@ class Blurred(Run):
             if float(np.hypot(*away)) > SIGHT:
                 continue
             velocity = (self._lagged + self._speed)[index] * moving[index]
-            place = track.position + self._position[index]
-            tracks.append(replace(track, position=place, velocity=velocity, last_seen=place))
+            position = track.position + self._position[index]
+            tracks.append(replace(track, position=position, velocity=velocity, last_seen=position))
         return replace(truth, tracks=tuple(tracks))
 
 
@@ -224,16 +224,16 @@ def tune(
             done[row["method"], json.dumps(row["settings"]), row["seed"]] = row
 
     def rows(method: str, settings: Settings, count: range) -> list[Row]:
-        found = []
+        results = []
         for seed in count:
             key = (method, json.dumps(settings), seed)
             if key not in done:
-                found_now = walk(method, seed, settings=(*TUNING, *lines(method, settings)))
-                done[key] = {**found_now, "settings": settings}
+                row = walk(method, seed, settings=(*TUNING, *lines(method, settings)))
+                done[key] = {**row, "settings": settings}
                 with file.open("a") as stream:
                     stream.write(json.dumps(done[key]) + "\n")
-            found.append(done[key])
-        return found
+            results.append(done[key])
+        return results
 
     print(TUNING_HEAD, flush=True)
     for method in methods:

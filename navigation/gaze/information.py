@@ -1,7 +1,7 @@
 """Greedy information gain: expected entropy reduction by one look, in nats.
 
-Tracks, pose and ground count by how much one detection would reduce their entropy; the path of
-the robot and the time to collision do not count. The gains in one view are added.
+The gain of tracks, pose and ground is the expected entropy reduction by one detection. It does not
+depend on the path of the robot or the time to collision. The gains in one view are added.
 """
 
 import numpy as np

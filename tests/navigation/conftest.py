@@ -24,7 +24,7 @@ def _view(pan=0.0, tilt=-0.44, hfov=1.5, vfov=1.22):
 
 def _observe(
     pose,
-    place,
+    point,
     *,
     kind="obstacle",
     label="red",
@@ -36,7 +36,7 @@ def _observe(
     occluded=False,
     by_radius=(0.0, 0.0),
 ):
-    distance, bearing = range_bearing(pose, place)
+    distance, bearing = range_bearing(pose, point)
     return Observation(
         kind=kind,
         label=label,
@@ -64,7 +64,7 @@ def view():
 
 @pytest.fixture(scope="session")
 def observe():
-    """Builds an `Observation` of a place in W from a pose."""
+    """Builds an `Observation` of a point in W from a pose."""
     return _observe
 
 
@@ -87,7 +87,7 @@ class _Map:
         return np.array([self._age(*p) for p in np.asarray(points).tolist()])
 
 
-def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0, **details):
+def _track(point, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0, **details):
     moving = Motion.MOVING if np.hypot(*velocity) > 0 else Motion.STATIC
     cloud = details.pop("particles", None)
     if cloud is not None:
@@ -97,7 +97,7 @@ def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0
     return Track(
         id=id,
         label="red",
-        position=np.array(place, float),
+        position=np.array(point, float),
         velocity=np.array(velocity, float),
         covariance=np.diag([sigma**2, sigma**2, 0.01**2, 0.01**2]),
         radius=details.pop("radius", 0.08),
@@ -105,7 +105,7 @@ def _track(place, velocity=(0.0, 0.0), motion=None, *, id=1, sigma=0.01, age=0.0
         motion=motion or moving,
         hits=details.pop("hits", 20),
         age=age,
-        last_seen=np.array(place, float),
+        last_seen=np.array(point, float),
         visible=age == 0.0,
         particles=cloud,
         reach=details.pop("reach", 0.0),

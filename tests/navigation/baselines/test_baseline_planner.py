@@ -260,10 +260,10 @@ def test_orca_has_a_longer_horizon_for_movers_than_for_static_obstacles(
 ):
     p = PlannerParameters(method="orca").orca
     gap = 0.5 * (p.static_horizon + p.horizon) * limits.vx
-    place = (gap + 0.2 + p.margin, 0.0)
+    position = (gap + 0.2 + p.margin, 0.0)
     free, static, moving = (
         planner("orca", limits).plan(belief(tracks), task((4.0, 0.0))).velocity
-        for tracks in ([], [track(place)], [track(place, (-0.1, 0.0))])
+        for tracks in ([], [track(position)], [track(position, (-0.1, 0.0))])
     )
     assert static == pytest.approx(free)
     assert not np.allclose(moving, free)

@@ -44,7 +44,7 @@ def test_gaps_equal_brute_force(tracks, limits):
     position = rng.uniform(-1, 1, (5, 8, 2))
     radii = rng.uniform(0.1, 0.3, 6)
     most = 0.8
-    found = gaps(position, s, radii, most)
+    result = gaps(position, s, radii, most)
     for k in range(5):
         for t in range(8):
             there = [x.position + DT * (t + 1) * x.velocity for x in obstacles]
@@ -52,7 +52,7 @@ def test_gaps_equal_brute_force(tracks, limits):
                 float(np.hypot(*(position[k, t] - x))) - r
                 for x, r in zip(there, radii, strict=True)
             )
-            assert found[k, t] == pytest.approx(min(most, least))
+            assert result[k, t] == pytest.approx(min(most, least))
 
 
 def test_obstacles_within_lateral_reach_count(track, limits):

@@ -48,8 +48,8 @@ def test_a_vote_is_1_at_half_the_worst_case_time_to_collision(belief, track):
 
 
 def test_near_before_far_and_on_the_path_before_sideways(belief, track):
-    def v(place, path=0.0):
-        return value(belief([track(place, (-0.05, 0), age=0.3)]), path)
+    def v(point, path=0.0):
+        return value(belief([track(point, (-0.05, 0), age=0.3)]), path)
 
     assert v((0.6, 0)) > v((1.2, 0))
     assert v((1, 0)) > v((0, 1))
@@ -139,8 +139,8 @@ def test_a_look_request_votes_within_the_reach_of_the_gaze(belief):
 @pytest.mark.parametrize("turn", [0.8, -0.8])
 def test_a_turning_body_votes_for_tracks_that_come_into_reach(belief, track, turn):
     def pans(bearing, rate):
-        place = (np.cos(bearing), np.sin(bearing))
-        b = belief([track(place, (0.05, 0.0), age=3.0)], age=lambda x, y: 0.0)
+        point = (np.cos(bearing), np.sin(bearing))
+        b = belief([track(point, (0.05, 0.0), age=3.0)], age=lambda x, y: 0.0)
         v = deadline_votes(scene_of(b), 0.0, 0.2, P, turn_rate=rate)
         return v.pan[v.value > P.gaze.deadline.path_weight]
 

@@ -54,10 +54,10 @@ def test_printed_votes_of_obstacles_are_a_mean_and_extended_a_sum(belief, task, 
     places = [(0.6, 0.1 * i) for i in range(4)]
     tracks = [track(x, (-0.1, 0.0), sigma=0.2, id=i) for i, x in enumerate(places)]
     b = belief(tracks, sigma=0.0)
-    seen = slice(-4, None)
+    members = slice(-4, None)
     paper = votes(b, task())
     assert paper.value[1:5] == pytest.approx(PAPER.gaze.w_ob / 4)
-    assert votes(b, task(), EXTENDED).value[seen] == pytest.approx(EXTENDED.gaze.w_ob)
+    assert votes(b, task(), EXTENDED).value[members] == pytest.approx(EXTENDED.gaze.w_ob)
 
 
 def test_beacons_share_the_vote_of_self_localization(belief, task):

@@ -84,9 +84,9 @@ def test_a_single_evaluation_votes_alone(choose, belief, track):
     assert choose("psi-ob", blind).gaze_map.max() == 0.0
     unseen = belief(sigma=0.0, turn_sigma=0.0, confidence=lambda x, y: float(y < 0))
     assert choose("psi-lm", unseen).pan > 0.2
-    beside = belief([track((0.3, -0.6), (0.0, 0.1), sigma=0.1)], sigma=0.0, turn_sigma=0.0)
-    assert choose("psi-ob", beside).pan < -0.2
-    assert choose("psi-way", beside, target=(0.0, 2.0)).pan > 0.5
+    lateral = belief([track((0.3, -0.6), (0.0, 0.1), sigma=0.1)], sigma=0.0, turn_sigma=0.0)
+    assert choose("psi-ob", lateral).pan < -0.2
+    assert choose("psi-way", lateral, target=(0.0, 2.0)).pan > 0.5
     assert choose("psi-sf", belief(sigma=0.3)).gaze_map.max() == pytest.approx(1.0)
 
 

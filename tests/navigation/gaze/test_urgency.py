@@ -42,11 +42,11 @@ def test_obstacles_ahead_count_more(belief, track):
 
 
 def test_unseen_ground_that_slows_the_robot_down_votes(belief, task):
-    seen, unseen = (
+    fresh, unseen = (
         belief(confidence=lambda x, y, c=c: c, sigma=0.0, turn_sigma=0.0) for c in (1.0, 0.0)
     )
     calm = replace(P, gaze=replace(P.gaze, w_lm=0.0, w_way=0.0, w_sf=0.0))
-    for b, values in ((seen, []), (unseen, [P.gaze.urgency.unseen_ground_weight])):
+    for b, values in ((fresh, []), (unseen, [P.gaze.urgency.unseen_ground_weight])):
         scene = gaze_scene(b, None, SAMPLES, NO_BEACONS, calm)
         v = urgency_votes(scene, task(), 0.3, 0.2, calm)
         strong = v.value > 0.0

@@ -39,8 +39,8 @@ def test_k_r_bends_only_the_outer_part():
 def test_plus_circulates_counter_clockwise_on_the_shorter_side():
     # Left of the line to the target the shorter side is the left one: clockwise.
     left, right = field([[-0.4, 0.1], [-0.4, -0.1]])[:, 0]
-    for place, u, sense in (((-0.4, 0.1), left, -1), ((-0.4, -0.1), right, 1)):
-        circulation = place[0] * u[1] - place[1] * u[0]
+    for point, u, sense in (((-0.4, 0.1), left, -1), ((-0.4, -0.1), right, 1)):
+        circulation = point[0] * u[1] - point[1] * u[0]
         assert np.sign(circulation) == sense
     assert left == pytest.approx(right * [1, -1])
 
@@ -63,10 +63,10 @@ def test_it_acts_in_its_ring_before_the_target_and_ahead_only():
 
 
 def test_inside_it_is_zero_as_printed_and_outward_in_extended():
-    place = [-0.1, 0.05]
-    assert not field(place).any()
-    u = field(place, inside="outward")[0]
-    assert u == pytest.approx(np.array(place) / np.hypot(*place))
+    point = [-0.1, 0.05]
+    assert not field(point).any()
+    u = field(point, inside="outward")[0]
+    assert u == pytest.approx(np.array(point) / np.hypot(*point))
     behind = field([0.1, 0.0], inside="outward")[0]
     assert behind == pytest.approx([1.0, 0.0])
 
@@ -90,19 +90,19 @@ def test_at_a_centre_the_given_direction_counts():
 
 def test_a_given_sign_overrides_the_shorter_side():
     for sign in (1, -1):
-        place = np.array([-0.4, 0.1])
-        u = field(place, signs=np.array([sign]))[0]
-        assert np.sign(place[0] * u[1] - place[1] * u[0]) == sign
+        point = np.array([-0.4, 0.1])
+        u = field(point, signs=np.array([sign]))[0]
+        assert np.sign(point[0] * u[1] - point[1] * u[0]) == sign
 
 
 def test_an_obstacle_acts_as_far_as_its_radius_reaches_back_to_the_target():
-    """The second condition: the way from the robot is longer than that from the obstacle."""
-    target, place = np.array([1.0, 0.0]), np.array([0.0, 0.5])
+    """The second condition: the path from the robot is longer than that from the obstacle."""
+    target, point = np.array([1.0, 0.0]), np.array([0.0, 0.5])
     for x, acts in ((-0.1, True), (-0.6, False)):
         centre = np.array([[x, 0.6]])
-        far = np.hypot(*(target - centre[0])) - np.hypot(*(target - place))
+        far = np.hypot(*(target - centre[0])) - np.hypot(*(target - point))
         assert (far <= S[0]) == acts
-        u = field(place, centres=centre, target=target, abeam=True, inside="outward")
+        u = field(point, centres=centre, target=target, abeam=True, inside="outward")
         assert u.any() == acts
 
 

@@ -8,13 +8,13 @@ from navigation.motion.collision_band import CollisionCase, Encounter, free_inte
 
 def encounters(rng, n):
     """Random encounters that do not overlap at the start."""
-    found = []
-    while len(found) < n:
-        place, velocity = rng.uniform(-1.5, 1.5, 2), rng.normal(0, 0.12, 2)
+    result = []
+    while len(result) < n:
+        point, velocity = rng.uniform(-1.5, 1.5, 2), rng.normal(0, 0.12, 2)
         radius = float(rng.uniform(0.1, 0.4))
-        if hypot(*place.tolist()) > radius:
-            found.append(Encounter(*place.tolist(), *velocity.tolist(), radius))
-    return found
+        if hypot(*point.tolist()) > radius:
+            result.append(Encounter(*point.tolist(), *velocity.tolist(), radius))
+    return result
 
 
 def brute_force_contact(e, speed, horizon=200.0):
@@ -102,26 +102,26 @@ def test_a_slower_mover_from_behind_can_be_outrun():
 
 def test_in_case_b_exactly_the_speeds_below_the_larger_root_collide():
     rng = np.random.default_rng(5)
-    found = 0
+    result = 0
     for e in encounters(rng, 3000):
         if e.in_band() and e.across**2 >= e.radius**2:
             high = e.crossing_speeds()[1]
             assert isfinite(e.contact_time(max(0.0, high - 1e-6)))
             assert e.contact_time(high + 1e-6) == inf
-            found += 1
-    assert found > 50
+            result += 1
+    assert result > 50
 
 
 def test_at_the_points_of_contact_of_figure_4_disc_and_robot_touch():
     rng = np.random.default_rng(6)
-    found = 0
+    result = 0
     for e in encounters(rng, 500):
         for v in e.crossing_speeds():
             time = e.touch_time(v)
             if isfinite(time):
                 x, y = e.along + e.forward * time, e.across + e.left * time
                 assert hypot(x - v * time, y) == pytest.approx(e.radius, abs=1e-9)
-                found += 1
-    assert found > 200
+                result += 1
+    assert result > 200
     e = Encounter(1.0, -1.0, 0.0, 0.15, 0.3)
     assert e.touch_time(0.05) == inf

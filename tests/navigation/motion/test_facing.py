@@ -13,8 +13,8 @@ def test_a_heading_overrides_the_course(course):
 
 def test_the_body_turns_to_the_heading_near_the_goal_only(task):
     for ratio in (0.9, 1.1):
-        place = np.array([ratio * 0.4, 0.0])
+        point = np.array([ratio * 0.4, 0.0])
         goal, via = (task((0.0, 0.0), is_goal=end) for end in (True, False))
-        assert arriving(place, goal, 0.4) == (ratio < 1.0)
-        assert not arriving(place, via, 0.4)
-        assert arriving(place, task((0.0, 0.0), is_goal=True, aligning=True), 0.0)
+        assert arriving(point, goal, 0.4) == (ratio < 1.0)
+        assert not arriving(point, via, 0.4)
+        assert arriving(point, task((0.0, 0.0), is_goal=True, aligning=True), 0.0)

@@ -35,9 +35,9 @@ def test_static_obstacles_have_a_short_horizon_and_no_sigma(track):
     assert h.weight.tolist() == [1.0]
 
 
-@pytest.mark.parametrize("place", [(0.0, 0.0), (0.1, 0.0)])
-def test_uncertainty_of_the_radius_is_added(track, place):
-    sure, unsure = (build(track((1, 0), place, radius_sigma=s)) for s in (0.005, 0.02))
+@pytest.mark.parametrize("point", [(0.0, 0.0), (0.1, 0.0)])
+def test_uncertainty_of_the_radius_is_added(track, point):
+    sure, unsure = (build(track((1, 0), point, radius_sigma=s)) for s in (0.005, 0.02))
     assert unsure.radius - sure.radius == pytest.approx(np.full(len(sure), 0.015))
 
 

@@ -19,7 +19,7 @@ def test_near_ones_are_added_and_nothing_else_is_changed(landmarks, belief, trac
     rng = np.random.default_rng(0)
     counts = set()
     for _ in range(300):
-        tracks = [track(place, id=i) for i, place in enumerate(rng.uniform(-2, 2, (3, 2)))]
+        tracks = [track(point, id=i) for i, point in enumerate(rng.uniform(-2, 2, (3, 2)))]
         before = belief(tracks, rng.uniform(-3, 3, 3))
         after = landmarks.added_to(before)
         near = {
@@ -52,7 +52,7 @@ def test_their_ids_are_negative_and_stay_the_same(landmarks, belief):
     def ids(*pose):
         return {t.label: t.id for t in landmarks.added_to(belief(pose=(*pose, 0.0))).tracks}
 
-    met = [ids(*place) for place in PLACES.values()]
+    met = [ids(*point) for point in PLACES.values()]
     assert len({id for some in met for id in some.values()}) == len(PLACES)
     assert all(id < 0 for some in met for id in some.values())
     assert met[2] == met[3]

@@ -24,15 +24,15 @@ def scene(tracks, p=EXTENDED, target=TARGET, heading=0.0):
 
 def walk(field, s, starts, reach, length=6.0, step=0.01):
     """Follow the field; return final distance to the target and least distance to centres."""
-    place = np.array(starts, float)
-    least = np.full(len(place), np.inf)
-    arrived = np.zeros(len(place), bool)
+    point = np.array(starts, float)
+    least = np.full(len(point), np.inf)
+    arrived = np.zeros(len(point), bool)
     for _ in range(round(length / step)):
-        u = normalized(field.at(place, 0.0, s, ()))
-        place = place + step * u * ~arrived[:, None]
-        away = place[:, None] - s.obstacles.position
+        u = normalized(field.at(point, 0.0, s, ()))
+        point = point + step * u * ~arrived[:, None]
+        away = point[:, None] - s.obstacles.position
         least = np.minimum(least, np.hypot(away[..., 0], away[..., 1]).min(axis=1))
-        arrived |= np.hypot(*(place - s.target).T) < reach
+        arrived |= np.hypot(*(point - s.target).T) < reach
     return arrived, least
 
 
@@ -106,10 +106,10 @@ def test_both_forms_leave_a_mover_s_path_on_the_remembered_side_of_the_arrival(t
     s = scene([track((0.5, 0.0), (-0.1, 0.0))], target=(0.3, 0.0), heading=np.pi)
     for side in (1, -1):
         held = replace(s, side=side)
-        way = field.at(np.zeros(2), 0.0, replace(held, obstacles=scene([]).obstacles,
+        direction = field.at(np.zeros(2), 0.0, replace(held, obstacles=scene([]).obstacles,
                        s_oe=np.zeros(0), psi=np.zeros(0)), ())  # fmt: skip
         (printed,) = field.printed_obstacles(np.zeros(3), np.array([0.15, 0.0]), held, (0,))
-        assert np.sin(printed.outward) * way[1] > 0.5 * abs(way[1]) > 0.1
+        assert np.sin(printed.outward) * direction[1] > 0.5 * abs(direction[1]) > 0.1
 
 
 def test_many_points_agree_with_single_points(track):
@@ -143,15 +143,15 @@ def test_without_obstacles_the_field_leads_to_the_goal():
 def test_against_the_printed_sign_every_start_enters_the_disc(track):
     p = PAPER.univector
     s = scene([track((0, 0), radius=0.15)], PAPER)
-    place = np.array([(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)])
+    point = np.array([(-1.5, y) for y in np.linspace(-0.7, 0.7, 15)])
     least = np.full(15, np.inf)
     for _ in range(200):
-        u_muf = muf(place, s.target, move_to_goal(place, 0.0, s.target, 0.0, p))
-        u = avoid_obstacle(place, s.target, s.obstacles.position, s.s_oe, p)
-        outward = normalized(place[:, None] - s.obstacles.position)
+        u_muf = muf(point, s.target, move_to_goal(point, 0.0, s.target, 0.0, p))
+        u = avoid_obstacle(point, s.target, s.obstacles.position, s.s_oe, p)
+        outward = normalized(point[:, None] - s.obstacles.position)
         other = 2.0 * (u * outward).sum(axis=-1, keepdims=True) * outward - u
-        place = place + 0.01 * normalized(weighted_sum(u_muf, other, p.w_muf, p.w_auf))
-        least = np.minimum(least, np.hypot(*place.T))
+        point = point + 0.01 * normalized(weighted_sum(u_muf, other, p.w_muf, p.w_auf))
+        least = np.minimum(least, np.hypot(*point.T))
     assert np.all(least < s.s_oe[0])
 
 
@@ -186,12 +186,12 @@ def test_rigid_motion_moves_field_and_virtual_obstacles_along(p, track, rotation
         for s, at, v in ((here, pose, walking), (there, turned, r @ walking)):
             field = MotionField(p.univector, p.moving_obstacles)
             if p is PAPER:
-                found = field.printed_obstacles(at, v, s, (0,))
+                result = field.printed_obstacles(at, v, s, (0,))
             else:
-                found = field.uncapped_obstacles(at, v, s)
+                result = field.uncapped_obstacles(at, v, s)
             # The printed circle goes through the robot: rounding decides whether it is inside.
-            u = field.at(at[:2], at[2], s, () if p is PAPER else found)
-            virtual.append((found, u))
+            u = field.at(at[:2], at[2], s, () if p is PAPER else result)
+            virtual.append((result, u))
         (own, u), (moved, u_moved) = virtual
         assert u_moved == pytest.approx(r @ u, abs=1e-9)
         for f, g in zip(own, moved, strict=True):

@@ -25,21 +25,21 @@ def arrivals(p, limits, radius, r_goal=0.06, duration=60.0):
         bearing, heading = (
             a.ravel() for a in np.meshgrid(np.arange(16) * pi / 8, np.array([0.0, 2.0, 4.0]))
         )
-        place = radius * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
-        error = np.full(len(place), np.nan)
-        body = np.zeros((len(place), 3))
+        point = radius * np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
+        error = np.full(len(point), np.nan)
+        body = np.zeros((len(point), 3))
         for step in range(round(duration / 0.085)):
             if step % 4 == 0:
-                phi = move_to_goal(place, heading, ORIGIN, goal_heading, p)
+                phi = move_to_goal(point, heading, ORIGIN, goal_heading, p)
                 body = np.array([
                     body_velocity(a, 0.15, h, a, limits=limits, turn_gain=1.5)
                     for a, h in zip(phi.tolist(), heading.tolist(), strict=True)
                 ])  # fmt: skip
-            here = np.isnan(error) & (np.hypot(*place.T) < r_goal)
+            here = np.isnan(error) & (np.hypot(*point.T) < r_goal)
             error[here] = np.abs(wrap_array(heading - goal_heading))[here]
             middle = heading + 0.5 * body[:, 2] * 0.085
             c, s = np.cos(middle), np.sin(middle)
-            place = place + 0.085 * np.stack(
+            point = point + 0.085 * np.stack(
                 [c * body[:, 0] - s * body[:, 1], s * body[:, 0] + c * body[:, 1]], axis=1
             )
             heading = heading + 0.085 * body[:, 2]
@@ -71,8 +71,8 @@ def test_far_away_and_on_the_line_it_points_at_the_destination(p):
                 phi = move_to_goal((x, y), 0.3, ORIGIN, 1.0, p)
                 assert phi == pytest.approx(np.arctan2(-y, -x))
     for rho in (0.1, 0.5, 1.5):
-        place = -rho * np.array([np.cos(0.7), np.sin(0.7)])
-        assert move_to_goal(place, 2.0, ORIGIN, 0.7, p) == pytest.approx(0.7)
+        point = -rho * np.array([np.cos(0.7), np.sin(0.7)])
+        assert move_to_goal(point, 2.0, ORIGIN, 0.7, p) == pytest.approx(0.7)
 
 
 @pytest.mark.parametrize("p", ALL)
@@ -127,10 +127,10 @@ def test_the_side_is_kept_while_beta_passes_pi():
     side = ArrivalSide(EXTENDED)
     betas = (1.0, 3.0, -3.1, -2.0, -1.7)
     assert [side.update(ORIGIN, leg(beta)) for beta in betas] == [0, 1, 1, 1, 0]
-    place = np.array([0.3, 0.01])
-    free = move_to_goal(place, 0.0, ORIGIN, 0.0, EXTENDED)
-    held = move_to_goal(place, 0.0, ORIGIN, 0.0, EXTENDED, side=1)
-    other = move_to_goal(place, 0.0, ORIGIN, 0.0, EXTENDED, side=-1)
+    point = np.array([0.3, 0.01])
+    free = move_to_goal(point, 0.0, ORIGIN, 0.0, EXTENDED)
+    held = move_to_goal(point, 0.0, ORIGIN, 0.0, EXTENDED, side=1)
+    other = move_to_goal(point, 0.0, ORIGIN, 0.0, EXTENDED, side=-1)
     assert free in (pytest.approx(float(held)), pytest.approx(float(other)))
     assert held != pytest.approx(float(other))
 
@@ -153,9 +153,9 @@ def test_the_vector_has_the_direction_phi_and_is_zero_at_the_destination(p):
 
 def test_the_printed_field_is_the_weighted_sum_of_both_angles():
     p = replace(PAPER, arrival="hard", k_alpha=0.6, k_beta=-0.4, d_con=1.0)
-    place, heading, target_heading = (-0.3, -0.3), 0.2, 1.1  # the destination bears pi/4
+    point, heading, target_heading = (-0.3, -0.3), 0.2, 1.1  # the destination bears pi/4
     alpha, beta = pi / 4 - heading, target_heading - pi / 4
-    phi = move_to_goal(place, heading, ORIGIN, target_heading, p)
+    phi = move_to_goal(point, heading, ORIGIN, target_heading, p)
     assert phi == pytest.approx(heading + 0.6 * alpha - 0.4 * beta)
 
 
@@ -191,7 +191,7 @@ def test_arrivals_that_are_not_ramped_in_have_no_side(p):
 
 def test_a_remembered_side_turns_a_whole_turn_the_other_way():
     p = replace(EXTENDED, arrival_clamp=10.0, k_beta=-0.5, arrival_ramp=0.5, d_con=0.8)
-    place = (0.1, 0.0)  # beyond the destination, which bears pi
+    point = (0.1, 0.0)  # beyond the destination, which bears pi
     for side, beta in ((1, 3.0), (-1, 3.0 - 2 * pi)):
-        phi = move_to_goal(place, 0.0, ORIGIN, wrap_array(np.array(pi + 3.0)), p, side=side)
+        phi = move_to_goal(point, 0.0, ORIGIN, wrap_array(np.array(pi + 3.0)), p, side=side)
         assert wrap_array(phi - pi + 0.5 * beta) == pytest.approx(0.0, abs=1e-9)

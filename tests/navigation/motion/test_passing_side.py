@@ -22,10 +22,10 @@ def signs(sides, position, o, s_oe=0.25):
 def test_alone_and_without_memory_it_is_the_short_way(track):
     rng = np.random.default_rng(0)
     o = obstacles(track, *rng.uniform(-1, 1, (9, 2)))
-    for place in rng.uniform(-2, 2, (20, 2)):
-        plain = turning_sign(TARGET - o.position, place - o.position).tolist()
-        assert signs(PassingSides(P), place, o) == plain
-        p_od, p_or = TARGET - o.position, place - o.position
+    for point in rng.uniform(-2, 2, (20, 2)):
+        plain = turning_sign(TARGET - o.position, point - o.position).tolist()
+        assert signs(PassingSides(P), point, o) == plain
+        p_od, p_or = TARGET - o.position, point - o.position
         mirrored = turning_sign(p_od * [1, -1], p_or * [1, -1])
         assert (-mirrored).tolist() == plain
 
@@ -39,9 +39,9 @@ def test_gaps_too_narrow_make_a_group_also_in_a_chain(track):
 
 def test_a_group_is_passed_on_one_side(track):
     pair = obstacles(track, (0.0, 0.15), (0.0, -0.2))
-    place = (-0.4, 0.0)
-    assert signs(PassingSides(P), place, pair) == [1.0, -1.0]
-    together = signs(PassingSides(replace(P, grouping=True)), place, pair)
+    point = (-0.4, 0.0)
+    assert signs(PassingSides(P), point, pair) == [1.0, -1.0]
+    together = signs(PassingSides(replace(P, grouping=True)), point, pair)
     assert together in ([1.0, 1.0], [-1.0, -1.0])
 
 

@@ -225,9 +225,9 @@ def test_the_rear_check_turns_the_body_and_requests_a_look(belief, task, limits)
     assert decision.velocity[2] != 0.0
     assert decision.look_request is not None
     assert abs(decision.look_request) > 2.0
-    seen = Planner(EXTENDED, limits).plan(belief(), task())
-    assert seen.look_request is None
-    assert seen.velocity[2] == 0.0
+    fresh = Planner(EXTENDED, limits).plan(belief(), task())
+    assert fresh.look_request is None
+    assert fresh.velocity[2] == 0.0
 
 
 @pytest.mark.parametrize("mode", ["fixed", "sweep", "integrated"])

@@ -37,14 +37,14 @@ def sector(angle):
     return [s.body_angle for s in sectors(P, REACH)].index(angle)
 
 
-def cloud(place):
-    return ([place], [[0.0, 0.0]], [1.0])
+def cloud(point):
+    return ([point], [[0.0, 0.0]], [1.0])
 
 
 def test_sectors_and_reach_of_the_gaze_cover_the_circle():
-    found = sectors(P, REACH)
+    result = sectors(P, REACH)
     for bearing in np.linspace(-pi, pi, 181):
-        covered = [abs(wrap(bearing - s.middle)) <= s.half_width for s in found]
+        covered = [abs(wrap(bearing - s.middle)) <= s.half_width for s in result]
         assert any(covered) or abs(bearing) <= REACH + 1e-9
 
 
@@ -125,17 +125,17 @@ def test_ground_right_behind_is_more_urgent_for_a_slower_robot(check, belief):
 
 def test_a_lost_mover_behind_turns_the_body_and_a_visible_one_does_not(check, belief, track):
     bearing = REACH + 0.5 * P.near_angle
-    place = (0.5 * cos(bearing), 0.5 * sin(bearing))
-    seen = track(place, (0.1, 0.0), age=0.1)
-    assert check.body_angle(belief([seen]), 0.0, SPEED) == 0.0
-    lost = track(place, (0.1, 0.0), age=3.0, particles=cloud(place))
+    point = (0.5 * cos(bearing), 0.5 * sin(bearing))
+    visible = track(point, (0.1, 0.0), age=0.1)
+    assert check.body_angle(belief([visible]), 0.0, SPEED) == 0.0
+    lost = track(point, (0.1, 0.0), age=3.0, particles=cloud(point))
     assert check.body_angle(belief([lost]), 0.0, SPEED) == P.near_angle
 
 
 def test_nothing_counts_beyond_the_farthest_ring(belief, track):
     bearing = REACH + 0.5 * P.near_angle
-    place = (0.6 * cos(bearing), 0.6 * sin(bearing))
-    lost = belief([track(place, (0.1, 0.0), age=3.0, particles=cloud(place))])
+    point = (0.6 * cos(bearing), 0.6 * sin(bearing))
+    lost = belief([track(point, (0.1, 0.0), age=3.0, particles=cloud(point))])
     ground = belief(age=lambda x, y: 9.0 if np.hypot(x, y) > 0.55 else 0.0)
     for rings, counts in (((0.4, 0.5), False), ((0.7, 0.4), True)):
         check = RearCheck(RearCheckParameters(rings=rings), REACH, 0.12, SPEED)
@@ -146,8 +146,8 @@ def test_nothing_counts_beyond_the_farthest_ring(belief, track):
 def test_near_non_static_tracks_prevent_the_check(check, belief, track):
     far, near = (0.0, 0.12 + 0.08 + 1.1 * P.clearance), (0.0, 0.12 + 0.08 + 0.9 * P.clearance)
 
-    def angle(place, motion):
-        there = track(place, (0.0, 0.1), motion)
+    def angle(point, motion):
+        there = track(point, (0.0, 0.1), motion)
         return check.body_angle(belief([there], age=stale(lateral)), 0.0, SPEED)
 
     for motion in (Motion.MOVING, Motion.UNKNOWN):
@@ -160,11 +160,11 @@ def test_near_non_static_tracks_prevent_the_check(check, belief, track):
 def test_a_lost_mover_counts_by_the_weight_of_its_particles(check, belief, track):
     near = sector(P.near_angle)
     bearing = REACH + 0.5 * P.near_angle
-    place, far = (0.5 * cos(bearing), 0.5 * sin(bearing)), (2.0, 0.0)
+    point, far = (0.5 * cos(bearing), 0.5 * sin(bearing)), (2.0, 0.0)
 
     def urgency(*weights):
-        particles = ([place, far], np.zeros((2, 2)), weights)
-        lost = track(place, (0.1, 0.0), age=0.5, particles=particles)
+        particles = ([point, far], np.zeros((2, 2)), weights)
+        lost = track(point, (0.1, 0.0), age=0.5, particles=particles)
         return check.urgency(belief([lost]), 0.0, SPEED)[near]
 
     assert 0.0 < urgency(0.5, 0.5) == pytest.approx(0.5 * urgency(1.0, 0.0))

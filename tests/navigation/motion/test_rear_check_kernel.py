@@ -40,8 +40,8 @@ def test_compiled_and_plain_agree(age, cloud):
         (kernel.ground_urgency, (age, RINGS, RAYS, SPEED, THREAT, 2)),
         (kernel.cloud_urgency, (*cloud, BODY, POSE, COURSE, SECTORS, SPEED, THREAT)),
     ):
-        found, plain = function(*arguments), function.py_func(*arguments)
-        assert np.abs(found - plain).max() <= 1e-14
+        result, plain = function(*arguments), function.py_func(*arguments)
+        assert np.abs(result - plain).max() <= 1e-14
 
 
 def test_points_lie_on_the_rays(age):
@@ -53,9 +53,9 @@ def test_points_lie_on_the_rays(age):
 
 def test_ground_agrees_with_the_formula_over_arrays(age):
     each = urgency(age.reshape(6, 3), RINGS - 2.0 * THREAT[1], RAYS[:, None])
-    found = kernel.ground_urgency(age, RINGS, RAYS, SPEED, THREAT, 2)
-    assert found == pytest.approx([each[:3].mean(), each[3:].mean()])
-    assert each.max() == THREAT[-1] > found.max()
+    result = kernel.ground_urgency(age, RINGS, RAYS, SPEED, THREAT, 2)
+    assert result == pytest.approx([each[:3].mean(), each[3:].mean()])
+    assert each.max() == THREAT[-1] > result.max()
 
 
 def test_a_cloud_agrees_with_the_formula_over_arrays(cloud):
@@ -65,6 +65,6 @@ def test_a_cloud_agrees_with_the_formula_over_arrays(cloud):
     inside = np.abs(wrap_array(bearing - SECTORS[:, :1])) <= SECTORS[:, 1:]
     each = urgency(BODY[0], distance - BODY[1] - THREAT[1], bearing)
     wanted = (inside & (distance <= BODY[2])) @ (weights * each)
-    found = kernel.cloud_urgency(*cloud, BODY, POSE, COURSE, SECTORS, SPEED, THREAT)
-    assert found == pytest.approx(wanted)
-    assert (found > 0.0).all()
+    result = kernel.cloud_urgency(*cloud, BODY, POSE, COURSE, SECTORS, SPEED, THREAT)
+    assert result == pytest.approx(wanted)
+    assert (result > 0.0).all()

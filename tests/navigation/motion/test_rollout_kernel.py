@@ -43,8 +43,8 @@ def test_compiled_and_plain_agree(scene):
         (kernel.contact_times, (*paths, *discs)),
         (kernel.penalties, (*times, *weights)),
     ):
-        found, plain = function(*arguments), function.py_func(*arguments)
-        for a, b in zip(found, plain, strict=True):
+        result, plain = function(*arguments), function.py_func(*arguments)
+        for a, b in zip(result, plain, strict=True):
             assert np.allclose(a, b, rtol=1e-12, atol=1e-14)
 
 
@@ -93,10 +93,10 @@ def test_penalties_are_the_sum_over_the_discs(scene):
     each = np.maximum(0.0, 1.0 - time / horizon) * np.where(time < 1.5, 20.0, 6.0)
     within = (depth > 0.0) & (time < horizon)
     each += within * (10.0 + 40.0 * depth + 100.0 * closing)
-    found = kernel.penalties(
+    result = kernel.penalties(
         time, closing, depth, horizon, weight, (1.5, 20.0, 6.0), (10.0, 40.0, 100.0)
     )
-    assert found == pytest.approx(each @ weight)
+    assert result == pytest.approx(each @ weight)
 
 
 @pytest.mark.parametrize("angle", [0.0, np.pi, -np.pi, 7.0, -40.0])

@@ -53,18 +53,18 @@ def test_contact_times_equal_brute_force():
     duration = np.concatenate([rng.uniform(0, 2, (2, n)), np.full((1, n), np.inf)])
     d = discs(rng.uniform(-1.5, 1.5, (m, 2)), rng.normal(0, 0.15, (m, 2)), radius=0.2)
     time, _ = times(velocity, duration, d)
-    place = np.zeros((n, 2))
+    point = np.zeros((n, 2))
     touched = np.full((n, m), np.inf)
     near = np.full((n, m), np.inf)
     for step in range(round(end / dt)):
         t = step * dt
-        gap = place[:, None] - (d.position + t * d.velocity)
+        gap = point[:, None] - (d.position + t * d.velocity)
         distance = np.hypot(gap[..., 0], gap[..., 1])
         near = np.minimum(near, np.abs(distance - 0.2))
         fresh = (distance < 0.2) & np.isinf(touched)
         touched[fresh] = t
         piece = (t >= duration[0]).astype(int) + (t >= duration[0] + duration[1])
-        place = place + dt * velocity[piece, np.arange(n)]
+        point = point + dt * velocity[piece, np.arange(n)]
     outside = np.hypot(*d.position.T) > 0.2
     grazed = (near < 0.004) & np.isinf(touched)
     clear = outside[None, :] & ~grazed & (time < end - 0.1)

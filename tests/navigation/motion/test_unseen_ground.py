@@ -26,10 +26,10 @@ def test_a_look_20_deg_down_shows_all_checked_ground(view):
     eye = Viewpoint.of(view(tilt=-np.radians(20.0)), pose, 3.0)
     for near, shown in ((P.near, True), (0.25, False)):
         points = ground_points(pose, pose[2], replace(P, near=near))
-        seen = eye.in_clear_view(
+        visible = eye.in_clear_view(
             points, np.zeros((0, 2)), np.zeros(0), margin=0.0, occlusion_margin=0.0
         )
-        assert seen.all() == shown
+        assert visible.all() == shown
 
 
 def test_ground_is_seen_if_every_point_was_seen(belief):

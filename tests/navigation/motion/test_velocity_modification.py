@@ -44,17 +44,17 @@ def test_without_movers_the_speed_stays():
 
 def test_the_chosen_speed_is_free_or_the_path_must_change():
     rng = np.random.default_rng(0)
-    seen = set()
+    situations = set()
     for _ in range(1500):
         movers = scene(rng)
         desired = float(rng.uniform(0.02, V_MAX))
         choice = closed(movers, desired, desired)
-        seen.add(choice.situation)
+        situations.add(choice.situation)
         if choice.situation == "path_change":
             assert choice.speed == desired
         else:
             assert all(e.contact_time(choice.speed) > 6.0 for e in movers)
-    assert seen == {"free", "accelerate", "brake", "escape", "path_change"}
+    assert situations == {"free", "accelerate", "brake", "escape", "path_change"}
 
 
 @pytest.mark.parametrize("wait", [True, False])
@@ -102,7 +102,7 @@ def test_the_needed_acceleration_brings_the_robot_there_in_time():
 
 def test_the_speed_that_passes_first_does_not_jump_where_the_robot_enters_the_band():
     """From case (a) to case (b): the lateral distance from the mover's path crosses S."""
-    found = 0
+    result = 0
     for along in np.linspace(0.25, 1.5, 26).tolist():
         outside, inside = (
             closed((Encounter(0.3 + e, -along, 0.0, 0.1, 0.3),), desired=0.05, now=0.05,
@@ -112,8 +112,8 @@ def test_the_speed_that_passes_first_does_not_jump_where_the_robot_enters_the_ba
         if outside.situation == "accelerate":
             assert inside.situation == "escape"
             assert outside.speed == pytest.approx(inside.speed, abs=1e-5)
-            found += 1
-    assert found > 10
+            result += 1
+    assert result > 10
 
 
 @pytest.mark.parametrize("choose", [closed, sampled])

@@ -31,13 +31,13 @@ def test_the_waypoint_is_visible_in_reach_and_leads_around():
     point = search_waypoint(START, GOAL, WALL, RADII, P)
     assert np.hypot(*point) <= P.reach
     assert point[1] < -0.3
-    place = START
+    position = START
     for _ in range(60):
-        point = search_waypoint(place, GOAL, WALL, RADII, P)
-        step = point - place
-        place = place + 0.1 * step / max(0.1, np.hypot(*step))
-        assert np.hypot(*(place - WALL).T).min() > 0.25 - 1e-9
-    assert place == pytest.approx(GOAL, abs=0.01)
+        point = search_waypoint(position, GOAL, WALL, RADII, P)
+        step = point - position
+        position = position + 0.1 * step / max(0.1, np.hypot(*step))
+        assert np.hypot(*(position - WALL).T).min() > 0.25 - 1e-9
+    assert position == pytest.approx(GOAL, abs=0.01)
 
 
 def test_a_blocked_destination_in_the_robot_s_cell_leaves_the_task():
