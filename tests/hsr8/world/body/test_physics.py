@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from hsr8.errors import SimulationDiverged
-from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.field.layout import Obstacle, standard_beacons
 from hsr8.world.field.motion import Line, Shuttle
@@ -19,11 +18,6 @@ def hold(body):
     """Targets that keep the posture the body starts in."""
     position = body.sense().joint_position
     return JointTargets(position, position)
-
-
-def test_it_starts_where_the_layout_says(world, silent):
-    truth = body_in(world, silent, start=(0.7, -0.4, 2.0)).truth()
-    assert np.allclose(truth.robot, (0.7, -0.4, 2.0), atol=1e-9)
 
 
 def test_it_stands_and_the_feet_carry_its_weight(world, silent):
@@ -64,13 +58,6 @@ def test_a_mover_is_solid_and_its_contact_is_told_once(world, silent):
     assert body.truth().robot[0] < -0.02  # it was pushed back
 
 
-def test_clearance_is_the_gap_to_the_body(world, silent):
-    near = body_in(world, silent, Obstacle((0.0, 0.40), 0.10, 0.3, "green")).truth().clearance
-    far = body_in(world, silent, Obstacle((0.0, 0.45), 0.10, 0.3, "green")).truth().clearance
-    assert 0.1 < near < 0.3
-    assert np.isclose(far - near, 0.05, atol=1e-3)
-
-
 def test_a_beacon_is_solid_and_its_contact_is_told(world, silent):
     beacon = standard_beacons((5.0, 5.0))[0]
     x, y = beacon.position
@@ -83,22 +70,6 @@ def test_a_beacon_is_solid_and_its_contact_is_told(world, silent):
     assert {(c.obstacle, c.name) for c in contacts} == {(0, f"beacon {beacon.name}")}
     assert max(c.force for c in contacts) > 1.0
     assert body.truth().robot[0] < x - 0.112  # it was pushed back
-
-
-def test_without_obstacles_and_beacons_clearance_is_infinite(world, silent):
-    assert body_in(world, silent, beacons=()).truth().clearance == np.inf
-
-
-def test_same_seed_same_state(world):
-    def run(seed):
-        body = body_in(world, SensorNoise(), seed=seed)
-        for _ in range(20):
-            position = body.sense().joint_position
-            body.apply(JointTargets(position, position))
-        return body.state_bytes()
-
-    assert run(1) == run(1)
-    assert run(1) != run(2)
 
 
 def test_truth_is_a_snapshot(world, silent):
@@ -119,10 +90,3 @@ def test_divergence_names_tick_and_body_and_command(world, silent):
     body.data.qvel[8] = np.nan
     with pytest.raises(SimulationDiverged, match=r"tick 4 .*body '\w+'.*last command: \w+"):
         body.apply(targets)
-
-
-def test_a_physics_step_that_does_not_divide_the_tick_is_refused(world, silent):
-    layout, model = world()
-    model.opt.timestep = 0.003
-    with pytest.raises(ValueError, match="not a multiple"):
-        PhysicsBody(model, layout, silent, np.random.default_rng(0))

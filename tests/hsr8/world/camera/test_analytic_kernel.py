@@ -24,15 +24,6 @@ def cylinders(seed, n):
     return there, sizes, rng.random(n) < 0.3
 
 
-@pytest.mark.parametrize("omnidirectional", [False, True])
-@pytest.mark.parametrize("seed", range(4))
-def test_compiled_and_plain_agree(seed, omnidirectional):
-    arguments = (*cylinders(seed, 30), eye(pose(0.3 * seed, -0.3), omnidirectional))
-    np.testing.assert_allclose(
-        project_all(*arguments), project_all.py_func(*arguments), rtol=1e-12, atol=1e-12
-    )
-
-
 @given(place=places, pan=st.floats(-1.5, 1.5), tilt=st.floats(-0.6, 0.2))
 def test_a_box_bounds_the_projected_edges_of_the_cylinder(place, pan, tilt):
     view = pose(pan, tilt)
