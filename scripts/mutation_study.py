@@ -31,6 +31,10 @@ from hypothesis import Phase, settings
 
 ROOT = Path(__file__).resolve().parents[1]
 TESTS = {  # where they are not those of the same name
+    "navigation/belief/pose_filter": (
+        "navigation/belief/test_pose_filter",
+        "navigation/belief/test_localization",
+    ),
     "walking/gait/swing_kernel": (
         "walking/gait/test_swing_kernel",
         "walking/gait/test_swing_reaction",
