@@ -112,7 +112,7 @@ class Metrics(Listener):
             "arrival_error_deg": error,
             "time_to_goal_s": self._finish_time,
             "path_length_m": self._path,
-            "min_clearance_m": _measured(self._clearance),
+            "min_clearance_m": self._clearance if isfinite(self._clearance) else None,
             "localization_rmse_m": sqrt(self._position_squares / n) if n else None,
             "heading_rmse_deg": degrees(sqrt(self._heading_squares / n)) if n else None,
             "nees_mean": self._nees / n if n else None,
@@ -258,7 +258,3 @@ class Metrics(Listener):
             wanted = self._layout.goal_heading
             error = 0.0 if wanted is None else degrees(abs(wrap(heading - wanted)))
             self._goal_turned = error <= HEADING_TOLERANCE
-
-
-def _measured(value: float) -> float | None:
-    return value if isfinite(value) else None

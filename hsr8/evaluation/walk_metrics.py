@@ -14,7 +14,6 @@ from walking.body.joints import JOINT_NAMES
 from walking.phase import Phase
 
 Array = NDArray[np.float64]
-Velocity = dict[str, float]
 
 WARM_UP = 3.0  # velocities count from the first whole stride after this time [s]
 STRIDE = 2  # footsteps after which the gait repeats
@@ -141,7 +140,7 @@ class WalkMetrics:
         }
 
 
-def _named(velocity: Array) -> Velocity:
+def _named(velocity: Array) -> dict[str, float]:
     return dict(zip(COMPONENTS, velocity.tolist(), strict=True))
 
 

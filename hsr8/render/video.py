@@ -4,7 +4,6 @@ import os
 from concurrent.futures import Future, ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 import av
@@ -54,21 +53,16 @@ class VideoWriter:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         try:
             try:
-                if error is None:
+                if kind is None:
                     self._wait()
                     self._container.mux(self._stream.encode(None))
             finally:
                 self._worker.shutdown()
                 self._container.close()
-            if error is None:
+            if kind is None:
                 self._draft.replace(self._path)
         finally:
             self._draft.unlink(missing_ok=True)

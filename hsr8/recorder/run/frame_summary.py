@@ -16,6 +16,7 @@ from navigation.belief.belief import Track
 
 _MOTIONS = ("static", "moving", "unknown")
 _NUMBERS = "%.4f,%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.4f"
+_quoted = cache(json.dumps)
 _encode = json.JSONEncoder(separators=(",", ":")).encode
 
 
@@ -205,11 +206,6 @@ def _track(track: Track) -> str:
         numbers = numbers.replace("nan", "NaN").replace("inf", "Infinity")
     motion, visible = _MOTIONS.index(track.motion), int(track.visible)
     return f"[{track.id},{_quoted(track.label)},{numbers},{motion},{visible}]"
-
-
-@cache
-def _quoted(label: str) -> str:
-    return json.dumps(label)
 
 
 def _packed(gaze_map: NDArray[np.float64]) -> list[Any] | None:
