@@ -11,20 +11,7 @@ import tempfile
 from pathlib import Path
 
 VARIABLE = "NUMBA_CACHE_DIR"
-FOLDERS = (
-    "hsr8/world/body",
-    "hsr8/world/camera",
-    "hsr8/world/truth",
-    "navigation",
-    "navigation/belief",
-    "navigation/motion",
-    "vision",
-    "walking",
-    "walking/body",
-    "walking/footsteps",
-    "walking/gait",
-    "walking/pattern",
-)  # with kernels
+FOLDERS = ("hsr8/world/body", "navigation/belief", "vision", "walking/gait")  # with kernels
 _ROOT = Path(__file__).resolve().parents[1]
 
 

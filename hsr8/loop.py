@@ -275,8 +275,7 @@ class Simulation:
         shutter, frame = self._feed.shutter(tick), self._feed.arrived(tick, self._capture)
         if frame is None:
             return SensorFrame(time, body, shutter)
-        image = None if frame.exposure is None else frame.exposure.image
-        return SensorFrame(time, body, shutter, frame.captured, image, frame.detections)
+        return SensorFrame(time, body, shutter, frame.captured, frame.image, frame.detections)
 
     def _capture(self) -> CapturedFrame:
         body = self._body

@@ -5,13 +5,15 @@ from collections.abc import Callable
 from math import ceil
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.section import CONTROL_PERIOD_MS
-from hsr8.world.camera.exposure import Exposure
 from hsr8.world.camera.faults import CameraFaults
 from vision.detection import Detection
 from walking.value import value
+
+Image = NDArray[np.uint8]
 
 
 @value
@@ -20,12 +22,12 @@ class CapturedFrame:
 
     Attributes:
         captured: time of the capture [s].
-        exposure: image of a rendered camera.
+        image: returns the image (height, width, 3) of a rendered camera, once it is complete.
         detections: of an analytic camera.
     """
 
     captured: float
-    exposure: Exposure | None = None
+    image: Callable[[], Image] | None = None
     detections: tuple[Detection, ...] | None = None
 
 

@@ -1,6 +1,7 @@
 """Rendered head camera: images from the camera of the model, without a display."""
 
-from functools import partial
+from collections.abc import Callable
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import mujoco
@@ -9,7 +10,6 @@ from numpy.typing import NDArray
 
 from hsr8.scenario.camera import Camera
 from hsr8.scenario.fault import ticks
-from hsr8.world.camera.exposure import Exposure
 from hsr8.world.camera.faults import CameraFaults
 from hsr8.world.camera.frustum import Frustum
 from hsr8.world.camera.image_noise import ImageNoise
@@ -57,7 +57,7 @@ class RenderedCamera:
             fov = settings.vertical_fov
             optics = PinholeCamera.from_vertical_fov(settings.width, settings.height, fov)
             self._blur = MotionBlur(optics, 1e-3 * settings.shutter_ms)
-        self._latest: Exposure | None = None
+        self._latest: Callable[[], Image] | None = None
         self._lights = _Lights(model)
         self._frustum = Frustum(model, HEAD_CAMERA, settings.width / settings.height)
         self._group, self._original_group = model.geom_group, model.geom_group.copy()
@@ -67,8 +67,8 @@ class RenderedCamera:
             for i in bodies
         ]
 
-    def capture(self, body: "Body") -> Exposure:
-        """Start an image (height, width, 3) of the present world."""
+    def capture(self, body: "Body") -> Callable[[], Image]:
+        """Start an image (height, width, 3) of the present world; the result waits for it."""
         self._settle()
         body.update_kinematics()
         settings, noise, faults, tick = self._settings, self._noise, self._faults, ticks(body.time)
@@ -76,7 +76,7 @@ class RenderedCamera:
         blobs = faults.false_detections(tick)
         if faults.black(tick):
             black = np.zeros((settings.height, settings.width, 3), np.uint8)
-            self._latest = Exposure(lambda: noise.apply(black, blobs))
+            self._latest = cache(lambda: noise.apply(black, blobs))
             return self._latest
         self._lights.set(light * faults.light(tick))
         hidden = self._frustum.outside(body.data)
@@ -88,13 +88,13 @@ class RenderedCamera:
         read = self._offscreen.read
         if self._blur is not None:
             read = partial(self._blurred, self._blur, angular_velocity(body.model, body.data))
-        self._latest = Exposure(lambda: noise.apply(read(), blobs))
+        self._latest = cache(lambda: noise.apply(read(), blobs))
         return self._latest
 
     def _settle(self) -> None:
         """Read the latest image, so that noise is drawn in the order of the captures."""
         if self._latest is not None:
-            self._latest.image()
+            self._latest()
             self._latest = None
 
     def close(self) -> None:
