@@ -40,7 +40,7 @@ def labelled(seed: int, pan: float, tilt: float) -> tuple[Image, Image]:
     body.data.joint("head_pan").qpos[0] = pan
     body.data.joint("head_tilt").qpos[0] = tilt
     rendered = RenderedCamera(model, camera, rng)
-    image = rendered.capture(body).image()
+    image = rendered.capture(body)()
     rendered.close()
     with mujoco.Renderer(model, camera.height, camera.width) as renderer:
         renderer.enable_segmentation_rendering()
