@@ -13,7 +13,7 @@ class Last(Listener):
             self.frame = record.frame
 
 
-def test_an_omnidirectional_camera_knows_what_stands_behind_without_looking():
+def test_an_omnidirectional_camera_tracks_obstacles_behind_the_robot():
     settings = ["robot.body=kinematic", "camera.source=omnidirectional", "duration=1.2"]
     settings.append("navigation.gaze.mode=fixed")
     last = Last()

@@ -1,4 +1,4 @@
-"""The whole loop: pixels to footsteps in full physics once, and its fast stand-ins often."""
+"""The closed loop: full physics and rendering once, the fast stand-ins often."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,8 @@ import pytest
 from hsr8.loop import Simulation
 from hsr8.recorder.record import Listener
 from hsr8.scenario.loader import load_scenario
+
+STAND_INS = ['robot.body="kinematic"', 'camera.source="analytic"']
 
 
 def wrap(angle):
@@ -45,63 +47,46 @@ def test_the_paper_profile_runs_too(simulate):
     assert np.hypot(*(last - first)[:2]) > 0.3
 
 
-def test_records_come_at_their_period_and_frames_at_theirs(simulate):
-    _, recorded, _ = simulate("quick", duration=2.0)
-    times = np.array([r.time for r in recorded.records])
-    assert np.allclose(np.diff(times), 0.02)
-    captures = np.array([f.time for f in recorded.frames])
-    assert np.allclose(np.diff(captures), 0.06)
+@pytest.mark.parametrize(
+    ("scenario", "reason"), [("course", "timeout"), ("paper", "completed")], ids=["course", "tour"]
+)
+def test_records_and_frames_keep_their_periods_until_the_end(simulate, scenario, reason):
+    outcome, recorded, _ = simulate(scenario, duration=2.0)
+    assert outcome.exit_reason == recorded.reason == reason
+    assert outcome.time == pytest.approx(2.0, abs=0.01)
+    assert np.allclose(np.diff([r.time for r in recorded.records]), 0.02)
+    assert np.allclose(np.diff([f.time for f in recorded.frames]), 0.06)
 
 
-def test_a_time_out_is_told(simulate):
-    outcome, recorded, _ = simulate("course", duration=1.0)
-    assert outcome.exit_reason == recorded.reason == "timeout"
-    assert np.isclose(outcome.time, 1.0, atol=0.01)
+class Stops(Listener):
+    """Interrupts a simulation after half a second."""
+
+    simulation = reason = None
+
+    def on_record(self, record):
+        if record.time >= 0.5:
+            self.simulation.interrupt()
+
+    def close(self, exit_reason):
+        self.reason = exit_reason
 
 
-def test_a_tour_completes(simulate):
-    outcome, _, _ = simulate("paper", duration=1.0)
-    assert outcome.exit_reason == "completed"
+class Fails(Listener):
+    def close(self, exit_reason):
+        raise OSError("disk full")
 
 
-def test_an_interrupted_run_ends_at_once_and_closes_its_listeners(simulate):
-    class Stops(Listener):
-        reason = None
-
-        def on_record(self, record):
-            if record.time >= 0.5:
-                simulation.interrupt()
-
-        def close(self, exit_reason):
-            self.reason = exit_reason
-
+def test_an_interrupted_run_ends_at_once_and_closes_its_listeners():
     listener = Stops()
-    scenario = load_scenario("quick", ['robot.body="kinematic"', 'camera.source="analytic"'])
-    simulation = Simulation(scenario, 0, [listener])
-    outcome = simulation.run()
+    listener.simulation = Simulation(load_scenario("quick", STAND_INS), 0, [listener])
+    outcome = listener.simulation.run()
     assert outcome.exit_reason == listener.reason == "interrupted"
     assert np.isclose(outcome.time, 0.5, atol=0.03)
 
 
-def test_a_scripted_walk_goes_where_it_is_told(simulate):
-    _, recorded, _ = simulate("walk", duration=6.0)
-    way = recorded.records[-1].truth.robot - recorded.records[0].truth.robot
-    assert np.hypot(*way[:2]) > 0.3
-
-
 def test_every_listener_is_closed_though_one_fails():
-    class Fails(Listener):
-        def close(self, exit_reason):
-            raise OSError("disk full")
-
-    class Closes(Fails):
-        reason = None
-
-        def close(self, exit_reason):
-            self.reason = exit_reason
-
-    last = Closes()
-    settings = ['robot.body="kinematic"', 'camera.source="analytic"', "duration=0.1"]
+    listener = Stops()
+    scenario = load_scenario("quick", [*STAND_INS, "duration=0.1"])
     with pytest.raises(OSError, match="disk full"):
-        Simulation(load_scenario("quick", settings), 0, [Fails(), last]).run()
-    assert last.reason == "timeout"
+        Simulation(scenario, 0, [Fails(), listener]).run()
+    assert listener.reason == "timeout"

@@ -1,4 +1,4 @@
-"""Compiled against plain Python, and against MuJoCo's own kinematics."""
+"""Kinematic kernels against the kinematics of MuJoCo."""
 
 import mujoco
 import numpy as np
@@ -28,46 +28,41 @@ def test_the_sole_lies_flat_where_it_is_planted(world, stance):
         data.qpos[root : root + 7] = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
         mujoco.mj_kinematics(model, data)
         anchor, pose, other = rng.uniform(-2.0, 2.0, 3), np.empty(7), np.empty(4)
-        arguments = (data.xpos, data.xquat, feet, soles, stance, anchor)
-        kernel.base_pose(*arguments, pose, other)
-        plain = np.empty(7), np.empty(4)
-        kernel.base_pose.py_func(*arguments, *plain)
-        assert np.allclose(pose, plain[0], rtol=0, atol=1e-12)
-        assert np.allclose(other, plain[1], rtol=0, atol=1e-12)
-
+        kernel.base_pose(data.xpos, data.xquat, feet, soles, stance, anchor, pose, other)
         data.qpos[root : root + 7] = pose
         mujoco.mj_kinematics(model, data)
-        places, axes = data.site_xpos[sites], data.site_xmat[sites].reshape(2, 3, 3)
+        positions, axes = data.site_xpos[sites], data.site_xmat[sites].reshape(2, 3, 3)
         c, s = np.cos(anchor[2]), np.sin(anchor[2])
-        assert np.allclose(places[stance], [*anchor[:2], 0.0], atol=1e-9)
+        assert np.allclose(positions[stance], [*anchor[:2], 0.0], atol=1e-9)
         assert np.allclose(axes[stance], [[c, -s, 0], [s, c, 0], [0, 0, 1]], atol=1e-9)
-        ahead = axes[1 - stance][:, 0]
-        wanted = [*places[1 - stance][:2], np.arctan2(ahead[1], ahead[0]), places[1 - stance][2]]
-        assert np.allclose(other, wanted, atol=1e-9)
+        x_axis = axes[1 - stance][:, 0]
+        expected = [
+            *positions[1 - stance][:2],
+            np.arctan2(x_axis[1], x_axis[0]),
+            positions[1 - stance][2],
+        ]
+        assert np.allclose(other, expected, atol=1e-9)
 
 
-def test_what_is_felt_is_what_mujoco_says():
+def test_imu_motion_is_that_of_mujoco():
     rng = np.random.default_rng(0)
     for turn in (0.0, 1e-9, 0.01, 1.0, 3.0):
         step = _rotated(rng, turn)
         before = np.array([*rng.standard_normal(3), *_rotated(rng, 3.0)])
         after = before + 0.01
         mujoco.mju_mulQuat(after[3:], before[3:], step)
-        wanted, found = np.empty(3), (np.empty(3), np.empty(3), np.empty(3))
-        mujoco.mju_subQuat(wanted, after[3:], before[3:])
-        kernel.imu_motion(before, after, 0.005, *found)
-        plain = np.empty(3), np.empty(3), np.empty(3)
-        kernel.imu_motion.py_func(before, after, 0.005, *plain)
-        assert np.allclose(found, plain, rtol=1e-12, atol=1e-12)
-        assert np.allclose(found[0], 0.01 / 0.005)
-        assert np.allclose(found[1], wanted / 0.005, rtol=1e-6, atol=1e-8)
+        expected, motion = np.empty(3), (np.empty(3), np.empty(3), np.empty(3))
+        mujoco.mju_subQuat(expected, after[3:], before[3:])
+        kernel.imu_motion(before, after, 0.005, *motion)
+        assert np.allclose(motion[0], 0.01 / 0.005)
+        assert np.allclose(motion[1], expected / 0.005, rtol=1e-6, atol=1e-8)
         rotation = np.empty(9)
         mujoco.mju_quat2Mat(rotation, after[3:])
-        assert np.allclose(found[2], rotation.reshape(3, 3).T @ (0.0, 0.0, 9.81))
+        assert np.allclose(motion[2], rotation.reshape(3, 3).T @ (0.0, 0.0, 9.81))
 
 
-def test_the_shorter_way_round_is_taken():
+def test_the_shorter_rotation_is_used():
     before, after = np.array([0.0, 0, 0, 1, 0, 0, 0]), np.array([0.0, 0, 0, -1, 0, 0, -1e-6])
-    found = np.empty(3), np.empty(3), np.empty(3)
-    kernel.imu_motion(before, after, 1.0, *found)
-    assert found[1] == pytest.approx((0.0, 0.0, 2e-6), rel=1e-6)
+    motion = np.empty(3), np.empty(3), np.empty(3)
+    kernel.imu_motion(before, after, 1.0, *motion)
+    assert motion[1] == pytest.approx((0.0, 0.0, 2e-6), rel=1e-6)

@@ -67,6 +67,13 @@ def test_yaw_drifts_as_a_random_walk():
     assert np.isclose(np.std(ends), 0.01 * np.sqrt(50 * PERIOD), rtol=0.2)
 
 
+def test_every_pad_has_a_constant_gain():
+    suite = SensorSuite(replace(SILENT, foot_force_gain=0.1), np.random.default_rng(2), PERIOD)
+    gain = reading(suite).foot_force / 6.7
+    assert 0.02 < np.std(gain) < 0.3
+    assert np.array_equal(reading(suite).foot_force, 6.7 * gain)
+
+
 def test_a_pad_never_pulls():
     suite = SensorSuite(SensorNoise(foot_force=50.0), np.random.default_rng(2), PERIOD)
     assert (reading(suite).foot_force >= 0.0).all()

@@ -17,9 +17,9 @@ PASSAGE = Passage((-1.0, 0.0), (1.0, 1.5), 0.25, depart=4.0)
 
 @st.composite
 def shuttles(draw):
-    start, way = draw(point), draw(st.floats(-pi, pi))
+    start, angle = draw(point), draw(st.floats(-pi, pi))
     length = draw(st.floats(0.3, 3.0))
-    end = (start[0] + length * np.cos(way), start[1] + length * np.sin(way))
+    end = (start[0] + length * np.cos(angle), start[1] + length * np.sin(angle))
     return Shuttle(start, (float(end[0]), float(end[1])), draw(speed), draw(st.floats(0.0, 6.0)))
 
 
@@ -41,7 +41,7 @@ wanders = st.builds(
     point,
     speed,
 )
-laws = st.one_of(
+motions = st.one_of(
     passages,
     wanders,
     shuttles(),
@@ -51,62 +51,55 @@ laws = st.one_of(
 )
 
 
-@given(st.lists(laws, max_size=6), times)
+@given(st.lists(motions, max_size=6), times)
 def test_all_together_are_each_alone(chosen, time):
     movers = Movers(tuple(chosen))
-    positions = np.array([law.position(time) for law in chosen]).reshape(-1, 2)
-    velocities = np.array([law.velocity(time) for law in chosen]).reshape(-1, 2)
+    positions = np.array([motion.position(time) for motion in chosen]).reshape(-1, 2)
+    velocities = np.array([motion.velocity(time) for motion in chosen]).reshape(-1, 2)
     # A shuttle at its very end may have turned in one evaluation and not in the other.
     turning = [
-        isinstance(law, Shuttle) and min(_to_end(law, time), law.length - _to_end(law, time)) < 1e-9
-        for law in chosen
+        isinstance(motion, Shuttle)
+        and min(_to_end(motion, time), motion.length - _to_end(motion, time)) < 1e-9
+        for motion in chosen
     ]
     assert movers.positions(time) == pytest.approx(positions, abs=1e-9)
     keep = ~np.array(turning, dtype=bool)
     assert movers.velocities(time)[keep] == pytest.approx(velocities[keep], abs=1e-9)
 
 
-@given(st.lists(laws, max_size=6), st.lists(times, min_size=1, max_size=4))
+@given(st.lists(motions, max_size=6), st.lists(times, min_size=1, max_size=4))
 def test_many_times_at_once_are_each_alone(chosen, instants):
     movers = Movers(tuple(chosen))
     together = movers.positions(np.array(instants))
     assert np.array_equal(together, np.array([movers.positions(time) for time in instants]))
 
 
-@given(laws, times)
-def test_velocity_is_the_slope_of_position(law, time):
+@given(motions, times)
+def test_velocity_is_the_slope_of_position(motion, time):
     step = 1e-5
-    if _bends_within(law, time, step):
+    if _bends_within(motion, time, step):
         return
-    before, after = np.array(law.position(time)), np.array(law.position(time + step))
-    assert (after - before) / step == pytest.approx(np.array(law.velocity(time)), abs=1e-4)
+    before, after = np.array(motion.position(time)), np.array(motion.position(time + step))
+    assert (after - before) / step == pytest.approx(np.array(motion.velocity(time)), abs=1e-4)
 
 
 @given(shuttles(), times)
-def test_shuttle_stays_in_its_lane_at_its_speed(law, time):
-    assert 0.0 <= _to_end(law, time) <= law.length + 1e-9
-    assert hypot(*law.velocity(time)) == pytest.approx(law.speed)
+def test_shuttle_stays_in_its_lane_at_its_speed(motion, time):
+    assert 0.0 <= _to_end(motion, time) <= motion.length + 1e-9
+    assert hypot(*motion.velocity(time)) == pytest.approx(motion.speed)
 
 
 @given(shuttles(), times)
-def test_shuttle_comes_back_after_there_and_back(law, time):
-    period = 2.0 * law.length / law.speed
-    assert law.position(time + period) == pytest.approx(law.position(time), abs=1e-8)
+def test_shuttle_comes_back_after_there_and_back(motion, time):
+    period = 2.0 * motion.length / motion.speed
+    assert motion.position(time + period) == pytest.approx(motion.position(time), abs=1e-8)
 
 
 @given(circles, times)
-def test_circle_stays_on_its_rim(law, time):
-    x, y = law.position(time)
-    assert hypot(x - law.centre[0], y - law.centre[1]) == pytest.approx(law.radius)
-    assert hypot(*law.velocity(time)) == pytest.approx(abs(law.speed))
-
-
-def test_shuttle_turns_about_at_the_ends():
-    law = Shuttle((0.0, 0.0), (1.0, 0.0), 0.1)
-    assert law.position(10.0) == pytest.approx((1.0, 0.0))
-    assert law.velocity(9.99) == pytest.approx((0.1, 0.0))
-    assert law.velocity(10.01) == pytest.approx((-0.1, 0.0))
-    assert law.velocity(20.01) == pytest.approx((0.1, 0.0))
+def test_circle_stays_on_its_rim(motion, time):
+    x, y = motion.position(time)
+    assert hypot(x - motion.centre[0], y - motion.centre[1]) == pytest.approx(motion.radius)
+    assert hypot(*motion.velocity(time)) == pytest.approx(abs(motion.speed))
 
 
 def test_no_movers_are_no_rows():
@@ -114,30 +107,34 @@ def test_no_movers_are_no_rows():
     assert Movers(()).velocities(1.0).shape == (0, 2)
 
 
-def _bends_within(law, time: float, step: float) -> bool:
+def _bends_within(motion, time: float, step: float) -> bool:
     """Whether the velocity jumps soon after `time`."""
-    if isinstance(law, Shuttle):
-        room = min(_to_end(law, time), law.length - _to_end(law, time))
-        return room < 2.0 * law.speed * step
-    if isinstance(law, Passage):
-        jumps = (law.depart, law.depart + law.length / law.speed)
+    if isinstance(motion, Shuttle):
+        return _room(motion, time) < 2.0 * motion.speed * step
+    if isinstance(motion, Passage):
+        jumps = (motion.depart, motion.depart + motion.length / motion.speed)
         return any(abs(jump - time) < 2.0 * step for jump in jumps)
-    if isinstance(law, Wander):
-        return law.velocity(time) != law.velocity(time + step)
+    if isinstance(motion, Wander):
+        return motion.velocity(time) != motion.velocity(time + step)
     return False
 
 
-def _to_end(law: Shuttle, time: float) -> float:
+def _room(motion: Shuttle, time: float) -> float:
+    """Distance to the nearer end of the lane."""
+    return min(_to_end(motion, time), motion.length - _to_end(motion, time))
+
+
+def _to_end(motion: Shuttle, time: float) -> float:
     """Distance from the start of the lane."""
-    x, y = law.position(time)
-    return hypot(x - law.start[0], y - law.start[1])
+    x, y = motion.position(time)
+    return hypot(x - motion.start[0], y - motion.start[1])
 
 
-@given(laws, times)
-def test_a_mover_goes_at_its_pace_or_rests(law, time):
-    speed = hypot(*law.velocity(time))
-    assert speed == pytest.approx(pace(law)) or speed == 0.0
-    assert pace(Appearing(law, time)) == pace(law)
+@given(motions, times)
+def test_a_mover_goes_at_its_pace_or_rests(motion, time):
+    speed = hypot(*motion.velocity(time))
+    assert speed == pytest.approx(pace(motion)) or speed == 0.0
+    assert pace(Appearing(motion, time)) == pace(motion)
 
 
 def test_a_passage_waits_moves_and_stays():
@@ -151,10 +148,10 @@ def test_a_passage_waits_moves_and_stays():
 
 @given(st.floats(0.0, 60.0), st.floats(0.0, 60.0))
 def test_a_passage_never_exceeds_its_speed(one, other):
-    way = hypot(
+    distance = hypot(
         *(b - a for a, b in zip(PASSAGE.position(one), PASSAGE.position(other), strict=True))
     )
-    assert way <= PASSAGE.speed * abs(other - one) + 1e-12
+    assert distance <= PASSAGE.speed * abs(other - one) + 1e-12
 
 
 @given(st.floats(4.0, 13.99))
