@@ -13,6 +13,13 @@ from navigation.value import value
 Array = NDArray[np.float64]
 
 
+def read_only(array: Array) -> Array:
+    """Return a view that cannot be written to."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
 Situation = Literal["free", "accelerate", "brake", "escape", "path_change"]
 """Outcome of velocity modification."""
 

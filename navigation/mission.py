@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navigation.angles import wrap
-from navigation.decision import Task
+from navigation.decision import Task, read_only
 from navigation.parameters.navigation import MissionParameters
 
 Array = NDArray[np.float64]
@@ -94,7 +94,7 @@ class Mission:
         if is_goal and self._goal_heading is not None:
             heading = wrap(self._goal_heading)
         return Task(
-            target=target.copy(),
+            target=read_only(target),
             heading=heading,
             is_goal=is_goal,
             index=self._passed,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from navigation.angles import wrap
 from navigation.baselines.planning_scene import PlanningScene
 from navigation.belief.belief import Belief
-from navigation.decision import MotionDecision, SpeedLimits, Task
+from navigation.decision import MotionDecision, SpeedLimits, Task, read_only
 from navigation.motion.facing import arriving
 from navigation.motion.move_to_goal import ArrivalSide, arrival_gain, move_to_goal
 from navigation.motion.velocity_mapping import idle_velocity
@@ -66,7 +66,7 @@ class BaselinePlanner:
         if task.done or belief.lost:
             turn_rate = self._parameters.velocity_mapping.lost_turn_rate
             self._body = idle_velocity(not task.done, turn_rate, self._limits)
-            return MotionDecision(self._body.copy(), heading)
+            return MotionDecision(read_only(self._body), heading)
         scene = self._scene(belief, task)
         self._body = np.clip(self._avoidance.decide(scene), scene.low(), scene.high())
         vx, vy, _ = self._body.tolist()
@@ -74,7 +74,7 @@ class BaselinePlanner:
         direction = wrap(heading + atan2(vy, vx)) if speed > 1e-9 else scene.course
         radii = scene.s_robot + scene.radii(self._avoidance.margin)
         pairs = zip(scene.obstacles.ids.tolist(), radii.tolist(), strict=True)
-        return MotionDecision(self._body.copy(), direction, speed, extended_radii=tuple(pairs))
+        return MotionDecision(read_only(self._body), direction, speed, extended_radii=tuple(pairs))
 
     def _scene(self, belief: Belief, task: Task) -> PlanningScene:
         p = self._parameters

@@ -14,6 +14,7 @@ from navigation.decision import (
     SpeedLimits,
     Task,
     VirtualObstacle,
+    read_only,
 )
 from navigation.motion.collision_band import CollisionCase, Encounter
 from navigation.motion.extended_radius import extended_radius, physical_radius
@@ -98,7 +99,7 @@ class Planner:
         if task.done or belief.lost:
             turn_rate = self._parameters.velocity_mapping.lost_turn_rate
             self._body = idle_velocity(not task.done, turn_rate, self._limits)
-            return MotionDecision(self._body.copy(), self._direction)
+            return MotionDecision(read_only(self._body), self._direction)
         obstacles = ObstacleSet.from_tracks(belief.tracks)
         task = self._search_waypoint(belief, task, obstacles)
         scene, radii = self._scene(belief, task, obstacles)
@@ -115,7 +116,7 @@ class Planner:
             turn_gain=self._parameters.velocity_mapping.turn_gain,
         )
         return MotionDecision(
-            self._body.copy(),
+            read_only(self._body),
             wanted.direction,
             wanted.speed,
             wanted.situation,

@@ -202,14 +202,12 @@ def test_evaluation_of_the_field_changes_no_decision(p, belief, task, track, lim
         assert before.shape == points.shape
 
 
-def test_listeners_may_change_the_published_velocity(belief, task, track, limits):
-    """The acceleration limits of the next footstep start from the state of the planner."""
-    one, other = Planner(EXTENDED, limits), Planner(EXTENDED, limits)
-    for step in range(4):
-        b = belief([track((0.9 - 0.1 * step, 0.1), (-0.14, 0.0))])
-        published, expected = one.plan(b, task()).velocity, other.plan(b, task()).velocity
-        assert published.tolist() == expected.tolist()
-        published[:] = 9.0
+@BOTH
+def test_the_published_velocity_is_read_only(p, belief, task, limits):
+    planner = Planner(p, limits)
+    for t in (task(), task(done=True)):
+        with pytest.raises(ValueError, match="read-only"):
+            planner.plan(belief(), t).velocity[:] = 9.0
 
 
 def test_a_robot_that_stands_has_no_field(belief, task, limits):
