@@ -16,7 +16,7 @@ PACKAGES = ("hsr8", "navigation", "vision", "walking", "scripts", "tests")
 NAMES = sorted(set(re.findall(r"`([\w/]+\.py)::([\w.]+)`", TEXT)))
 
 
-def place(file: str) -> Path:
+def path_of(file: str) -> Path:
     """A file of the table, named from `navigation` on where no package is named."""
     if file.partition("/")[0] not in PACKAGES:
         tests = Path(file).name.startswith("test_")
@@ -27,19 +27,19 @@ def place(file: str) -> Path:
 @cache
 def defined(file: Path) -> dict[str, str]:
     """Docstrings of the functions, classes and methods in a file, by name."""
-    told = {}
+    docstrings = {}
     for node in ast.parse(file.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.ClassDef | ast.FunctionDef):
-            told[node.name] = ast.get_docstring(node) or ""
+            docstrings[node.name] = ast.get_docstring(node) or ""
             if isinstance(node, ast.ClassDef):
                 for method in (n for n in node.body if isinstance(n, ast.FunctionDef)):
-                    told[f"{node.name}.{method.name}"] = ast.get_docstring(method) or ""
-    return told
+                    docstrings[f"{node.name}.{method.name}"] = ast.get_docstring(method) or ""
+    return docstrings
 
 
 @pytest.mark.parametrize(("file", "name"), NAMES)
 def test_what_the_table_names_exists(file, name):
-    assert name in defined(place(file))
+    assert name in defined(path_of(file))
 
 
 def test_every_equation_has_a_function_and_a_test():
@@ -56,9 +56,9 @@ def test_every_equation_has_a_function_and_a_test():
 def test_docstrings_bear_the_number_of_their_equation(number):
     for row in (line for line in TEXT.splitlines() if line.startswith(f"| ({number})")):
         for file, name in re.findall(r"`([\w/]+\.py)::([\w.]+)`", row.split(" | ")[2]):
-            told = defined(place(file))[name]
-            spans = re.findall(r"\((\d+)\)(?:-\((\d+)\))?", told)
-            assert any(int(a) <= number <= int(b or a) for a, b in spans), (name, told)
+            docstrings = defined(path_of(file))[name]
+            spans = re.findall(r"\((\d+)\)(?:-\((\d+)\))?", docstrings)
+            assert any(int(a) <= number <= int(b or a) for a, b in spans), (name, docstrings)
 
 
 def test_keys_in_the_tables_are_keys_of_a_scenario():

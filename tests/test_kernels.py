@@ -17,7 +17,7 @@ FOREIGN = {"math", "numpy", "numba", "numpy.typing"}  # of a version that the ca
 
 
 def kernels_of(path):
-    """The compiled functions of a file, by name."""
+    """Return the compiled functions of a file, by name."""
     module = importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
     return {
         name: value
@@ -28,7 +28,7 @@ def kernels_of(path):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_kernels_use_nothing_of_other_files(path):
-    """A kernel kept on disk holds what it calls and reads: a change elsewhere would be missed."""
+    """Numba would not notice a change in another file and keep a stale kernel on disk."""
     imported = {
         alias.asname or alias.name
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))

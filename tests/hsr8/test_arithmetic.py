@@ -14,7 +14,7 @@ NEW = LEVEL_3 | BEYOND["X86_V4"]
 
 @pytest.fixture
 def processor(tmp_path, monkeypatch):
-    """The file of a processor that has some features, where NumPy is not imported yet."""
+    """Write the file of a processor with some features, before NumPy is imported."""
     monkeypatch.delitem(sys.modules, "numpy")
     for variable in VARIABLES:
         monkeypatch.setenv(variable, "to be put back")
@@ -28,40 +28,40 @@ def processor(tmp_path, monkeypatch):
     return having
 
 
-def test_a_processor_of_level_3_leaves_numpy_as_it_is(processor):
+def test_a_processor_of_level_3_needs_no_limit_of_numpy(processor):
     assert choose_arithmetic(processor(LEVEL_3)) == PORTABLE
     assert os.environ["OPENBLAS_CORETYPE"] == "Haswell"
     assert "NPY_DISABLE_CPU_FEATURES" not in os.environ
 
 
 @pytest.mark.parametrize("beyond", [["X86_V4"], ["X86_V4", "AVX512_ICL"], list(BEYOND)])
-def test_what_is_beyond_level_3_is_not_used(processor, beyond):
+def test_features_beyond_level_3_are_not_used(processor, beyond):
     features = LEVEL_3.union(*(BEYOND[name] for name in beyond))
     assert choose_arithmetic(processor(features)) == PORTABLE
     assert os.environ["NPY_DISABLE_CPU_FEATURES"].split() == beyond
 
 
 @pytest.mark.parametrize("features", [set(), OLD])
-def test_other_processors_calculate_as_they_do(processor, features, tmp_path):
+def test_other_processors_are_native(processor, features, tmp_path):
     assert choose_arithmetic(processor(features)) == NATIVE
     assert choose_arithmetic(tmp_path / "absent") == NATIVE
     assert not set(VARIABLES) & set(os.environ)
 
 
 @pytest.mark.parametrize("variable", VARIABLES)
-def test_the_user_has_the_last_word(processor, monkeypatch, variable):
+def test_the_environment_of_the_user_wins(processor, monkeypatch, variable):
     monkeypatch.setenv(variable, "mine")
     assert choose_arithmetic(processor(NEW)) == NATIVE
     assert os.environ[variable] == "mine"
 
 
-def test_after_numpy_it_is_too_late(processor, monkeypatch):
+def test_after_an_import_of_numpy_it_is_native(processor, monkeypatch):
     monkeypatch.setitem(sys.modules, "numpy", sys)
     assert choose_arithmetic(processor(NEW)) == NATIVE
     assert not set(VARIABLES) & set(os.environ)
 
 
-def test_a_child_of_a_process_that_chose_has_chosen_too(processor, monkeypatch):
+def test_a_child_process_inherits_the_choice(processor, monkeypatch):
     choose_arithmetic(processor(NEW))
     monkeypatch.setitem(sys.modules, "numpy", sys)
     assert choose_arithmetic(processor(NEW)) == PORTABLE
@@ -81,12 +81,12 @@ print(json.dumps([hsr8.arithmetic.IN_FORCE, blas.scipy_openblas_get_corename64_(
 """
 
 
-def test_numpy_and_openblas_obey():
+def test_numpy_and_openblas_follow_the_choice():
     clean = {name: value for name, value in os.environ.items() if name not in VARIABLES}
-    told = subprocess.run(
+    probe = subprocess.run(
         [sys.executable, "-c", PROBE], env=clean, capture_output=True, text=True, check=True
     )
-    in_force, core, used = json.loads(told.stdout)
+    in_force, core, used = json.loads(probe.stdout)
     if in_force == NATIVE:
         pytest.skip("not a processor of level 3")
     assert core == "Haswell"

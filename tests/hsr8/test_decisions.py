@@ -12,11 +12,11 @@ FOOTSTEP = 0.34
 
 
 class Parts:
-    """Mission, planner and gaze that note what they are asked."""
+    """Mission, motion planner and gaze planner that record their arguments."""
 
     def __init__(self, task):
         self.task, self.poses, self.plans, self.looks = task, [], [], []
-        self.avoided, self.seen = [], []
+        self.avoided, self.beliefs = [], []
 
     def update(self, pose):
         self.poses.append(pose)
@@ -30,40 +30,40 @@ class Parts:
 
     def choose(self, belief, task, motion):
         self.looks.append(motion)
-        self.seen.append(belief)
+        self.beliefs.append(belief)
         return GazeDecision(0.0, 0.0)
 
 
 @pytest.fixture
 def made(fake):
-    """Decisions, their parts, and a decision at a time with so many steps made."""
+    """Return decisions, their parts, and a function that decides at a time and step count."""
     parts = Parts(fake.frame(0.0).decision.task)
-    places = {"far": (1.5, 0.0), "near": (0.5, 0.0)}
-    landmarks = LandmarkObstacles(places, 0.05, LandmarkParameters())
+    positions = {"far": (1.5, 0.0), "near": (0.5, 0.0)}
+    landmarks = LandmarkObstacles(positions, 0.05, LandmarkParameters())
     decisions = Decisions(
         mission=parts, planner=parts, gaze=parts, landmarks=landmarks, footstep=FOOTSTEP
     )
 
     def make(time, steps, late=0.0, moved=(0.0, 0.0, 0.0)):
         frame = fake.frame(time)
-        now = replace(
+        context = replace(
             frame.context,
             time=time + late,
             step_count=steps,
             odometry=frame.context.odometry + moved,
         )
-        return decisions.make(frame.estimate, frame.measured, now)
+        return decisions.make(frame.estimate, frame.measured, context)
 
     return decisions, parts, make
 
 
 def test_motion_is_decided_once_a_footstep_and_gaze_every_frame(made):
     _, parts, make = made
-    decided = [make(0.06 * k, k // 5) for k in range(15)]
+    decisions = [make(0.06 * k, k // 5) for k in range(15)]
     assert parts.plans == pytest.approx([0.0, 0.30, 0.60])
     assert len(parts.looks) == 15
-    assert [d.fresh for d in decided] == [True] + [False] * 14
-    assert all(d.motion is looked for d, looked in zip(decided, parts.looks, strict=True))
+    assert [d.fresh for d in decisions] == [True] + [False] * 14
+    assert all(d.motion is looked for d, looked in zip(decisions, parts.looks, strict=True))
 
 
 def test_a_robot_that_stands_decides_after_the_time_of_a_footstep(made):
@@ -73,7 +73,7 @@ def test_a_robot_that_stands_decides_after_the_time_of_a_footstep(made):
     assert parts.plans == pytest.approx([0.0, 0.36, 0.72])
 
 
-def test_after_a_fall_it_decides_anew(made):
+def test_after_a_fall_motion_is_decided_again(made):
     decisions, parts, make = made
     make(0.0, 0)
     decisions.forget()
@@ -81,17 +81,17 @@ def test_after_a_fall_it_decides_anew(made):
     assert len(parts.plans) == 2
 
 
-def test_a_late_frame_is_carried_on_to_now(made):
+def test_a_late_frame_is_predicted_to_the_present(made):
     _, parts, make = made
-    decided = make(0.0, 0, late=0.1, moved=(0.02, 0.0, 0.0))
-    assert decided.belief.time == pytest.approx(0.1)
+    decision = make(0.0, 0, late=0.1, moved=(0.02, 0.0, 0.0))
+    assert decision.belief.time == pytest.approx(0.1)
     assert np.allclose(parts.poses[0], (0.02, 0.0, 0.0))
     assert np.allclose(make(1.0, 9).belief.pose, 0.0)
 
 
-def test_only_the_planner_takes_landmarks_for_obstacles(made):
+def test_only_the_motion_planner_avoids_landmarks(made):
     _, parts, make = made
-    decided = make(0.0, 0)
-    tracks = [track.label for track in decided.belief.tracks]
+    decision = make(0.0, 0)
+    tracks = [track.label for track in decision.belief.tracks]
     assert parts.avoided == [["near", *tracks]]
-    assert parts.seen == [decided.belief]
+    assert parts.beliefs == [decision.belief]

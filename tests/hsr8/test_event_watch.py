@@ -32,11 +32,11 @@ def test_a_contact_is_told_with_the_name_of_what_is_touched():
 def test_a_contact_that_goes_on_is_one_event_and_a_later_one_another():
     watch = EventWatch(())
 
-    def told(time, obstacle):
+    def events(time, obstacle):
         return [event.kind for event in watch.look(truth_with(time, obstacle), None)]
 
-    assert told(0.0, 3) == ["collision"]
+    assert events(0.0, 3) == ["collision"]
     for time in np.arange(0.02, 1.0, 0.02):
-        assert told(time, 3) == []
-    assert told(1.2, 3) == []
-    assert told(1.9, 3) == told(1.9, 4) == ["collision"]
+        assert events(time, 3) == []
+    assert events(1.2, 3) == []
+    assert events(1.9, 3) == events(1.9, 4) == ["collision"]

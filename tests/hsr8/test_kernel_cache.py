@@ -12,11 +12,11 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
-def places(tmp_path, monkeypatch):
-    """A checkout, a home and a folder of temporary files, of which some may be written to."""
+def writable(tmp_path, monkeypatch):
+    """Make some of checkout, home and temporary folder writable."""
     folders = {name: tmp_path / name for name in ("root", "home", "temporary")}
-    for place in folders.values():
-        place.mkdir()
+    for folder in folders.values():
+        folder.mkdir()
     for folder in FOLDERS:
         (folders["root"] / folder).mkdir(parents=True)
     monkeypatch.setenv("HOME", str(folders["home"]))
@@ -28,7 +28,7 @@ def places(tmp_path, monkeypatch):
     def only(*names):
         allowed = [folders[name] for name in names]
 
-        def access(path, _mode):  # the tests may be run by root, whom no mode stops
+        def access(path, _mode):  # root may write everywhere
             return any(Path(path).is_relative_to(folder) for folder in allowed)
 
         monkeypatch.setattr(kernel_cache.os, "access", access)
@@ -38,14 +38,14 @@ def places(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("names", [("root",), ("home",), ("root", "home")])
-def test_numba_chooses_where_it_can(places, names):
-    folders = places(*names)
+def test_numba_chooses_if_it_can(writable, names):
+    folders = writable(*names)
     assert choose_kernel_cache(folders["root"]) == ""
     assert VARIABLE not in os.environ
 
 
-def test_where_it_cannot_a_folder_of_the_users_own_is_made_once(places):
-    folders = places("temporary")
+def test_else_a_private_folder_is_made_once(writable):
+    folders = writable("temporary")
     chosen = choose_kernel_cache(folders["root"])
     assert os.environ[VARIABLE] == chosen
     assert Path(chosen).parent == folders["temporary"]
@@ -54,8 +54,8 @@ def test_where_it_cannot_a_folder_of_the_users_own_is_made_once(places):
     assert choose_kernel_cache(folders["root"]) == chosen
 
 
-def test_a_folder_that_others_may_write_to_is_not_trusted(places):
-    folders = places("temporary")
+def test_a_folder_that_others_may_write_to_is_not_trusted(writable):
+    folders = writable("temporary")
     chosen = Path(choose_kernel_cache(folders["root"]))
     chosen.chmod(0o777)
     del os.environ[VARIABLE]
@@ -64,20 +64,20 @@ def test_a_folder_that_others_may_write_to_is_not_trusted(places):
     assert another.parent == folders["temporary"]
 
 
-def test_what_the_user_asks_for_is_respected(places, monkeypatch):
-    folders = places("temporary")
+def test_the_environment_of_the_user_wins(writable, monkeypatch):
+    folders = writable("temporary")
     monkeypatch.setenv(VARIABLE, "/somewhere")
     assert choose_kernel_cache(folders["root"]) == "/somewhere"
 
 
-def test_it_is_chosen_before_the_first_kernel(tmp_path):
+def test_the_folder_is_chosen_before_the_first_kernel(tmp_path):
     lines = (
         "import os, hsr8.kernel_cache as k, sys",
         "assert 'numba' not in sys.modules",
         "print(os.environ.get(k.VARIABLE, ''))",
     )
     environment = os.environ | {"PYTHONPATH": str(ROOT), VARIABLE: str(tmp_path)}
-    told = subprocess.run(
+    probe = subprocess.run(
         [sys.executable, "-c", "\n".join(lines)], env=environment, capture_output=True, check=True
     )
-    assert told.stdout.decode().strip() == str(tmp_path)
+    assert probe.stdout.decode().strip() == str(tmp_path)

@@ -8,7 +8,7 @@ import pytest
 from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
 
-# `scaled_model` is an experiment, and the experiments are no package.
+# `scaled_model` is a script; scripts are not a package.
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 
 

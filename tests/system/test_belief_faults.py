@@ -1,4 +1,4 @@
-"""Faults of sensors and map, each with what the belief must make of it."""
+"""Belief under faults of sensors and map."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from navigation.angles import wrap
 
 
 def errors(recorded):
-    """Position [m] and heading [rad] error of every belief, and whether it says it is lost."""
+    """Return position [m] and heading [rad] error of every belief, and whether it is lost."""
     pairs = [(r.frame.belief, r.truth.robot) for r in recorded.records if r.frame is not None]
     position = np.array([np.hypot(*(b.pose - truth)[:2]) for b, truth in pairs])
     heading = np.array([abs(wrap(float(b.pose[2] - truth[2]))) for b, truth in pairs])

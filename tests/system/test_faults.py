@@ -1,4 +1,4 @@
-"""Every kind of fault, and what must come of it: recovery, or a failure with a name."""
+"""Every kind of fault: recovery, or a named failure."""
 
 import json
 
@@ -8,8 +8,8 @@ import pytest
 from hsr8.cli.main import entry
 from hsr8.recorder.run.run_reader import open_run
 
-START, LASTS = 0.7, 0.4  # of the faults that are got over [s]
-WELL = {  # what the robot gets over within a second, walking
+START, LASTS = 0.7, 0.4  # of the faults that the robot recovers from [s]
+RECOVERY = {  # magnitudes that a walking robot recovers from within a second
     "attitude-bias": "magnitude=0.03",
     "gyro-bias": "magnitude=0.05",
     "imu-frozen": "",
@@ -24,17 +24,17 @@ WELL = {  # what the robot gets over within a second, walking
     "low-friction": "magnitude=0.3",
     "bump": "magnitude=0.003,position=[0.1,0.0],radius=0.2",
 }
-TOLD = {  # the gyro turns away by 16 of its standard deviations a frame: the beacons set it right
+EVENTS = {  # the gyro error exceeds the gate of the beacons for a moment
     "gyro-bias": ["fault", "fault", "lost", "relocalized"],
 }
-BADLY = {  # what makes it fall
+FALL = {  # magnitudes that make it fall
     "attitude-bias": "magnitude=0.4",
     "encoder-offset": "magnitude=0.2",
     "servo-weak": "magnitude=0.05",
     "servo-stuck": 'joint="l_knee"',
     "push": "magnitude=5.0",
 }
-HARDLY = {  # what goes on to the end of a walk, which it slows down or turns, without a fall
+NO_FALL = {  # permanent faults that slow down or turn a walk without a fall
     "imu-frozen": "",
     "encoder-frozen": "",
     "foot-sensor-dropout": "",
@@ -62,27 +62,27 @@ def walked(simulate, text, duration):
     return outcome, recorded
 
 
-@pytest.mark.parametrize("kind", WELL)
-def test_a_walking_robot_gets_over(simulate, kind):
-    outcome, recorded = walked(simulate, fault(kind, WELL[kind]), 1.8)
+@pytest.mark.parametrize("kind", RECOVERY)
+def test_a_walking_robot_recovers_from(simulate, kind):
+    outcome, recorded = walked(simulate, fault(kind, RECOVERY[kind]), 1.8)
     assert outcome.exit_reason == "completed"
-    told = [e[1] for e in recorded.events if e[1] != "push"]
-    assert sorted(told) == sorted(TOLD.get(kind, ["fault", "fault"]))
+    events = [e[1] for e in recorded.events if e[1] != "push"]
+    assert sorted(events) == sorted(EVENTS.get(kind, ["fault", "fault"]))
     assert recorded.records[-1].truth.robot[0] > 0.12
 
 
-@pytest.mark.parametrize("kind", BADLY)
+@pytest.mark.parametrize("kind", FALL)
 def test_a_walking_robot_falls_by(simulate, kind):
     lasts = 0.05 if kind == "push" else None
-    text = fault(kind, BADLY[kind], start=1.0, lasts=lasts)
+    text = fault(kind, FALL[kind], start=1.0, lasts=lasts)
     outcome, recorded = walked(simulate, text, 4.0)
     assert outcome.exit_reason == "fall"
     assert "fall" in [e[1] for e in recorded.events]
 
 
-@pytest.mark.parametrize("kind", HARDLY)
+@pytest.mark.parametrize("kind", NO_FALL)
 def test_a_walking_robot_stays_on_its_feet_under(simulate, kind):
-    outcome, recorded = walked(simulate, fault(kind, HARDLY[kind], lasts=None), 2.2)
+    outcome, recorded = walked(simulate, fault(kind, NO_FALL[kind], lasts=None), 2.2)
     assert outcome.exit_reason == "completed"
     assert not any(r.truth.fallen for r in recorded.records)
 

@@ -1,4 +1,4 @@
-"""The robot never sees the truth: it walks the same when every look at it is refused."""
+"""The robot side never reads the truth: the run is the same when access raises."""
 
 import dataclasses
 
@@ -9,11 +9,16 @@ from hsr8.loop import Simulation
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.truth.truth import Truth
 
-REFEREE = {"fallen", "contacts", "pushes", "time"}  # what ends a run and what is told as an event
+REFEREE = {
+    "fallen",
+    "contacts",
+    "pushes",
+    "time",
+}  # read by the loop for the end and the events of a run
 
 
 class Forbidden:
-    """Stands in for the truth and raises on access to all but what the referee needs."""
+    """Truth that raises on access to all but the attributes of `REFEREE`."""
 
     def __init__(self, truth):
         self._truth = truth
@@ -21,7 +26,7 @@ class Forbidden:
     def __getattr__(self, name):
         if name in REFEREE:
             return getattr(self._truth, name)
-        raise AssertionError(f"the loop looked at truth.{name}")
+        raise AssertionError(f"the loop read truth.{name}")
 
 
 @pytest.mark.parametrize(
@@ -36,8 +41,8 @@ def test_the_loop_runs_the_same_without_the_truth(monkeypatch, parts):
     expected = Simulation(scenario, 0).run()
     blind = Simulation(scenario, 0)
     body = blind._body
-    look = body.truth
-    monkeypatch.setattr(body, "truth", lambda: Forbidden(look()))
+    truth = body.truth
+    monkeypatch.setattr(body, "truth", lambda: Forbidden(truth()))
     assert blind.run() == expected
 
 

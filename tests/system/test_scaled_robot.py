@@ -1,4 +1,4 @@
-"""Robots of other sizes walk in full physics, and with no change of code."""
+"""Robots of other sizes walk in full physics without a change of code."""
 
 from dataclasses import replace
 from math import sqrt
@@ -68,13 +68,13 @@ class Body:
 
 
 def walk(size, folder, command, seconds, parameters=None):
-    """Lengths in units of the size, times of its root; the command likewise."""
+    """Walk with lengths in units of the size, and times in units of its square root."""
     body = Body(size, folder)
     robot = body.robot
     engine = WalkingEngine(robot, parameters_for(robot, parameters))
-    own, tilt = scale_parameters(command, HSR_VIII, robot.measures()), 0.0
+    scaled, tilt = scale_parameters(command, HSR_VIII, robot.measures()), 0.0
     for _ in range(round(seconds * sqrt(size) / CONTROL_PERIOD)):
-        body.apply(engine.step(body.sense(), own, HeadTarget()))
+        body.apply(engine.step(body.sense(), scaled, HeadTarget()))
         tilt = max(tilt, body.tilt)
     return body.data.qpos[:2] / size, tilt, engine.state().step_count
 
@@ -87,10 +87,10 @@ def walk(size, folder, command, seconds, parameters=None):
     ],
 )
 def test_the_walk_is_the_same_in_longer_steps_and_slower_time(tmp_path, size, command):
-    place, _, steps = walk(1.0, tmp_path, command, 3.0)
-    scaled_place, tilt, scaled_steps = walk(size, tmp_path, command, 3.0)
-    assert np.hypot(*place) > 0.3
-    np.testing.assert_allclose(scaled_place, place, atol=0.01)
+    position, _, steps = walk(1.0, tmp_path, command, 3.0)
+    scaled_position, tilt, scaled_steps = walk(size, tmp_path, command, 3.0)
+    assert np.hypot(*position) > 0.3
+    np.testing.assert_allclose(scaled_position, position, atol=0.01)
     assert abs(scaled_steps - steps) <= 1
     assert tilt < np.radians(3.0)
 
@@ -99,10 +99,10 @@ def test_the_walk_is_the_same_in_longer_steps_and_slower_time(tmp_path, size, co
 def test_every_generator_walks_a_robot_of_half_the_size(tmp_path, generator):
     pattern = replace(WalkingParameters().pattern, generator=generator)
     parameters = replace(WalkingParameters(), pattern=pattern)
-    place, tilt, steps = walk(0.5, tmp_path, VelocityCommand(0.2), 2.4, parameters)
+    position, tilt, steps = walk(0.5, tmp_path, VelocityCommand(0.2), 2.4, parameters)
     assert tilt < np.radians(3.0)
     assert steps > 3
-    assert place[0] > 0.2
+    assert position[0] > 0.2
 
 
 def test_a_small_robot_needs_parameters_of_its_own(tmp_path):

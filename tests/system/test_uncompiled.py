@@ -1,4 +1,4 @@
-"""Kernels that are not compiled do the same work: it is how they are debugged."""
+"""A run with uncompiled kernels, as used for debugging."""
 
 import json
 import os

@@ -71,13 +71,13 @@ def test_touching_an_obstacle_is_noticed_though_nothing_stops_it(world, silent, 
 
 
 def test_between_two_looks_for_contacts_movers_are_where_they_belong(world, silent):
-    law = Line((1.0, 0.0), (-0.5, 0.0))
-    body = body_in(world, silent, Obstacle((1.0, 0.0), 0.10, 0.40, "blue", law))
+    motion = Line((1.0, 0.0), (-0.5, 0.0))
+    body = body_in(world, silent, Obstacle((1.0, 0.0), 0.10, 0.40, "blue", motion))
     position, gaps = body.sense().joint_position, []
     stands = JointTargets(position, position)
     for _ in range(8):
         body.apply(stands)
         gaps.append(body.truth().clearance)
         body.update_kinematics()
-        assert body.data.mocap_pos[:, 0].min() == pytest.approx(law.position(body.time)[0])
+        assert body.data.mocap_pos[:, 0].min() == pytest.approx(motion.position(body.time)[0])
     assert np.allclose(np.diff(gaps), -0.5 * 0.005, atol=1e-5)

@@ -34,9 +34,9 @@ def test_it_stands_and_the_feet_carry_its_weight(world, silent):
 
 
 @pytest.mark.parametrize("ticks", [1, 37])
-def test_movers_are_where_their_law_puts_them(world, silent, ticks):
-    law = Shuttle((1.5, -1.0), (1.5, 1.0), 0.13)
-    body = body_in(world, silent, Obstacle(law.start, 0.08, 0.3, "red", law))
+def test_movers_follow_their_motion_law(world, silent, ticks):
+    motion = Shuttle((1.5, -1.0), (1.5, 1.0), 0.13)
+    body = body_in(world, silent, Obstacle(motion.start, 0.08, 0.3, "red", motion))
     targets = hold(body)
     for _ in range(ticks):
         body.apply(targets)
@@ -45,9 +45,9 @@ def test_movers_are_where_their_law_puts_them(world, silent, ticks):
     assert np.isclose(mover[1], -1.0 + 0.13 * ticks * CONTROL_PERIOD, atol=1e-12)
 
 
-def test_a_mover_is_solid_and_its_contact_is_told_once(world, silent):
-    law = Line((0.30, 0.0), (-0.5, 0.0))
-    body = body_in(world, silent, Obstacle(law.start, 0.08, 0.3, "red", law))
+def test_a_mover_is_solid_and_its_contact_is_reported(world, silent):
+    motion = Line((0.30, 0.0), (-0.5, 0.0))
+    body = body_in(world, silent, Obstacle(motion.start, 0.08, 0.3, "red", motion))
     targets = hold(body)
     contacts = []
     for _ in range(160):

@@ -63,12 +63,12 @@ def test_a_push_acts_in_its_ticks_only_and_from_the_robots_side(model, heading, 
         force = data.xfrc_applied[body]
         acts = tick in (3, 4)
         assert force[:2] == pytest.approx(wanted if acts else (0.0, 0.0), abs=1e-12)
-        told = pusher.take()
-        assert len(told) == acts
+        active = pusher.take()
+        assert len(active) == acts
         if acts:
-            assert told[0].impulse == pytest.approx(6.0 * 2 * TICK)
-            assert told[0].begin == pytest.approx(0.015)
-            assert "90 deg" in told[0].text()
+            assert active[0].impulse == pytest.approx(6.0 * 2 * TICK)
+            assert active[0].begin == pytest.approx(0.015)
+            assert "90 deg" in active[0].text()
     assert np.all(data.xfrc_applied == 0.0)
 
 

@@ -20,7 +20,7 @@ KNEE = 3
 
 
 def reading(k=0, yaw=0.3):
-    """A reading whose every number depends on `k`."""
+    """Return a reading in which every number depends on `k`."""
     rng = np.random.default_rng(k)
     return BodySensors(
         joint_position=rng.normal(size=26),
@@ -33,7 +33,7 @@ def reading(k=0, yaw=0.3):
 
 
 def changed(a, b):
-    """Names of what differs."""
+    """Return the names of fields that differ."""
     return {f.name for f in fields(a) if not np.array_equal(getattr(a, f.name), getattr(b, f.name))}
 
 
@@ -43,7 +43,7 @@ def pitch(quaternion):
 
 
 @pytest.mark.parametrize(
-    ("fault", "spoils"),
+    ("fault", "fields_changed"),
     [
         (AttitudeBias(kind="attitude-bias", magnitude=0.1), {"orientation"}),
         (GyroBias(kind="gyro-bias", magnitude=0.1), {"gyro", "orientation"}),
@@ -56,43 +56,45 @@ def pitch(quaternion):
     ],
     ids=lambda value: getattr(value, "kind", ""),
 )
-def test_a_fault_spoils_its_own_sensor_while_it_acts_and_nothing_else(fault, spoils):
+def test_a_fault_changes_its_own_sensor_alone_while_it_is_active(fault, fields_changed):
     timed = fault.model_copy(update={"start": 0.01, "duration": 0.015})
-    faults, seen = SensorFaults([timed]), []
+    faults, changes = SensorFaults([timed]), []
     for tick in range(7):
         true = reading(tick, yaw=0.1 * tick)
-        told = faults.apply_fault(true, tick)
-        seen.append(changed(true, told))
-        assert changed(true, reading(tick, yaw=0.1 * tick)) == set()  # it was not written into
-    assert seen[:2] == [set(), set()]
-    assert set().union(*seen[2:5]) == spoils
-    left = {"orientation"} if "orientation" in spoils and fault.kind == "gyro-bias" else set()
-    assert seen[5:] == [left, left]  # what has been turned stays turned
+        faulty = faults.apply_fault(true, tick)
+        changes.append(changed(true, faulty))
+        assert changed(true, reading(tick, yaw=0.1 * tick)) == set()  # the input is unchanged
+    assert changes[:2] == [set(), set()]
+    assert set().union(*changes[2:5]) == fields_changed
+    left = (
+        {"orientation"} if "orientation" in fields_changed and fault.kind == "gyro-bias" else set()
+    )
+    assert changes[5:] == [left, left]  # the yaw error remains
 
 
-def test_sizes_are_what_they_say():
+def test_magnitudes_have_their_unit():
     true = reading()
-    told = SensorFaults([AttitudeBias(kind="attitude-bias", magnitude=0.1)]).apply_fault(true, 0)
-    assert pitch(told.orientation) == pytest.approx(0.1, abs=1e-3)
-    told = SensorFaults([EncoderOffset(kind="encoder-offset", magnitude=0.1, joint="l_knee")])
-    difference = told.apply_fault(true, 0).joint_position - true.joint_position
+    faulty = SensorFaults([AttitudeBias(kind="attitude-bias", magnitude=0.1)]).apply_fault(true, 0)
+    assert pitch(faulty.orientation) == pytest.approx(0.1, abs=1e-3)
+    faulty = SensorFaults([EncoderOffset(kind="encoder-offset", magnitude=0.1, joint="l_knee")])
+    difference = faulty.apply_fault(true, 0).joint_position - true.joint_position
     assert difference[KNEE] == pytest.approx(0.1)
     assert np.count_nonzero(difference) == 1
-    told = SensorFaults([FootGain(kind="foot-gain", magnitude=2.0, foot="right")]).apply_fault(
+    faulty = SensorFaults([FootGain(kind="foot-gain", magnitude=2.0, foot="right")]).apply_fault(
         true, 0
     )
-    assert np.allclose(told.foot_force, true.foot_force * [[1.0], [2.0]])
+    assert np.allclose(faulty.foot_force, true.foot_force * [[1.0], [2.0]])
     turning = SensorFaults([GyroBias(kind="gyro-bias", magnitude=0.2)])
     for tick in range(100):
-        told = turning.apply_fault(true, tick)
-    assert heading(told.orientation) - heading(true.orientation) == pytest.approx(0.1)
-    assert told.gyro[2] - true.gyro[2] == pytest.approx(0.2)
+        faulty = turning.apply_fault(true, tick)
+    assert heading(faulty.orientation) - heading(true.orientation) == pytest.approx(0.1)
+    assert faulty.gyro[2] - true.gyro[2] == pytest.approx(0.2)
 
 
-def test_what_is_frozen_is_the_first_reading_of_its_time():
+def test_a_frozen_encoder_repeats_its_first_reading():
     faults = SensorFaults([EncoderFrozen(kind="encoder-frozen", start=0.01, joint="l_knee")])
-    told = [faults.apply_fault(reading(tick), tick) for tick in range(5)]
-    for late in told[2:]:
+    faulty = [faults.apply_fault(reading(tick), tick) for tick in range(5)]
+    for late in faulty[2:]:
         assert late.joint_position[KNEE] == reading(2).joint_position[KNEE]
         assert late.joint_velocity[KNEE] == 0.0
-    assert told[4].joint_position[0] == reading(4).joint_position[0]
+    assert faulty[4].joint_position[0] == reading(4).joint_position[0]

@@ -34,10 +34,10 @@ def test_weak_servos_have_a_share_of_their_torque_left_and_get_it_back():
     for tick in range(6):
         faults.apply_fault(model, data, tick)
         faults.apply_fault(model, data, tick)  # it is the same however often it is asked
-        share = model.actuator_forcerange[index.actuators] / usual[index.actuators]
+        ratio = model.actuator_forcerange[index.actuators] / usual[index.actuators]
         left = 0.25 if 2 <= tick < 4 else 1.0
-        assert np.allclose(share[:6], left)
-        assert np.allclose(share[6:], 1.0)
+        assert np.allclose(ratio[:6], left)
+        assert np.allclose(ratio[6:], 1.0)
 
 
 def test_a_patch_is_slippery_for_the_sole_on_it():
@@ -84,9 +84,9 @@ def test_a_mover_appears_where_its_law_has_it_and_goes_again():
     before, after = PLAIN.motion(), layout.motion()
     for time in (0.0, 1.9975, 2.0, 4.9975, 5.0, 9.0):
         there = 2.0 <= time < 5.0
-        usual, found = before.positions(time), after.positions(time)
-        assert np.array_equal(found[0], usual[0])
-        assert np.allclose(found[1] - usual[1], (0.0 if there else AWAY, 0.0))
+        usual, faulty = before.positions(time), after.positions(time)
+        assert np.array_equal(faulty[0], usual[0])
+        assert np.allclose(faulty[1] - usual[1], (0.0 if there else AWAY, 0.0))
         assert np.array_equal(after.velocities(time)[1], before.velocities(time)[1] * there)
     assert layout.obstacles[1].position == (-1.0 + AWAY, 0.0)
     assert np.array_equal(after.top_speeds(), before.top_speeds())

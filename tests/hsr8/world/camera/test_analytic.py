@@ -31,41 +31,41 @@ def obstacles_in(frames):
 
 
 @pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (1.0, -0.5, 2.2)])
-@pytest.mark.parametrize("place", [(1.0, 0.0), (1.5, 0.6), (0.8, -0.3)])
-def test_detections_are_unbiased_in_the_robot_frame(see, start, place):
+@pytest.mark.parametrize("position", [(1.0, 0.0), (1.5, 0.6), (0.8, -0.3)])
+def test_detections_are_unbiased_in_the_robot_frame(see, start, position):
     x, y, yaw = start
     c, s = np.cos(yaw), np.sin(yaw)
-    there = (x + c * place[0] - s * place[1], y + s * place[0] + c * place[1])
-    found = obstacles_in(see(Obstacle(there, 0.08, 0.3, "red"), start=start, frames=200))
-    assert len(found) > 180
+    there = (x + c * position[0] - s * position[1], y + s * position[0] + c * position[1])
+    detections = obstacles_in(see(Obstacle(there, 0.08, 0.3, "red"), start=start, frames=200))
+    assert len(detections) > 180
     errors = np.array(
         [
             (
-                d.distance - np.hypot(*place),
-                d.bearing - np.arctan2(place[1], place[0]),
+                d.distance - np.hypot(*position),
+                d.bearing - np.arctan2(position[1], position[0]),
                 d.radius - 0.08,
             )
-            for d in found
+            for d in detections
         ]
     )
     sigma = errors.std(axis=0)
-    assert np.all(np.abs(errors.mean(axis=0)) < 4 * sigma / np.sqrt(len(found)) + 1e-6)
+    assert np.all(np.abs(errors.mean(axis=0)) < 4 * sigma / np.sqrt(len(detections)) + 1e-6)
 
 
 @pytest.mark.parametrize("hidden", [False, True])
 def test_covariance_is_honest(see, hidden):
-    """Of a thing seen whole as of one partly behind another."""
-    things = [Obstacle((1.4, 0.18), 0.1, 0.3, "red")]
-    things += [Obstacle((0.8, 0.0), 0.1, 0.3, "green")] if hidden else []
-    found = [d for d in obstacles_in(see(*things, frames=400)) if d.label == "red"]
+    """For whole obstacles and for partly hidden ones."""
+    obstacles = [Obstacle((1.4, 0.18), 0.1, 0.3, "red")]
+    obstacles += [Obstacle((0.8, 0.0), 0.1, 0.3, "green")] if hidden else []
+    detections = [d for d in obstacles_in(see(*obstacles, frames=400)) if d.label == "red"]
     truth = np.array([np.hypot(1.4, 0.18), np.arctan2(0.18, 1.4)])
     nees = [
         (e := np.array([d.distance, d.bearing]) - truth) @ np.linalg.solve(d.covariance, e) / 2
-        for d in found
+        for d in detections
     ]
-    assert {d.occluded for d in found} == {hidden}
+    assert {d.occluded for d in detections} == {hidden}
     assert 0.8 < np.mean(nees) < 1.2
-    off = [(d.radius - 0.1) / d.radius_sigma for d in found]
+    off = [(d.radius - 0.1) / d.radius_sigma for d in detections]
     assert 0.9 < np.std(off) < 1.1
 
 
@@ -94,9 +94,9 @@ def test_a_thing_partly_hidden_is_flagged(see):
 
 def test_a_thing_at_the_border_is_flagged(see):
     frames = see(Obstacle((0.6, 0.55), 0.12, 0.3, "red"))
-    found = obstacles_in(frames)
-    assert found
-    assert all(d.cut for d in found)
+    detections = obstacles_in(frames)
+    assert detections
+    assert all(d.cut for d in detections)
 
 
 def test_beacons_carry_their_names(see):
@@ -112,23 +112,25 @@ def test_far_things_are_not_reported(see):
 
 @pytest.mark.parametrize("bearing", np.radians([0.0, 100.0, -160.0, 180.0]))
 def test_an_omnidirectional_camera_sees_in_every_direction_with_the_noise_of_any(see, bearing):
-    place = (1.2 * np.cos(bearing), 1.2 * np.sin(bearing))
-    thing = Obstacle(place, 0.08, 0.3, "red")
-    frames = see(thing, frames=100, settings=Camera(source="omnidirectional"))
-    found = obstacles_in(frames)
-    assert len(found) > 85
-    for d in found:
+    position = (1.2 * np.cos(bearing), 1.2 * np.sin(bearing))
+    obstacle = Obstacle(position, 0.08, 0.3, "red")
+    frames = see(obstacle, frames=100, settings=Camera(source="omnidirectional"))
+    detections = obstacles_in(frames)
+    assert len(detections) > 85
+    for d in detections:
         assert 0 <= d.box[0] < d.box[2] <= CAMERA.width
         assert 0 <= d.box[1] < d.box[3] <= CAMERA.height
         assert not d.cut
-    off = [np.angle(np.exp(1j * (d.bearing - bearing))) / d.covariance[1, 1] ** 0.5 for d in found]
+    off = [
+        np.angle(np.exp(1j * (d.bearing - bearing))) / d.covariance[1, 1] ** 0.5 for d in detections
+    ]
     assert 0.7 < np.std(off) < 1.4
     (ahead,) = {d.covariance[1, 1] for d in obstacles_in(see(Obstacle((1.2, 0), 0.08, 0.3, "red")))}
-    assert found[0].covariance[1, 1] == pytest.approx(ahead)
+    assert detections[0].covariance[1, 1] == pytest.approx(ahead)
 
 
 def test_what_stands_behind_another_stays_hidden_all_around(see):
     near = Obstacle((-0.8, 0.0), 0.12, 0.3, "red")
     behind = Obstacle((-1.6, 0.0), 0.08, 0.3, "blue")
-    found = obstacles_in(see(near, behind, settings=Camera(source="omnidirectional")))
-    assert {d.label for d in found} == {"red"}
+    detections = obstacles_in(see(near, behind, settings=Camera(source="omnidirectional")))
+    assert {d.label for d in detections} == {"red"}

@@ -7,7 +7,9 @@ from hsr8.world.camera.analytic_kernel import DISTANCE, HIDDEN, MIN_DEPTH, proje
 from tests.vision.scene import CAMERA, pose
 
 RADIUS, HEIGHT = 0.08, 0.3
-places = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)).filter(lambda p: np.hypot(*p) > 0.2)
+positions = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)).filter(
+    lambda p: np.hypot(*p) > 0.2
+)
 
 
 def eye(view, omnidirectional=False):
@@ -16,7 +18,7 @@ def eye(view, omnidirectional=False):
 
 
 def cylinders(seed, n):
-    """Random places from near to far, sizes and kinds."""
+    """Random positions from near to far, sizes and kinds."""
     rng = np.random.default_rng(seed)
     there = rng.uniform(-3.0, 3.0, (n, 2))
     there = there[np.argsort(np.hypot(there[:, 0], there[:, 1]))]
@@ -24,13 +26,13 @@ def cylinders(seed, n):
     return there, sizes, rng.random(n) < 0.3
 
 
-@given(place=places, pan=st.floats(-1.5, 1.5), tilt=st.floats(-0.6, 0.2))
-def test_a_box_bounds_the_projected_edges_of_the_cylinder(place, pan, tilt):
+@given(position=positions, pan=st.floats(-1.5, 1.5), tilt=st.floats(-0.6, 0.2))
+def test_a_box_bounds_the_projected_edges_of_the_cylinder(position, pan, tilt):
     view = pose(pan, tilt)
-    left, top, right, bottom, cut = project(*place, RADIUS, HEIGHT, False, eye(view))
-    across = np.array([-place[1], place[0]]) * RADIUS / np.hypot(*place)
+    left, top, right, bottom, cut = project(*position, RADIUS, HEIGHT, False, eye(view))
+    across = np.array([-position[1], position[0]]) * RADIUS / np.hypot(*position)
     points = np.array(
-        [[*(place + s * across), z] for s in (-1, 1) for z in (0.0, 0.5 * HEIGHT, HEIGHT)]
+        [[*(position + s * across), z] for s in (-1, 1) for z in (0.0, 0.5 * HEIGHT, HEIGHT)]
     )
     local = (points - view.position) @ view.rotation
     size = np.array([CAMERA.width, CAMERA.height])
@@ -57,9 +59,9 @@ def test_what_is_hidden_is_the_overlap_of_two_intervals_of_azimuth(turn, offset)
         ]
     )
     sizes = np.array([[0.2, HEIGHT], [0.2, HEIGHT]])
-    seen = project_all(there, sizes, np.zeros(2, bool), eye(pose()))
+    views = project_all(there, sizes, np.zeros(2, bool), eye(pose()))
     a, b = np.arcsin(0.2 / near), np.arcsin(0.2 / far)
     overlap = min(b, offset + a) - max(-b, offset - a)
-    assert seen[:, DISTANCE] == pytest.approx([near, far])
-    assert seen[0, HIDDEN] == 0.0
-    assert seen[1, HIDDEN] == pytest.approx(max(0.0, overlap / (2.0 * b)), abs=1e-9)
+    assert views[:, DISTANCE] == pytest.approx([near, far])
+    assert views[0, HIDDEN] == 0.0
+    assert views[1, HIDDEN] == pytest.approx(max(0.0, overlap / (2.0 * b)), abs=1e-9)

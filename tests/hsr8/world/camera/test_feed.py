@@ -10,7 +10,7 @@ from hsr8.world.camera.feed import CameraFeed, CapturedFrame
 
 
 def deliveries(ticks=400, seed=0, faults=(), **settings):
-    """Tick and capture time [s] of every picture that arrives."""
+    """Tick and capture time [s] of every frame that arrives."""
     feed = CameraFeed(
         Camera(**settings),
         np.random.default_rng(seed),
@@ -18,9 +18,9 @@ def deliveries(ticks=400, seed=0, faults=(), **settings):
     )
     arrived = []
     for tick in range(ticks):
-        picture = feed.arrived(tick, lambda tick=tick: CapturedFrame(0.005 * tick))
-        if picture is not None:
-            arrived.append((tick, picture.captured))
+        frame = feed.arrived(tick, lambda tick=tick: CapturedFrame(0.005 * tick))
+        if frame is not None:
+            arrived.append((tick, frame.captured))
     return arrived
 
 
@@ -28,7 +28,7 @@ def deliveries(ticks=400, seed=0, faults=(), **settings):
 @given(
     latency=st.integers(0, 100).map(lambda k: 5 * k), period=st.integers(1, 30).map(lambda k: 5 * k)
 )
-def test_pictures_arrive_in_order_each_after_the_latency(latency, period):
+def test_frames_arrive_in_order_each_after_the_latency(latency, period):
     arrived = deliveries(latency_ms=latency, period_ms=period)
     captured = [time for _, time in arrived]
     assert captured == sorted(captured)
@@ -38,7 +38,7 @@ def test_pictures_arrive_in_order_each_after_the_latency(latency, period):
         assert 0.005 * tick == pytest.approx(time + latency / 1000)
 
 
-def test_dropped_pictures_never_arrive_and_the_others_are_not_moved():
+def test_dropped_frames_never_arrive_and_the_others_are_not_moved():
     every = set(deliveries(4000, latency_ms=60))
     some = set(
         deliveries(4000, latency_ms=60, faults=[CameraDrops(kind="camera-drops", magnitude=0.3)])
@@ -56,7 +56,7 @@ def test_dropped_pictures_never_arrive_and_the_others_are_not_moved():
     start=st.integers(0, 100),
     lasts=st.integers(1, 100),
 )
-def test_late_pictures_come_in_order_a_period_apart_and_none_but_late_ones_are_lost(
+def test_late_frames_come_in_order_a_period_apart_and_none_but_late_ones_are_lost(
     late, usual, period, start, lasts
 ):
     times = {"start": 0.005 * start, "duration": 0.005 * lasts}

@@ -8,22 +8,22 @@ RNG = np.random.default_rng(0)
 NORMALS = np.array([[-0.8, 0, -0.6], [0.8, 0, -0.6], [0, -0.9, -0.4], [0, 0.9, -0.4], [0, 0, -1]])
 
 
-def scene(things=60, boxes=5):
+def scene(geoms=60, boxes=5):
     rotation = Rotation.random(random_state=RNG.integers(1 << 30)).as_matrix()
-    places, eye = RNG.normal(0.0, 2.0, (things, 3)), RNG.normal(0.0, 1.0, 3)
-    reach = RNG.uniform(0.0, 1.0, things)
-    chosen = RNG.choice(things, boxes, replace=False)
+    positions, eye = RNG.normal(0.0, 2.0, (geoms, 3)), RNG.normal(0.0, 1.0, 3)
+    reach = RNG.uniform(0.0, 1.0, geoms)
+    chosen = RNG.choice(geoms, boxes, replace=False)
     reach[chosen] = np.inf
     halves = RNG.uniform(0.0, 1.5, (boxes, 3))
-    return places, eye, rotation.ravel(), NORMALS, reach, chosen.astype(np.intp), halves
+    return positions, eye, rotation.ravel(), NORMALS, reach, chosen.astype(np.intp), halves
 
 
 @pytest.mark.parametrize("_", range(5))
 def test_culled_geoms_are_beyond_a_side(_):
-    places, eye, rotation, normals, reach, boxes, halves = scene()
-    missed = outside(places, eye, rotation, normals, reach, boxes, halves)
+    positions, eye, rotation, normals, reach, boxes, halves = scene()
+    missed = outside(positions, eye, rotation, normals, reach, boxes, halves)
     inward = rotation.reshape(3, 3) @ normals.T
-    depth = (places - eye) @ inward
+    depth = (positions - eye) @ inward
     wanted = (depth < -reach[:, None]).any(axis=1)
     wanted[boxes] = (depth[boxes] < -(halves @ np.abs(inward))).any(axis=1)
     assert np.array_equal(missed, wanted)
@@ -31,9 +31,9 @@ def test_culled_geoms_are_beyond_a_side(_):
 
 
 def test_a_corner_of_a_box_that_reaches_in_is_not_missed():
-    places, eye, rotation, normals, reach, boxes, halves = scene()
+    positions, eye, rotation, normals, reach, boxes, halves = scene()
     corners = np.stack(np.meshgrid(*[[-1, 1]] * 3), -1).reshape(-1, 3)
-    inside = (places[boxes] - eye)[:, None] + corners * halves[:, None]
+    inside = (positions[boxes] - eye)[:, None] + corners * halves[:, None]
     within = (inside @ (rotation.reshape(3, 3) @ normals.T) >= 0.0).all(axis=2).any(axis=1)
-    missed = outside(places, eye, rotation, normals, reach, boxes, halves)[boxes]
+    missed = outside(positions, eye, rotation, normals, reach, boxes, halves)[boxes]
     assert not (missed & within).any()

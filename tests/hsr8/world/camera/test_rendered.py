@@ -32,16 +32,16 @@ def test_an_image_shows_the_world_as_it_is_now(body):
     assert not np.array_equal(before, turned)
 
 
-def test_vision_finds_the_obstacle_where_it_stands(body):
+def test_vision_locates_the_obstacle(body):
     with closing(RenderedCamera(body.model, CLEAN, np.random.default_rng(0))) as camera:
         image = camera.capture(body)()
     fixed = body.data.camera("egocentric")
     rotation = fixed.xmat.reshape(3, 3) * (1.0, -1.0, -1.0)
     pinhole = PinholeCamera.from_vertical_fov(320, 240, np.radians(70.0))
-    found = Detector(pinhole, VisionParameters()).detect(
+    detections = Detector(pinhole, VisionParameters()).detect(
         image, CameraPose(rotation=rotation, position=fixed.xpos.copy(), tilt_sigma=0.005)
     )
-    red = [d for d in found if d.label == "red"]
+    red = [d for d in detections if d.label == "red"]
     assert len(red) == 1
     assert np.isclose(red[0].distance, np.hypot(1.0, 0.2), atol=0.02)
     assert np.isclose(red[0].bearing, np.arctan2(0.2, 1.0), atol=0.01)
@@ -49,17 +49,17 @@ def test_vision_finds_the_obstacle_where_it_stands(body):
 
 
 @pytest.mark.parametrize("read_at_once", [True, False])
-def test_images_are_spoilt_in_turn_whether_or_not_somebody_reads_them(body, read_at_once):
+def test_noise_follows_the_order_of_captures_not_of_reads(body, read_at_once):
     settings = Camera(noise=CameraNoise(pixel=3.0, exposure=0.1))
 
-    def third(*read):
+    def third(*at_once):
         model = copy(body.model)  # whose lights a camera dims
         with closing(RenderedCamera(model, settings, np.random.default_rng(1))) as camera:
-            for at_once in read:
-                exposure = camera.capture(body)
-                if at_once:
-                    exposure()
-            return exposure()
+            for wait in at_once:
+                read = camera.capture(body)
+                if wait:
+                    read()
+            return read()
 
     assert np.array_equal(third(read_at_once, False, True), third(True, True, True))
 

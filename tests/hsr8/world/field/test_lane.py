@@ -16,28 +16,28 @@ LAWS = (
 points = st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=1, max_size=6)
 
 
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+@pytest.mark.parametrize("motion", LAWS, ids=lambda motion: type(motion).__name__)
 @given(time=st.floats(0.0, 60.0))
-def test_a_mover_is_always_on_its_lane(law, time):
-    lane = Lane.of(law, 0.1, "red")
+def test_a_mover_is_always_on_its_lane(motion, time):
+    lane = Lane.of(motion, 0.1, "red")
     spacing = np.hypot(*np.diff(lane.path, axis=0).T).max()
-    assert distance(np.array([law.position(time)]), lane.path)[0] <= 0.5 * spacing + 1e-9
-    assert lane.obstacle.position == law.position(0.0)
+    assert distance(np.array([motion.position(time)]), lane.path)[0] <= 0.5 * spacing + 1e-9
+    assert lane.obstacle.position == motion.position(0.0)
     assert distance(lane.ends, lane.path).max() < 1e-12
 
 
 @given(first=points, second=points)
 def test_the_nearest_is_the_nearest(first, second):
-    found = distance(np.array(first), second)
+    distances = distance(np.array(first), second)
     expected = [min(np.hypot(x - u, y - w) for u, w in second) for x, y in first]
-    assert np.allclose(found, expected)
+    assert np.allclose(distances, expected)
 
 
 def test_a_heading_of_a_right_angle_is_one():
-    law = motion_law(
+    motion = motion_law(
         LineMover(motion="line", color="red", radius=0.1, start=(0, 0), heading_deg=90, speed=0.1)
     )
-    assert law.velocity(0.0) == (0.0, 0.1)
+    assert motion.velocity(0.0) == (0.0, 0.1)
 
 
 def test_movers_that_never_meet_may_cross_lanes():

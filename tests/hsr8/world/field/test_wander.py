@@ -14,36 +14,38 @@ times = st.floats(0.0, 600.0)
 
 
 @given(laws, times)
-def test_the_speed_is_constant(law, time):
-    assert hypot(*law.velocity(time)) == pytest.approx(0.12, rel=1e-4)
+def test_the_speed_is_constant(motion, time):
+    assert hypot(*motion.velocity(time)) == pytest.approx(0.12, rel=1e-4)
 
 
 @given(laws, times)
-def test_it_comes_back_after_once_round(law, time):
-    assert law.position(time + law.length / law.speed) == pytest.approx(law.position(time))
+def test_it_comes_back_after_once_round(motion, time):
+    assert motion.position(time + motion.length / motion.speed) == pytest.approx(
+        motion.position(time)
+    )
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_the_track_fills_its_box_and_no_more(law):
-    track = np.array(law.track)
+@pytest.mark.parametrize("motion", LAWS)
+def test_the_track_fills_its_box_and_no_more(motion):
+    track = np.array(motion.track)
     extent = np.ptp(track, axis=0)
     assert extent.max() == pytest.approx(EXTENT, abs=0.01)
     assert 0.5 * (track.max(axis=0) + track.min(axis=0)) == pytest.approx((0.5, -0.2), abs=0.01)
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_the_track_bends_gently(law):
-    sides = np.diff(np.array([*law.track, *law.track[:2]]), axis=0)
+@pytest.mark.parametrize("motion", LAWS)
+def test_the_track_bends_gently(motion):
+    sides = np.diff(np.array([*motion.track, *motion.track[:2]]), axis=0)
     heading = np.unwrap(np.arctan2(sides[:, 1], sides[:, 0]))
     turns = np.abs(np.diff(heading))
-    assert len(law.track) == CORNERS
+    assert len(motion.track) == CORNERS
     # The track was looked at in a few places, and a polygon turns at its corners only.
-    assert turns.max() <= 1.3 * law.side / MIN_BEND_RADIUS
+    assert turns.max() <= 1.3 * motion.side / MIN_BEND_RADIUS
 
 
 def test_tracks_bend_to_both_sides():
-    for law in LAWS:
-        sides = np.diff(np.array([*law.track, *law.track[:2]]), axis=0)
+    for motion in LAWS:
+        sides = np.diff(np.array([*motion.track, *motion.track[:2]]), axis=0)
         cross = sides[:-1, 0] * sides[1:, 1] - sides[:-1, 1] * sides[1:, 0]
         if (cross > 0).any() and (cross < 0).any():
             return

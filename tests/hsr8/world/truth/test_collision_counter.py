@@ -5,7 +5,7 @@ from hsr8.world.truth.truth import Contact
 
 
 def _touch(obstacle, moving=False, closing=True):
-    return Contact(obstacle, f"thing {obstacle}", moving, "l_sole", 1.0, closing)
+    return Contact(obstacle, f"obstacle {obstacle}", moving, "l_sole", 1.0, closing)
 
 
 def _count(times, obstacle=0):
@@ -29,7 +29,7 @@ def test_each_obstacle_has_its_own_episodes():
     for k in range(10):
         counter.add(0.02 * k, (_touch(0), _touch(3, moving=True), _touch(0)))
     assert [c.obstacle for c in counter.collisions] == [0, 3]
-    assert [c.name for c in counter.collisions] == ["thing 0", "thing 3"]
+    assert [c.name for c in counter.collisions] == ["obstacle 0", "obstacle 3"]
     assert [c.moving for c in counter.collisions] == [False, True]
 
 

@@ -29,9 +29,9 @@ def test_the_ready_posture_saturates_nothing(watched):
     _, data, _, watch = watched
     data.actuator_force[:] = 0.0
     watch.watch(data)
-    seen = watch.so_far()
-    assert (seen.torque_any, seen.stop_any) == (0, 0)
-    assert seen.peak_torque.max() == seen.peak_speed.max() == 0.0
+    total = watch.so_far()
+    assert (total.torque_any, total.stop_any) == (0, 0)
+    assert total.peak_torque.max() == total.peak_speed.max() == 0.0
 
 
 def test_full_torque_a_stop_and_the_fastest_turn_are_seen_and_kept(watched):
@@ -46,12 +46,12 @@ def test_full_torque_a_stop_and_the_fastest_turn_are_seen_and_kept(watched):
     data.actuator_force[:] = 0.0
     data.qpos[index.joint_qpos[KNEE]] = model.joint("l_knee").range[1] + 0.01
     watch.watch(data)
-    seen = watch.so_far()
-    assert (seen.torque_any, seen.stop_any) == (1, 1)
-    assert np.flatnonzero(seen.torque_ticks).tolist() == [KNEE]
-    assert np.flatnonzero(seen.stop_ticks).tolist() == [KNEE]
-    assert seen.peak_torque[KNEE] == pytest.approx(1.0)
-    assert seen.peak_speed[KNEE] == 7.0
+    total = watch.so_far()
+    assert (total.torque_any, total.stop_any) == (1, 1)
+    assert np.flatnonzero(total.torque_ticks).tolist() == [KNEE]
+    assert np.flatnonzero(total.stop_ticks).tolist() == [KNEE]
+    assert total.peak_torque[KNEE] == pytest.approx(1.0)
+    assert total.peak_speed[KNEE] == 7.0
     assert before.torque_any == 0
     assert before.peak_speed[KNEE] == 0.0
 
