@@ -82,8 +82,10 @@ def renamed(data: Any, path: Path = ()) -> Iterator[Problem]:
         for key, value in data.items():
             yield from renamed(value, (*path, key))
     elif new := _new_key(old):
-        constant = new.partition(".")[0] in LIBRARIES and new not in PUBLIC
-        yield Problem(path, f"renamed to {'constants.' if constant else ''}{new}")
+        if new.partition(".")[0] in LIBRARIES and new not in PUBLIC:
+            section = new.rpartition(".")[0]
+            new = f"{section}; expected one of its keys, or a constant of constants.{section}"
+        yield Problem(path, f"renamed to {new}")
     elif isinstance(data, str) and data in (values := RENAMED_VALUES.get(old, {})):
         yield Problem(path, f'{shown(data)} is renamed to "{values[data]}"')
     elif isinstance(data, Sequence) and not isinstance(data, str):

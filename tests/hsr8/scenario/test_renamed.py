@@ -42,8 +42,8 @@ def test_an_old_key_is_refused_with_its_line_and_its_new_name(names):
         "file.toml:3: world.old_size: renamed to world.size",
         "file.toml:6: world.row: renamed to world.wall",
         "file.toml:5: navigation.gate.enabled: renamed to navigation.unseen_ground.enabled",
-        "file.toml:9: constants.navigation.gate.width: renamed to "
-        "constants.navigation.unseen_ground.width",
+        "file.toml:9: constants.navigation.gate.width: renamed to navigation.unseen_ground; "
+        "expected one of its keys, or a constant of constants.navigation.unseen_ground",
         'file.toml:11: fault[0].kind: "late" is renamed to "latency"',
         "file.toml:12: fault[0].size: renamed to fault.magnitude",
     ]
