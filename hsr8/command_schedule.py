@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.scenario.command import Command as CommandSection
-from hsr8.scenario.command import Footsteps, RandomCommands
+from hsr8.scenario.command import RandomCommands, Stretch
 from navigation.belief.belief import Belief
 from navigation.decision import MotionDecision, Task
 from walking.command import Command, CommandState, VelocityCommand
@@ -48,20 +48,16 @@ def command_schedule(
         velocity = VelocityCommand(section.vx or 0.0, section.vy or 0.0, section.wz or 0.0)
         return CommandSchedule([(inf, velocity)])
     if section.footstep is not None:
-        return CommandSchedule([(inf, _command_state(section.footstep))])
+        return CommandSchedule([(inf, CommandState(**section.footstep.model_dump()))])
     if section.random is not None:
         return CommandSchedule(_drawn(section.random, duration, rng))
-    return CommandSchedule(
-        [
-            (
-                s.duration,
-                VelocityCommand(s.vx, s.vy, s.wz)
-                if s.footstep is None
-                else _command_state(s.footstep),
-            )
-            for s in section.stretch
-        ]
-    )
+    return CommandSchedule([(s.duration, _command(s)) for s in section.stretch])
+
+
+def _command(stretch: Stretch) -> Command:
+    if stretch.footstep is None:
+        return VelocityCommand(stretch.vx, stretch.vy, stretch.wz)
+    return CommandState(**stretch.footstep.model_dump())
 
 
 def _drawn(
@@ -76,17 +72,6 @@ def _drawn(
         pieces.append((interval, VelocityCommand() if stop else VelocityCommand(*velocity)))
         end += interval
     return pieces
-
-
-def _command_state(step: Footsteps) -> CommandState:
-    return CommandState(
-        single_support=step.single_support,
-        double_support=step.double_support,
-        forward=step.forward,
-        side=step.side,
-        direction=step.direction,
-        swing_height=step.swing_height,
-    )
 
 
 class ScheduledMission:

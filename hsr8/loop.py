@@ -115,12 +115,9 @@ class Simulation:
         self._camera_rng = named_rng(self.seed, "camera")
         camera = scenario.camera
         if camera.source != "rendered":
+            optics = head_camera(scenario)
             self._analytic = AnalyticCamera(
-                self.layout,
-                head_camera(scenario),
-                self._camera_rng,
-                scenario.camera,
-                self._camera_faults,
+                self.layout, optics, self._camera_rng, camera, self._camera_faults
             )
         self._feed = CameraFeed(camera, named_rng(self.seed, "camera_feed"), self._camera_faults)
         self._record_ticks = round(scenario.recorder.period_ms / 1000 / CONTROL_PERIOD)

@@ -161,7 +161,7 @@ def build_decisions(
         if planner is not None:
             raise UsageError(
                 f"scenario {scenario.name!r}: mission.kind = 'walk' follows the section command "
-                f"without a planner, got planner {planner!r}; expected another kind of mission"
+                "without a planner, got a planner; expected another kind of mission"
             )
         mission, motion = ScheduledMission(), ScheduledPlanner(schedule)
     else:

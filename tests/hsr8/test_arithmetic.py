@@ -28,17 +28,14 @@ def processor(tmp_path, monkeypatch):
     return having
 
 
-def test_a_processor_of_level_3_needs_no_limit_of_numpy(processor):
-    assert choose_arithmetic(processor(LEVEL_3)) == PORTABLE
+@pytest.mark.parametrize("beyond", [[], ["X86_V4"], ["X86_V4", "AVX512_ICL"], list(BEYOND)])
+def test_features_beyond_level_3_are_not_used(processor, monkeypatch, beyond):
+    file = processor(LEVEL_3.union(*(BEYOND[name] for name in beyond)))
+    assert choose_arithmetic(file) == PORTABLE
     assert os.environ["OPENBLAS_CORETYPE"] == "Haswell"
-    assert "NPY_DISABLE_CPU_FEATURES" not in os.environ
-
-
-@pytest.mark.parametrize("beyond", [["X86_V4"], ["X86_V4", "AVX512_ICL"], list(BEYOND)])
-def test_features_beyond_level_3_are_not_used(processor, beyond):
-    features = LEVEL_3.union(*(BEYOND[name] for name in beyond))
-    assert choose_arithmetic(processor(features)) == PORTABLE
-    assert os.environ["NPY_DISABLE_CPU_FEATURES"].split() == beyond
+    assert os.environ.get("NPY_DISABLE_CPU_FEATURES", "").split() == beyond
+    monkeypatch.setitem(sys.modules, "numpy", sys)  # a child process inherits the choice
+    assert choose_arithmetic(file) == PORTABLE
 
 
 @pytest.mark.parametrize("features", [set(), OLD])
@@ -59,12 +56,6 @@ def test_after_an_import_of_numpy_it_is_native(processor, monkeypatch):
     monkeypatch.setitem(sys.modules, "numpy", sys)
     assert choose_arithmetic(processor(NEW)) == NATIVE
     assert not set(VARIABLES) & set(os.environ)
-
-
-def test_a_child_process_inherits_the_choice(processor, monkeypatch):
-    choose_arithmetic(processor(NEW))
-    monkeypatch.setitem(sys.modules, "numpy", sys)
-    assert choose_arithmetic(processor(NEW)) == PORTABLE
 
 
 PROBE = """

@@ -38,7 +38,7 @@ STRETCHES = "command.stretch=[{duration = 2.0, vx = 0.1}, {duration = 1.0, vy = 
         (3.0, (0.0, 0.0, 0.0)),
     ],
 )
-def test_each_stretch_is_walked_in_turn_and_then_it_stands(time, expected):
+def test_stretches_follow_each_other_and_then_the_robot_stands(time, expected):
     schedule = schedule_of(STRETCHES)
     assert schedule.at(time) == VelocityCommand(*expected)
     planner = ScheduledPlanner(schedule)
@@ -46,7 +46,7 @@ def test_each_stretch_is_walked_in_turn_and_then_it_stands(time, expected):
     assert planner.plan(At(time), task).velocity.tolist() == list(expected)
 
 
-def test_a_change_comes_in_its_tick_whatever_floating_point_makes_of_the_time():
+def test_a_change_is_in_its_tick_despite_rounding():
     schedule = CommandSchedule([(0.005, VelocityCommand(0.001 * k)) for k in range(1000)])
     for k in range(1000):
         assert schedule.at(k * 0.005) == VelocityCommand(0.001 * k)
@@ -58,7 +58,7 @@ def test_one_velocity_takes_the_place_of_the_script(time):
     assert schedule.at(time) == VelocityCommand(0.3, 0.0, 0.0)
 
 
-def test_footsteps_are_asked_explicitly():
+def test_footsteps_are_explicit():
     state = CommandState(0.4, 0.1, 0.03, 0.09, 0.2, 0.03)
     table = (
         "{single_support=0.4, double_support=0.1, forward=0.03, side=0.09, direction=0.2, "
@@ -71,9 +71,9 @@ def test_footsteps_are_asked_explicitly():
 
 
 @given(st.integers(0, 2**32 - 1))
-def test_drawn_commands_stay_in_their_box_and_come_from_the_seed(seed):
-    asked = Command(random=RandomCommands(vx=(-0.1, 0.3), wz=(-0.5, 0.0), stop_fraction=0.3))
-    one, same = (command_schedule(asked, 20.0, np.random.default_rng(seed)) for _ in range(2))
+def test_random_commands_stay_in_range_and_follow_the_seed(seed):
+    section = Command(random=RandomCommands(vx=(-0.1, 0.3), wz=(-0.5, 0.0), stop_fraction=0.3))
+    one, same = (command_schedule(section, 20.0, np.random.default_rng(seed)) for _ in range(2))
     velocities = np.array([one.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
     again = np.array([same.at(t).velocity for t in np.arange(0.0, 20.0, 0.05)])
     assert np.array_equal(again, velocities)
@@ -83,14 +83,14 @@ def test_drawn_commands_stay_in_their_box_and_come_from_the_seed(seed):
     assert np.diff(changes).min(initial=100) >= 0.5 / 0.05 - 1
 
 
-def test_the_share_of_stops_is_that_asked_for():
-    asked = Command(random=RandomCommands(stop_fraction=0.25, interval=(0.5, 0.5)))
-    schedule = command_schedule(asked, 5000.0, np.random.default_rng(1))
+def test_the_fraction_of_stops_is_that_of_the_scenario():
+    section = Command(random=RandomCommands(stop_fraction=0.25, interval=(0.5, 0.5)))
+    schedule = command_schedule(section, 5000.0, np.random.default_rng(1))
     stops = np.mean([schedule.at(0.5 * k + 0.1) == VelocityCommand() for k in range(10000)])
     assert stops == pytest.approx(0.25, abs=0.02)
 
 
-def test_the_gaze_has_something_ahead():
+def test_the_mission_has_a_target_straight_ahead():
     task = ScheduledMission().update(np.array([1.0, 2.0, np.pi / 2]))
     assert np.allclose(task.target, (1.0, 3.0))
     assert not task.done

@@ -99,9 +99,7 @@ def _run(camera, queue):
 
 
 @pytest.mark.gl
-@pytest.mark.parametrize(
-    ("camera", "code"), [("rendered", 2), ("analytic", 0)], ids=["rendered", "analytic"]
-)
+@pytest.mark.parametrize(("camera", "code"), [("rendered", 2), ("analytic", 0)])
 def test_rendering_after_a_fork_is_an_error_instead_of_a_hang(camera, code):
     context = multiprocessing.get_context("fork")
     queue = context.Queue()

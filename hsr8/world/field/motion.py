@@ -37,73 +37,74 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Shuttle:
-    """Back and forth between two points at constant speed, reversing at once.
+class _Segment:
+    """Line between two points.
 
     Attributes:
-        start: one end [m].
-        end: other end [m].
-        speed: [m/s].
-        offset: distance travelled before time zero, from `start` to `end` and back [m].
+        start: [m].
+        end: [m].
+        speed: along the line [m/s].
     """
 
     start: Point
     end: Point
     speed: float
-    offset: float = 0.0
 
     @property
     def length(self) -> float:
-        """Distance between the ends [m]."""
+        """Distance between the points [m]."""
         return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
-    def position(self, time: float) -> Point:
-        """Return the position at `time` [s]."""
-        length = self.length
-        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
-        return _between(self.start, self.end, min(travelled, 2.0 * length - travelled) / length)
+    def _at(self, fraction: float) -> Point:
+        (x, y), (end_x, end_y) = self.start, self.end
+        return x + fraction * (end_x - x), y + fraction * (end_y - y)
 
-    def velocity(self, time: float) -> Point:
-        """Return the velocity at `time` [m/s]; at an end, the velocity after it."""
-        length = self.length
-        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
-        rate = (self.speed if travelled < length else -self.speed) / length
+    def _along(self, rate: float) -> Point:
         return rate * (self.end[0] - self.start[0]), rate * (self.end[1] - self.start[1])
 
 
 @dataclass(frozen=True, slots=True)
-class Passage:
-    """One straight move from one point to another at constant speed.
+class Shuttle(_Segment):
+    """Back and forth between two points at constant speed, reversing at once.
 
     Attributes:
-        start: position until the departure [m].
-        end: position after the arrival [m].
-        speed: [m/s].
+        offset: distance travelled before time zero, from `start` to `end` and back [m].
+    """
+
+    offset: float = 0.0
+
+    def position(self, time: float) -> Point:
+        """Return the position at `time` [s]."""
+        length = self.length
+        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
+        return self._at(min(travelled, 2.0 * length - travelled) / length)
+
+    def velocity(self, time: float) -> Point:
+        """Return the velocity at `time` [m/s]; at an end, the velocity after it."""
+        length = self.length
+        travelled = fmod(self.offset + self.speed * time, 2.0 * length)
+        return self._along((self.speed if travelled < length else -self.speed) / length)
+
+
+@dataclass(frozen=True, slots=True)
+class Passage(_Segment):
+    """One straight move at constant speed; the mover waits at `start` and stays at `end`.
+
+    Attributes:
         depart: time of the departure [s].
     """
 
-    start: Point
-    end: Point
-    speed: float
     depart: float = 0.0
-
-    @property
-    def length(self) -> float:
-        """Distance from `start` to `end` [m]."""
-        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
     def position(self, time: float) -> Point:
         """Return the position at `time` [s]."""
         travelled = self.speed * (time - self.depart)
-        return _between(self.start, self.end, min(max(travelled / self.length, 0.0), 1.0))
+        return self._at(min(max(travelled / self.length, 0.0), 1.0))
 
     def velocity(self, time: float) -> Point:
         """Return the velocity at `time` [m/s]; at an end, the velocity after it."""
         travelled, length = self.speed * (time - self.depart), self.length
-        if not 0.0 <= travelled < length:
-            return 0.0, 0.0
-        rate = self.speed / length
-        return rate * (self.end[0] - self.start[0]), rate * (self.end[1] - self.start[1])
+        return self._along(self.speed / length) if 0.0 <= travelled < length else (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,11 +242,6 @@ class Movers:
     def top_speeds(self) -> Array:
         """Return the maximum speed of each mover, in layout order (n,) [m/s]."""
         return np.array([pace(motion) for motion in self.motions], dtype=float)
-
-
-def _between(start: Point, end: Point, fraction: float) -> Point:
-    """Return the point at a `fraction` of the line from `start` to `end`."""
-    return start[0] + fraction * (end[0] - start[0]), start[1] + fraction * (end[1] - start[1])
 
 
 def _lane(motion: Line | Shuttle) -> tuple[float, ...]:

@@ -3,7 +3,7 @@ import pytest
 
 from hsr8.errors import SimulationDiverged
 from hsr8.world.body.physics import PhysicsBody
-from hsr8.world.field.layout import Obstacle, standard_beacons
+from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import Line, Shuttle
 from walking.parameters import CONTROL_PERIOD
 from walking.targets import JointTargets
@@ -56,20 +56,6 @@ def test_a_mover_is_solid_and_its_contact_is_reported(world, silent):
     assert contacts
     assert all(c.obstacle == 0 and c.moving for c in contacts)
     assert body.truth().robot[0] < -0.02  # it was pushed back
-
-
-def test_a_beacon_is_solid_and_its_contact_is_told(world, silent):
-    beacon = standard_beacons((5.0, 5.0))[0]
-    x, y = beacon.position
-    body = body_in(world, silent, start=(x - 0.11, y, 0.0))
-    targets = hold(body)
-    contacts = []
-    for _ in range(80):
-        body.apply(targets)
-        contacts += body.truth().contacts
-    assert {(c.obstacle, c.name) for c in contacts} == {(0, f"beacon {beacon.name}")}
-    assert max(c.force for c in contacts) > 1.0
-    assert body.truth().robot[0] < x - 0.112  # it was pushed back
 
 
 def test_truth_is_a_snapshot(world, silent):

@@ -86,12 +86,6 @@ def test_what_is_behind_another_or_behind_the_robot_is_not_seen(see):
     assert {d.label for d in obstacles_in(frames)} == {"red"}
 
 
-def test_a_thing_partly_hidden_is_flagged(see):
-    frames = see(Obstacle((0.8, 0.0), 0.10, 0.3, "red"), Obstacle((1.4, 0.18), 0.10, 0.3, "green"))
-    flags = {d.label: d.occluded for d in obstacles_in(frames)}
-    assert flags == {"red": False, "green": True}
-
-
 def test_a_thing_at_the_border_is_flagged(see):
     frames = see(Obstacle((0.6, 0.55), 0.12, 0.3, "red"))
     detections = obstacles_in(frames)
@@ -127,10 +121,3 @@ def test_an_omnidirectional_camera_sees_in_every_direction_with_the_noise_of_any
     assert 0.7 < np.std(off) < 1.4
     (ahead,) = {d.covariance[1, 1] for d in obstacles_in(see(Obstacle((1.2, 0), 0.08, 0.3, "red")))}
     assert detections[0].covariance[1, 1] == pytest.approx(ahead)
-
-
-def test_what_stands_behind_another_stays_hidden_all_around(see):
-    near = Obstacle((-0.8, 0.0), 0.12, 0.3, "red")
-    behind = Obstacle((-1.6, 0.0), 0.08, 0.3, "blue")
-    detections = obstacles_in(see(near, behind, settings=Camera(source="omnidirectional")))
-    assert {d.label for d in detections} == {"red"}

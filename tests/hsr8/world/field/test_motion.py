@@ -102,11 +102,6 @@ def test_circle_stays_on_its_rim(motion, time):
     assert hypot(*motion.velocity(time)) == pytest.approx(abs(motion.speed))
 
 
-def test_no_movers_are_no_rows():
-    assert Movers(()).positions(1.0).shape == (0, 2)
-    assert Movers(()).velocities(1.0).shape == (0, 2)
-
-
 def _bends_within(motion, time: float, step: float) -> bool:
     """Whether the velocity jumps soon after `time`."""
     if isinstance(motion, Shuttle):
