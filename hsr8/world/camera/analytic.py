@@ -5,7 +5,6 @@ colours are always recognised. The omnidirectional camera differs in its field o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
@@ -15,7 +14,7 @@ from hsr8.scenario.fault import ticks
 from hsr8.world.body.body import Body
 from hsr8.world.camera.analytic_kernel import project, project_all
 from hsr8.world.camera.faults import CameraFaults
-from hsr8.world.field.layout import Layout
+from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.model.assembly import HEAD_CAMERA
 from hsr8.world.rotation import heading
 from vision.camera import PinholeCamera
@@ -38,14 +37,6 @@ OBSTACLE_COLORS = tuple(c.name for c in COLOR_CLASSES.values() if c.kind == "obs
 MAX_HIDDEN_WHOLE = 0.04  # hidden fraction of the width up to which an object counts as whole
 FALSE_RADIUS, FALSE_HEIGHT = 0.08, 0.30  # of false detections [m]
 FALSE_RANGE = (0.3, 2.5)  # distance of false detections [m]
-
-
-@dataclass(frozen=True, slots=True)
-class _Cylinder:
-    kind: str
-    label: str
-    radius: float
-    height: float
 
 
 class AnalyticCamera:
@@ -73,27 +64,19 @@ class AnalyticCamera:
         self._omnidirectional = settings.omnidirectional
         self._faults = faults
         self._movers = layout.motion()
-        self._cylinders = [
-            *(_Cylinder("obstacle", o.color, o.radius, o.height) for o in layout.obstacles),
-            *(_Cylinder("beacon", b.name, b.radius, b.height) for b in layout.beacons),
-        ]
-        places = [*(o.position for o in layout.obstacles), *(b.position for b in layout.beacons)]
-        self._positions = np.array(places, dtype=float).reshape(-1, 2)
+        self._cylinders: tuple[Obstacle | Beacon, ...] = (*layout.obstacles, *layout.beacons)
+        self._positions = np.array([c.position for c in self._cylinders]).reshape(-1, 2)
         self._moving = slice(len(layout.obstacles) - len(self._movers), len(layout.obstacles))
-        self._sizes = np.array([(t.radius, t.height) for t in self._cylinders]).reshape(-1, 2)
-        self._beacon = np.array([t.kind == "beacon" for t in self._cylinders], dtype=bool)
+        self._sizes = np.array([(c.radius, c.height) for c in self._cylinders]).reshape(-1, 2)
+        self._beacon = np.array([isinstance(c, Beacon) for c in self._cylinders], dtype=bool)
         self._eye = np.zeros(16)
         self._eye[12:] = camera.width, camera.height, camera.focal, self._omnidirectional
-        self._index: tuple[int, int] | None = None
 
     def capture(self, body: Body) -> tuple[Detection, ...]:
         """Return the detections in the present world, by distance and label."""
         body.update_kinematics()
         model, data = body.model, body.data
-        if self._index is None:
-            root = int(model.joint("root").qposadr[0])
-            self._index = (model.camera(HEAD_CAMERA).id, root)
-        camera_id, root = self._index
+        camera_id, root = model.camera(HEAD_CAMERA).id, int(model.joint("root").qposadr[0])
         # MuJoCo cameras look along -z with y up, frame C along +z with y down.
         rotation = data.cam_xmat[camera_id].reshape(3, 3) * (1.0, -1.0, -1.0)
         self._eye[:3], self._eye[3:12] = data.cam_xpos[camera_id], rotation.ravel()
@@ -121,7 +104,7 @@ class AnalyticCamera:
             cylinder, (distance, hidden, *box) = self._cylinders[i], row
             if distance <= cylinder.radius:
                 continue
-            limit = BEACON_RANGE if cylinder.kind == "beacon" else OBSTACLE_RANGE
+            limit = BEACON_RANGE if isinstance(cylinder, Beacon) else OBSTACLE_RANGE
             draw = self._rng.random()
             noise = self._rng.standard_normal(3)
             if distance > limit or hidden > MAX_HIDDEN or draw > DETECTION_RATE:
@@ -143,7 +126,7 @@ class AnalyticCamera:
         detections = []
         for _ in range(int(rng.poisson(mean)) if mean else 0):
             color = OBSTACLE_COLORS[rng.integers(len(OBSTACLE_COLORS))]
-            cylinder = _Cylinder("obstacle", color, FALSE_RADIUS, FALSE_HEIGHT)
+            cylinder = Obstacle((0.0, 0.0), FALSE_RADIUS, FALSE_HEIGHT, color)
             polar = (rng.uniform(*FALSE_RANGE), ahead + rng.uniform(-half, half))
             direction = polar[1] + robot[2]
             x = robot[0] + polar[0] * cos(direction) - float(eye[0])
@@ -171,7 +154,7 @@ def _deviations(distance: float, whole: bool) -> tuple[float, float, float]:
 
 def _detection(
     polar: tuple[float, float],
-    cylinder: _Cylinder,
+    cylinder: Obstacle | Beacon,
     box: Sequence[float],
     *,
     hidden: float,
@@ -180,7 +163,7 @@ def _detection(
     """Return a noisy detection of a cylinder at true (distance, bearing) in R."""
     distance, true_bearing = polar
     left, top, right, bottom, cut = box
-    beacon = cylinder.kind == "beacon"
+    beacon = isinstance(cylinder, Beacon)
     whole = beacon or (not cut and hidden <= MAX_HIDDEN_WHOLE)
     range_sigma, bearing_sigma, radius_sigma = _deviations(distance, whole)
     if beacon:
@@ -189,7 +172,7 @@ def _detection(
     radius = cylinder.radius + radius_sigma * noise[2]
     return Detection(
         kind="beacon" if beacon else "obstacle",
-        label=cylinder.label,
+        label=cylinder.name if isinstance(cylinder, Beacon) else cylinder.color,
         bearing=atan2(sin(bearing), cos(bearing)),
         distance=max(0.05, distance + range_sigma * noise[0]),
         covariance=np.array([[range_sigma**2, 0.0], [0.0, bearing_sigma**2]]),
