@@ -16,17 +16,24 @@ def quick(duration=1.0):
 
 
 class Spin:
-    """Turns on the spot and sees nothing."""
+    """Motion planner that turns in place."""
 
     def plan(self, belief, task):
         return MotionDecision(velocity=np.array([0.0, 0.0, 0.8]))
 
 
 class Stare:
-    """Looks to the left whatever happens."""
+    """Gaze planner that looks to the left."""
 
     def choose(self, belief, task, motion):
         return GazeDecision(pan=0.7, tilt=-0.2)
+
+
+class Closes(Listener):
+    """Records the exit reason."""
+
+    def close(self, exit_reason):
+        self.reason = exit_reason
 
 
 def test_tick_by_tick_is_the_same_run():
@@ -41,11 +48,7 @@ def test_tick_by_tick_is_the_same_run():
     assert [r.tick for r in published] == list(range(0, 201, 4))
 
 
-def test_a_run_left_early_closes_its_listeners(fake):
-    class Closes(Listener):
-        def close(self, exit_reason):
-            self.reason = exit_reason
-
+def test_a_run_left_early_closes_its_listeners():
     listener = Closes()
     with Simulation(quick(), 4, [listener]) as simulation:
         simulation.step()
@@ -56,11 +59,7 @@ def test_a_run_left_early_closes_its_listeners(fake):
     assert listener.reason == "error"
 
 
-def test_a_run_that_cannot_begin_closes_its_listeners(fake, monkeypatch):
-    class Closes(Listener):
-        def close(self, exit_reason):
-            self.reason = exit_reason
-
+def test_a_run_that_cannot_start_closes_its_listeners(monkeypatch):
     def none(*_):
         raise RenderingUnavailable("no OpenGL")
 
@@ -72,7 +71,7 @@ def test_a_run_that_cannot_begin_closes_its_listeners(fake, monkeypatch):
     assert listener.reason == "error"
 
 
-def test_a_run_is_stepped_between_its_beginning_and_its_end_alone():
+def test_steps_outside_a_run_are_an_error():
     simulation = Simulation(quick(0.05), 4)
     with pytest.raises(RuntimeError, match="with simulation"):
         simulation.step()
@@ -83,7 +82,7 @@ def test_a_run_is_stepped_between_its_beginning_and_its_end_alone():
         simulation.step()
 
 
-def test_an_own_planner_and_gaze_take_their_places():
+def test_a_given_planner_and_gaze_replace_those_of_the_scenario():
     spin: MotionPlanner = Spin()
     stare: GazeController = Stare()
     record = None

@@ -136,7 +136,7 @@ class KinematicBody:
             time=self.time,
             qpos=data.qpos.copy(),
             robot=robot,
-            obstacle_positions=self._surroundings.positions(self.time),
+            obstacle_positions=self._surroundings.positions(data),
             obstacle_velocities=self._surroundings.velocities(self.time),
             contacts=self._surroundings.watch.take(),
             clearance=self._surroundings.watch.clearance(data),

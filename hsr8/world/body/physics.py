@@ -155,7 +155,7 @@ class PhysicsBody:
             time=self.time,
             qpos=qpos,
             robot=robot,
-            obstacle_positions=self._surroundings.current_positions(data),
+            obstacle_positions=self._surroundings.positions(data),
             obstacle_velocities=self._surroundings.velocities(self.time),
             contacts=self._surroundings.watch.take(),
             clearance=self._surroundings.watch.clearance(data),

@@ -53,11 +53,7 @@ class Surroundings:
             self._block[:, self.index.mover_mocap, :2] = self._movers.positions(ends)
         data.mocap_pos[:] = self._block[number - self._first]
 
-    def positions(self, time: float) -> Array:
-        """Return the axes of all obstacles at `time` [s], layout order (n, 2) [m]."""
-        return self._with(self._positions, self._movers.positions(time))
-
-    def current_positions(self, data: mujoco.MjData) -> Array:
+    def positions(self, data: mujoco.MjData) -> Array:
         """Return the axes of all obstacles in `data`, layout order (n, 2) [m]."""
         movers = data.mocap_pos.take(self.index.mover_mocap, axis=0)
         return self._with(self._positions, movers[:, :2])
