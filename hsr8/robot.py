@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable
+from operator import attrgetter
 from time import perf_counter
 from typing import Protocol
 
@@ -23,6 +24,7 @@ from walking.targets import JointTargets
 from walking.value import value
 from walking.walker import Walker
 
+_fields = attrgetter(*Observation.__dataclass_fields__)  # of a detection, in this order
 MAX_PENDING = 128  # images captured but not yet delivered
 
 
@@ -201,21 +203,7 @@ class Robot:
             odometry=_odometry(state),
             motion_covariance=motion.covariance,
             view=self._view(state),
-            observations=tuple(
-                Observation(
-                    kind=d.kind,
-                    label=d.label,
-                    distance=d.distance,
-                    bearing=d.bearing,
-                    covariance=d.covariance,
-                    radius=d.radius,
-                    radius_sigma=d.radius_sigma,
-                    by_radius=d.by_radius,
-                    cut=d.cut,
-                    occluded=d.occluded,
-                )
-                for d in detections
-            ),
+            observations=tuple(Observation(*_fields(d)) for d in detections),
         )
 
 

@@ -6,8 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from hsr8.loop import Simulation
+from hsr8.body_builder import build_body, build_model
 from hsr8.scenario.loader import load_scenario
+from hsr8.world.field.generator import draw_layout
+from hsr8.world.model.index import ModelIndex
 from hsr8.world.model.models import models_dir
 from walking.body.robot_model import RobotModel
 from walking.get_up.get_up import GetUp, Outcome
@@ -23,7 +25,8 @@ DROP = 0.08  # height from which the robot is laid down [m]
 def lay(body, pitch):
     """Put the robot down stretched out, its trunk pitched by `pitch` [rad]."""
     model, data = body.model, body.data
-    root, joints = body._index.root_qpos, body._index.joint_qpos
+    index = ModelIndex.of(model, 0, 0)
+    root, joints = index.root_qpos, index.joint_qpos
     data.qpos[joints] = STRAIGHT.angles()
     data.qpos[root + 2] = DROP
     data.qpos[root + 3 : root + 7] = cos(0.5 * pitch), 0.0, sin(0.5 * pitch), 0.0
@@ -32,7 +35,9 @@ def lay(body, pitch):
 
 @pytest.mark.parametrize(("pitch", "most"), [(0.5 * pi, 2), (-0.5 * pi, 4)])
 def test_it_rises_from_front_and_back(pitch, most):
-    body = Simulation(load_scenario("walk", ['camera.source="analytic"']), 0)._body
+    scenario = load_scenario("walk", ['camera.source="analytic"'])
+    layout = draw_layout(scenario, 0)
+    body = build_body(scenario, 0, layout, build_model(scenario, layout))
     lay(body, pitch)
     robot = RobotModel.from_mjcf(ROBOT)
     get_up = GetUp(robot, GetUpParameters(max_attempts=most), np.array(STRAIGHT.angles()))
