@@ -5,14 +5,13 @@ from pathlib import Path
 import pytest
 from check_words import PACKAGES, ROOT, check_file, check_python, check_text, files
 
-NOT_YET = {  # pages still to be rewritten; only ever shorter
+NOT_YET = (  # pages still to be rewritten; only ever shorter
     "CHANGELOG.md",
-    *(f"docs/{page}.md" for page in ("architecture", "faults", "figures", "log")),
-    *(f"docs/{page}.md" for page in ("metrics", "robot", "sweeps", "trust", "worlds")),
+    *(f"docs/{page}.md" for page in ("architecture", "figures", "robot", "sweeps", "worlds")),
     "docs/results",
     "models/field/README.md",
     "models/hsr8",
-}
+)
 
 
 def _pages() -> list[Path]:
