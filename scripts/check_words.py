@@ -54,7 +54,7 @@ BANNED = {
     r"(?:the|an?|its|their|this|that|same|other|any|no|every|each|whole|straight|long)"
     r" ways?(?! station)": "path, route, direction, method",
     r"(?:file|key|text|number|page|table|test|list|line|code|name|module)s? stands?": "is",
-    r"\d+ (?:\w+ )?an? (?:second|tick|level|frame|run|metre|minute|step|seed)": "per",
+    r"\d+ (?!if )(?:\w+ )?an? (?:second|tick|level|frame|run|metre|minute|step|seed)": "per",
 }
 PATTERN = re.compile(
     "|".join(f"(?P<p{k}>(?<![\\w-])(?:{p})(?!\\w))" for k, p in enumerate(BANNED)),

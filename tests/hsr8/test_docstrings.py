@@ -44,5 +44,5 @@ def test_attributes_have_their_own_docstring_or_that_of_what_is_extended():
 
 
 def test_sections_of_both_kinds_are_described():
-    assert docstrings(Scenario)["duration"] == "Simulated time after which the run ends [s]."
+    assert docstrings(Scenario)["duration"] == "Maximum simulated time [s]."
     assert docstrings(NavigationParameters).items() < docstrings(Navigation).items()

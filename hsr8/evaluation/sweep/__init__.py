@@ -1,1 +1,1 @@
-"""Sweeps: one scenario over many seeds, each run in a process of its own."""
+"""Sweeps: one scenario over many seeds, one process per run."""

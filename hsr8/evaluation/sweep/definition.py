@@ -1,4 +1,4 @@
-"""What all runs of a sweep share: scenario, versions and code."""
+"""Common definition of the runs of a sweep: scenario, versions and code."""
 
 import hashlib
 import json
