@@ -5,11 +5,7 @@ from pathlib import Path
 import pytest
 from check_words import PACKAGES, ROOT, check_file, check_python, check_text, files
 
-NOT_YET = (  # pages still to be rewritten; only ever shorter
-    "CHANGELOG.md",
-    *(f"docs/{page}.md" for page in ("architecture", "figures", "robot", "sweeps")),
-    "docs/results",
-)
+NOT_YET = ("docs/results",)  # pages still to be rewritten; only ever shorter
 
 
 def _pages() -> list[Path]:
