@@ -69,42 +69,23 @@ class GainPerTick:
         return 1.0 - DecayPerTick().scale(1.0 - value, old, new)
 
 
-Rule = Dimension | DecayPerTick | GainPerTick
-"""Scaling rule of a parameter."""
+Rule = Dimension | DecayPerTick | GainPerTick  # scaling rule of a parameter
 
-NUMBER = Dimension()
-"""Ratio, gain, angle or sensor property: equal for all robots."""
-LENGTH = Dimension(leg=1.0)
-"""Length of the walk."""
-STANCE = Dimension(hip=1.0)
-"""Distance across the stance."""
-SOLE = Dimension(sole=1.0)
-"""Distance within the sole."""
-TIME = Dimension(time=1.0)
-"""Time of the walk."""
-HEIGHT = TIME**2.0
-"""Height of a pendulum under equal gravity."""
-CHANGE_WEIGHT = TIME**2.0
-"""Weight of changes per control tick relative to their effect."""
-FORCE = Dimension(weight=1.0)
-"""Fraction of the robot's weight."""
-SPEED = LENGTH / TIME
-"""Speed of the walk."""
-SOLE_SPEED = SOLE / TIME
-"""Speed within the sole."""
-DIFFUSION = LENGTH / TIME**0.5
-"""Random walk per square root of time."""
-ACCELERATION = LENGTH / TIME**2.0
-"""Acceleration of the walk."""
-RATE = TIME**-1.0
-"""Angular velocity, or feedback gain to a velocity."""
-RATE_CHANGE = TIME**-2.0
-"""Angular acceleration."""
-ANKLE_TIME = Dimension(ankle=1.0) * TIME
-"""Ankle setpoint per angular velocity, larger for softer servos."""
-PER_LENGTH = LENGTH**-1.0
-"""Angle per length of the walk."""
-DECAY_PER_TICK = DecayPerTick()
-"""Decay factor per control tick."""
-GAIN_PER_TICK = GainPerTick()
-"""Filter gain per control tick."""
+NUMBER = Dimension()  # ratio, gain, angle or sensor property: equal for all robots
+LENGTH = Dimension(leg=1.0)  # length of the walk
+STANCE = Dimension(hip=1.0)  # distance across the stance
+SOLE = Dimension(sole=1.0)  # distance within the sole
+TIME = Dimension(time=1.0)  # time of the walk
+HEIGHT = TIME**2.0  # height of a pendulum under equal gravity
+CHANGE_WEIGHT = TIME**2.0  # weight of changes per control tick relative to their effect
+FORCE = Dimension(weight=1.0)  # fraction of the robot's weight
+SPEED = LENGTH / TIME  # speed of the walk
+SOLE_SPEED = SOLE / TIME  # speed within the sole
+DIFFUSION = LENGTH / TIME**0.5  # random walk per square root of time
+ACCELERATION = LENGTH / TIME**2.0  # acceleration of the walk
+RATE = TIME**-1.0  # angular velocity, or feedback gain to a velocity
+RATE_CHANGE = TIME**-2.0  # angular acceleration
+ANKLE_TIME = Dimension(ankle=1.0) * TIME  # ankle setpoint per angular velocity
+PER_LENGTH = LENGTH**-1.0  # angle per length of the walk
+DECAY_PER_TICK = DecayPerTick()  # decay factor per control tick
+GAIN_PER_TICK = GainPerTick()  # filter gain per control tick

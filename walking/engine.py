@@ -53,10 +53,7 @@ class WalkingEngine:
     """
 
     def __init__(
-        self,
-        robot: RobotModel,
-        parameters: WalkingParameters,
-        odometry: LegOdometry | None = None,
+        self, robot: RobotModel, parameters: WalkingParameters, odometry: LegOdometry | None = None
     ) -> None:
         self._robot = robot
         self._parameters = parameters
@@ -85,8 +82,8 @@ class WalkingEngine:
         self._com_offset = ComOffset(parameters.stabilizer)
         self._odometry = odometry or LegOdometry(parameters.odometry)
         self._estimation = Estimation(robot, lipm.omega, parameters.estimator, self._odometry)
-        ready = robot.ready[HEAD].tolist()
-        self._head = Head(ready[0], ready[1], robot.head_limits(), parameters.head)
+        limits = np.column_stack([robot.lower[HEAD], robot.upper[HEAD]])
+        self._head = Head(robot.ready[HEAD], limits, parameters.head)
         self._polygon = SupportPolygon(robot.sole, gait.support_feet)
         self._fall_tilt = parameters.estimator.fall_tilt
         self._zmp_shift = (0.0, 0.0)
@@ -94,11 +91,6 @@ class WalkingEngine:
         self._last_opening_left = False
         self._ticks = 0
         self._sensors: BodySensors | None = None
-
-    @property
-    def parameters(self) -> WalkingParameters:
-        """Parameters of the engine."""
-        return self._parameters
 
     @property
     def command_limits(self) -> CommandLimits:
@@ -121,7 +113,7 @@ class WalkingEngine:
     @property
     def zmp_depth(self) -> float:
         """Distance of the last planned ZMP from the edge of the support polygon [m]."""
-        return self._polygon.depth(self._pendulum.zmp_x, self._pendulum.zmp_y)
+        return self._polygon.depth(*self._pendulum.zmp)
 
     def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
         """Run one control tick.
@@ -148,7 +140,7 @@ class WalkingEngine:
         region = polygon.region(self._parameters.pattern.sole_margin)
         ramps = placement.decide(wanted, steering.velocity, error, region, moving=steering.moving)
         self._capture.advance(ramps, placement.landing, region)
-        zmp = (pendulum.zmp_x, pendulum.zmp_y)
+        zmp = pendulum.zmp
         load = self._right_load(region, zmp)
         polygon.update(gait.support_feet)
         reachable = polygon.region(self._parameters.stabilizer.sole_margin)
@@ -219,16 +211,10 @@ class WalkingEngine:
 
     def _sense(self, sensors: BodySensors) -> tuple[float, float]:
         """Update the state estimate; return roll and pitch of the trunk [rad]."""
-        gait, whole_body, pendulum = self._gait, self._whole_body, self._pendulum
-        plan = (
-            *whole_body.pelvis,
-            *whole_body.com,
-            pendulum.zmp_x,
-            pendulum.zmp_y,
-            *self._zmp_shift,
-            whole_body.turn_rate,
-            gait.right_weight,
-        )
+        gait, whole_body = self._gait, self._whole_body
+        zmps = (*self._pendulum.zmp, *self._zmp_shift)
+        rest = (whole_body.turn_rate, gait.right_weight)
+        plan = (*whole_body.pelvis, *whole_body.com, *zmps, *rest)
         self._sensors = sensors
         self._ticks += 1
         return self._estimation.update(sensors, gait.feet, plan, stepping=gait.stepping)

@@ -2,8 +2,7 @@
 
 from math import cos, sin
 
-Point = tuple[float, float]
-"""x, y [m]."""
+from walking.arrays import Point
 
 Frame = tuple[float, float, float]
 """x, y [m] of the origin and yaw [rad]."""

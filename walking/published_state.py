@@ -1,9 +1,9 @@
 """Published state of the engine, in the odometry frame."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from walking import published_state_kernel
+from walking.arrays import Array, Point
 from walking.body.joints import HEAD
 from walking.body.measurement import BodyMeasurement
 from walking.body.odometry import Odometry
@@ -15,9 +15,6 @@ from walking.pattern.support import SupportPolygon
 from walking.sensing import BodySensors
 from walking.state import Balance, HeadCameraPose
 from walking.value import value
-
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 
 @value
@@ -75,10 +72,10 @@ def published_plan(
     points, feet = np.empty((5 + len(edges), 2)), np.empty((2, 4))
     support, foot = gait.footholds[gait.support], body.feet[gait.support]
     turned = published_state_kernel.show(
-        (support.x, support.y, support.yaw),
+        support.frame,
         (foot.x, foot.y, foot.yaw),
         (odometry.x, odometry.y, odometry.yaw),
-        (pendulum.x, pendulum.y, pendulum.vx, pendulum.vy, pendulum.zmp_x, pendulum.zmp_y),
+        pendulum.row,
         error,
         omega,
         body.com,
@@ -98,7 +95,7 @@ def published_plan(
             com=points[2],
             dcm=points[3],
             support=points[5:],
-            zmp_depth=polygon.depth(pendulum.zmp_x, pendulum.zmp_y),
+            zmp_depth=polygon.depth(*pendulum.zmp),
             feet=feet,
             capture=np.array(turned),
         ),

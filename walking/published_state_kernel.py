@@ -2,13 +2,9 @@
 
 from math import cos, sin
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Point = tuple[float, float]
-Vector = tuple[float, float, float]
+from walking.arrays import Array, Point, Vector
 
 Pendulum = tuple[float, float, float, float, float, float]
 """Position x, y [m], velocity x, y [m/s], ZMP x, y [m]."""

@@ -1,11 +1,7 @@
 """Sensor readings of the body, the only input of walking from the world."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from walking.arrays import Array
 from walking.value import value
-
-Array = NDArray[np.float64]
 
 
 @value

@@ -1,15 +1,11 @@
 """State that walking publishes: odometry, camera pose, gait, balance."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from walking.arrays import Array
 from walking.body.odometry import Odometry
 from walking.command_limits import CommandLimits
 from walking.foothold import Foothold
 from walking.phase import Phase
 from walking.value import value
-
-Array = NDArray[np.float64]
 
 
 @value

@@ -1,11 +1,7 @@
 """Joint targets of the position servos."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from walking.arrays import Array
 from walking.value import value
-
-Array = NDArray[np.float64]
 
 
 @value

@@ -43,11 +43,6 @@ class Walker:
         self._steps = 0
 
     @property
-    def parameters(self) -> WalkingParameters:
-        """Parameters of walking and getting up."""
-        return self._parameters
-
-    @property
     def command_limits(self) -> CommandLimits:
         """How the last command was limited; zero is applied while the robot is down."""
         if self.get_up is None:

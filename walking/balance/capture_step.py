@@ -33,12 +33,7 @@ class CapturePendulum:
     """
 
     def __init__(
-        self,
-        lipm: Lipm,
-        generator: PatternGenerator,
-        gait: Gait,
-        gain: float,
-        state: PendulumState,
+        self, lipm: Lipm, generator: PatternGenerator, gait: Gait, gain: float, state: PendulumState
     ) -> None:
         self._lipm = lipm
         self._generator = generator
@@ -76,12 +71,13 @@ class CapturePendulum:
             generator.advance(state, ramps, region)
             return
         # Shift of the DCM by a ramp of the ZMP from the fixed support foot to the new landing.
-        c, w = self._lipm.ramp(gait.timing.double), self._lipm.omega
+        c = self._lipm.ramp(gait.timing.double)
         weight = (1.0 + c.last) / c.growth / self._lipm.ramp(gait.ticks_left).growth
-        x = planned.x + planned.vx / w + weight * (gait.landing.x - landing.x)
-        y = planned.y + planned.vy / w + weight * (gait.landing.y - landing.y)
+        x, y = planned.dcm(self._lipm.omega)
+        x += weight * (gait.landing.x - landing.x)
+        y += weight * (gait.landing.y - landing.y)
         generator.advance(planned, ramps, region)
-        self._tracker.track(state, (x, y), (planned.zmp_x, planned.zmp_y), region)
+        self._tracker.track(state, (x, y), planned.zmp, region)
 
     def touchdown(self) -> None:
         """At touchdown, restart the plan from the pendulum of the body."""

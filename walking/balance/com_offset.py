@@ -1,9 +1,8 @@
 """Slow correction of the CoM offset from the measured centre of pressure."""
 
+from walking.arrays import Point
 from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, StabilizerParameters
-
-Point = tuple[float, float]
 
 
 class ComOffset:

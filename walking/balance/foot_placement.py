@@ -1,5 +1,6 @@
 """Foot placement: landing and timing of the swing foot, by plan or by capture step."""
 
+from walking.arrays import Point
 from walking.balance.capture_step import CapturePendulum
 from walking.balance.stabilizer import Capture, Stabilizer
 from walking.command_limits import Limit
@@ -14,7 +15,6 @@ from walking.pattern.pattern import PatternGenerator
 from walking.pattern.ramps import Ramps
 from walking.pattern.support import SupportRegion
 
-Point = tuple[float, float]
 NOT_MOVED: Point = (0.0, 0.0)
 
 
@@ -167,17 +167,14 @@ class FootPlacement:
 
     def _capture(self, landing: Foothold, ramps: Ramps, error: Point) -> Capture | None:
         """Return the capture step for the measured DCM, None if the ankles suffice."""
-        gait, w = self._gait, self._lipm.omega
-        pendulum = self._pendulum.state
+        gait = self._gait
         support = gait.footholds[gait.support]
         if gait.shortened:
             x, y = dcm_reference(self._lipm, ramps)
         else:
             x, y = self._generator.planned_dcm(self._pendulum.planned, ramps)
-        off = (
-            pendulum.x + pendulum.vx / w + error[0] - x,
-            pendulum.y + pendulum.vy / w + error[1] - y,
-        )
+        body_x, body_y = self._pendulum.state.dcm(self._lipm.omega)
+        off = (body_x + error[0] - x, body_y + error[1] - y)
         if self._stabilizer.holds(support, off):
             return None
         goal_x, goal_y = ramps.goal

@@ -1,8 +1,8 @@
 """State estimation: attitude, feet, odometry, and the error against the plan."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array, Point
 from walking.body import estimation_kernel
 from walking.body.estimation_kernel import LOAD, MEASURED, Plan
 from walking.body.measurement import BodyMeasurement, body_of
@@ -11,9 +11,6 @@ from walking.body.robot_model import RobotModel
 from walking.body.steady_gains import steady_gains
 from walking.parameters import CONTROL_PERIOD, GRAVITY, EstimatorParameters
 from walking.sensing import BodySensors
-
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 LIGHT_LOAD = 0.074  # of the weight; the noise of unloaded foot pads stays below it [1]
 
@@ -46,11 +43,11 @@ class Estimation:
         self._odometry = odometry
         self._filter, self._error = np.zeros(3), np.zeros(5)
         self._error[4] = -1.0
-        sole, gains = robot.sole, steady_gains(omega, parameters)
+        sole = robot.sole
         light = LIGHT_LOAD * robot.mass * GRAVITY
         body = parameters.tilt_gain, light, sole.centre, sole.half_length, sole.half_width
         self._body = np.array(body)
-        self._gains = np.array([gains.position, gains.velocity, omega])
+        self._gains = np.array([*steady_gains(omega, parameters), omega])
         self.measured = np.zeros(MEASURED)
         self.tilt: Point | None = None
         self.dcm_error: Point = (0.0, 0.0)

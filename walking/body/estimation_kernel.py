@@ -15,13 +15,10 @@ kinematics of the legs is here because kernels call no kernel of another file.
 
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from walking.body.leg_kernel import Angles, Leg, Point, Pose, Vector
-
-Array = NDArray[np.float64]
+from walking.arrays import Array, Point, Vector
+from walking.body.leg_kernel import Angles, Leg, Pose
 
 Plan = tuple[float, float, float, float, float, float, float, float, float, float, float]
 """Pelvis x, y [m], heading [rad]; centre of mass in the base frame x, y; ZMP x, y; its shift by the
@@ -53,24 +50,9 @@ def estimate(
 ) -> tuple[Point, Point, Point, Vector]:
     """Run one tick: `observe`, odometry, and the error against the plan.
 
-    Args:
-        joints: see `observe`.
-        pads: see `observe`.
-        orientation: see `observe`.
-        gyro: see `observe`.
-        com: see `observe`.
-        tilt: updated.
-        odometry: updated.
-        error: updated.
-        legs: see `observe`.
-        body: see `observe`.
-        growth: see `reckon`.
-        gains: see `filter_error`.
-        feet: foot references, see `walking.gait.swing_foot_kernel` (2, 10).
-        plan: of the last tick.
-        stepping: whether a footstep is under way.
-        period: of control [s].
-        measured: see `observe`.
+    Arguments as in `observe`, `reckon` (odometry, growth) and `filter_error` (error, gains). `feet`
+    are the foot references, see `walking.gait.swing_foot_kernel` (2, 10); `plan` is that of the
+    last tick; `stepping` is whether a footstep is under way.
 
     Returns:
         roll and pitch [rad]; DCM error in the plan frame [m]; error of the centre of pressure,

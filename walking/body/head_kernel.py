@@ -2,22 +2,13 @@
 
 from math import cos, sin, sqrt
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Pair = tuple[float, float]
+from walking.arrays import Array, Point
 
 
 @njit(cache=True)
-def advance(
-    position: Array,
-    velocity: Array,
-    target: Pair,
-    limits: Array,
-    motion: Array,
-) -> Pair:
+def advance(position: Array, velocity: Array, target: Point, limits: Array, motion: Array) -> Point:
     """Run one tick: time-optimal approach to the target on each axis, without overshoot.
 
     Args:

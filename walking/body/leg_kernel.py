@@ -5,14 +5,10 @@ Constant numbers are rows of arrays: tuples are unpacked at every call.
 
 from math import acos, asin, atan2, cos, hypot, sin
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Point = tuple[float, float]
-Vector = tuple[float, float, float]
+from walking.arrays import Array, Indices, Point, Vector
+
 Leg = tuple[float, float, float, float, float, float]
 """Fields of `LegDimensions` in order [m]."""
 

@@ -1,8 +1,7 @@
 """Measured body in the level frame of the trunk's heading."""
 
+from walking.arrays import Vector
 from walking.value import value
-
-Vector = tuple[float, float, float]
 
 
 @value

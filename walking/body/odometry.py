@@ -3,13 +3,11 @@
 from math import cos, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array
 from walking.body import estimation_kernel
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.value import value
-
-Array = NDArray[np.float64]
 
 # Indices of xx, xy … of the covariance in the state, see `walking.body.estimation_kernel`.
 COVARIANCE = np.array([[14, 15, 16], [15, 17, 18], [16, 18, 19]])

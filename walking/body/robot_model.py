@@ -9,16 +9,14 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from walking.arrays import Array
 from walking.body import head_kernel
 from walking.body.joints import HEAD, HEAD_JOINTS, JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 from walking.body.leg_kinematics import FootPose, LegDimensions, foot_pose, leg_angles
 from walking.body.sole import Sole
 from walking.parameters import GRAVITY
 from walking.robot_measures import RobotMeasures
-
-Array = NDArray[np.float64]
 
 READY = "walk_ready"
 BENT = 5.0 / 6.0  # walking height of the hips per length of the leg [1]
@@ -210,14 +208,6 @@ class RobotModel:
         pin.forwardKinematics(self._model, self._data, q)
         placement = pin.updateFramePlacement(self._model, self._data, self._frame(name))
         return placement.rotation.copy(), placement.translation.copy()
-
-    def head_limits(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the joint limits of pan and of tilt [rad]."""
-        (pan_low, tilt_low), (pan_high, tilt_high) = (
-            self.lower[HEAD].tolist(),
-            self.upper[HEAD].tolist(),
-        )
-        return (pan_low, pan_high), (tilt_low, tilt_high)
 
     def _frame(self, name: str) -> int:
         if not self._model.existFrame(name):

@@ -7,13 +7,13 @@ from math import cos, sin
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from walking.arrays import Array
+from walking.footsteps.stride import Placement
+
 Row = tuple[float, float, float, float]
 """Foothold, see `Foothold.row`."""
 
-Placement = tuple[float, float, float]
 Placements = tuple[Placement, Placement]
 """Landings of the right and left foot in the frame of the support foot, x, y [m], yaw [rad]."""
 
@@ -148,14 +148,7 @@ def _under(foot: Row, zmp_offset: ZmpOffset) -> tuple[float, float]:
 
 @njit(cache=True)
 def _ramp(
-    row: Array,
-    ticks: int,
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
-    one: Row,
-    two: Row,
+    row: Array, ticks: int, ax: float, ay: float, bx: float, by: float, one: Row, two: Row
 ) -> None:
     row[0], row[1], row[2], row[3], row[4] = ticks, ax, ay, bx, by
     row[5], row[6], row[7], row[8] = one

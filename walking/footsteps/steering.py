@@ -6,31 +6,9 @@ from walking.footsteps.planner import FootstepPlanner
 from walking.footsteps.stride import STILL, Strides, Timing, Velocity
 from walking.footsteps.velocity import VelocitySlew, limited, speed_limits
 from walking.parameters import LimitParameters
-from walking.value import value
 
 SAME_SPEED = 1e-9  # rounding error of velocities [m/s, rad/s]
 STRIDE_LIMITS = {Limit.STEP_LENGTH, Limit.STEP_SIDE, Limit.STEP_TURN, Limit.CLEARANCE}
-
-
-@value
-class Steady:
-    """Cached result of a velocity command that is reached.
-
-    Attributes:
-        command: the command.
-        speed_ratio: of it to walk at [1].
-        bound: limits that bind.
-    """
-
-    command: VelocityCommand
-    speed_ratio: float
-    bound: list[Limit]
-
-    def holds(self, command: VelocityCommand, speed_ratio: float) -> bool:
-        """Whether the inputs are unchanged."""
-        return speed_ratio == self.speed_ratio and (
-            command is self.command or command == self.command
-        )
 
 
 class Steering:
@@ -56,7 +34,6 @@ class Steering:
         self._command: Command = VelocityCommand()
         self._state: CommandState | None = None
         self._bound: list[Limit] = []
-        self._steady: Steady | None = None
         self._too_fast: tuple[VelocityCommand | None, list[Limit]] = (None, [])
         self.timing = planner.cadence(self.velocity)
 
@@ -87,7 +64,6 @@ class Steering:
             balanced: whether the motion may change.
         """
         self._command, self._bound = command, []
-        steady, self._steady = self._steady, None
         if not balanced:
             self._hold(command)
         elif not settled:
@@ -96,8 +72,6 @@ class Steering:
             self._slew.follow(VelocityCommand())
         elif isinstance(command, CommandState):
             self._follow_state(command)
-        elif steady is not None and steady.holds(command, speed_ratio):
-            self._steady, self._bound = steady, steady.bound
         else:
             self._follow_velocity(command, speed_ratio)
 
@@ -184,8 +158,7 @@ class Steering:
         return self._too_fast[1]
 
     def _follow_velocity(self, command: VelocityCommand, speed_ratio: float) -> None:
-        before, self._state = self._state, None
-        was = self.velocity
+        self._state = None
         bound, wanted = self._bound, command
         if speed_ratio < 1.0 and command.velocity != STILL:
             vx, vy, wz = limited(command, self._limits)
@@ -200,8 +173,6 @@ class Steering:
         if self._differs(limit):
             bound.append(Limit.ACCELERATION)
         bound.extend(self._planner.stride_limits(velocity, self.timing.duration))
-        if before is None and velocity == was:
-            self._steady = Steady(command, speed_ratio, bound)
 
     def _follow_state(self, command: CommandState) -> None:
         self._state = command

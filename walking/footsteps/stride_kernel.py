@@ -4,11 +4,8 @@ from math import cos, sin
 
 from numba import njit
 
-Vector = tuple[float, float, float]
-Point = tuple[float, float]
-
-Placement = tuple[float, float, float]
-"""Landing in the frame of the support foot: x, y [m], yaw [rad]."""
+from walking.arrays import Point, Vector
+from walking.footsteps.stride import Placement
 
 Build = tuple[float, float, float, float, float]
 """Half the distance between the feet, their clearance; heel and toe ahead of the ankle, half of the

@@ -3,10 +3,9 @@
 from dataclasses import replace
 from typing import NamedTuple
 
+from walking.arrays import Point
 from walking.footsteps.stride import Timing
 from walking.value import comparable_value, value
-
-Point = tuple[float, float]
 
 
 @comparable_value

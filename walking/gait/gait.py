@@ -1,8 +1,8 @@
 """Gait: sequence of supports, landing of the swing foot, and ZMP reference."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array, Point
 from walking.clamp import clamp
 from walking.foothold import Foothold
 from walking.footsteps.foothold_kernel import RAMP
@@ -18,8 +18,6 @@ from walking.pattern.ramps import Ramps, ZmpRamp, table_of
 from walking.pattern.zmp_reference import ZmpReference
 from walking.phase import Phase
 
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 NO_STEPS = np.empty((0, 4))
 
 
@@ -287,11 +285,7 @@ class Gait:
         usual = self._usual
         each = usual.last - usual.first
         return Swings(
-            (
-                self.footholds[self.support].row,
-                self.footholds[self.swing].row,
-                self.landing.row,
-            ),
+            (self.footholds[self.support].row, self.footholds[self.swing].row, self.landing.row),
             self._future,
             (begin, self.swing_height, not self.landed_early),
             (

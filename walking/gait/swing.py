@@ -3,14 +3,12 @@
 from math import ceil, hypot
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array
 from walking.foothold import Foothold
 from walking.gait.minimum_jerk import PEAK
 from walking.gait.swing_foot_kernel import HEIGHT, RATE, WIDTH
 from walking.parameters import CONTROL_PERIOD
-
-Array = NDArray[np.float64]
 
 ROUNDING = 1e-7  # rounding error, relative to the maximum change [1]
 
@@ -30,13 +28,7 @@ def stand(foot: Array, foothold: Foothold) -> None:
 
 
 def min_ticks(foot: Array, landing: Foothold, speed: float) -> int:
-    """Return the control ticks of a swing to `landing` with a peak speed [m/s].
-
-    Args:
-        foot: reference (10,).
-        landing: of the foot.
-        speed: peak [m/s].
-    """
+    """Return the control ticks of a swing to `landing` with a peak speed [m/s]."""
     x, y = foot[:2].tolist()
     distance = hypot(landing.x - x, landing.y - y)
     return ceil(PEAK * distance / (speed * CONTROL_PERIOD))

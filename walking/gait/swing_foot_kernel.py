@@ -4,12 +4,9 @@ Rows of the left and right foot: x, y [m], yaw [rad], height above the floor [m]
 accelerations of x, y and yaw (2, 10).
 """
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Vector = tuple[float, float, float]
+from walking.arrays import Array, Vector
 
 HEIGHT, RATE, ACCELERATION, WIDTH = 3, 4, 7, 10  # columns, and their number
 

@@ -4,19 +4,12 @@ from math import cos, exp, sin
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Point = tuple[float, float]
-Vector = tuple[float, float, float]
-Row = tuple[float, float, float, float]
-"""Foothold, see `Foothold.row`."""
+from walking.arrays import Array, Point, Vector
+from walking.footsteps.foothold_kernel import Row, ZmpOffset
 
 Feet = tuple[Row, Row, Row]
 """Support foot; lift-off and landing of the swing foot."""
-
-ZmpOffset = tuple[float, float]
-"""ZMP of single support in the foot frame, forward and inward [m]."""
 
 SWING = 10  # columns of a swing
 
@@ -69,17 +62,10 @@ def react(
 ) -> tuple[Point, Point]:
     """Run one tick of the compensation.
 
-    Args:
-        feet: see `swings`.
-        steps: see `swings`.
-        now: see `swings`.
-        later: see `swings`.
-        zmp_offset: see `swings`.
-        first: profile of the first swing (ticks + 1, 6).
-        others: profile of the others (ticks + 1, 6).
-        coefficients: thrust B [s²], weight K [s²/m] and knee N [s²] of a leg; ω [1/s], control
-            period [s] (5,).
-        state: offset of the pelvis x, y, and ξ x, y, updated (4,) [m].
+    The first five arguments are those of `swings`, `first` and `others` the profiles of the first
+    and of later swings (ticks + 1, 6). `coefficients` are thrust B [s²], weight K [s²/m] and knee N
+    [s²] of a leg, ω [1/s] and control period [s] (5,); `state` is the offset of the pelvis x, y,
+    and ξ x, y, updated (4,) [m].
 
     Returns:
         offset x, y [m], and its acceleration x, y [m/s²].
@@ -170,12 +156,7 @@ def _under(foot: Row, zmp_offset: ZmpOffset) -> tuple[float, float]:
 
 @njit(cache=True)
 def _swing(
-    row: Array,
-    begin: int,
-    lift: float,
-    origin: Row,
-    landing: Row,
-    zmp: tuple[float, float],
+    row: Array, begin: int, lift: float, origin: Row, landing: Row, zmp: tuple[float, float]
 ) -> None:
     row[0], row[1] = begin, lift
     for k in range(3):

@@ -20,19 +20,18 @@ compute this correction by a second preview controller on the multibody ZMP, Tak
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array, Point
 from walking.body.joints import LEFT_LEG, RIGHT_LEG
 from walking.body.leg_kinematics import FootPose, leg_angles
 from walking.body.robot_model import RobotModel
+from walking.footsteps.foothold_kernel import ZmpOffset
 from walking.gait import swing_kernel
-from walking.gait.swing_kernel import Feet, ZmpOffset
+from walking.gait.swing_kernel import Feet
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 from walking.pattern.lipm import Lipm
 from walking.value import value
 
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 SMALL = 1e-4  # step of finite differences [m]
 
 

@@ -5,11 +5,12 @@ from math import atan2, cos
 
 import numpy as np
 
+from walking.arrays import Array, Vector
 from walking.body.robot_model import RobotModel
 from walking.get_up.get_up_motion import MOTIONS, Motions
 from walking.get_up.key_posture import STRAIGHT, KeyPosture
-from walking.get_up.lying import Lying, RestDetector, Vector, lying_on, up_in_trunk
-from walking.get_up.posture_track import Array, PostureTrack
+from walking.get_up.lying import Lying, RestDetector, lying_on, up_in_trunk
+from walking.get_up.posture_track import PostureTrack
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
 from walking.sensing import BodySensors
 from walking.targets import JointTargets

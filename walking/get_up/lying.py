@@ -2,9 +2,8 @@
 
 from enum import StrEnum
 
+from walking.arrays import Vector
 from walking.parameters import CONTROL_PERIOD, GetUpParameters
-
-Vector = tuple[float, float, float]
 
 
 class Lying(StrEnum):

@@ -3,13 +3,11 @@
 from math import ceil
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array
 from walking.body.robot_model import RobotModel
 from walking.gait.minimum_jerk import PEAK, minimum_jerk
 from walking.parameters import CONTROL_PERIOD
-
-Array = NDArray[np.float64]
 
 
 class PostureTrack:

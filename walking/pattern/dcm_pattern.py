@@ -59,7 +59,7 @@ class DcmGenerator(TrackingGenerator):
             zmp: of the reference [m].
             region: admissible ZMP.
         """
-        lipm, gain = self._lipm, self._gain
-        px = zmp[0] + gain * (state.x + state.vx / lipm.omega - dcm[0])
-        py = zmp[1] + gain * (state.y + state.vy / lipm.omega - dcm[1])
-        state.step(lipm, (px, py), region)
+        x, y = state.dcm(self._lipm.omega)
+        px = zmp[0] + self._gain * (x - dcm[0])
+        py = zmp[1] + self._gain * (y - dcm[1])
+        state.step(self._lipm, (px, py), region)

@@ -138,9 +138,8 @@ class PaperGenerator:
         self._follow(state, ramp)
 
     def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
-        w = self._lipm.omega
-        rx, ry = self._residual
-        return state.x + state.vx / w - rx, state.y + state.vy / w - ry
+        (x, y), (rx, ry) = state.dcm(self._lipm.omega), self._residual
+        return x - rx, y - ry
 
     def holds(self, ramps: Sequence[ZmpRamp]) -> bool:
         return self._residual == (0.0, 0.0)

@@ -39,8 +39,7 @@ class PreviewGenerator(TrackingGenerator):
 
     def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         # With a weight on the ZMP rate, preview control deviates from the DCM of the footholds.
-        w = self._lipm.omega
-        return state.x + state.vx / w, state.y + state.vy / w
+        return state.dcm(self._lipm.omega)
 
     def _preview(self, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         """Return Σ_j f_j p_ref(j) over the horizon, and with its last point beyond."""

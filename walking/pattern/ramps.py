@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from typing import overload
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array
 from walking.foothold import Foothold
 from walking.value import comparable_value
-
-Array = NDArray[np.float64]
 
 
 @comparable_value

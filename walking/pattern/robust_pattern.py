@@ -19,9 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
-import numpy as np
-from numpy.typing import NDArray
-
+from walking.arrays import Array, Vector
 from walking.body.sole import Sole
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern import zmp_kernel
@@ -30,9 +28,6 @@ from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp, table_of
 from walking.pattern.support import SupportRegion
-
-Array = NDArray[np.float64]
-Vector = tuple[float, float, float]
 
 NO_DUAL = (0.0, 0.0)  # initial guess without a plan [1/m]
 AHEAD = 5  # ramps of a plan compared in `holds`
@@ -101,8 +96,7 @@ class RobustGenerator:
     def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
         if self._plan is None:
             return dcm_reference(self._lipm, ramps)
-        w = self._lipm.omega
-        return state.x + state.vx / w, state.y + state.vy / w
+        return state.dcm(self._lipm.omega)
 
     def forget(self) -> None:
         self._plan, self._age = None, 0
@@ -116,8 +110,8 @@ class RobustGenerator:
 
     def _follow(self, state: PendulumState, plan: ZmpPlan) -> None:
         """Advance the pendulum by a tick along a plan."""
-        now = (state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y)
-        then, plan.next = zmp_kernel.follow(plan.knots, plan.next, now, self._lipm.tick)
+        tick = self._lipm.tick
+        then, plan.next = zmp_kernel.follow(plan.knots, plan.next, state.row, tick)
         state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y = then
 
     def _replan(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> None:
@@ -139,7 +133,7 @@ class RobustGenerator:
             dual = plan.dual[0] / growth, plan.dual[1] / growth
         feasible, dual, _, knots = zmp_kernel.plan(
             table,
-            (state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y),
+            state.row,
             sole,
             self._lipm.tick,
             self._rate,

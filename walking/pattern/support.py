@@ -3,14 +3,13 @@
 from math import cos, dist, hypot, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.pattern import support_kernel
 from walking.planar import from_frame
 
-Array = NDArray[np.float64]
 Polygon = tuple[tuple[float, float], ...]
 """Corners of a convex polygon, counter-clockwise [m]."""
 

@@ -7,12 +7,9 @@ vector x, y, length [m] (n, 5).
 
 from math import inf
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Point = tuple[float, float]
+from walking.arrays import Array, Point
 
 
 @njit(cache=True)

@@ -25,11 +25,8 @@ from math import cos, exp, hypot, sin
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Point = tuple[float, float]
+from walking.arrays import Array, Indices, Point
 
 Pendulum = tuple[float, float, float, float, float, float]
 """Position x, y [m], velocity x, y [m/s], ZMP of the last tick x, y [m]."""
@@ -52,22 +49,11 @@ CELL = 15  # columns of a cell
 
 @njit(cache=True)
 def plan(
-    ramps: Array,
-    pendulum: Pendulum,
-    sole: Sole,
-    tick: Tick,
-    rate: float,
-    dual: Point,
+    ramps: Array, pendulum: Pendulum, sole: Sole, tick: Tick, rate: float, dual: Point
 ) -> tuple[bool, Point, int, Array]:
     """Set up and solve the program of a plan near a reference.
 
-    Args:
-        ramps: see `lay_out`.
-        pendulum: see `lay_out`.
-        sole: see `lay_out`.
-        tick: see `lay_out`.
-        rate: see `lay_out`.
-        dual: initial guess of λ [1/m].
+    Arguments as in `lay_out`; `dual` is the initial guess of λ [1/m].
 
     Returns:
         whether the program is feasible, λ [1/m], number of evaluations of the gradient, and the
@@ -108,13 +94,7 @@ def follow(knots: Array, begin: int, pendulum: Pendulum, tick: Tick) -> tuple[Pe
 
 
 @njit(cache=True)
-def _slide(
-    position: float,
-    velocity: float,
-    before: float,
-    after: float,
-    tick: Tick,
-) -> Point:
+def _slide(position: float, velocity: float, before: float, after: float, tick: Tick) -> Point:
     """Return position [m] and velocity [m/s] one tick later under a linearly moving ZMP."""
     w, c, s, period = tick
     rate = (after - before) / period
@@ -404,12 +384,7 @@ def _sum_up(cells: Array, starts: Indices, count: int, weights: Array) -> None:
 
 @njit(cache=True)
 def solve(
-    cells: Array,
-    starts: Indices,
-    weights: Array,
-    x: float,
-    y: float,
-    start: Point,
+    cells: Array, starts: Indices, weights: Array, x: float, y: float, start: Point
 ) -> tuple[bool, float, float, int]:
     """Solve for λ.
 

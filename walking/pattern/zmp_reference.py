@@ -1,8 +1,6 @@
 """ZMP reference of footholds."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from walking.arrays import Array, Point
 from walking.body.sole import Sole
 from walking.foothold import Foothold
 from walking.footsteps import foothold_kernel
@@ -11,9 +9,6 @@ from walking.footsteps.stride import Timing
 from walking.parameters import CONTROL_PERIOD, WalkingParameters
 from walking.pattern.ramps import Ramps
 from walking.planar import from_frame
-
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 
 class ZmpReference:

@@ -1,15 +1,13 @@
 """Feed-forward offsets of the setpoints against the compliance of the position servos."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array, Point, Vector
 from walking.body import leg_kernel
 from walking.body.joints import LEFT_LEG, RIGHT_LEG
-from walking.body.leg_kernel import AnkleTask, Point, Vector
+from walking.body.leg_kernel import AnkleTask
 from walking.body.robot_model import RobotModel
 from walking.parameters import CONTROL_PERIOD, GRAVITY, StabilizerParameters
-
-Array = NDArray[np.float64]
 
 
 class FeedForward:

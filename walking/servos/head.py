@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from walking.arrays import Array
 from walking.body import head_kernel
 from walking.command import HeadTarget
 from walking.parameters import CONTROL_PERIOD, HeadParameters
@@ -11,20 +12,13 @@ class Head:
     """Time-optimal motion of pan and tilt.
 
     Args:
-        pan, tilt: initial angles [rad].
-        limits: joint limits of pan and of tilt [rad].
-        parameters: rate and acceleration limits.
+        angles: initial pan and tilt (2,) [rad].
+        limits: lower and upper joint limit of each (2, 2) [rad].
+        parameters: maximum rate and acceleration.
     """
 
-    def __init__(
-        self,
-        pan: float,
-        tilt: float,
-        limits: tuple[tuple[float, float], tuple[float, float]],
-        parameters: HeadParameters,
-    ) -> None:
-        self._position, self._velocity = np.array([pan, tilt]), np.zeros(2)
-        self._limits = np.array(limits)
+    def __init__(self, angles: Array, limits: Array, parameters: HeadParameters) -> None:
+        self._position, self._velocity, self._limits = angles.copy(), np.zeros(2), limits
         motion = parameters.max_rate, parameters.max_acceleration, CONTROL_PERIOD
         self._motion = np.array(motion)
 

@@ -1,18 +1,14 @@
 """Inverse kinematics of the whole body from pelvis and foot references."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array, Point, Vector
 from walking.body import leg_kernel
-from walking.body.leg_kernel import Vector
 from walking.body.leg_kinematics import foot_pose
 from walking.body.robot_model import RobotModel
 from walking.foothold import Foothold
 from walking.gait.gait import Gait
 from walking.parameters import WalkingParameters
-
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 
 class Posture:

@@ -1,8 +1,8 @@
 """Joint targets of the whole body from pendulum and feet."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from walking.arrays import Array, Point
 from walking.body.robot_model import RobotModel
 from walking.gait.gait import Gait
 from walking.gait.swing_reaction import SwingCompensation, leg_reaction
@@ -13,9 +13,6 @@ from walking.planar import rotate
 from walking.servos.feedforward import FeedForward
 from walking.servos.posture import Posture
 from walking.targets import JointTargets
-
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 
 class WholeBody:

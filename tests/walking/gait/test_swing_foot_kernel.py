@@ -40,9 +40,7 @@ def test_any_landing_is_reached_at_rest(targets):
 def test_position_velocity_and_acceleration_belong_together():
     rows = run(0.0, [0.1] * 20 + [0.15] * 30)
     np.testing.assert_allclose(
-        np.diff(rows[:-1, 0]) / CONTROL_PERIOD,
-        0.5 * (rows[1:-1, 1] + rows[:-2, 1]),
-        atol=2e-3,
+        np.diff(rows[:-1, 0]) / CONTROL_PERIOD, 0.5 * (rows[1:-1, 1] + rows[:-2, 1]), atol=2e-3
     )
 
 

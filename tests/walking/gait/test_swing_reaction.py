@@ -109,10 +109,7 @@ def test_a_walk_in_another_direction_has_its_offsets_turned():
     for k in range(300):
         here.advance(swings(k, 0.07))
         there.advance(turned(swings(k, 0.07), 0.8))
-        for one, other in (
-            (here.offset, there.offset),
-            (here.acceleration, there.acceleration),
-        ):
+        for one, other in ((here.offset, there.offset), (here.acceleration, there.acceleration)):
             assert complex(*other) == pytest.approx(np.exp(0.8j) * complex(*one), abs=1e-12)
 
 

@@ -14,7 +14,7 @@ PARAMETERS = HeadParameters()
 
 
 def follow(targets):
-    head = Head(0.0, 0.0, LIMITS, PARAMETERS)
+    head = Head(np.zeros(2), np.array(LIMITS), PARAMETERS)
     return np.array([(0.0, 0.0), *(head.advance(target) for target in targets)])
 
 
