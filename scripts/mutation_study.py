@@ -35,6 +35,8 @@ TESTS = {  # where they are not those of the same name
         "navigation/belief/test_pose_filter",
         "navigation/belief/test_localization",
     ),
+    "walking/pattern/zmp_layout_kernel": ("walking/pattern/test_zmp_kernel",),
+    "walking/pattern/zmp_solver_kernel": ("walking/pattern/test_zmp_kernel",),
     "walking/gait/swing_kernel": (
         "walking/gait/test_swing_kernel",
         "walking/gait/test_swing_reaction",
@@ -67,7 +69,8 @@ MODULES = (
     "navigation/belief/local_map",
     "walking/pattern/lipm",
     "walking/pattern/zmp_reference",
-    "walking/pattern/zmp_kernel",
+    "walking/pattern/zmp_layout_kernel",
+    "walking/pattern/zmp_solver_kernel",
     "walking/balance/foot_placement",
     "walking/footsteps/foothold_kernel",
     "walking/gait/swing_kernel",

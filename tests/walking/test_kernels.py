@@ -13,12 +13,18 @@ from walking.engine import WalkingEngine
 from walking.footsteps import foothold_kernel, stride_kernel
 from walking.gait import swing_foot_kernel, swing_kernel
 from walking.parameters import WalkingParameters
-from walking.pattern import support_kernel, zmp_kernel
+from walking.pattern import (
+    pendulum_kernel,
+    support_kernel,
+    zmp_layout_kernel,
+    zmp_solver_kernel,
+)
 from walking.warm_up import warm_up
 
 KERNELS = [
-    (zmp_kernel, "plan"),
-    (zmp_kernel, "follow"),
+    (zmp_layout_kernel, "lay_out"),
+    (zmp_solver_kernel, "solve"),
+    (pendulum_kernel, "follow"),
     (foothold_kernel, "plan_walk"),
     (swing_kernel, "profile"),
     (swing_kernel, "react"),
@@ -38,7 +44,7 @@ KERNELS = [
     (stride_kernel, "stance_after"),
     (stride_kernel, "clear"),
 ]
-PUSHED = [(zmp_kernel, "dcm")]  # called in a disturbed walk only
+PUSHED = [(zmp_layout_kernel, "dcm")]  # called in a disturbed walk only
 SAMPLES, EVERY = 20, 17  # arguments kept of a kernel, one in so many calls
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from walking.parameters import CONTROL_PERIOD
-from walking.pattern import zmp_kernel
+from walking.pattern import zmp_layout_kernel
 from walking.pattern.lipm import Lipm
 from walking.pattern.pattern import TrackingGenerator
 from walking.pattern.pendulum import PendulumState
@@ -17,7 +17,7 @@ def dcm_reference(lipm: Lipm, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
     Beyond the last ramp the ZMP stays and the DCM rests on it. A reference s seconds ahead has the
     weight ω e^{-ωs}: preview control in the limit of zero weight on the jerk.
     """
-    return zmp_kernel.dcm(table_of(ramps), lipm.omega * CONTROL_PERIOD)
+    return zmp_layout_kernel.dcm(table_of(ramps), lipm.omega * CONTROL_PERIOD)
 
 
 class DcmGenerator(TrackingGenerator):

@@ -22,7 +22,7 @@ from itertools import accumulate
 from walking.arrays import Array, Vector
 from walking.body.sole import Sole
 from walking.parameters import CONTROL_PERIOD, PatternParameters
-from walking.pattern import zmp_kernel
+from walking.pattern import pendulum_kernel, zmp_layout_kernel, zmp_solver_kernel
 from walking.pattern.dcm_pattern import DcmGenerator, dcm_reference
 from walking.pattern.lipm import Lipm
 from walking.pattern.pendulum import PendulumState
@@ -40,7 +40,7 @@ class ZmpPlan:
     Attributes:
         knots: ticks since the previous knot, x, y [m] (n, 3).
         ramps: reference of the plan, see `Ramps` (m, 13).
-        dual: λ of the program, see `walking.pattern.zmp_kernel` [1/m].
+        dual: λ of the program, see `walking.pattern.zmp_solver_kernel` [1/m].
         next: index of the next knot.
     """
 
@@ -111,7 +111,7 @@ class RobustGenerator:
     def _follow(self, state: PendulumState, plan: ZmpPlan) -> None:
         """Advance the pendulum by a tick along a plan."""
         tick = self._lipm.tick
-        then, plan.next = zmp_kernel.follow(plan.knots, plan.next, state.row, tick)
+        then, plan.next = pendulum_kernel.follow(plan.knots, plan.next, state.row, tick)
         state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y = then
 
     def _replan(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> None:
@@ -131,14 +131,10 @@ class RobustGenerator:
         if plan is not None:
             growth = self._lipm.ramp(self._age).growth
             dual = plan.dual[0] / growth, plan.dual[1] / growth
-        feasible, dual, _, knots = zmp_kernel.plan(
-            table,
-            state.row,
-            sole,
-            self._lipm.tick,
-            self._rate,
-            dual,
+        *program, knots = zmp_layout_kernel.lay_out(
+            table, state.row, sole, self._lipm.tick, self._rate
         )
+        feasible, dual, _ = zmp_solver_kernel.solve(*program, dual, knots)
         return ZmpPlan(knots, table, dual) if feasible else None
 
 

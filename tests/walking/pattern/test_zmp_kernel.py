@@ -10,10 +10,10 @@ from scipy.integrate import solve_ivp
 
 from walking.foothold import Foothold
 from walking.parameters import CONTROL_PERIOD
-from walking.pattern import zmp_kernel
+from walking.pattern import pendulum_kernel, zmp_layout_kernel, zmp_solver_kernel
 from walking.pattern.lipm import Lipm
 from walking.pattern.ramps import ZmpRamp, table_of
-from walking.pattern.zmp_kernel import CELL, limit, set_points, sides, solve
+from walking.pattern.zmp_layout_kernel import CELL, limit, sides
 
 NOMINAL = (0.005, -0.003)
 BOUNDS = (-0.04, 0.04, -0.02, 0.02)
@@ -30,15 +30,11 @@ class Fit:
         self.weights = np.concatenate([cell.weights for cell in cells])
 
     def solve(self, start):
-        args = (self.table, self.starts, self.weights, *self.dcm)
-        solved, *dual, self.evaluations = solve(*args, start)
-        self.dual = tuple(dual)
-        return solved
-
-    def points(self):
         knots = np.zeros((self.weights.size, 3))
-        set_points(self.table, self.starts, self.weights, self.dual, knots)
-        return knots[:, 1:].tolist()
+        args = (self.table, self.starts, self.weights, self.dcm, start, knots)
+        solved, self.dual, self.evaluations = zmp_solver_kernel.solve(*args)
+        self.points = knots[:, 1:].tolist()
+        return solved
 
 
 def cell_of(centre, angle, weights):
@@ -74,7 +70,7 @@ def draw(seed, reach):
 
 def points_of(cells, fit):
     """Of every knot: weight, direction, point in the frame of its cell (n, 5), and Σ w p."""
-    rows, total, points = [], np.zeros(2), iter(fit.points())
+    rows, total, points = [], np.zeros(2), iter(fit.points)
     for cell in cells:
         c, s = cell.axes[0]
         for weight in cell.weights:
@@ -125,7 +121,7 @@ def test_the_solution_does_not_depend_on_the_start(seed, reach, start):
     one, other = Fit(cells, *dcm), Fit(cells, *dcm)
     assert one.solve(START)
     assert other.solve((start, -start))
-    np.testing.assert_allclose(other.points(), one.points(), atol=1e-8)
+    np.testing.assert_allclose(other.points, one.points, atol=1e-8)
 
 
 def test_the_solution_is_found_at_once_from_its_own_dual():
@@ -142,7 +138,7 @@ def test_the_slopes_of_the_gradient_are_its_differences(seed):
     at, h = rng.uniform(-0.3, 0.3, 2), 1e-6
 
     def gradient(*at):
-        return np.array(zmp_kernel._gradient(fit.table, fit.starts, fit.weights, *at))
+        return np.array(zmp_solver_kernel._gradient(fit.table, fit.starts, fit.weights, *at))
 
     xx, xy, yy = gradient(*at)[2:]
     by_x = (gradient(at[0] + h, at[1]) - gradient(at[0] - h, at[1]))[:2] / (2 * h)
@@ -180,7 +176,7 @@ def test_a_zmp_outside_its_cell_counts_as_on_its_edge():
 def test_a_cell_of_two_feet_has_two_edges_each_in_one_sole(x, y, yaw, other_yaw):
     ramp, cell, sole = np.zeros(13), np.zeros(CELL), (0.01, 0.05, 0.03)
     ramp[5:13] = 0.0, 0.0, yaw, 1.0, x, y, other_yaw, 0.0
-    zmp_kernel._between(ramp, 0.0, sole, cell)
+    zmp_layout_kernel._between(ramp, 0.0, sole, cell)
     for v, foot in ((cell[10], ramp[5:8]), (cell[11], ramp[9:12])):
         c, s = np.cos(foot[2]), np.sin(foot[2])
         for u in cell[8:10]:
@@ -232,12 +228,18 @@ def problem(seed):
     double, steps = bool(rng.integers(2)), int(rng.integers(1, 5))
     ramps = reference(rng, double=double, steps=steps)
     table = table_of(ramps)
-    x, y = zmp_kernel.dcm(table, LIPM.omega * CONTROL_PERIOD)
+    x, y = zmp_layout_kernel.dcm(table, LIPM.omega * CONTROL_PERIOD)
     off = rng.uniform(-0.006, 0.006, 4)
     zmp = (ramps[0].ax + 0.1 * off[0], ramps[0].ay + 0.1 * off[1])
     speed = LIPM.omega * (0.02 + off[2]), LIPM.omega * (-0.01 + off[3])
     pendulum = (x - 0.02 + off[0], y + 0.01 + off[1], *speed, *zmp)
-    return ramps, (table, pendulum, SOLE, LIPM.tick, RATE, START)
+    return ramps, (table, pendulum, SOLE, LIPM.tick, RATE)
+
+
+def plan(arguments):
+    """Whether the program is feasible, and its knots."""
+    *program, knots = zmp_layout_kernel.lay_out(*arguments)
+    return zmp_solver_kernel.solve(*program, START, knots)[0], knots
 
 
 def moved(dcm, before, after, ticks):
@@ -250,7 +252,7 @@ def moved(dcm, before, after, ticks):
 @given(st.integers(0, 10**6))
 def test_along_the_knots_the_pendulum_comes_to_the_reference(seed):
     ramps, arguments = problem(seed)
-    solved, _, _, knots = zmp_kernel.plan(*arguments)
+    solved, knots = plan(arguments)
     if not solved:
         return
     x, y, vx, vy, *zmp = arguments[1]
@@ -261,18 +263,18 @@ def test_along_the_knots_the_pendulum_comes_to_the_reference(seed):
         ticks += knot[0]
     while ramps and ticks > 0:
         ticks -= ramps.pop(0).ticks
-    goal = zmp_kernel.dcm(table_of(ramps), LIPM.omega * CONTROL_PERIOD) if ramps else now
+    goal = zmp_layout_kernel.dcm(table_of(ramps), LIPM.omega * CONTROL_PERIOD) if ramps else now
     np.testing.assert_allclose(dcm, goal, atol=1e-6)  # a walk of a second multiplies by 1000
 
 
 def test_most_of_those_programs_have_a_solution():
-    assert sum(zmp_kernel.plan(*problem(seed)[1])[0] for seed in range(100)) > 50
+    assert sum(plan(problem(seed)[1])[0] for seed in range(100)) > 50
 
 
 @given(st.integers(0, 10**6))
 def test_knots_of_single_support_lie_in_their_sole(seed):
     ramps, arguments = problem(seed)
-    solved, _, _, knots = zmp_kernel.plan(*arguments)
+    solved, knots = plan(arguments)
     ends = np.cumsum([ramp.ticks for ramp in ramps])
     for time, (x, y) in zip(np.cumsum(knots[:, 0]), knots[:, 1:], strict=True):
         index = int(np.searchsorted(ends, time))
@@ -291,7 +293,7 @@ def test_a_plan_is_followed_knot_by_knot_and_the_pendulum_obeys():
     begin, now = 0, (0.02, 0.01, -0.2, 0.1, 0.01, 0.0)
     for zmp in zmps:
         before = now
-        now, begin = zmp_kernel.follow(knots, begin, before, LIPM.tick)
+        now, begin = pendulum_kernel.follow(knots, begin, before, LIPM.tick)
         assert now[4:] == pytest.approx(zmp)
         for axis in range(2):
             p, rate = before[4 + axis], (zmp[axis] - before[4 + axis]) / CONTROL_PERIOD

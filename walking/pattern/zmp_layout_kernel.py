@@ -1,4 +1,4 @@
-"""ZMP planning: knots nearest to a reference under a DCM constraint, compiled.
+"""Program of ZMP planning: knots nearest to a reference under a DCM constraint, compiled.
 
 The ZMP is linear between knots at absolute times. A knot of a single support is in the sole, one of
 a double support in a parallelogram within the hull of the soles, the last one on the next support
@@ -6,19 +6,12 @@ sole. With the weights w_j of the knots in the present DCM the program is
 
     minimize Σ |u_j - û_j|²  subject to  Σ w_j (centre_j + M_j u_j) = DCM,  u_j in its box.
 
-The dual has one unknown per axis, λ, with u_j = clip(û_j + w_j M_jᵀ λ); its gradient is piecewise
-linear and solved by Newton's method with step halving. An infeasible program is detected early: the
-boxes do not reach the DCM in the direction of the residual.
-
-Knots that fraction a parallelogram are a *cell*, a row of
+Knots in the same parallelogram are a *cell*, a row of
 
     centre x, y [m] | sides ax, ay, bx, by, the columns of M [1] | nominal u, v |
     low u, high u, low v, high v [m] | Σ w, Σ w², max w of its knots [1];
 
 `starts` (n + 1,) holds the index of the first knot of every cell, `weights` those of all knots.
-
-`plan` calls `lay_out` (cells, times and weights of knots), `solve` (λ) and `set_points` (knot
-positions); `follow` advances the pendulum along the plan.
 """
 
 from math import cos, exp, hypot, sin
@@ -27,80 +20,16 @@ import numpy as np
 from numba import njit
 
 from walking.arrays import Array, Indices, Point
-
-Pendulum = tuple[float, float, float, float, float, float]
-"""Position x, y [m], velocity x, y [m/s], ZMP of the last tick x, y [m]."""
+from walking.pattern.pendulum_kernel import Pendulum, Tick
 
 Sole = tuple[float, float, float]
 """Centre ahead of the ankle, half of length and width minus the margin of the knots [m]."""
 
-Tick = tuple[float, float, float, float]
-"""Control tick of the pendulum, see `Lipm.tick`."""
-
-SOLVED = 1e-10  # maximum residual of the DCM [m]
-ITERATIONS = 20
-HALVINGS = 6
 SINGLE_SPACING = 9  # ticks between knots in single support
 LATER_SPACING = 27  # ticks between knots in the single support after that
 DOUBLE_SPACING = 18  # ticks between knots in a long double support
 REST = 72  # ticks of standing at the end of a plan
 CELL = 15  # columns of a cell
-
-
-@njit(cache=True)
-def plan(
-    ramps: Array, pendulum: Pendulum, sole: Sole, tick: Tick, rate: float, dual: Point
-) -> tuple[bool, Point, int, Array]:
-    """Set up and solve the program of a plan near a reference.
-
-    Arguments as in `lay_out`; `dual` is the initial guess of λ [1/m].
-
-    Returns:
-        whether the program is feasible, λ [1/m], number of evaluations of the gradient, and the
-        knots, see `lay_out` (m, 3).
-    """
-    cells, starts, weights, dcm_now, knots = lay_out(ramps, pendulum, sole, tick, rate)
-    feasible, lx, ly, evaluations = solve(cells, starts, weights, dcm_now[0], dcm_now[1], dual)
-    set_points(cells, starts, weights, (lx, ly), knots)
-    return feasible, (lx, ly), evaluations, knots
-
-
-@njit(cache=True)
-def follow(knots: Array, begin: int, pendulum: Pendulum, tick: Tick) -> tuple[Pendulum, int]:
-    """Advance the pendulum by a tick along a plan.
-
-    Args:
-        knots: ticks since the previous knot, at `begin` the remaining ticks; x, y [m] (n, 3).
-        begin: index of the next knot; beyond the last the ZMP stays.
-        pendulum: present.
-        tick: of the pendulum.
-
-    Returns:
-        the pendulum and the index of the next knot, a tick later.
-    """
-    x, y, vx, vy, zmp_x, zmp_y = pendulum
-    px, py = zmp_x, zmp_y
-    if begin < knots.shape[0]:
-        knot = knots[begin]
-        if knot[0] == 1.0:
-            px, py = knot[1], knot[2]
-            begin += 1
-        else:
-            px, py = px + (knot[1] - px) / knot[0], py + (knot[2] - py) / knot[0]
-            knot[0] -= 1.0
-    x, vx = _slide(x, vx, zmp_x, px, tick)
-    y, vy = _slide(y, vy, zmp_y, py, tick)
-    return (x, y, vx, vy, px, py), begin
-
-
-@njit(cache=True)
-def _slide(position: float, velocity: float, before: float, after: float, tick: Tick) -> Point:
-    """Return position [m] and velocity [m/s] one tick later under a linearly moving ZMP."""
-    w, c, s, period = tick
-    rate = (after - before) / period
-    # The ZMP is a particular solution of the equation of motion.
-    d, v = position - before, velocity - rate
-    return after + d * c + v / w * s, rate + d * w * s + v * c
 
 
 @njit(cache=True)
@@ -140,7 +69,7 @@ def lay_out(
     for ramp in table:
         capacity += int(ramp[0]) // SINGLE_SPACING + 2
     cells, starts = np.empty((capacity, CELL)), np.empty(capacity + 1, np.int64)
-    knots, weights = np.empty((capacity, 3)), np.empty(capacity)
+    knots, weights = np.zeros((capacity, 3)), np.empty(capacity)
     count = _lay_cells(table, sole, cells, starts, knots)
     if count > 0 and table[0, 8] == table[0, 12]:
         reach = rate * knots[0, 0]
@@ -380,133 +309,3 @@ def _sum_up(cells: Array, starts: Indices, count: int, weights: Array) -> None:
             squares += w * w
             max_weight = max(max_weight, w)
         cells[k, 12], cells[k, 13], cells[k, 14] = total, squares, max_weight
-
-
-@njit(cache=True)
-def solve(
-    cells: Array, starts: Indices, weights: Array, x: float, y: float, start: Point
-) -> tuple[bool, float, float, int]:
-    """Solve for λ.
-
-    Args:
-        cells: of the knots.
-        starts: of the knots in the cells.
-        weights: of the knots.
-        x: x of the DCM constraint [m].
-        y: y of the DCM constraint [m].
-        start: initial guess of λ [1/m].
-
-    Returns:
-        whether the program is feasible, λ [1/m], and number of evaluations of the gradient.
-    """
-    for k in range(starts.size - 1):
-        x -= cells[k, 12] * cells[k, 0]
-        y -= cells[k, 12] * cells[k, 1]
-    outcome, lx, ly, evaluations = _newton(cells, starts, weights, x, y, start[0], start[1])
-    if outcome == 0 and (start[0] != 0.0 or start[1] != 0.0):
-        # With all knots at their bounds the derivative is zero.
-        outcome, lx, ly, more = _newton(cells, starts, weights, x, y, 0.0, 0.0)
-        evaluations += more
-    return outcome == 1, lx, ly, evaluations
-
-
-@njit(cache=True)
-def set_points(cells: Array, starts: Indices, weights: Array, dual: Point, knots: Array) -> None:
-    """Set x, y [m] of the knots of a solution, the last two columns of `knots`."""
-    lx, ly = dual
-    for k in range(starts.size - 1):
-        cell = cells[k]
-        p, q = cell[2] * lx + cell[3] * ly, cell[4] * lx + cell[5] * ly
-        for knot in range(starts[k], starts[k + 1]):
-            u = min(cell[9], max(cell[8], cell[6] + weights[knot] * p))
-            v = min(cell[11], max(cell[10], cell[7] + weights[knot] * q))
-            knots[knot, 1] = cell[0] + cell[2] * u + cell[4] * v
-            knots[knot, 2] = cell[1] + cell[3] * u + cell[5] * v
-
-
-@njit(cache=True)
-def _newton(
-    cells: Array, starts: Indices, weights: Array, x: float, y: float, lx: float, ly: float
-) -> tuple[int, float, float, int]:
-    """Return 1 for solved, -1 for infeasible, 0 for not converged; λ; evaluations."""
-    gx, gy, xx, xy, yy = _gradient(cells, starts, weights, lx, ly)
-    gx, gy = gx - x, gy - y
-    outcome, evaluations = 0, 1
-    for _ in range(ITERATIONS):
-        size = gx * gx + gy * gy
-        if size < SOLVED * SOLVED:
-            outcome = 1
-            break
-        if _beyond(cells, starts, x, y, -gx, -gy):
-            outcome = -1
-            break
-        # Regularized in directions in which all knots are at their bounds.
-        small = 1e-9 * (xx + yy) + 1e-12
-        xx, yy = xx + small, yy + small
-        det = xx * yy - xy * xy
-        sx, sy = (xy * gy - yy * gx) / det, (xy * gx - xx * gy) / det
-        nearer = False
-        for _half in range(HALVINGS):
-            gx, gy, xx, xy, yy = _gradient(cells, starts, weights, lx + sx, ly + sy)
-            gx, gy = gx - x, gy - y
-            evaluations += 1
-            if gx * gx + gy * gy < size:
-                nearer = True
-                break
-            sx, sy = 0.5 * sx, 0.5 * sy
-        if not nearer:
-            break
-        lx, ly = lx + sx, ly + sy
-    return outcome, lx, ly, evaluations
-
-
-@njit(cache=True)
-def _beyond(cells: Array, starts: Indices, x: float, y: float, dx: float, dy: float) -> bool:
-    """Whether the boxes do not reach the DCM in a direction."""
-    reach = 0.0
-    for k in range(starts.size - 1):
-        cell = cells[k]
-        p, q = cell[2] * dx + cell[3] * dy, cell[4] * dx + cell[5] * dy
-        reach += cell[12] * (p * (cell[9] if p > 0.0 else cell[8]))
-        reach += cell[12] * (q * (cell[11] if q > 0.0 else cell[10]))
-    return reach < dx * x + dy * y
-
-
-@njit(cache=True)
-def _gradient(
-    cells: Array, starts: Indices, weights: Array, lx: float, ly: float
-) -> tuple[float, float, float, float, float]:
-    """Return Σ w M u, x, y [m], and its derivative xx, xy, yy by λ."""
-    gx = gy = xx = xy = yy = 0.0
-    for k in range(starts.size - 1):
-        cell = cells[k]
-        own = weights[starts[k] : starts[k + 1]]
-        ax, ay, bx, by = cell[2], cell[3], cell[4], cell[5]
-        u, uu = _along(cell, own, cell[6], ax * lx + ay * ly, cell[8], cell[9])
-        v, vv = _along(cell, own, cell[7], bx * lx + by * ly, cell[10], cell[11])
-        gx += ax * u + bx * v
-        gy += ay * u + by * v
-        xx += ax * ax * uu + bx * bx * vv
-        xy += ax * ay * uu + bx * by * vv
-        yy += ay * ay * uu + by * by * vv
-    return gx, gy, xx, xy, yy
-
-
-@njit(cache=True)
-def _along(
-    cell: Array, weights: Array, nominal: float, slope: float, low: float, high: float
-) -> Point:
-    """Return Σ w clip(nominal + w slope) over the knots of a cell, and its derivative."""
-    if low <= nominal <= high and low <= nominal + cell[14] * slope <= high:
-        return cell[12] * nominal + cell[13] * slope, cell[13]
-    moved = change = 0.0
-    for w in weights:
-        u = nominal + w * slope
-        if u < low:
-            moved += w * low
-        elif u > high:
-            moved += w * high
-        else:
-            moved += w * u
-            change += w * w
-    return moved, change
