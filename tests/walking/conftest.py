@@ -105,17 +105,3 @@ def mirrored_joints():
         [-1.0 if name.endswith(("yaw", "roll", "pan", "gripper")) else 1.0 for name in JOINT_NAMES]
     )
     return lambda angles: sign * angles[..., swapped]
-
-
-@pytest.fixture(scope="session")
-def plainly():
-    """Calls a function of a module of kernels with nothing compiled."""
-
-    def call(module, name, *arguments):
-        with pytest.MonkeyPatch.context() as patch:
-            for own, kernel in list(vars(module).items()):
-                if hasattr(kernel, "py_func"):
-                    patch.setattr(module, own, kernel.py_func)
-            return getattr(module, name)(*arguments)
-
-    return call

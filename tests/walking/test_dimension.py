@@ -8,18 +8,11 @@ from hypothesis import strategies as st
 
 from walking.dimension import (
     ACCELERATION,
-    CHANGE_WEIGHT,
     DECAY_PER_TICK,
-    DIFFUSION,
     GAIN_PER_TICK,
-    HEIGHT,
     LENGTH,
     NUMBER,
-    PER_LENGTH,
     RATE,
-    RATE_CHANGE,
-    SOLE,
-    SOLE_SPEED,
     SPEED,
     STANCE,
     TIME,
@@ -41,15 +34,6 @@ def test_they_multiply():
     assert STANCE != LENGTH
 
 
-def test_units_are_those_of_the_laws():
-    assert RATE_CHANGE * TIME == RATE
-    assert SOLE_SPEED * TIME == SOLE
-    assert DIFFUSION**2.0 * TIME == LENGTH**2.0
-    assert PER_LENGTH * LENGTH == NUMBER
-    assert HEIGHT / TIME == TIME
-    assert CHANGE_WEIGHT / TIME == TIME
-
-
 @given(DIMENSION, DIMENSION, ROBOT, ROBOT)
 def test_a_product_is_carried_as_its_factors(one, other, old, new):
     whole = (one * other).scale(6.0, old, new)
@@ -69,11 +53,6 @@ def test_the_way_leads_back_and_over_a_third_robot(rule, old, new):
 def test_the_same_robot_keeps_every_bit(robot):
     for rule in (NUMBER, LENGTH, DECAY_PER_TICK, GAIN_PER_TICK):
         assert rule.scale(0.37, robot, robot) == 0.37
-
-
-@given(ROBOT, ROBOT)
-def test_a_number_is_the_same_for_every_robot(old, new):
-    assert NUMBER.scale(0.37, old, new) == 0.37
 
 
 @pytest.mark.parametrize("slower", [0.5, 3.0])

@@ -15,8 +15,6 @@ from walking.phase import Phase
 
 AHEAD = HeadTarget()
 GENERATORS = ["dcm", "preview", "paper", "robust"]
-MIRROR_LEG = np.array([-1, -1, 1, 1, 1, -1])
-MIRROR_ARM = np.array([1, -1, -1, 1, -1, -1])
 
 
 def run(robot, body, script, seconds, parameters=None, watch=None):
@@ -100,35 +98,6 @@ def test_it_stops_with_parallel_feet(robot, ideal_body, generator):
     assert support.yaw == pytest.approx(other.yaw, abs=STANCE_YAW_TOLERANCE)
 
 
-@pytest.mark.parametrize("generator", GENERATORS)
-def test_the_planned_zmp_never_leaves_the_support_polygon(robot, ideal_body, generator):
-    parameters = WalkingParameters()
-    pattern = replace(parameters.pattern, generator=generator)
-    sole, margin = robot.sole, pattern.sole_margin
-    corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1]], float)
-    corners = corners * [sole.half_length - margin, sole.half_width - margin]
-    corners[:, 0] += sole.centre
-    before = {}
-
-    def watch(engine, k):
-        # The ZMP of a tick belongs to the feet at its start.
-        if "feet" in before and k % 3 == 0:
-            points = []
-            for foot in before["feet"]:
-                c, s = np.cos(foot.yaw), np.sin(foot.yaw)
-                points.append(corners @ np.array([[c, s], [-s, c]]) + [foot.x, foot.y])
-            hull = ConvexHull(np.concatenate(points))
-            zmp = np.array([engine._pendulum.zmp_x, engine._pendulum.zmp_y])
-            assert (hull.equations[:, :2] @ zmp + hull.equations[:, 2]).max() < 1e-9
-        gait = engine._gait
-        if gait.stepping:
-            before["feet"] = gait.support_feet if gait.double else (gait.support_feet[1],)
-        else:
-            before.clear()
-
-    run(robot, ideal_body, twists, 12.0, replace(parameters, pattern=pattern), watch)
-
-
 def test_targets_stay_smooth_and_inside_the_limits_whatever_is_asked(robot, ideal_body):
     _, rows = run(robot, ideal_body, twists, 12.0)
     position = rows[:, :26]
@@ -142,40 +111,6 @@ def test_two_engines_compute_the_same(robot, ideal_body):
     _, one = run(robot, ideal_body, twists, 3.0)
     _, other = run(robot, body, twists, 3.0, watch=lambda engine, _k: engine.state())
     assert (one == other).all()
-
-
-def test_no_command_is_obeyed_before_the_body_has_settled(robot, ideal_body):
-    parameters = WalkingParameters()
-    engine, _ = run(robot, ideal_body, always(0.2, 0.0, 0.0), parameters.gait.settle_time)
-    assert engine.state().phase is Phase.STANDING
-
-
-def test_head_camera_of_a_level_body(robot, ideal_body):
-    engine, _ = run(robot, ideal_body, always(), 0.1)
-    camera = engine.state().camera
-    _, p_BC = robot.camera_pose(robot.ready)
-    height = WalkingParameters().pattern.pelvis_height
-    assert camera.position == pytest.approx(p_BC + np.array([0.0, 0.0, height]), abs=2e-3)
-    np.testing.assert_allclose(camera.rotation[:, 2], [1.0, 0.0, 0.0], atol=1e-6)
-    np.testing.assert_allclose(camera.rotation[:, 0], [0.0, -1.0, 0.0], atol=1e-6)
-
-
-def test_head_camera_takes_the_measured_tilt(robot, ideal_body):
-    engine = WalkingEngine(robot, WalkingParameters())
-    half = 0.05
-    orientation = np.array([np.cos(half), 0.0, np.sin(half), 0.0])
-    engine.step(replace(ideal_body.sense(), orientation=orientation), VelocityCommand(), AHEAD)
-    camera = engine.state().camera
-    np.testing.assert_allclose(camera.rotation[:, 2], [np.cos(0.1), 0.0, -np.sin(0.1)], atol=1e-9)
-
-
-def test_head_camera_tells_how_fast_the_encoders_say_the_head_turns(robot, ideal_body):
-    engine = WalkingEngine(robot, WalkingParameters())
-    velocity = np.zeros(26)
-    velocity[HEAD] = 3.0, -0.5
-    engine.step(replace(ideal_body.sense(), joint_velocity=velocity), VelocityCommand(), AHEAD)
-    camera = engine.state().camera
-    assert (camera.pan_rate, camera.tilt_rate) == pytest.approx((3.0, -0.5))
 
 
 def test_planned_footsteps_are_given_in_the_odometry_frame(robot, ideal_body):
@@ -215,14 +150,6 @@ def test_a_push_while_standing_is_answered_by_a_step(robot, ideal_body):
     assert state.footsteps[1].x > state.footsteps[0].x + 0.02
 
 
-def test_head_turns_to_its_target(robot, ideal_body):
-    engine = WalkingEngine(robot, WalkingParameters())
-    for _ in range(150):
-        targets = engine.step(ideal_body.sense(), VelocityCommand(), HeadTarget(0.8, -0.5))
-        ideal_body.apply(targets)
-    assert targets.position[HEAD] == pytest.approx([0.8, -0.5])
-
-
 def test_setpoints_stay_within_the_range_of_the_joints(robot, ideal_body):
     """The head moves from stop to stop, where the feed-forward offset leads beyond the stop."""
     engine = WalkingEngine(robot, WalkingParameters())
@@ -244,23 +171,23 @@ def test_there_is_no_state_before_the_first_tick(robot):
         WalkingEngine(robot, WalkingParameters()).state()
 
 
-@pytest.mark.parametrize("generator", ["robust", "dcm"])
-def test_the_planned_zmp_is_told_to_be_in_the_soles_and_is(robot, ideal_body, generator):
-    """The depth that is told is that of the told ZMP in the told polygon, never negative."""
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_the_planned_zmp_keeps_its_margin_in_the_support_polygon(robot, ideal_body, generator):
+    """The published depth is that of the published ZMP in the published polygon."""
     parameters = WalkingParameters()
     pattern = replace(parameters.pattern, generator=generator)
     depths = []
 
     def watch(engine, k):
         depths.append(engine.zmp_depth)
-        if k % 7 == 0 and len(engine.state().balance.support) > 3:
+        if k % 7 == 0:
             state = engine.state()
             hull = ConvexHull(state.balance.support)
             out = (hull.equations[:, :2] @ state.zmp + hull.equations[:, 2]).max()
             assert depths[-1] == state.balance.zmp_depth == pytest.approx(-out, abs=1e-9)
 
-    run(robot, ideal_body, twists, 4.0, replace(parameters, pattern=pattern), watch)
-    assert min(depths) > -1e-9
+    run(robot, ideal_body, twists, 8.0, replace(parameters, pattern=pattern), watch)
+    assert min(depths) > pattern.sole_margin - 1e-9
 
 
 def test_without_disturbance_the_measured_motion_is_the_planned(robot, ideal_body):

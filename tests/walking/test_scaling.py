@@ -19,9 +19,6 @@ def scaled(y: RobotMeasures, size: float) -> RobotMeasures:
     )
 
 
-SLENDER = RobotMeasures(leg=0.4, hip=0.05, sole=0.035, time=0.19, weight=90.0, ankle=0.2)
-
-
 def numbers(parameters: WalkingParameters) -> dict[str, float]:
     return {
         f"{group.name}.{f.name}": getattr(getattr(parameters, group.name), f.name)
@@ -58,19 +55,6 @@ def test_a_choice_is_kept_and_the_rest_is_the_robots_own(robot):
     assert made.gait.swing_height == pytest.approx(4.0 * given.gait.swing_height)
     assert made.limits.vx == pytest.approx(2.0 * given.limits.vx)
     assert made.pattern.generator == given.pattern.generator
-
-
-@pytest.mark.parametrize("other", [scaled(HSR_VIII, 0.5), scaled(HSR_VIII, 3.0), SLENDER])
-def test_going_over_composes_and_can_be_undone(other):
-    start, third = WalkingParameters(), scaled(SLENDER, 0.7)
-    made = scale_parameters(start, HSR_VIII, other)
-    direct = scale_parameters(start, HSR_VIII, third)
-    assert numbers(scale_parameters(made, other, third)) == pytest.approx(
-        numbers(direct), rel=1e-12
-    )
-    assert numbers(scale_parameters(made, other, HSR_VIII)) == pytest.approx(
-        numbers(start), rel=1e-12
-    )
 
 
 @pytest.mark.parametrize("size", [0.3, 0.8, 1.3, 4.0])

@@ -1,7 +1,5 @@
 import pickle
 
-import pytest
-
 from walking.foothold import Foothold
 from walking.value import comparable_value, value
 
@@ -22,11 +20,6 @@ def test_a_value_compares_by_identity_a_comparable_one_by_content():
     assert one == one != Pair(1.0)
     assert Numbers(1.0) == Numbers(1.0) != Numbers(2.0)
     assert repr(one) == "Pair(first=1.0, second=())"
-
-
-def test_a_value_has_no_other_attributes():
-    with pytest.raises(AttributeError):
-        Pair(1.0).third = 3.0
 
 
 def test_a_value_survives_a_copy_to_another_process():

@@ -131,10 +131,10 @@ class RobustGenerator:
         if plan is not None:
             growth = self._lipm.ramp(self._age).growth
             dual = plan.dual[0] / growth, plan.dual[1] / growth
-        *program, knots = zmp_layout_kernel.lay_out(
+        cells, starts, weights, dcm, knots = zmp_layout_kernel.lay_out(
             table, state.row, sole, self._lipm.tick, self._rate
         )
-        feasible, dual, _ = zmp_solver_kernel.solve(*program, dual, knots)
+        feasible, dual, _ = zmp_solver_kernel.solve(cells, starts, weights, dcm, dual, knots)
         return ZmpPlan(knots, table, dual) if feasible else None
 
 

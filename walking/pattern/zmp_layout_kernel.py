@@ -182,7 +182,7 @@ def _lay_cells(ramps: Array, sole: Sole, cells: Array, starts: Indices, knots: A
             every = LATER_SPACING
         else:
             for index in range(here):
-                _between(ramp, 1.0 - (left - index * spacing) / ticks, sole, cells[count])
+                between(ramp, 1.0 - (left - index * spacing) / ticks, sole, cells[count])
                 starts[count + 1] = starts[count] + 1
                 count += 1
             if lands:
@@ -220,7 +220,7 @@ def _on_sole(ramp: Array, sole: Sole, cell: Array) -> None:
 
 
 @njit(cache=True)
-def _between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
+def between(ramp: Array, elapsed: float, sole: Sole, cell: Array) -> None:
     """Set a cell to a parallelogram between the outer edges of two soles."""
     centre, length, width = sole
     first, second = ramp[5:9], ramp[9:13]

@@ -78,26 +78,3 @@ def test_a_footstep_is_shortened_only_when_its_landing_is_out_of_reach(stabilize
     assert ticks[0] == ticks[60] == 40
     assert ticks[-1] < 20
     assert all(later <= sooner for sooner, later in pairwise(ticks))
-
-
-def test_mirrored_errors_are_caught_by_mirrored_footsteps(stabilizer, planner):
-    right = Foothold(False, LEFT.x, -LEFT.y, 0.0)
-    for off in ((0.06, 0.02), (0.02, -0.04), (-0.07, 0.05)):
-        one = stabilizer.capture(
-            planner,
-            LEFT,
-            planner.landing(LEFT, planner.strides((0.1, 0.0, 0.0), 0.34)),
-            off,
-            (0.01, -0.02),
-            ticks_left=40,
-        )
-        other = stabilizer.capture(
-            planner,
-            right,
-            planner.landing(right, planner.strides((0.1, 0.0, 0.0), 0.34)),
-            (off[0], -off[1]),
-            (0.01, 0.02),
-            ticks_left=40,
-        )
-        assert other.ticks == one.ticks
-        assert (other.landing.x, other.landing.y) == pytest.approx((one.landing.x, -one.landing.y))

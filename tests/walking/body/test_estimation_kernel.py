@@ -16,10 +16,6 @@ PARAMETERS = EstimatorParameters()
 LIPM = Lipm(0.19)
 GAINS = steady_gains(LIPM.omega, PARAMETERS)
 FILTER = np.array([*GAINS, LIPM.omega])
-LEGS = np.array([[0.0, 0.037, -0.02, 0.1, 0.1, 0.03], [0.0, -0.037, -0.02, 0.1, 0.1, 0.03]])
-BODY = np.array([0.01, 4.0, 0.01, 0.05, 0.03])
-GROWTH = np.array([1e-7, 1e-7, 1e-9, 0.5])
-SEEDS = st.integers(0, 10**6)
 
 
 class Tilt:
@@ -66,21 +62,6 @@ def test_both_signs_of_a_quaternion_mean_the_same():
 def test_straight_up_pitch_is_a_right_angle():
     upright = estimation_kernel.roll_pitch_yaw(quaternion(0.0, 0.5 * pi, 0.0))
     assert upright[1] == pytest.approx(0.5 * pi)
-
-
-@given(SEEDS)
-def test_a_level_point_keeps_its_distance(seed):
-    point = tuple(np.random.default_rng(seed).normal(0.0, 0.1, 3).tolist())
-    levelled = estimation_kernel.level(point, (0.2, -0.3))
-    assert np.linalg.norm(levelled) == pytest.approx(np.linalg.norm(point))
-
-
-def test_the_load_is_under_the_loaded_corner():
-    sole = (0.01, 0.05, 0.03)
-    assert estimation_kernel.load_of(np.array([0.0, 9.0, 0.0, 0.0]), sole) == pytest.approx(
-        (9.0, 0.06, -0.03)
-    )
-    assert estimation_kernel.load_of(np.full(4, 2.0), sole) == pytest.approx((8.0, 0.01, 0.0))
 
 
 def test_tilt_settles_on_the_imu_and_starts_there():
@@ -163,17 +144,3 @@ def test_what_is_measured_as_predicted_moves_as_the_pendulum():
     follow(error, (error[0] + 1.0, 0.0), (error[0], 0.0), (error[2], 0.0))
     assert error[0] == pytest.approx(x + GAINS[0], abs=1e-4)
     assert error[2] == pytest.approx(v + GAINS[1], abs=1e-3)
-
-
-@given(SEEDS)
-def test_a_body_as_planned_is_off_by_nothing(seed):
-    """Seen by a foot that stands where it is planned, in any frame."""
-    rng = np.random.default_rng(seed)
-    x, y, yaw, turned = rng.uniform(-0.5, 0.5, 4).tolist()
-    arm = rng.uniform(-0.1, 0.1, 2).tolist()
-    c, s = cos(turned), sin(turned)
-    planned = (x + c * arm[0] - s * arm[1], y + s * arm[0] + c * arm[1])
-    reference = (x, y, yaw + turned, 0.0)
-    com = (0.3 + arm[0], -0.2 + arm[1])
-    result = estimation_kernel.com_error(com, (0.3, -0.2, yaw), reference, planned)
-    assert result == pytest.approx((0.0, 0.0, planned[0] - x, planned[1] - y), abs=1e-12)

@@ -8,18 +8,8 @@ from walking.body import leg_kernel
 from walking.parameters import CONTROL_PERIOD
 
 LEGS = np.array([[0.0, 0.037, -0.02, 0.1, 0.1, 0.03], [0.0, -0.037, -0.02, 0.1, 0.1, 0.03]])
-LAW = np.array([0.7, 0.019, 0.3, 0.85, 0.22])
 ANKLES = np.array([54.0, 20.0, 25.0, 0.1])
 SEEDS = st.integers(0, 10**6)
-
-
-def draw(seed):
-    rng = np.random.default_rng(seed)
-    feet = np.array(
-        [(*rng.uniform(-0.05, 0.05, 2), rng.uniform(-0.3, 0.3), abs(rng.normal())) for _ in LEGS]
-    )
-    feet[:, 3] *= 0.01
-    return rng, feet
 
 
 def test_rates_are_quotients_of_differences():
@@ -47,7 +37,7 @@ def test_rates_are_quotients_of_differences():
 @settings(max_examples=30)
 @given(SEEDS, st.sampled_from([0.0, 0.3, 1.0]))
 def test_offsets_are_torques_and_rates_over_stiffness(seed, load):
-    rng, _ = draw(seed)
+    rng = np.random.default_rng(seed)
     where = rng.permutation(26) + 6
     forces = np.array([1.0, 2.0, 54.0, 0.3, -0.2, 0.1, *rng.normal(0.0, 1.0, 26)])
     position, velocity = rng.uniform(-0.5, 0.5, 26), rng.normal(0.0, 1.0, 26)

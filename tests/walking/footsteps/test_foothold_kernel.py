@@ -17,7 +17,6 @@ from walking.parameters import WalkingParameters
 PARAMETERS = WalkingParameters()
 SOLE = Sole(centre=0.01, half_length=0.05, half_width=0.03)
 PLANNER = FootstepPlanner(PARAMETERS.gait, PARAMETERS.limits, SOLE)
-ZMP_OFFSET = (0.01, 0.003)
 
 
 def draw(seed):

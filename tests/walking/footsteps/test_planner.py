@@ -10,7 +10,6 @@ from walking.body.sole import Sole
 from walking.command import CommandState
 from walking.command_limits import Limit
 from walking.foothold import Foothold
-from walking.footsteps.foothold_kernel import sequence
 from walking.footsteps.planner import FootstepPlanner
 from walking.parameters import GaitParameters, LimitParameters
 
@@ -18,21 +17,12 @@ GAIT, LIMITS = GaitParameters(), LimitParameters()
 SOLE = Sole(centre=0.01, half_length=0.0525, half_width=0.03)
 PLANNER = FootstepPlanner(GAIT, LIMITS, SOLE)
 LEFT = Foothold(True, 0.0, GAIT.half_stance, 0.0)
-RIGHT = Foothold(False, 0.0, -GAIT.half_stance, 0.0)
 velocities = st.tuples(
     st.floats(-LIMITS.vx_backward, LIMITS.vx),
     st.floats(-LIMITS.vy, LIMITS.vy),
     st.floats(-LIMITS.wz, LIMITS.wz),
 )
 yaws = st.floats(-pi, pi)
-
-
-def mirror(step):
-    return Foothold(not step.left, step.x, -step.y, -step.yaw)
-
-
-def fields(step):
-    return step.left, pytest.approx((step.x, step.y, step.yaw), abs=1e-12)
 
 
 def seen_from(support, step):
@@ -43,25 +33,6 @@ def seen_from(support, step):
 
 def landed(support, velocity):
     return PLANNER.landing(support, PLANNER.strides(velocity, GAIT.footstep_time))
-
-
-def walk(velocity, count):
-    feet = [RIGHT, LEFT]
-    for _ in range(count):
-        feet.append(landed(feet[-1], velocity))
-    return feet
-
-
-def middle(feet):
-    return 0.5 * (feet[-1].x + feet[-2].x), 0.5 * (feet[-1].y + feet[-2].y)
-
-
-@given(velocities)
-def test_mirrored_velocity_gives_mirrored_footholds(velocity):
-    vx, vy, wz = velocity
-    here = landed(LEFT, velocity)
-    there = landed(RIGHT, (vx, -vy, -wz))
-    assert fields(mirror(here)) == (there.left, (there.x, there.y, there.yaw))
 
 
 @given(velocities, yaws)
@@ -80,43 +51,6 @@ def test_every_corner_of_a_landing_clears_the_support_foot(velocity, dx, dy):
         for v in (-SOLE.half_width, SOLE.half_width):
             corner = y + sin(yaw) * u + cos(yaw) * v
             assert corner <= -(SOLE.half_width + GAIT.foot_clearance) + 1e-9
-
-
-@pytest.mark.parametrize("forward", [0.25, 0.1, -0.15])
-def test_straight_walk_has_the_commanded_speed(forward):
-    feet = walk((forward, 0.0, 0.0), 21)
-    distance = feet[-1].x - feet[1].x
-    assert distance == pytest.approx(21 * forward * GAIT.footstep_time)
-
-
-@pytest.mark.parametrize("left", [0.08, -0.08])
-def test_side_walk_has_the_commanded_speed(left):
-    feet = walk((0.0, left, 0.0), 21)
-    assert feet[-1].left is feet[2].left
-    assert feet[-1].y - feet[2].y == pytest.approx(20 * left * GAIT.footstep_time)
-
-
-@pytest.mark.parametrize("turn", [0.6, -0.6])
-def test_turning_on_the_spot_turns_as_commanded_and_stays(turn):
-    feet = walk((0.0, 0.0, turn), 20)
-    assert feet[-1].yaw == pytest.approx(20 * turn * GAIT.footstep_time)
-    assert middle(feet) == pytest.approx((0.0, 0.0), abs=0.04)
-
-
-def test_stopping_closes_the_stance():
-    landing = landed(LEFT, (0.2, -0.05, -0.3))
-    steps, ends = sequence(LEFT.row, landing.row, PLANNER.chain(PLANNER.still), False)
-    assert ends
-    assert len(steps) == 2
-    assert PLANNER.parallel(*map(Foothold.from_row, steps.tolist()))
-
-
-def test_walking_on_plans_all_steps_with_alternating_feet():
-    velocity = (0.2, 0.0, 0.1)
-    strides = PLANNER.strides(velocity, GAIT.footstep_time)
-    steps, ends = sequence(LEFT.row, landed(LEFT, velocity).row, PLANNER.chain(strides), True)
-    assert not ends
-    assert steps[:, 3].tolist() == [0.0, 1.0, 0.0, 1.0]
 
 
 def test_the_foot_on_the_side_of_the_motion_opens():

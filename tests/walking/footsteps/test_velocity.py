@@ -1,7 +1,5 @@
 """Limits and slew of the velocity."""
 
-from itertools import pairwise
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -31,26 +29,6 @@ def test_limits_are_idempotent_and_mirror(vx, vy, wz):
     assert limited(VelocityCommand(*once), LIMITS) == pytest.approx(once)
     mirrored = limited(VelocityCommand(vx, -vy, -wz), LIMITS)
     assert mirrored == pytest.approx((once[0], -once[1], -once[2]))
-
-
-def test_slew_reaches_the_command_with_bounded_acceleration():
-    slew = VelocitySlew(LIMITS)
-    speeds = [slew.velocity[0]]
-    for _ in range(200):
-        slew.follow(VelocityCommand(0.2, 0.0, 0.0))
-        speeds.append(slew.velocity[0])
-    assert speeds[-1] == pytest.approx(0.2)
-    largest = LIMITS.forward_acceleration * CONTROL_PERIOD
-    assert all(b - a <= largest + 1e-12 for a, b in pairwise(speeds))
-
-
-def test_slew_comes_to_an_exact_stop():
-    slew = VelocitySlew(LIMITS)
-    for _ in range(100):
-        slew.follow(VelocityCommand(0.13, -0.07, 0.9))
-    for _ in range(300):
-        slew.follow(VelocityCommand())
-    assert not slew.moving
 
 
 @pytest.mark.parametrize("wanted", [0.0, 0.1, -0.3])

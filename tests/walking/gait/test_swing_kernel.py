@@ -34,16 +34,3 @@ def test_every_foot_swings_from_where_it_stands_to_where_it_stands_next():
         assert complex(*row[8:]) == pytest.approx(under, abs=1e-15)
     held = swing_kernel.swings(feet, steps, (-3, 0.02, False), later, zmp_offset)
     np.testing.assert_array_equal(held, table[1:])
-
-
-def test_a_profile_is_that_of_minimum_jerk_and_a_smooth_bump():
-    ticks, period = 44, 0.005
-    table = swing_kernel.profile(ticks, (1.04, 0.02, 0.02), period)
-    u = np.linspace(0.0, 1.0, ticks + 1)
-    moved = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])
-    height = np.polynomial.Polynomial([0, 4, -4]) ** 3
-    square = (ticks * period) ** 2
-    np.testing.assert_allclose(table[:, 3], moved.deriv(2)(u) / square, atol=1e-8)
-    np.testing.assert_allclose(table[:, 4], height.deriv(2)(u) / square, atol=1e-8)
-    np.testing.assert_allclose(table[:, 5], table[:, 4] * moved(u), atol=1e-8)
-    assert (table[-1, :3] == 0.0).all()

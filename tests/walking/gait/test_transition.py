@@ -20,6 +20,9 @@ SLOW, FAST = (
 )
 
 
+STILL = Strides(right=(0.0, -STANCE, 0.0), left=(0.0, STANCE, 0.0))
+
+
 class UpTo:
     """Admits landings no further ahead than `reach`."""
 
@@ -121,11 +124,11 @@ def test_a_walk_ends_by_the_shortest_footstep_from_which_it_can(setting):
     transition = Transition(gait, generator)
     setting = gait, generator, transition, region
     tick(setting, FAST)
-    fast, still = transition.landing.x, gait._planner.still
+    fast = transition.landing.x
     generator.least = 0.3 * fast
-    ramps = tick(setting, still, moving=False)
+    ramps = tick(setting, STILL, moving=False)
     assert not transition.moving
-    assert transition.strides == still
+    assert transition.strides == STILL
     assert 0.3 * fast <= transition.landing.x <= (0.3 + 0.5**BISECTIONS) * fast
     assert any(ramps is one for one in generator.arguments)
 
@@ -137,7 +140,7 @@ def test_a_walk_that_cannot_end_yet_goes_on(setting):
     setting = gait, generator, transition, region
     tick(setting, FAST)
     generator.least = 2.0 * transition.landing.x
-    tick(setting, gait._planner.still, moving=False)
+    tick(setting, STILL, moving=False)
     assert transition.moving
 
 

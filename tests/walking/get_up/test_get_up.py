@@ -95,12 +95,3 @@ def test_it_stands_in_the_ready_posture_once_all_has_gone_well(robot, get_up):
     assert get_up.outcome is Outcome.UP
     assert get_up.attempts == 1
     assert rows[-1] == pytest.approx(robot.ready)
-
-
-def test_set_points_keep_the_limits_of_angle_and_speed(robot):
-    for side in (FRONT, BACK, LEFT):
-        rows = follow(GetUp(robot, PARAMETERS, robot.ready), side)
-        assert (rows > robot.lower - 1e-12).all()
-        assert (rows < robot.upper + 1e-12).all()
-        speed = np.abs(np.diff(rows, axis=0)).max() / CONTROL_PERIOD
-        assert speed <= PARAMETERS.max_joint_speed * (1.0 + 1e-9)

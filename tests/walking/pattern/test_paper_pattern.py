@@ -142,16 +142,3 @@ def test_what_could_not_be_reached_is_told():
     generator.advance(state, ramps, region)
     own = state.x + state.vx / W
     assert generator.planned_dcm(state, ramps)[0] < own - 0.005
-
-
-def test_it_mirrors():
-    states = []
-    for sign in (1.0, -1.0):
-        steps = [Foothold(f.left == (sign > 0), f.x, sign * f.y, 0.0) for f in feet(9)]
-        state = PendulumState(0.005, sign * 0.03, 0.2, sign * 0.05)
-        region = support_region(SOLE, steps[0], steps[0], 0.005)
-        generator = PaperGenerator(LIPM, PatternParameters())
-        ramps = reference(steps, 30)
-        generator.advance(state, ramps, region)
-        states.append((state.x, sign * state.y, state.zmp_x, sign * state.zmp_y))
-    assert states[0] == pytest.approx(states[1], abs=1e-12)

@@ -86,6 +86,7 @@ def test_what_can_be_brought_about_is(seed, reach):
     cells, dcm = draw(seed, reach)
     fit = Fit(cells, *dcm)
     assert fit.solve(START)
+    assert fit.evaluations < 15
     rows, total = points_of(cells, fit)
     np.testing.assert_allclose(total, dcm, atol=2e-10)
     for *_, u, v in rows:
@@ -132,20 +133,6 @@ def test_the_solution_is_found_at_once_from_its_own_dual():
     assert again.evaluations == 1
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_the_slopes_of_the_gradient_are_its_differences(seed):
-    fit, rng = Fit(draw(seed, 0.0)[0], 0.0, 0.0), np.random.default_rng(seed)
-    at, h = rng.uniform(-0.3, 0.3, 2), 1e-6
-
-    def gradient(*at):
-        return np.array(zmp_solver_kernel._gradient(fit.table, fit.starts, fit.weights, *at))
-
-    xx, xy, yy = gradient(*at)[2:]
-    by_x = (gradient(at[0] + h, at[1]) - gradient(at[0] - h, at[1]))[:2] / (2 * h)
-    by_y = (gradient(at[0], at[1] + h) - gradient(at[0], at[1] - h))[:2] / (2 * h)
-    np.testing.assert_allclose([*by_x, *by_y], [xx, xy, xy, yy], atol=1e-8)
-
-
 @given(st.integers(0, 10**6), st.floats(-3.1, 3.1), st.floats(1.001, 5.0))
 def test_what_is_out_of_reach_is_turned_down(seed, direction, beyond):
     cells, _ = draw(seed, 0.0)
@@ -176,7 +163,7 @@ def test_a_zmp_outside_its_cell_counts_as_on_its_edge():
 def test_a_cell_of_two_feet_has_two_edges_each_in_one_sole(x, y, yaw, other_yaw):
     ramp, cell, sole = np.zeros(13), np.zeros(CELL), (0.01, 0.05, 0.03)
     ramp[5:13] = 0.0, 0.0, yaw, 1.0, x, y, other_yaw, 0.0
-    zmp_layout_kernel._between(ramp, 0.0, sole, cell)
+    zmp_layout_kernel.between(ramp, 0.0, sole, cell)
     for v, foot in ((cell[10], ramp[5:8]), (cell[11], ramp[9:12])):
         c, s = np.cos(foot[2]), np.sin(foot[2])
         for u in cell[8:10]:

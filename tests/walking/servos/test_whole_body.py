@@ -71,20 +71,6 @@ def test_the_trunk_turns_as_fast_as_the_feet_between_two_ticks(body):
     assert whole.turn_rate == 0.0
 
 
-def test_a_pendulum_off_its_zmp_is_accelerated_by_the_ankles(body):
-    """The ZMP behind the mass centre: the floor's moment tips forward, the toes are lifted."""
-    still, _ = body()
-    ahead, _ = body()
-    at_rest, falling = follow(still), follow(ahead, zmp=(-0.01, 0.0))
-    np.testing.assert_array_equal(at_rest.position, falling.position)
-    left, right = (
-        falling.setpoint[4] - at_rest.setpoint[4],
-        falling.setpoint[10] - at_rest.setpoint[10],
-    )
-    assert left == pytest.approx(right, rel=1e-6)
-    assert left < -1e-3
-
-
 def test_the_servos_are_told_of_the_pendulum_s_acceleration(robot, body):
     whole, gait = body()
     targets = follow(whole, zmp=(-0.01, 0.005))
@@ -99,30 +85,3 @@ def test_the_servos_are_told_of_the_pendulum_s_acceleration(robot, body):
         task=((0.0, 0.0), NONE, STILL),
     )
     assert targets.setpoint - targets.position == pytest.approx(expected, abs=1e-12)
-
-
-def test_what_is_mirrored_goes_in_and_comes_out(body, mirrored_joints):
-    one, _ = body(0.012, 0.006)
-    other, _ = body(0.012, -0.006)
-    a = follow(
-        one,
-        (0.02, 0.01),
-        (0.004, -0.003),
-        0.3,
-        tilt=(0.02, 0.03),
-        gyro=np.array([0.1, 0.2, -0.3]),
-        head=(0.4, -0.2),
-        offset=(0.002, 0.001),
-    )
-    b = follow(
-        other,
-        (0.02, -0.01),
-        (0.004, 0.003),
-        0.7,
-        tilt=(-0.02, 0.03),
-        gyro=np.array([-0.1, 0.2, 0.3]),
-        head=(-0.4, -0.2),
-        offset=(0.002, -0.001),
-    )
-    assert mirrored_joints(a.position) == pytest.approx(b.position, abs=1e-9)
-    assert mirrored_joints(a.setpoint) == pytest.approx(b.setpoint, abs=1e-6)
