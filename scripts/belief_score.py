@@ -44,7 +44,7 @@ class Thing:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """One camera frame with what was true when it was taken.
+    """One camera frame with the ground truth at its capture.
 
     Attributes:
         frame: what reached the belief.
@@ -104,23 +104,23 @@ class Score:
     missed: int = 0
 
     def add_run(
-        self, things: list[Thing], moments: Iterable[tuple[Moment, Belief]], milliseconds: float
+        self, objects: list[Thing], moments: Iterable[tuple[Moment, Belief]], milliseconds: float
     ) -> None:
         """Score one run.
 
         Args:
-            things: its obstacles, in the order of the truth.
+            objects: its obstacles, in the order of the truth.
             moments: its frames with the belief after each.
             milliseconds: CPU time of the belief per frame; 0 if it was not measured.
         """
-        watched = [_Watched() for _ in things]
+        watched = [_Watched() for _ in objects]
         before, first, belief = None, len(self.nees), None
         for moment, belief in moments:
             dt = 0.0 if before is None else moment.frame.time - before
             before = moment.frame.time
             self.frames += 1
             self._add_pose(moment, belief)
-            self._add_tracks(things, moment, belief, watched, dt)
+            self._add_tracks(objects, moment, belief, watched, dt)
         self.run_nees.append(float(np.mean(self.nees[first:])))
         if belief is not None:
             self.faults += belief.filter_faults
@@ -141,45 +141,52 @@ class Score:
 
     def _add_tracks(
         self,
-        things: list[Thing],
+        objects: list[Thing],
         moment: Moment,
         belief: Belief,
         watched: list[_Watched],
         dt: float,
     ) -> None:
-        labels = [s.label for s in things]
+        labels = [s.label for s in objects]
         tracks = [t for t in belief.tracks if t.particles is None]
         by_owner = owners(tracks, labels, moment.positions)
         owned, taken = {t.id for t in by_owner.values()}, set(by_owner)
         for t in belief.tracks:
             if t.particles is not None:
                 self.clouds += 1
-                self.stray += not _near_cloud(t, things, moment, taken)
+                self.stray += not _near_cloud(t, objects, moment, taken)
             elif t.id not in owned:
                 away = np.hypot(*(moment.positions - t.position).T)
                 self.ghosts += not any(
-                    a < NEAR and s.label == t.label for a, s in zip(away, things, strict=True)
+                    a < NEAR and s.label == t.label for a, s in zip(away, objects, strict=True)
                 )
-        seen = _detected(things, moment)
-        clear = _in_clear_view(things, moment)
-        for i, (thing, w) in enumerate(zip(things, watched, strict=True)):
+        detected_objects = _detected(objects, moment)
+        clear = _in_clear_view(objects, moment)
+        for i, (known_object, w) in enumerate(zip(objects, watched, strict=True)):
             track = by_owner.get(i)
             w.clear = w.clear + dt if clear[i] else 0.0
             if w.clear > SETTLING:
                 self.expected += 1
                 self.missed += track is None
             if track is not None and track.visible:
-                key = (thing.moves, track.motion.value)
+                key = (known_object.moves, track.motion.value)
                 self.verdicts[key] = self.verdicts.get(key, 0) + 1
-            if thing.moves:
-                self._add_mover(w, track, moment, i, dt, seen=i in seen)
+            if known_object.moves:
+                self._add_mover(w, track, moment, i, dt, detected=i in detected_objects)
             elif track is not None and track.motion is Motion.STATIC:
                 e = track.position - moment.positions[i]
                 self.still_error.append(float(np.hypot(*e)))
                 self.still_nees.append(float(e @ np.linalg.solve(track.covariance[:2, :2], e)) / 2)
 
     def _add_mover(
-        self, w: _Watched, track: Track | None, moment: Moment, i: int, dt: float, *, seen: bool
+        self,
+        w: _Watched,
+        track: Track | None,
+        moment: Moment,
+        i: int,
+        dt: float,
+        *,
+        detected: bool,
     ) -> None:
         time, v = moment.frame.time, moment.velocities[i]
         if w.heading is not None and float(w.heading @ v) < 0.0:
@@ -191,11 +198,11 @@ class Score:
                 0.0,
             )
         w.heading = v
-        if w.first_seen is None and seen:
+        if w.first_seen is None and detected:
             w.first_seen = time
-        elif w.first_seen is not None and seen:
+        elif w.first_seen is not None and detected:
             w.in_view += dt
-        if w.turned_at is not None and seen:
+        if w.turned_at is not None and detected:
             w.turn_seen = time if w.turn_seen is None else w.turn_seen
             w.turn_in_view += dt
         if track is None:
@@ -209,7 +216,7 @@ class Score:
         if w.turn_seen is not None and float(track.velocity @ v) > 0.0:
             self.reversal.append(time - w.turn_seen)
             w.turned_at = w.turn_seen = None
-        if not (moving and seen and track.visible and w.in_view > TURNING):
+        if not (moving and detected and track.visible and w.in_view > TURNING):
             return
         e = np.concatenate([track.position - moment.positions[i], track.velocity - v])
         self.mover_error.append(float(np.hypot(*e[:2])))
@@ -252,7 +259,7 @@ class Score:
                 "movers in view: velocity rmse / p95 / max [cm/s]",
                 _centimetres(self.velocity),
             ),
-            ("  the same, no reversal pending", _centimetres(self.steady_velocity)),
+            ("  the same velocity, no reversal pending", _centimetres(self.steady_velocity)),
             (
                 "  NEES per dof of position, of velocity, reversals and all",
                 f"{_mean(self.mover_nees):.2f}, {_mean(self.velocity_nees):.2f}",
@@ -262,7 +269,7 @@ class Score:
             ("mover recognised after first sight p50 / p90 [s]", tails(self.recognition)),
             ("  time in view until then p50 / p90 [s]", tails(self.recognition_in_view)),
             ("  never, though in view for 1 s", str(self.unrecognised)),
-            ("reversal noticed after seen p50 / p90 [s]", tails(self.reversal)),
+            ("reversal noticed after its detection p50 / p90 [s]", tails(self.reversal)),
             ("  never, though in view for 1 s", str(self.unnoticed)),
             ("ghosts per frame", f"{self.ghosts / n:.4f}"),
             (
@@ -277,35 +284,35 @@ class Score:
         ]
 
 
-def _near_cloud(t: Track, things: list[Thing], moment: Moment, taken: set[int]) -> bool:
+def _near_cloud(t: Track, objects: list[Thing], moment: Moment, taken: set[int]) -> bool:
     assert t.particles is not None
     return any(
         s.label == t.label
         and i not in taken
         and float(np.min(np.hypot(*(t.particles.positions - moment.positions[i]).T))) < NEAR
-        for i, s in enumerate(things)
+        for i, s in enumerate(objects)
     )
 
 
-def _detected(things: list[Thing], moment: Moment) -> set[int]:
+def _detected(objects: list[Thing], moment: Moment) -> set[int]:
     """Indices of the obstacles that the frame shows."""
-    found = set()
+    detected = set()
     x, y, heading = moment.robot.tolist()
     for o in moment.frame.observations:
         if o.kind != "obstacle" or o.distance > SIGHT_RANGE:
             continue
-        way = heading + o.bearing
-        place = np.array([x + o.distance * np.cos(way), y + o.distance * np.sin(way)])
-        away = np.hypot(*(moment.positions - place).T)
-        away[[s.label != o.label for s in things]] = np.inf
+        bearing = heading + o.bearing
+        position = np.array([x + o.distance * np.cos(bearing), y + o.distance * np.sin(bearing)])
+        away = np.hypot(*(moment.positions - position).T)
+        away[[s.label != o.label for s in objects]] = np.inf
         if len(away) and away.min() < NEAR:
-            found.add(int(np.argmin(away)))
-    return found
+            detected.add(int(np.argmin(away)))
+    return detected
 
 
-def _in_clear_view(things: list[Thing], moment: Moment) -> NDArray[np.bool_]:
+def _in_clear_view(objects: list[Thing], moment: Moment) -> NDArray[np.bool_]:
     viewpoint = Viewpoint.of(moment.frame.view, moment.robot, CLEAR_RANGE)
-    radii = np.array([s.radius for s in things])
+    radii = np.array([s.radius for s in objects])
     return viewpoint.in_clear_view(
         moment.positions, moment.positions, radii, margin=0.07, occlusion_margin=0.08
     )

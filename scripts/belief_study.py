@@ -60,12 +60,12 @@ def watch(scenario: Scenario, seed: int) -> list[Moment]:
 def score_run(score: Score, scenario: Scenario, seed: int, moments: list[Moment]) -> None:
     """Feed one run to the estimator and add it to the score."""
     layout = draw_layout(scenario, seed)
-    things = [Thing(o.color, o.radius, o.motion is not None) for o in layout.obstacles]
+    objects = [Thing(o.color, o.radius, o.motion is not None) for o in layout.obstacles]
     estimator = build_estimator(scenario, layout, named_rng(seed, "belief"))
     began = process_time()
     beliefs = [estimator.update(m.frame) for m in moments]
     milliseconds = 1e3 * (process_time() - began) / len(moments)
-    score.add_run(things, zip(moments, beliefs, strict=True), milliseconds)
+    score.add_run(objects, zip(moments, beliefs, strict=True), milliseconds)
 
 
 def write_column(path: Path, seeds: str, rows: list[tuple[str, str]]) -> None:

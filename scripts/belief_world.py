@@ -54,20 +54,20 @@ class Camera:
         self.size: dict[int, Smooth] = {}
 
     def observe(
-        self, time: float, pose: Array, pan: float, things: list[Thing]
+        self, time: float, pose: Array, pan: float, objects: list[Thing]
     ) -> tuple[Observation, ...]:
-        """Observations of `things` (kind, label, position, radius) from a true pose."""
+        """Observations of `objects` (kind, label, position, radius) from a true pose."""
         rng = self.rng
         dt = self.period
         pitch = self.pitch.step(dt) + self.pitch_bias
         pitch += 0.006 * sin(2 * pi * 1.5 * time + self.sway_phase)
         yaw = self.yaw.step(dt)
         polar: list[tuple[int, Kind, str, float, float, float]] = []
-        for i, (kind, label, p, radius) in enumerate(things):
+        for i, (kind, label, p, radius) in enumerate(objects):
             dx, dy = p[0] - pose[0], p[1] - pose[1]
             d = hypot(dx, dy)
             polar.append((i, kind, label, d, wrap(atan2(dy, dx) - pose[2]), radius))
-        seen = []
+        observations = []
         for i, kind, label, d, b, radius in polar:
             own = self.size.setdefault(i, Smooth(1.0, 0.1, rng)).step(dt)
             half = asin(min(0.9, radius / d))
@@ -101,7 +101,7 @@ class Camera:
             if cut:
                 bearing_sigma = hypot(bearing_sigma, half)
             radius_sigma = worse * (0.05 * radius + 0.4 * d / FOCAL)
-            seen.append(
+            observations.append(
                 Observation(
                     kind=kind,
                     label=label,
@@ -115,7 +115,7 @@ class Camera:
                 )
             )
         if rng.random() < 0.005:
-            seen.append(
+            observations.append(
                 Observation(
                     "obstacle",
                     COLORS[int(rng.integers(4))],
@@ -126,7 +126,7 @@ class Camera:
                     0.03,
                 )
             )
-        return tuple(seen)
+        return tuple(observations)
 
 
 def view(pan: float, tilt: float, hfov: float = HFOV) -> CameraView:

@@ -6,8 +6,8 @@
 
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
 images. It runs in turn with the loop, second by second, so that the ratio of the two holds
-on any machine and while other work comes and goes. Times are processor time; that of the
-threads which draw and write beside the loop is told by itself, and counts in the whole.
+on any machine and while other work comes and goes. Times are processor time; the time of
+the threads that draw and write in parallel is listed separately and included in the total.
 """
 
 import argparse
@@ -25,12 +25,12 @@ from study_page import RESULTS, command_line, environment
 
 PAGE, BASELINE = RESULTS / "loop-time.md", RESULTS / "loop-ratios.json"
 PACKAGES = ("hsr8", "mujoco", "numba", "numpy", "rerun-sdk")
-EARLIER = "\n## Earlier states\n"  # what the page says from here on is not measured anew
+EARLIER = "\n## Earlier states\n"  # the following part of the page is not measured again
 ENDLESS = "paper"  # a scenario that goes on for as long as is asked
 MOST_OF_A_KIND = 64  # obstacles of one kind that a world may have
 USUAL = (5.0, 16)  # side of the field [m] and obstacles in it
 CHECKED = ("course", 5, "duration=8")  # scenario, seed and length that the check runs
-SLOWER = 1.2  # a stage that takes so many times its ratio of the baseline is told of [1]
+SLOWER = 1.2  # ratio to the baseline from which a stage is reported [1]
 SMALL = 0.04  # stages of less than this are not looked at: chance moves them as far [floors]
 
 
@@ -88,11 +88,11 @@ def ratios(rounds: int) -> dict[str, float]:
     return {stage: min(run[stage] for run in runs) for stage in runs[0]}
 
 
-def slower(found: dict[str, float], kept: dict[str, float]) -> list[str]:
+def slower(measured: dict[str, float], kept: dict[str, float]) -> list[str]:
     """A line for every stage that is much slower than it was."""
     return [
         f"{stage}: {ratio:.2f} floors, {ratio / kept[stage] - 1.0:.0%} above {kept[stage]:.2f}"
-        for stage, ratio in found.items()
+        for stage, ratio in measured.items()
         if stage in kept and ratio > SLOWER * kept[stage] and ratio > SMALL
     ]
 
@@ -101,13 +101,13 @@ def check() -> None:
     """Warn of every stage that has become slower; it never fails."""
     warm(*CHECKED[:2])
     kept = json.loads(BASELINE.read_text())["ratios"]
-    found = ratios(1)
-    if slower(found, kept):
+    measured = ratios(1)
+    if slower(measured, kept):
         again = ratios(1)
-        found = {stage: min(ratio, again[stage]) for stage, ratio in found.items()}
-    for line in slower(found, kept):
+        measured = {stage: min(ratio, again[stage]) for stage, ratio in measured.items()}
+    for line in slower(measured, kept):
         print(f"warning: {line}")
-    print(f"the loop takes {found['whole loop']:.2f} floors; {kept['whole loop']:.2f} are kept")
+    print(f"the loop takes {measured['whole loop']:.2f} floors; {kept['whole loop']:.2f} are kept")
 
 
 def main() -> None:
@@ -128,8 +128,10 @@ def main() -> None:
         return
     warm(options.scenario, options.seed)
     if options.keep:
-        found = {stage: round(ratio, 3) for stage, ratio in ratios(3).items()}
-        atomic.write_json(BASELINE, {"run": CHECKED, "of": environment(PACKAGES), "ratios": found})
+        measured = {stage: round(ratio, 3) for stage, ratio in ratios(3).items()}
+        atomic.write_json(
+            BASELINE, {"run": CHECKED, "of": environment(PACKAGES), "ratios": measured}
+        )
         return
     settings = [f"duration={options.duration:g}", *options.set]
     bench = Bench(load_scenario(options.scenario, settings, options.seed), options.seed)

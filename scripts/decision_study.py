@@ -1,9 +1,8 @@
-"""Decision study: gaze and planner in a 2-D closed loop without MuJoCo and pixels.
+"""Gaze and planner in a 2-D closed loop without MuJoCo and images.
 
-The worlds are those of a scenario. The outline of the walking body moves with
-footstep-latched, slipping commands. Sensing is `perfect` (true poses and velocities) or
-`camera` (the estimator fed by a simulated head camera that sees what the gaze shows it).
-A run ends at its first contact.
+The worlds are those of a scenario. The outline of the walking body moves with commands that are
+latched per footstep and slip. Sensing is `perfect` (true poses and velocities) or `camera` (the
+estimator with a simulated head camera). A run ends at its first contact.
 
     python scripts/decision_study.py course --first 1000 --runs 100
     python scripts/decision_study.py course --settings navigation.gaze.mode=sweep
@@ -56,14 +55,14 @@ class Episode:
     close: float
     """Time with a mover nearer to the body than `CLOSE` [s]."""
     travel: float
-    """Way of the head in pan [rad]."""
+    """Travel of the head in pan [rad]."""
     cause: dict[str, object] = field(default_factory=dict)
     plan_ms: float = 0.0
     gaze_ms: float = 0.0
 
 
 class Run:
-    """One closed loop."""
+    """One run of the closed loop."""
 
     def __init__(self, scenario: Scenario, seed: int, sensing: str) -> None:
         streams = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(5)]
@@ -130,43 +129,43 @@ class Run:
         return self._end("timeout", self.duration, clearance, task)
 
     def turn_head(self) -> None:
-        """One tick towards the target."""
+        """Turn the head towards the target for one tick."""
         step = HEAD_SPEED * TICK
         turn = np.clip(self.target - self.head, -step, step)
         self.head += turn
         self.travel += abs(float(turn[0]))
 
     def sense(self, time: float) -> Belief:
-        """Belief by the sensing of this run."""
+        """Return the belief of this frame."""
         if self.sensing == "perfect":
             pose = self.walker.pose.copy()
             pose[2] = wrap(float(pose[2]))
             return perfect_belief(time, pose, self.world)
         pan, tilt = self.head.tolist()
         positions, _ = self.world.state(time)
-        things = [
+        cylinders = [
             ("obstacle", o.color, p, o.radius)
             for o, p in zip(self.world.layout.obstacles, positions, strict=True)
             if self._in_tilt(p, tilt, pan, 0.0, 0.30)
         ]
-        things += [
+        cylinders += [
             ("beacon", name, np.array(p), 0.05)
             for name, p in self.world.beacons.items()
             if self._in_tilt(np.array(p), tilt, pan, 0.25, 0.35)
         ]
-        seen = self.camera.observe(time, self.walker.pose, pan, things)
+        observations = self.camera.observe(time, self.walker.pose, pan, cylinders)
         return self.estimator.update(
             Frame(
                 time,
                 self.walker.odometry.copy(),
                 self.walker.motion_covariance(self.period),
                 view(pan, tilt, self.fov),
-                seen,
+                observations,
             )
         )
 
     def _in_tilt(self, point: Array, tilt: float, pan: float, low: float, high: float) -> bool:
-        """Whether part of a cylinder is within the image's height."""
+        """Return whether part of a cylinder is within the vertical field of view."""
         if self.omnidirectional:
             return True
         dx, dy = (point - self.walker.pose[:2]).tolist()
@@ -176,7 +175,7 @@ class Run:
         return bottom < tilt + 0.5 * VFOV - 0.02 and top > tilt - 0.5 * VFOV + 0.02
 
     def look(self, belief: Belief, task: Task) -> None:
-        """Decide the gaze."""
+        """Choose the gaze."""
         if self.sensing == "perfect":
             return
         begin = process_time()
@@ -206,7 +205,7 @@ class Run:
         )
 
     def _cause(self, index: int, belief: Belief, time: float) -> dict[str, object]:
-        """What the robot knew of what it touched."""
+        """Return the belief about the obstacle it hit, and the circumstances."""
         obstacle = self.world.layout.obstacles[index]
         pose, body = self.walker.pose, self.walker.body
         position, velocity = (a[index] for a in self.world.state(time))
@@ -254,13 +253,13 @@ def main(
     """Run the study and print its summary.
 
     Args:
-        scenario: its worlds, missions, speeds and parameters.
-        sensing: what the robot knows.
+        scenario: name or file.
+        sensing: perfect, or by camera.
         first: first seed; 0-99 are for tuning, 1000 and above for reports.
         runs: number of seeds.
         settings: changed settings, like navigation.safety_filter.margin=0.04.
         out: file for one JSON line per run.
-        quiet: do not print failures as they come.
+        quiet: do not print failures.
     """
     episodes = []
     begin = perf_counter()
@@ -282,7 +281,7 @@ def main(
         f"{scenario} {sensing} seeds {first}-{first + n - 1} {settings}\n"
         f"  success {len(good)}/{n} = {100 * len(good) / n:.1f} % [{100 * interval.low:.0f}, "
         f"{100 * interval.high:.0f}]  contacts {count['contact']} (movers {hit})  "
-        f"time-outs {count['timeout']}  "
+        f"timeouts {count['timeout']}  "
         f"missed arrival {count['goal'] - len(good)}\n"
         f"  time median {np.median(times):.0f} s, 90 % {np.percentile(times, 90):.0f} s; "
         f"arrival error mean {np.mean([e.position_error for e in good] or [0]):.3f} m, "

@@ -1,4 +1,4 @@
-"""The 2-D world of the decision study: a layout, perfect sensing, an outline that walks."""
+"""2-D world of the decision study: layout, perfect sensing, outline of the walking body."""
 
 from dataclasses import dataclass
 from math import cos, pi, sin
@@ -26,7 +26,7 @@ DRIFT = np.array([0.005, 0.005, 0.02])  # of a footstep [m/s, m/s, rad/s]
 
 @dataclass
 class World:
-    """A layout of the simulator, seen from above.
+    """2-D view of a layout.
 
     Attributes:
         layout: static obstacles first, movers after.

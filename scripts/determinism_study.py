@@ -1,10 +1,10 @@
-"""Does a seed alone decide a run: the same hashes each second, and replays.
+"""Determinism: equal hashes each second in repeated runs, and replays from the records.
 
     python scripts/determinism_study.py --light 1000:1004 --full 1000:1001 \
         --out docs/results/determinism.md
 
-Every seed runs in five ways, each in processes of its own; the hashes of world and belief of every
-simulated second must be those of the first way. Then physics, estimator and decisions of every
+Every seed runs under four conditions, in separate processes; the hashes of world and belief of
+every simulated second must be those of the first. Then physics, estimator and decisions of every
 run are computed again from its records.
 """
 
@@ -27,27 +27,16 @@ from walking.parameters import CONTROL_PERIOD
 from study_page import command_line, seeds_of
 
 STAND_INS = ("--body", "kinematic", "--camera", "analytic")
-AFTER_VIDEO = """
-import sys
-from pathlib import Path
-from hsr8.cli.main import entry
-from hsr8.recorder.run.run_reader import open_run
-out, *words = sys.argv[1:]
-entry([*words, "--duration", "1", "--no-log", "--out", out + "/before"])
-video = ["--camera", "head", "--fps", "5", "--stop", "0.4", "--speed", "1", "--quiet"]
-assert entry(["render", str(open_run(Path(out + "/before")).path), *video]) == 0
-entry([*words, "--no-log", "--out", out + "/after"])
-"""
 
 
 @dataclass(frozen=True)
 class Case:
-    """One scenario as it is run here.
+    """Conditions of a run.
 
     Attributes:
-        name: for the table.
+        name: label.
         seed: of the run.
-        words: of the command line, without the seed.
+        words: command line without the seed.
         duration: simulated time [s].
     """
 
@@ -56,29 +45,23 @@ class Case:
     words: tuple[str, ...]
     duration: str
 
-    def run(self, out: Path, *more: str, starts: tuple[str, ...] = ("-m", "hsr8")) -> Run:
-        """Run it in a process of its own."""
+    def run(self, out: Path, *more: str) -> Run:
+        """Run in a separate process."""
         words = ["run", "course", "--seed", str(self.seed), "--quiet", *self.words]
         words += ["--duration", self.duration, *more, "--out", str(out)]
-        command(*starts, *words)
+        command("-m", "hsr8", *words)
         return open_run(out)
 
 
 def command(*words: str, codes: tuple[int, ...] = (0, 1)) -> None:
-    """Run Python with `words`; exit code 1 says that a criterion was not met."""
+    """Run Python with `words`; exit code 1 means that a criterion is not met."""
     done = subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False)
     if done.returncode not in codes:
         raise SystemExit(f"{words}: exit code {done.returncode}\n{done.stderr}")
 
 
-def after_video(case: Case, out: Path) -> Run:
-    words = ["run", "course", "--seed", str(case.seed), "--quiet", *case.words]
-    command("-c", AFTER_VIDEO, str(out), *words, "--duration", case.duration)
-    return open_run(out / "after")
-
-
 def swept(case: Case, out: Path, workers: int) -> Run:
-    """As one of two runs of a sweep."""
+    """Run the case as one of two runs of a sweep."""
     words = ["sweep", "course", "--seeds", f"{case.seed},{case.seed + 1}", *case.words]
     words += ["--duration", case.duration, "--workers", str(workers), "--quiet", "--out", str(out)]
     command("-m", "hsr8", *words)
@@ -86,10 +69,9 @@ def swept(case: Case, out: Path, workers: int) -> Run:
     return open_run(folder)
 
 
-WAYS: dict[str, Callable[[Case, Path], Run]] = {
+CONDITIONS: dict[str, Callable[[Case, Path], Run]] = {
     "no log": lambda case, out: case.run(out, "--no-log"),
     "log": lambda case, out: case.run(out),
-    "after a run and its video, same process": after_video,
     "sweep, 1 worker": lambda case, out: swept(case, out, 1),
     "sweep, 2 workers": lambda case, out: swept(case, out, 2),
 }
@@ -101,7 +83,7 @@ def hashes(run: Run) -> list[tuple[int, str, str]]:
 
 
 class Replays:
-    """Counts what comes out again, bit for bit."""
+    """Counts results that are bit-exact when computed again."""
 
     def __init__(self) -> None:
         self.runs = 0
@@ -118,7 +100,7 @@ class Replays:
             ]
 
     def table(self) -> list[str]:
-        """Ticks and frames that came out the same."""
+        """Return the numbers of equal ticks and frames."""
         lines = ["| stage | equal | runs that differ |", "|---|---|---|"]
         for (stage, unit), (equal, different) in self.counts.items():
             lines.append(f"| {stage} | {equal} {unit} | {different} of {self.runs} |")
@@ -126,19 +108,19 @@ class Replays:
 
 
 def compare(cases: list[Case], folder: Path, replays: Replays) -> tuple[list[str], int, int]:
-    """Table of the ways, how many runs there were, and how many with the same hashes."""
-    lines = ["| run | seconds | last hash | " + " | ".join(WAYS) + " |"]
-    lines.append("|---" * (len(WAYS) + 3) + "|")
+    """Return the table, the number of runs and the number of runs with equal hashes."""
+    lines = ["| run | seconds | last hash | " + " | ".join(CONDITIONS) + " |"]
+    lines.append("|---" * (len(CONDITIONS) + 3) + "|")
     runs = equal = 0
     for case in cases:
         first: list[tuple[int, str, str]] = []
         cells = []
-        for number, way in enumerate(WAYS.values()):
-            run = way(case, folder / f"{case.name}-{case.seed}-{number}")
-            found = hashes(run)
-            first = first or found
-            same = found == first
-            cells.append(f"{len(found)} equal" if same else "DIFFERENT")
+        for number, condition in enumerate(CONDITIONS.values()):
+            run = condition(case, folder / f"{case.name}-{case.seed}-{number}")
+            values = hashes(run)
+            first = first or values
+            same = values == first
+            cells.append(f"{len(values)} equal" if same else "DIFFERENT")
             runs, equal = runs + 1, equal + same
             replays.add(run)
         last, end = first[-1], first[-1][0] * CONTROL_PERIOD
@@ -161,7 +143,7 @@ def main() -> None:
     replays = Replays()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        ways, runs, equal = compare([*light, *full], folder, replays)
+        table, runs, equal = compare([*light, *full], folder, replays)
     made_with = Definition.now("course", (), dump(load_scenario("course"))).made_with()
     lines = [
         "# Same seed, same run",
@@ -172,12 +154,12 @@ def main() -> None:
         "",
         f"`course`: *light* with kinematic body and analytic camera, {arguments.duration} s; "
         f"*full* with full physics and rendered camera, {arguments.full_duration} s. Every cell is "
-        "a run of its own: how many hashes of world and belief (each second and at the end) are "
-        "those of the first way.",
+        "a separate run: number of hashes of world and belief (each second and at the end) that "
+        "equal those of the first condition.",
         "",
-        f"**{equal} of {runs} runs have the hashes of the first way of their seed.**",
+        f"**{equal} of {runs} runs have the hashes of the first condition of their seed.**",
         "",
-        *ways,
+        *table,
         "",
         "## Computed again from the records",
         "",

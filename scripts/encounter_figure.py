@@ -41,7 +41,7 @@ CASES = {
     "b": ("fig4b", "(b) inside the band: escape", {"escape"}, 24.0),
     "c": ("fig4c", "(c) definite collision: another path", {"path_change"}, 26.0),
 }
-LARGE = 0.10  # radius of a virtual obstacle worth a picture [m]
+LARGE = 0.10  # radius of a virtual obstacle worth an image [m]
 STAMP = 4.0  # between two drawn positions [s]
 
 
@@ -84,14 +84,14 @@ def case(letter: str) -> Case:
 
 
 def _telling(letter: str, frame: FrameRecord, encounter: Encounter) -> bool:
-    """Whether the decision has taken full effect: a speed that is free for good, a large oval."""
+    """Whether the decision has taken full effect: a permanently free speed, a large oval."""
     if letter == "c":
         return any(v.radius > LARGE for v in frame.motion.virtual_obstacles)
     return not encounter.collides(frame.motion.speed, inf)
 
 
 def _encounter(frame: FrameRecord, *, straight: bool) -> tuple[float, Encounter]:
-    """The mover as believed, in axes of the motion, or of the straight way to the destination."""
+    """The mover as believed, in axes of the motion, or of the straight line to the destination."""
     pose, task = frame.belief.pose, frame.task
     dx, dy = (task.target - pose[:2]).tolist()
     direction = atan2(dy, dx) if straight else frame.motion.direction

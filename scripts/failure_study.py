@@ -1,10 +1,10 @@
-"""Catalogue of failures: runs up to their first contact or fall, and why it came.
+"""Catalogue of failures: runs up to their first contact or fall, by cause.
 
     python scripts/failure_study.py course fast --seeds 0-19 --out docs/results/failures.md
 
-A run is the whole loop, with a kinematic body and the analytic camera unless `--set` says
-otherwise. The cause is the first rule of `KINDS` that holds. One picture of every kind goes
-beside the page: the world from above, what is true outlined, what is believed filled.
+A run is the whole loop, with a kinematic body and the analytic camera unless `--set` changes
+otherwise. The cause is the first rule of `KINDS` that holds. One image of every kind goes
+next to the page: the world from above, what is true outlined, what is believed filled.
 """
 
 import argparse
@@ -31,44 +31,44 @@ from study_page import STAND_INS, add_seeds, command_line
 
 Array = NDArray[np.float64]
 
-NEAR = 0.30  # a track farther from the obstacle is of another one [m]
-FORGOTTEN = 1.0  # what was seen longer ago counts as unseen [s]
-PLACE_OFF, VELOCITY_OFF, RADIUS_OFF = 0.06, 0.08, 0.03  # tolerable errors [m, m/s, m]
-BEFORE = 2.0  # freedom is judged so long before the contact [s]
-HEADINGS, STRIDE, BODY = 24, 2.0, 0.14  # directions tried, for so long [s], of a body so wide [m]
-SLOW = 0.5  # share of its forward speed below which the robot is slow [1]
-PICTURE = (640, 640)
+NEAR = 0.30  # max distance of a track from its obstacle [m]
+FORGOTTEN = 1.0  # age from which an obstacle counts as unseen [s]
+POSITION_ERROR, VELOCITY_ERROR, RADIUS_ERROR = 0.06, 0.08, 0.03  # tolerable errors [m, m/s, m]
+BEFORE = 2.0  # time before the contact at which free directions are counted [s]
+HEADINGS, STRIDE, BODY = 24, 2.0, 0.14  # directions tried, time [s], radius of the body [m]
+SLOW = 0.5  # fraction of the max forward speed below which the robot is slow [1]
+IMAGE_SIZE = (640, 640)
 KINDS = {
-    "fell": "the robot fell, and touched nothing before",
-    "beacon": "it touched a beacon, whose place it knew",
-    "unseen": "what it touched had no track, or was seen last more than a second ago",
-    "misjudged": "seen, but its place, velocity, size or class was wrong",
-    "trapped": "seen and right, but two seconds before no straight walk was free",
-    "too slow": "seen and right, it came while the robot stood, turned or side-stepped",
-    "grazed": "seen and right, the robot passed too close",
+    "fell": "the robot fell without a contact before",
+    "beacon": "it hit a beacon, whose position is known",
+    "unseen": "the obstacle it hit had no track, or was last seen more than a second ago",
+    "misjudged": "seen, but with a wrong position, velocity, size or class",
+    "trapped": "seen correctly, but two seconds before the contact no straight walk was free",
+    "too slow": "seen correctly, the obstacle came while the robot stood, turned or side-stepped",
+    "grazed": "seen correctly, the robot passed too close",
 }
 
 
 @dataclass
 class Failure:
-    """Why a run failed.
+    """Failure of a run.
 
     Attributes:
         scenario, seed: of the run.
         kind: one of `KINDS`.
         time: when [s].
-        what: in words.
+        text: description.
     """
 
     scenario: str
     seed: int
     kind: str
     time: float
-    what: str
+    text: str
 
 
 class Watch(Listener):
-    """Listener that keeps the last seconds and stops the run at its first contact or fall."""
+    """Listener that records the last seconds and stops the run at its first contact or fall."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -79,11 +79,11 @@ class Watch(Listener):
         self.recent: deque[Truth] = deque()
         self.trail: list[list[float]] = []
         self.frame: FrameRecord | None = None
-        self.seen: Truth | None = None
+        self.frame_truth: Truth | None = None
         self.end: Truth | None = None
 
     def on_record(self, record: TickRecord) -> None:
-        """Keep it; stop once it shows a contact or a fall."""
+        """Record it; stop at a contact or a fall."""
         if self.end is not None:
             return
         self.recent.append(record.truth)
@@ -91,13 +91,13 @@ class Watch(Listener):
             self.recent.popleft()
         self.trail.append(record.truth.robot[:2].tolist())
         if record.frame is not None:
-            self.frame, self.seen = record.frame, record.truth
+            self.frame, self.frame_truth = record.frame, record.truth
         if record.truth.contacts or record.truth.fallen:
             self.end = record.truth
             self._simulation.interrupt()
 
     def solids(self, truth: Truth) -> tuple[Array, Array]:
-        """Axes and velocities of obstacles and, after them, beacons (n, 2), (n, 2) [m, m/s]."""
+        """Return positions and velocities of obstacles, then beacons (n, 2), (n, 2) [m, m/s]."""
         still = np.zeros_like(self.beacons)
         return (
             np.concatenate([truth.obstacle_positions, self.beacons]),
@@ -106,64 +106,64 @@ class Watch(Listener):
 
 
 def cause_of(watch: Watch, end: Truth) -> tuple[str, str]:
-    """Kind of the failure that ended the watched run at `end`, and what it was in words."""
+    """Return kind and description of the failure that ended the run at `end`."""
     then = watch.recent[0]
     if not end.contacts:
         return "fell", "no contact before"
     contact = end.contacts[0]
-    place, velocity = (of_all[contact.obstacle] for of_all in watch.solids(end))
+    position, velocity = (of_all[contact.obstacle] for of_all in watch.solids(end))
     walk = hypot(*(end.robot[:2] - then.robot[:2]).tolist()) / max(end.time - then.time, 1e-9)
-    what = _words(contact, end, place, velocity, walk)
+    text = _words(contact, end, position, velocity, walk)
     if contact.obstacle >= len(end.obstacle_positions):
-        return "beacon", what
+        return "beacon", text
     tracks = watch.frame.belief.tracks if watch.frame is not None else ()
-    near = [t for t in tracks if float(np.hypot(*(t.position - place))) <= NEAR]
+    near = [t for t in tracks if float(np.hypot(*(t.position - position))) <= NEAR]
     if not near:
-        return "unseen", f"{what}; no track of it"
-    track = min(near, key=lambda t: float(np.hypot(*(t.position - place))))
+        return "unseen", f"{text}; no track of it"
+    track = min(near, key=lambda t: float(np.hypot(*(t.position - position))))
     if track.age > FORGOTTEN:
-        return "unseen", f"{what}; seen last {track.age:.1f} s ago"
-    wrong = _wrong(track, place, velocity, float(watch.radii[contact.obstacle]))
+        return "unseen", f"{text}; seen last {track.age:.1f} s ago"
+    wrong = _wrong(track, position, velocity, float(watch.radii[contact.obstacle]))
     if wrong:
-        return "misjudged", f"{what}; {wrong}"
+        return "misjudged", f"{text}; {wrong}"
     if not _is_free(watch, then):
-        return "trapped", what
+        return "trapped", text
     if contact.moving and walk < SLOW * watch.forward:
-        return "too slow", what
-    return "grazed", what
+        return "too slow", text
+    return "grazed", text
 
 
-def _words(contact: Contact, end: Truth, place: Array, velocity: Array, walk: float) -> str:
-    x, y = (place - end.robot[:2]).tolist()
+def _words(contact: Contact, end: Truth, position: Array, velocity: Array, walk: float) -> str:
+    x, y = (position - end.robot[:2]).tolist()
     bearing = degrees(wrap(float(np.arctan2(y, x)) - float(end.robot[2])))
     moving = f" at {hypot(*velocity.tolist()):.2f} m/s" if contact.moving else ""
     return (
-        f"{contact.robot_geom} touches {contact.name}{moving}, bearing {bearing:.0f} deg, "
+        f"{contact.robot_geom} hits {contact.name}{moving}, bearing {bearing:.0f} deg, "
         f"walking {walk:.2f} m/s"
     )
 
 
-def _wrong(track: Track, place: Array, velocity: Array, radius: float) -> str:
-    """What of a track is wrong, in words; empty if nothing is."""
-    off = float(np.hypot(*(track.position - place)))
+def _wrong(track: Track, position: Array, velocity: Array, radius: float) -> str:
+    """Return the error of a track in words; empty if it is within tolerance."""
+    off = float(np.hypot(*(track.position - position)))
     speed_off = float(np.hypot(*(track.velocity - velocity)))
     if hypot(*velocity.tolist()) > 0.0 and track.motion is Motion.STATIC:
         return "taken for static"
-    if off > PLACE_OFF:
+    if off > POSITION_ERROR:
         return f"{off:.2f} m off"
-    if speed_off > VELOCITY_OFF:
+    if speed_off > VELOCITY_ERROR:
         return f"its velocity {speed_off:.2f} m/s off"
-    if abs(track.radius - radius) > RADIUS_OFF:
+    if abs(track.radius - radius) > RADIUS_ERROR:
         return f"its radius {track.radius - radius:+.2f} m off"
     return ""
 
 
 def _is_free(watch: Watch, truth: Truth) -> bool:
-    """Whether some straight walk touches nothing for a while, all going on as they do."""
+    """Return whether a straight walk is free for `STRIDE`, with movers at constant velocity."""
     turns = 2.0 * pi * np.arange(HEADINGS) / HEADINGS
     times = np.linspace(0.0, STRIDE, 11)
-    places, velocities = watch.solids(truth)
-    offset = places - truth.robot[:2]
+    positions, velocities = watch.solids(truth)
+    offset = positions - truth.robot[:2]
     for direction in turns.tolist():
         walk = watch.forward * np.array([np.cos(direction), np.sin(direction)])
         relative = offset[:, None] + times[:, None] * (velocities[:, None] - walk)
@@ -172,34 +172,34 @@ def _is_free(watch: Watch, truth: Truth) -> bool:
     return False
 
 
-def run(scenario: str, settings: list[str], seed: int, picture: Path) -> Failure | None:
-    """One run; its failure, and the world at that moment as `picture`."""
+def run(scenario: str, settings: list[str], seed: int, image: Path) -> Failure | None:
+    """One run; its failure, and the world at that moment as `image`."""
     simulation = Simulation(load_scenario(scenario, settings, seed), seed)
     watch = Watch(simulation)
     simulation.listeners.append(watch)
     simulation.run()
     if watch.end is None:
         return None
-    kind, what = cause_of(watch, watch.end)
-    if watch.frame is not None and watch.seen is not None:
-        view = TopDown(simulation.layout, PICTURE)
+    kind, text = cause_of(watch, watch.end)
+    if watch.frame is not None and watch.frame_truth is not None:
+        view = TopDown(simulation.layout, IMAGE_SIZE)
         movers = watch.end.obstacle_positions[len(simulation.layout.static) :]
-        summary = from_line(to_line(watch.frame, watch.seen))
-        write_png(picture, view.draw(summary, movers, np.array(watch.trail)[-1000::5]))
-    return Failure(scenario, seed, kind, watch.end.time, what)
+        summary = from_line(to_line(watch.frame, watch.frame_truth))
+        write_png(image, view.draw(summary, movers, np.array(watch.trail)[-1000::5]))
+    return Failure(scenario, seed, kind, watch.end.time, text)
 
 
-def page(failures: list[Failure], runs: int, pictures: dict[str, str], command: str) -> str:
-    """Markdown of the catalogue."""
+def page(failures: list[Failure], runs: int, images: dict[str, str], command: str) -> str:
+    """Return the catalogue as Markdown."""
     interval = Proportion.counted(runs - len(failures), runs)
     lines = [
         "# Failures by cause",
         "",
         f"    {command}",
         "",
-        f"{runs - len(failures)} of {runs} runs touched nothing and did not fall "
+        f"{runs - len(failures)} of {runs} runs had no contact and no fall "
         f"(95 % interval {interval.low:.0%} to {interval.high:.0%}). "
-        "Every other one ended at its first contact.",
+        "Every other run ended at its first contact.",
         "",
         "| cause | rule | runs |",
         "|---|---|---|",
@@ -212,9 +212,9 @@ def page(failures: list[Failure], runs: int, pictures: dict[str, str], command: 
         if not group:
             continue
         lines += ["", f"## {kind}", ""]
-        if kind in pictures:
-            lines += [f"![{kind}]({pictures[kind]})", ""]
-        lines += [f"- `{f.scenario}` {f.seed}, {f.time:.1f} s: {f.what}" for f in group]
+        if kind in images:
+            lines += [f"![{kind}]({images[kind]})", ""]
+        lines += [f"- `{f.scenario}` {f.seed}, {f.time:.1f} s: {f.text}" for f in group]
     return "\n".join(lines) + "\n"
 
 
@@ -227,7 +227,7 @@ def main() -> None:
     arguments = parser.parse_args()
     settings = [*STAND_INS, *arguments.set]
     failures: list[Failure] = []
-    pictures: dict[str, str] = {}
+    images: dict[str, str] = {}
     folder = arguments.out.with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
     runs = 0
@@ -241,12 +241,12 @@ def main() -> None:
                 continue
             failures.append(failure)
             name = f"{failure.kind.replace(' ', '-')}.png"
-            if draft.exists() and failure.kind not in pictures:
+            if draft.exists() and failure.kind not in images:
                 draft.replace(folder / name)
-                pictures[failure.kind] = f"{folder.name}/{name}"
+                images[failure.kind] = f"{folder.name}/{name}"
             draft.unlink(missing_ok=True)
-            arguments.out.write_text(page(failures, runs, pictures, command_line()))
-    arguments.out.write_text(page(failures, runs, pictures, command_line()))
+            arguments.out.write_text(page(failures, runs, images, command_line()))
+    arguments.out.write_text(page(failures, runs, images, command_line()))
 
 
 if __name__ == "__main__":

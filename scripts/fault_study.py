@@ -34,7 +34,7 @@ from study_page import add_seeds, environment
 START = 2.0  # of a fault, in the walk [s]
 DURATION = 30.0  # the goal is reached in 12 to 18 s as a rule [s]
 SCOUTS = 3  # seeds that go up a ladder
-BUMP_X, BUMP_RADIUS = -0.4, 0.15  # where a bump lies on a straight way, and its radius [m]
+BUMP_X, BUMP_RADIUS = -0.4, 0.15  # position of a bump on a straight path, and its radius [m]
 STRAIGHT = (
     "world.n_static=0",
     "world.n_moving=0",
@@ -50,8 +50,8 @@ class Ladder:
     """Sizes of one kind of fault, harmless ones first.
 
     Attributes:
-        unit: of the sizes, and what they are where that is not `size`.
-        fault: the TOML keys besides kind and start; ``{}`` is the size.
+        unit: of the magnitudes, and their meaning where that is not `magnitude`.
+        fault: the TOML keys other than kind and start; ``{}`` is the magnitude.
         sizes: to try.
     """
 
@@ -124,7 +124,7 @@ class Watch(Listener):
 
 
 def run(settings: list[str], seed: int) -> tuple[str, Watch]:
-    """Exit reason and what was seen."""
+    """Exit reason and observed events."""
     watch = Watch()
     simulation = Simulation(load_scenario("quick", settings), seed, [watch])
     try:
@@ -226,7 +226,7 @@ def page(known: list[dict], command: str) -> str:
         "Scenario `quick` without its via point, full physics, analytic camera; rendered images",
         "for lighting and a kinematic body for the other faults of the camera. A fault begins",
         "after 2 s, in the walk, and lasts to the end unless graded by duration. A bump lies",
-        "on a straight way, and on such a one a mover appears: the gap is from",
+        "on a straight path, where also a mover appears: the gap is from",
         "body to mover when it appears. Unharmed: the goal is reached without a fall or a contact.",
         "The limit lies between the last size that every seed gets over and the first that one",
         f"does not. {SCOUTS} seeds go up a ladder, as far as one of them gets over it; all",

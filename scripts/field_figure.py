@@ -1,4 +1,4 @@
-"""Fig. 3: the univector field, its parts, and the ways that follow it."""
+"""Fig. 3: the univector field, its parts, and the paths that follow it."""
 
 from dataclasses import dataclass
 from math import cos, pi, sin
@@ -23,8 +23,8 @@ GOAL_HEADING = pi / 6  # printed in the caption of Fig. 3
 TARGET = np.array([1.2, 0.0])
 OBSTACLE, RADIUS = (0.0, 0.05), 0.10  # [m]
 STARTS = np.array([(-1.6, y) for y in np.linspace(-1.2, 1.2, 13)])
-REACH = 0.05  # of the goal, where a way ends [m]
-STEP = 0.01  # of a way [m]
+REACH = 0.05  # distance from the goal at which a path ends [m]
+STEP = 0.01  # of a path [m]
 
 
 @dataclass(frozen=True)
@@ -32,18 +32,18 @@ class FieldPanel:
     """One field.
 
     Attributes:
-        name: what it is.
+        name: title of the panel.
         parameters: that make it.
         arrows: unit vectors or zeros at the points of the grid (n, 2).
-        ways: one from each start (m, steps, 2) [m].
+        paths: one from each start (m, steps, 2) [m].
         arrived: which of them end at the goal (m,).
-        clearance: least distance of each way from the obstacle's surface for a robot (m,) [m].
+        clearance: minimum distance of each path from the obstacle's surface for a robot (m,) [m].
     """
 
     name: str
     parameters: NavigationParameters
     arrows: Array
-    ways: Array
+    paths: Array
     arrived: NDArray[np.bool_]
     clearance: Array
 
@@ -74,10 +74,13 @@ def grid() -> Array:
 
 
 def panels() -> list[FieldPanel]:
-    """Move-to-goal alone, avoid-obstacle alone, their sum as printed, and ours."""
+    """Move-to-goal alone, avoid-obstacle alone, their sum as printed, and the default blend."""
     paper, extended = NavigationParameters.paper(), NavigationParameters.extended()
     made = []
-    for name, p in (("printed sum, 0.75 and 0.25", paper), ("blend by distance (ours)", extended)):
+    for name, p in (
+        ("printed sum, 0.75 and 0.25", paper),
+        ("blend by distance (default)", extended),
+    ):
         u, obstacles = p.univector, obstacle()
         s_oe = extended_radius(obstacles, 0.0, np.zeros(1), u)
         scene = FieldScene(obstacles, s_oe, np.zeros(1), TARGET, GOAL_HEADING)
@@ -100,16 +103,16 @@ def panels() -> list[FieldPanel]:
 
 
 def _panel(name, parameters, at) -> FieldPanel:
-    place, trace = STARTS.copy(), [STARTS.copy()]
-    arrived = np.zeros(len(place), bool)
+    point, trace = STARTS.copy(), [STARTS.copy()]
+    arrived = np.zeros(len(point), bool)
     for _ in range(round(5.0 / STEP)):
-        place = place + STEP * normalized(at(place)) * ~arrived[:, None]
-        arrived |= np.hypot(*(place - TARGET).T) < REACH
-        trace.append(place.copy())
-    ways = np.stack(trace, axis=1)
+        point = point + STEP * normalized(at(point)) * ~arrived[:, None]
+        arrived |= np.hypot(*(point - TARGET).T) < REACH
+        trace.append(point.copy())
+    paths = np.stack(trace, axis=1)
     reach = physical_radius(obstacle(), parameters.univector)[0]
-    gap = np.hypot(*(ways - np.array(OBSTACLE)).transpose(2, 0, 1)).min(axis=1) - reach
-    return FieldPanel(name, parameters, normalized(at(grid())), ways, arrived, gap)
+    gap = np.hypot(*(paths - np.array(OBSTACLE)).transpose(2, 0, 1)).min(axis=1) - reach
+    return FieldPanel(name, parameters, normalized(at(grid())), paths, arrived, gap)
 
 
 def draw() -> Figure:
@@ -126,8 +129,8 @@ def draw() -> Figure:
                 *points[acts].T, *u[acts].T, color="#9AA4AE", scale=42, width=0.0019, pivot="mid"
             )
             if "avoid" not in panel.name:
-                for way, arrived in zip(panel.ways, panel.arrived, strict=True):
-                    axes.plot(*way.T, color=ROBOT if arrived else MOVER, linewidth=1.0)
+                for path, arrived in zip(panel.paths, panel.arrived, strict=True):
+                    axes.plot(*path.T, color=ROBOT if arrived else MOVER, linewidth=1.0)
                 axes.plot(*STARTS.T, "o", color=ROBOT, markersize=2.5)
             disc(axes, OBSTACLE, RADIUS, facecolor=STILL, edgecolor="none")
             if "move" not in panel.name:
@@ -151,7 +154,7 @@ def draw() -> Figure:
             axes.grid(False)
         made.supxlabel(
             "circles: S_oe (solid), S_oe + d_e (dashed), S_oe + d_e + d_b (dotted); "
-            "grey: the obstacle; blue: ways from equally spaced starts; orange: goal",
+            "grey: the obstacle; blue: paths from equally spaced starts; orange: goal",
             fontsize=8,
         )
     return made

@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 
 SCENARIO = ("navigation.profile=paper", "robot.body=kinematic")
 SEED, DURATION = 1, 24.0
-JUMP = np.radians(25.0)  # least change of a gaze worth a picture [rad]
+JUMP = np.radians(25.0)  # minimum change of a gaze worth an image [rad]
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def looks(ran: RecordedRun) -> list[Look]:
     """Every decision that moved the gaze far, best first: many obstacles, high evaluations."""
     p = ran.scenario.navigation
     samples = SamplePoints.polar(p.evaluation, p.gaze.max_pan)
-    found = []
+    looks = []
     for k in range(1, len(ran.frames) - 6):
         before, frame = ran.frames[k - 1], ran.frames[k]
         moved = np.hypot(frame.gaze.pan - before.gaze.pan, frame.gaze.tilt - before.gaze.tilt)
@@ -73,20 +73,20 @@ def looks(ran: RecordedRun) -> list[Look]:
         if moved < JUMP or not settled or len(frame.belief.tracks) < 4:
             continue
         scene = gaze_scene(frame.belief, frame.motion, samples, np.zeros((0, 2)), p)
-        found.append(Look(frame, scene, settled[0], p))
+        looks.append(Look(frame, scene, settled[0], p))
     return sorted(
-        found, key=lambda x: -float(x.scene.psi_ob[x.scene.attended].sum()) - x.scene.map.psi
+        looks, key=lambda x: -float(x.scene.psi_ob[x.scene.attended].sum()) - x.scene.map.psi
     )
 
 
-def most_divided(found: list[Look]) -> Look:
+def most_divided(looks: list[Look]) -> Look:
     """The decision with the most points of both kinds, confident and not."""
 
     def divided(look: Look) -> int:
         m = look.scene.map
         return min(int(m.under_confident.sum()), int((m.counted & ~m.under_confident).sum()))
 
-    return max(found, key=divided)
+    return max(looks, key=divided)
 
 
 def _there(frame: FrameRecord) -> bool:

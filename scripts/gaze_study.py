@@ -3,7 +3,7 @@
     python scripts/gaze_study.py fast --seeds 1000-1019 --out docs/results/gaze.md
 
 Every arm walks the same worlds; the first one is what all others are compared with, by an
-exact McNemar test over the seeds that both have walked. Rows are kept as JSON lines beside
+exact McNemar test over the seeds that both have walked. Rows are kept as JSON lines next to
 the page, and a study that is started again goes on where it stopped.
 """
 
@@ -52,7 +52,7 @@ def table(rows: list[dict], arms: Sequence[str]) -> list[str]:
     """Markdown of all arms."""
     good = {arm: {r["seed"]: bool(r["success"]) for r in rows if r["arm"] == arm} for arm in arms}
     lines = [
-        "| arm | N | success [95 %] | contacts: movers, static | time-outs | median time [s] "
+        "| arm | N | success [95 %] | contacts: movers, static | timeouts | median time [s] "
         "| mover near [% of time] | head [rad/s] | first only / this only | p |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]

@@ -1,29 +1,23 @@
-"""Push a walking robot over in full physics and see whether it gets up and walks on.
+"""Push a walking robot over in full physics; count how often it gets up and walks on.
 
-    python scripts/getup_study.py falls --seeds 0-19
-    python scripts/getup_study.py falls --seeds 1000-1099 --write
-    python scripts/getup_study.py search --posture squat --seeds 0-9
+    python scripts/getup_study.py --seeds 0-19
+    python scripts/getup_study.py --seeds 1000-1099 --write
 
-A push of 3 to 4 N s in 50 ms comes from a random side in a walk at a random velocity. `search`
-draws the numbers of one key posture anew around the best ones so far. Tune on seeds 0-99, report
-on seeds from 1000.
+A push of 3 to 4 N s in 50 ms comes from a random side in a walk at a random velocity.
+Tune on seeds 0-99, report on seeds from 1000.
 """
 
 import argparse
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
-from walking.get_up.get_up import GetUp, Outcome
-from walking.get_up.get_up_motion import MOTIONS, Motions
-from walking.get_up.key_posture import STRAIGHT, KeyPosture
+from walking.get_up.get_up import Outcome
 from walking.get_up.lying import lying_on, up_in_trunk
 from walking.parameters import CONTROL_PERIOD, GetUpParameters, WalkingParameters
 from walking.walker import Walker
 
-import mujoco
 import numpy as np
 from study_page import RESULTS, add_seeds, command_line, environment
 from walking_body import ROBOT, Body, Plant
@@ -32,23 +26,23 @@ RESULT = RESULTS / "getup.md"
 LEAD = (2.0, 3.0)  # of walking before the push [s]
 PUSH = 0.05  # duration [s]
 IMPULSE = (3.0, 4.0)  # [N s]
-FALL_TIME = 2.5  # a robot that is not down by then has caught itself [s]
-PATIENCE = 60.0  # for getting up [s]
-AFTER = 5.0  # of walking on, a fall in which is a second one [s]
+FALL_TIME = 2.5  # time after the push within which a fall counts [s]
+PATIENCE = 60.0  # limit for getting up [s]
+AFTER = 5.0  # walking time after getting up in which a second fall counts [s]
 BOX = ((-0.2, -0.1, -0.8), (0.4, 0.1, 0.8))  # velocity [m/s, m/s, rad/s]
 
 
 @dataclass(frozen=True)
 class Fall:
-    """What came of one push.
+    """Result of one push.
 
     Attributes:
-        side: first lain on.
-        time: from the fall to standing, none if it never stood [s].
-        attempts: motions it took.
-        again: whether it fell again at once.
+        side: side on which the robot lay first.
+        time: from the fall to standing, None if it never stood [s].
+        attempts: number of motions.
+        again: whether the robot fell again within `AFTER`.
         drift: error of the odometry from the push to standing [m].
-        turn: error of its heading meanwhile [rad].
+        turn: error of its heading [rad].
     """
 
     side: str
@@ -60,12 +54,12 @@ class Fall:
 
 
 class Trial:
-    """A walk with a push.
+    """Walk with one push.
 
     Args:
-        robot: the robot's numbers.
-        plant: the body in truth.
-        seed: draws everything.
+        robot: model of the robot.
+        plant: true body.
+        seed: of all random numbers.
     """
 
     def __init__(self, robot: RobotModel, plant: Plant, seed: int) -> None:
@@ -124,7 +118,7 @@ class Trial:
 def missed(
     before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]
 ) -> tuple[float, float]:
-    """Error of the odometry between two pairs of true and believed pose [m, rad]."""
+    """Return the odometry error between two pairs of true and believed pose [m, rad]."""
     moves = []
     for old, new in zip(before, after, strict=True):
         c, s = np.cos(old[2]), np.sin(old[2])
@@ -134,7 +128,7 @@ def missed(
 
 
 def table(name: str, falls: list[Fall]) -> list[str]:
-    """Rows by the side first lain on."""
+    """Return the rows by the side on which the robot lay first."""
     rows = []
     sides = Counter(f.side for f in falls)
     for side in (*sorted(sides), "all"):
@@ -163,7 +157,7 @@ HEAD = (
 
 
 def falls_study(robot: RobotModel, seeds: list[int], *, write: bool) -> None:
-    """Print, and perhaps write, the table."""
+    """Print the table, and write it into the page if `write`."""
     lines = [HEAD]
     for name, plant in (
         ("as modelled", Plant()),
@@ -185,78 +179,13 @@ def falls_study(robot: RobotModel, seeds: list[int], *, write: bool) -> None:
         )
 
 
-def lie(body: Body, rng: np.random.Generator) -> None:
-    """Drop the robot somehow onto its front."""
-    data = body.data
-    pitch, roll, yaw = 0.5 * np.pi, *rng.normal(0.0, (0.2, 1.0)).tolist()
-    half = 0.5 * np.array([roll, pitch, yaw])
-    quaternion = np.array([1.0, 0.0, 0.0, 0.0])
-    for axis in (2, 1, 0):
-        turn = np.array([np.cos(half[axis]), 0.0, 0.0, 0.0])
-        turn[1 + axis] = np.sin(half[axis])
-        before = quaternion.copy()
-        mujoco.mju_mulQuat(quaternion, before, turn)
-    data.qpos[2], data.qpos[3:7] = 0.12, quaternion
-    mujoco.mj_forward(body.model, data)
-
-
-def score(robot: RobotModel, motions: Motions, seeds: Iterable[int]) -> float:
-    """Mean time to get up from the front, failures counting for `PATIENCE` [s]."""
-    parameters = GetUpParameters(max_attempts=1)
-    times = []
-    for seed in seeds:
-        rng = np.random.default_rng([seed, 29])
-        body = Body(rng, Plant(self_contact=seed % 2 == 1))
-        lie(body, rng)
-        get_up = GetUp(robot, parameters, np.array(STRAIGHT.angles()), motions)
-        while get_up.outcome is Outcome.UNDER_WAY:
-            body.apply(get_up.step(body.sense()).position)
-        times.append(body.data.time if get_up.outcome is Outcome.UP else PATIENCE)
-    return float(np.mean(times))
-
-
-def search(robot: RobotModel, name: str, seeds: list[int], rounds: int) -> None:
-    """Hill-climb on the numbers of one symmetric posture of the rise."""
-    rise = list(MOTIONS.rise)
-    index = [posture.name for posture in rise].index(name)
-    rng = np.random.default_rng(0)
-    best = score(robot, MOTIONS, seeds)
-    print(f"{best:.2f} s {rise[index]}", flush=True)
-    for _ in range(rounds):
-        posture = varied(rise[index], rng)
-        tried = [*rise[:index], posture, *rise[index + 1 :]]
-        result = score(robot, replace(MOTIONS, rise=tuple(tried)), seeds)
-        if result < best:
-            best, rise = result, tried
-            print(f"{best:.2f} s {posture}", flush=True)
-
-
-def varied(posture: KeyPosture, rng: np.random.Generator) -> KeyPosture:
-    """A posture like it, what is symmetric and in the sagittal plane changed a little."""
-    yaw, roll, pitch, knee, ankle, turn = posture.legs[0]
-    pitch, knee, ankle = (np.array([pitch, knee, ankle]) + rng.normal(0.0, 0.1, 3)).tolist()
-    shoulder = posture.arms[0][0] + rng.normal(0.0, 0.3)
-    both = (yaw, roll, pitch, knee, ankle, turn)
-    arms = (shoulder, *posture.arms[0][1:])
-    until = None if posture.until is None else posture.until + rng.normal(0.0, 0.05)
-    time, hold = posture.time * rng.lognormal(0.0, 0.2), posture.hold * rng.lognormal(0.0, 0.2)
-    return replace(posture, legs=(both, both), arms=(arms, arms), time=time, hold=hold, until=until)
-
-
 def main() -> None:
-    """Run one of the studies."""
+    """Run the study."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("study", choices=("falls", "search"))
     add_seeds(parser, range(10))
     parser.add_argument("--write", action="store_true", help=f"into {RESULT.name}")
-    parser.add_argument("--posture", default="squat", help="to vary, by its name")
-    parser.add_argument("--rounds", type=int, default=30)
     options = parser.parse_args()
-    robot, seeds = RobotModel.from_mjcf(ROBOT), options.seeds
-    if options.study == "falls":
-        falls_study(robot, seeds, write=options.write)
-    else:
-        search(robot, options.posture, seeds, options.rounds)
+    falls_study(RobotModel.from_mjcf(ROBOT), options.seeds, write=options.write)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 The floor is MuJoCo stepping the same model with constant controls and rendering as many
 images. It runs in turn with the loop, second by second, so that the ratio of the two holds
-on any machine and while other work comes and goes. Times are processor time; that of the
-threads which draw and write beside the loop is told by itself, and counts in the whole.
+on any machine and while other work comes and goes. Times are processor time; the time of
+the threads that draw and write in parallel is listed separately and included in the total.
 """
 
 import hsr8  # noqa: F401  before MuJoCo: it chooses the OpenGL to draw with
@@ -33,7 +33,7 @@ import mujoco
 from stopwatch import Stopwatch
 
 FLOOR = ("floor: physics", "floor: images")
-REST, BESIDE, WHOLE = "the rest of the loop", "threads beside it", "whole loop"
+REST, PARALLEL, WHOLE = "the rest of the loop", "parallel threads", "whole loop"
 SECOND = 1.0  # the floor has its turn after so much simulated time [s]
 
 
@@ -123,8 +123,8 @@ class Bench:
     def ratios(self) -> dict[str, float]:
         """Of every stage and of the whole, over the floor [1]."""
         stages = [stage for stage in self.watch.times if not stage.startswith("floor")]
-        found = {stage: self.watch.total(stage) / self.floor for stage in stages}
-        return found | {BESIDE: self.beside / self.floor, WHOLE: self.ratio}
+        result = {stage: self.watch.total(stage) / self.floor for stage in stages}
+        return result | {PARALLEL: self.beside / self.floor, WHOLE: self.ratio}
 
     def table(self) -> list[str]:
         """Rows of the stages, the floor last."""
@@ -144,7 +144,7 @@ class Bench:
                 f"{1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
             )
         rest = self.watch.total(REST)
-        for name, total in ((REST, rest), (BESIDE, self.beside), (WHOLE, self.loop)):
+        for name, total in ((REST, rest), (PARALLEL, self.beside), (WHOLE, self.loop)):
             lines.append(
                 f"| {name} | | | | {1e3 * total / self.simulated:.1f} | {total / self.floor:.3f} |"
             )

@@ -3,7 +3,7 @@
     python scripts/mutation_study.py --each 40
     python scripts/mutation_study.py --modules navigation/motion/univector --each 1000
 
-It prints rows of the table in docs/results/tests.md, which says of each survivor what it means.
+It prints rows of the table in docs/results/tests.md, which explains each survivor.
 
 Each mutant is one changed operator, comparison, number, sign, condition or function name of one
 module. It runs against the module's own tests in a forked process; it is killed if any of them
@@ -131,7 +131,7 @@ def candidates(tree: ast.AST) -> Iterator[ast.AST]:
 
 
 def replacements(node: ast.AST) -> Iterator[ast.AST]:
-    """What can stand in the place of a node."""
+    """Replacements of a node."""
     match node:
         case ast.BinOp(left, operator, right) if type(operator) in OPERATORS:
             yield ast.BinOp(left, OPERATORS[type(operator)](), right)
@@ -159,18 +159,18 @@ def replacements(node: ast.AST) -> Iterator[ast.AST]:
 def mutants(source: str) -> list[Mutant]:
     """All mutants of a module."""
     tree = _Uncached().visit(ast.parse(source))
-    found = []
+    result = []
     for k, node in enumerate(candidates(tree)):
         for other in replacements(node):
             changed = copy.deepcopy(tree)
-            place = next(n for i, n in enumerate(candidates(changed)) if i == k)
-            before = ast.unparse(node)
+            original = next(n for i, n in enumerate(candidates(changed)) if i == k)
+            before = ast.unparse(original)
             after = ast.unparse(ast.fix_missing_locations(copy.deepcopy(other)))
-            new = ast.copy_location(copy.deepcopy(other), place)
-            _Replace(place, new).visit(changed)
+            new = ast.copy_location(copy.deepcopy(other), original)
+            _Replace(original, new).visit(changed)
             ast.fix_missing_locations(changed)
-            found.append(Mutant(getattr(node, "lineno", 0), before, after, changed))
-    return found
+            result.append(Mutant(getattr(original, "lineno", 0), before, after, changed))
+    return result
 
 
 class _Replace(ast.NodeTransformer):
@@ -191,7 +191,7 @@ class _Uncached(ast.NodeTransformer):
 
 
 class Planted(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Lets the mutant be imported in the place of its module."""
+    """Lets the mutant be imported in the node of its module."""
 
     def __init__(self, name: str, mutant: Mutant) -> None:
         self._name, self._mutant = name, mutant
@@ -208,7 +208,7 @@ class Planted(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 
 def fails(tests: list[str], planted: Planted | None, patience: float) -> bool:
-    """Whether the tests fail or hang, in a process of their own."""
+    """Whether the tests fail or hang, in a separate process."""
     child = os.fork()
     if not child:
         null = os.open(os.devnull, os.O_RDWR)
@@ -267,8 +267,8 @@ def main() -> None:
     print("| module | mutants | sample | killed | what survived |\n|---|---|---|---|---|")
     for module in options.modules:
         every, tried, survived = study(module, options.each, options.seed)
-        told = "; ".join(f"line {m.line}: `{m.before}` → `{m.after}`" for m in survived)
-        cells = (f"`{module}`", every, tried, tried - len(survived), told.replace("|", "\\|"))
+        survivors = "; ".join(f"line {m.line}: `{m.before}` → `{m.after}`" for m in survived)
+        cells = (f"`{module}`", every, tried, tried - len(survived), survivors.replace("|", "\\|"))
         print("| " + " | ".join(map(str, cells)) + " |", flush=True)
 
 

@@ -20,7 +20,7 @@ from figure_style import styled
 from matplotlib.figure import Figure
 
 DPI = (110, 100, 90, 80)
-LARGEST = 300_000  # of a picture [byte]
+LARGEST = 300_000  # of an image [byte]
 
 
 def save(figure: Figure, file: Path) -> None:

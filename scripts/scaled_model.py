@@ -1,7 +1,7 @@
 """A robot of another size: the same drawing, scaled.
 
-Lengths go with the size s, masses with s³, inertias with s⁵. With gravity the same, times go
-with √s, torques with s⁴, and so on: a robot scaled in this way moves exactly as the original
+Lengths go with the size s, masses with s³, inertias with s⁵. With equal gravity, times go
+with √s, torques with s⁴, and so on: a robot scaled like this moves exactly as the original
 does, only larger and slower, as far as its control does so, too.
 """
 

@@ -1,8 +1,7 @@
 """Robots of other sizes and proportions walk without a change of code or parameters.
 
-Each robot is written to an MJCF file, and all that the walking library knows of it is read
-from there. Every robot is asked for the same in units of its own limits and of its own time;
-the sensors' noise is that of the same sensors for all.
+Each robot is written to an MJCF file, the only source of the walking library. Every robot gets
+the same commands in units of its limits and its time scale; the sensor noise is equal for all.
 
     python scripts/scaled_robot_study.py --seeds 1000 1001 1002
 
@@ -39,7 +38,7 @@ STEADY = {
     "side": VelocityCommand(0.0, 0.08, 0.0),
     "turn": VelocityCommand(0.0, 0.0, 0.8),
 }
-"""What HSR-VIII would be asked."""
+"""Command of HSR-VIII."""
 PUSH_TIME = 0.05  # [s], of HSR-VIII
 
 
@@ -102,20 +101,20 @@ PROPORTIONS: dict[str, Callable[[mujoco.MjSpec], None]] = {
 
 @dataclass
 class Options:
-    """What to run."""
+    """Options of the study."""
 
     seeds: tuple[int, ...] = (0,)
     """Random seeds, each for every walk of every robot."""
     robots: tuple[str, ...] = ("1.0", "0.8", "1.3", "0.5", "2.0", *PROPORTIONS)
     """Sizes, or a name of `PROPORTIONS`."""
     walks: tuple[str, ...] = (*STEADY, "random", "push")
-    """What to do."""
+    """Parts of the study."""
     duration: float = 60.0
     """Of the random walk; a third of it for a steady one [s, of HSR-VIII]."""
     impulse: float = 0.15
     """Of a push, divided by mass and √(g leg) [1]."""
     derived: bool = True
-    """Whether a robot has parameters of its own, or those of HSR-VIII."""
+    """Whether a robot has scaled parameters, or those of HSR-VIII."""
 
 
 class Push(NamedTuple):
@@ -166,7 +165,7 @@ class Walker:
         return WalkingEngine(self.model, self.parameters)
 
     def similar(self, script: Script) -> Script:
-        """What it is asked when HSR-VIII would be asked for `script`."""
+        """Return its command that corresponds to `script` of HSR-VIII."""
 
         def scaled(now: float) -> tuple[VelocityCommand, HeadTarget]:
             command, head = script(now / self.time)
@@ -222,7 +221,7 @@ def _stand_ready(spec: mujoco.MjSpec, robot: RobotModel, height: float) -> None:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one walk.
+    """Result of one walk.
 
     Attributes:
         falls: how often it fell.

@@ -166,8 +166,8 @@ def draw(tours: list[Tour]) -> Figure:
 def _snapshot(axes: Axes, shown: Tour, frame: FrameSummary) -> None:
     row = int(rows_at(shown.motion.time, [frame.time])[0])
     fov = frame.fov, shown.scenario.camera.vertical_fov
-    seen = placed(window(*frame.gaze, fov, shown.height), frame.truth)
-    axes.add_patch(Polygon(seen, closed=True, facecolor=VIEW, alpha=0.35, edgecolor="none"))
+    visible = placed(window(*frame.gaze, fov, shown.height), frame.truth)
+    axes.add_patch(Polygon(visible, closed=True, facecolor=VIEW, alpha=0.35, edgecolor="none"))
     for obstacle in shown.layout.static:
         disc(axes, obstacle.position, obstacle.radius, facecolor=STILL, edgecolor="none")
     for obstacle, at in zip(shown.layout.movers, shown.motion.movers[row], strict=True):

@@ -93,13 +93,13 @@ def pressure(body: Body) -> np.ndarray | None:
 
 def zmp_error(body: Body, engine: WalkingEngine, sites: tuple[int, int]) -> np.ndarray | None:
     """True centre of pressure less planned ZMP, both seen from the support foot (2,) [m]."""
-    state, found = engine.state(), pressure(body)
-    if found is None or state.phase == "standing":
+    state, measured = engine.state(), pressure(body)
+    if measured is None or state.phase == "standing":
         return None
     support = state.footsteps[0]
     site = sites[0 if support.left else 1]
     R = body.data.site_xmat[site].reshape(3, 3)
-    true = _turned(found - body.data.site_xpos[site, :2], np.arctan2(R[1, 0], R[0, 0]))
+    true = _turned(measured - body.data.site_xpos[site, :2], np.arctan2(R[1, 0], R[0, 0]))
     return true - _turned(state.zmp - [support.x, support.y], support.yaw)
 
 
@@ -180,8 +180,8 @@ class Study:
             share = np.abs(error[on] / asked[on])
             print(f"{name:8} mean error {share.mean():.1%}, largest {share.max():.1%}", flush=True)
         script = steady_script(VelocityCommand(0.2))
-        found = np.concatenate([self.walk(script, s, duration, zmp=True).zmp_error for s in seeds])
-        rms = 1e3 * np.sqrt((found**2).mean(axis=0))
+        errors = np.concatenate([self.walk(script, s, duration, zmp=True).zmp_error for s in seeds])
+        rms = 1e3 * np.sqrt((errors**2).mean(axis=0))
         print(f"CoP - planned ZMP at 0.2 m/s: rms {rms.round(1).tolist()}, {np.hypot(*rms):.1f} mm")
 
     def stop(self, seeds: list[int]) -> None:
@@ -189,10 +189,10 @@ class Study:
         walks: list[Walk] = []
         begun: list[int] = []
         tilt: list[float] = []
-        for way, velocity in enumerate(STOPS):
+        for k, velocity in enumerate(STOPS):
             moving = VelocityCommand(*velocity)
             for seed in seeds:
-                at = SETTLED + np.random.default_rng([seed, 13, way]).uniform(0.0, 0.7)
+                at = SETTLED + np.random.default_rng([seed, 13, k]).uniform(0.0, 0.7)
 
                 def script(
                     now: float, moving: VelocityCommand = moving, at: float = at
@@ -225,7 +225,7 @@ class Study:
             nees = [np.mean(np.concatenate([_nees(w, n) for w in walks])) for n in HORIZONS]
             drift = np.mean([_drift(walk) for walk in walks])
             shown = ", ".join(f"{n}: {v:.2f}" for n, v in zip(HORIZONS, nees, strict=True))
-            print(f"{name:12} {drift:.2%} of the way; NEES per freedom {shown}", flush=True)
+            print(f"{name:12} {drift:.2%} of the path; NEES per freedom {shown}", flush=True)
 
 
 def _legs(values: np.ndarray) -> str:
@@ -241,21 +241,21 @@ def _moved(before: np.ndarray, after: np.ndarray) -> np.ndarray:
 def _nees(walk: list[tuple[np.ndarray, Odometry]], horizon: int) -> list[float]:
     values = []
     for (pose, start), (other, end) in zip(walk[:-horizon], walk[horizon:], strict=True):
-        found = increment(start, end)
-        error = found.motion - _moved(pose, other)
+        moved = increment(start, end)
+        error = moved.motion - _moved(pose, other)
         error[2] = (error[2] + np.pi) % (2.0 * np.pi) - np.pi
-        values.append(float(error @ np.linalg.solve(found.covariance, error)) / 3.0)
+        values.append(float(error @ np.linalg.solve(moved.covariance, error)) / 3.0)
     return values
 
 
 def _drift(walk: list[tuple[np.ndarray, Odometry]]) -> float:
-    """Error of the way at the end, every footstep in its true heading, per way [1]."""
-    error, way = np.zeros(2), 0.0
+    """Return the final position error per path length, with the true headings of footsteps [1]."""
+    error, length = np.zeros(2), 0.0
     for (pose, start), (other, end) in pairwise(walk):
         moved = _turned(increment(start, end).motion[:2], -pose[2])
         error += moved - (other - pose)[:2]
-        way += float(np.hypot(*(other - pose)[:2]))
-    return float(np.hypot(*error)) / way
+        length += float(np.hypot(*(other - pose)[:2]))
+    return float(np.hypot(*error)) / length
 
 
 def main() -> None:

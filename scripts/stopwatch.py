@@ -1,7 +1,7 @@
-"""Time spent in methods of a running program, each without what it calls of the others.
+"""Time spent in methods of a running program, each without the time of the others that it calls.
 
-Processor time, which other work on the machine hardly changes: of the thread that calls, and
-beside it of all others, which draw or write for one stage while it is in the next.
+Processor time, which other work on the machine hardly changes: of the calling thread and,
+separately, of all others, which draw or write for one stage while the loop is in the next.
 """
 
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""Detections against the truth: what was found, what was false, and how honest the errors are."""
+"""Detections against the truth: recall, false detections, and consistency of the errors."""
 
 import itertools
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from vision_truth import Sight
 
 Array = NDArray[np.float64]
 
-MAX_MATCH = 0.25  # a detection farther than this from every visible thing is false [m]
+MAX_MATCH = 0.25  # a detection farther than this from every visible object is false [m]
 SURPRISE = 20.0  # NEES of two degrees of freedom that one in 20 000 should exceed
 FEW = 20  # bins of fewer sightings are not shown
 
@@ -22,14 +22,14 @@ class Study:
     """Everything counted.
 
     Attributes:
-        asked, found: things the detector is asked to find and those it found, by kind;
+        visible, detected: objects that are visible and those detected, by kind;
             obstacles also by whether they are clear.
         errors: by group: true distance, errors of distance, bearing and radius, and their
             claimed standard deviations; NEES of distance and bearing together.
     """
 
-    asked: dict[str, int] = field(default_factory=dict)
-    found: dict[str, int] = field(default_factory=dict)
+    visible: dict[str, int] = field(default_factory=dict)
+    detected: dict[str, int] = field(default_factory=dict)
     errors: dict[str, list[tuple[float, ...]]] = field(default_factory=dict)
     reported: int = 0
     false: int = 0
@@ -47,7 +47,7 @@ class Study:
             self._count(sight, best is not None)
             if best is None:
                 if sight.counted and sight.clear:
-                    mistakes.append(f"missed {sight.thing.label} at {sight.distance:.2f} m")
+                    mistakes.append(f"missed {sight.target.label} at {sight.distance:.2f} m")
                 continue
             used.add(best)
             nees = self._measure(detections[best], sight)
@@ -70,14 +70,14 @@ class Study:
                 mistakes.append(f"false {d.label} at {d.distance:.2f} m, {d.box}, {clean=}")
         return mistakes
 
-    def _count(self, sight: Sight, found: bool) -> None:
+    def _count(self, sight: Sight, detected: bool) -> None:
         if not sight.counted:
             return
-        name = sight.thing.kind
+        name = sight.target.kind
         if name == "obstacle":
             name = "clear obstacle" if sight.clear else "hidden or cut obstacle"
-        self.asked[name] = self.asked.get(name, 0) + 1
-        self.found[name] = self.found.get(name, 0) + found
+        self.visible[name] = self.visible.get(name, 0) + 1
+        self.detected[name] = self.detected.get(name, 0) + detected
 
     def _measure(self, d: Detection, sight: Sight) -> float:
         """Keep the errors of a detection; returns its NEES."""
@@ -87,16 +87,16 @@ class Study:
         flagged = d.cut or d.occluded
         group = f"{'flagged' if flagged else 'clean'} {d.kind}s"
         sigma = np.sqrt(np.diag(d.covariance)).tolist()
-        radius = d.radius - sight.thing.radius
+        radius = d.radius - sight.target.radius
         row = (sight.distance, *error.tolist(), radius, *sigma, d.radius_sigma, nees)
         self.errors.setdefault(group, []).append(row)
         return nees
 
     def report(self) -> None:
         """Print the tables."""
-        for name, asked in sorted(self.asked.items()):
-            found = self.found[name]
-            print(f"{name}s: found {found} of {asked} = {100.0 * found / asked:.2f} %")
+        for name, visible in sorted(self.visible.items()):
+            detected = self.detected[name]
+            print(f"{name}s: detected {detected} of {visible} = {100.0 * detected / visible:.2f} %")
         print(
             f"reported {self.reported}, false {self.false}: precision "
             f"{_share(self.reported, self.false):.2f} %\n"
@@ -146,15 +146,15 @@ def _rms(values: Array) -> float:
     return sqrt(float(np.mean(values**2)))
 
 
-def match(sight: Sight, found: tuple[Detection, ...], used: set[int]) -> int | None:
-    """The detection nearest to a thing, if near enough to be of it."""
+def match(sight: Sight, detections: tuple[Detection, ...], used: set[int]) -> int | None:
+    """The detection nearest to an object within `MAX_MATCH`."""
     options = []
-    for i, d in enumerate(found):
+    for i, d in enumerate(detections):
         turn = d.bearing - sight.bearing
         gap = abs(d.distance - sight.distance)
         limit = max(MAX_MATCH, 0.2 * sight.distance, 3.0 * float(d.covariance[0, 0]) ** 0.5)
         aside = abs(atan2(sin(turn), cos(turn))) * sight.distance
-        same = d.label == sight.thing.label and i not in used
+        same = d.label == sight.target.label and i not in used
         if same and gap < limit and aside < 0.08 * sight.distance + 0.08:
             options.append((gap + aside, i))
     return min(options)[1] if options else None

@@ -1,10 +1,10 @@
 """How well the detector sees crowded random scenes, against segmentation truth.
 
-    python scripts/vision_study.py --frames 1000 --seed 1 --pictures runs
+    python scripts/vision_study.py --frames 1000 --seed 1 --images runs
 
 Every frame draws 16 obstacles and 6 beacons around a camera at walking height with a
-random gaze and a swaying body; the detector is told a pose with random errors of the
-size it is told to expect.
+random gaze and a swaying body; the detector gets a pose with random errors of the
+expected size.
 """
 
 import argparse
@@ -27,7 +27,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 from vision_score import Study
-from vision_truth import Array, Thing, rotation_of, sights
+from vision_truth import Array, Target, rotation_of, sights
 
 WIDTH, HEIGHT, FOV = 320, 240, radians(70.0)
 CAMERA_HEIGHT = 0.47
@@ -38,7 +38,7 @@ FIELD = 2.5  # half side of the field [m]
 RIM = 2.9  # half side of the square the beacons stand on [m]
 
 
-def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[Thing]]:
+def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[Target]]:
     """A field with 16 obstacles and 6 beacons; the robot stands at a random place in it."""
     spec = mujoco.MjSpec()
     spec.visual.headlight.ambient = np.full(3, 0.35 * light)
@@ -63,7 +63,7 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
     root.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 0.05), rgba=(0.6, 0.59, 0.56, 1))
     root.add_camera(name="eye", mode=mujoco.mjtCamLight.mjCAMLIGHT_FIXED, fovy=70.0)
 
-    things: list[Thing] = []
+    targets: list[Target] = []
     robot = rng.uniform(-1.8, 1.8, 2)
 
     def post(at: tuple[float, float], radius: float, span: tuple[float, float], color: str) -> int:
@@ -76,15 +76,15 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
         geom.name = f"g{len(root.geoms)}"
         return len(root.geoms) - 1
 
-    while len(things) < 16:
+    while len(targets) < 16:
         x, y = (rng.uniform(-FIELD, FIELD, 2) - robot).tolist()
         radius = rng.uniform(0.05, 0.12)
-        clear = all(hypot(x - t.x, y - t.y) > radius + t.radius + 0.05 for t in things)
+        clear = all(hypot(x - t.x, y - t.y) > radius + t.radius + 0.05 for t in targets)
         if hypot(x, y) < radius + 0.2 or not clear:
             continue
         color = OBSTACLES[rng.integers(len(OBSTACLES))]
         geom = post((x, y), radius, (0.0, 0.30), color)
-        things.append(Thing("obstacle", color, x, y, radius, 0.30, (geom,)))
+        targets.append(Target("obstacle", color, x, y, radius, 0.30, (geom,)))
     corners = [(a, b) for a in (-RIM, RIM) for b in (-RIM, 0.0, RIM)]
     for (x0, y0), i in zip(corners, rng.permutation(len(NAMES)).tolist(), strict=True):
         x, y = x0 - robot[0], y0 - robot[1]
@@ -93,16 +93,16 @@ def world(rng: np.random.Generator, light: float) -> tuple[mujoco.MjModel, list[
             post((x, y), 0.05, (0.0, 0.30), bottom),
             post((x, y), 0.05, (0.30, 0.60), top),
         )
-        things.append(Thing("beacon", NAMES[i], x, y, 0.05, 0.60, geoms))
-    return spec.compile(), things
+        targets.append(Target("beacon", NAMES[i], x, y, 0.05, 0.60, geoms))
+    return spec.compile(), targets
 
 
 def frames(
     count: int, rng: np.random.Generator, light: tuple[float, float], noise: float
-) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.int32], Array, Array, list[Thing]]]:
-    """Image, geom of each pixel, true rotation and position of the camera, and things."""
+) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.int32], Array, Array, list[Target]]]:
+    """Image, geom of each pixel, true rotation and position of the camera, and targets."""
     for _ in range(count):
-        model, things = world(rng, rng.uniform(*light))
+        model, targets = world(rng, rng.uniform(*light))
         data = mujoco.MjData(model)
         pan, tilt = rng.uniform(-1.57, 1.57), rng.uniform(-1.05, 0.35)
         if rng.random() < 0.5:
@@ -122,14 +122,14 @@ def frames(
         if noise:
             noisy = image + rng.normal(0.0, noise, image.shape)
             image = np.clip(np.round(noisy), 0, 255).astype(np.uint8)
-        yield image, geoms, R, p, things
+        yield image, geoms, R, p, targets
 
 
 LEVEL = rotation_of(0.0, 0.0, 0.0)
 
 
-def told(R: Array, p: Array, rng: np.random.Generator, sigma: float) -> CameraPose:
-    """The pose with the errors that the detector is told to expect."""
+def perturbed(R: Array, p: Array, rng: np.random.Generator, sigma: float) -> CameraPose:
+    """Return the pose with errors of the expected size."""
     errors = rng.normal(0.0, 1.0, 4) * (sigma, sigma, 0.2 * sigma, 0.003)
     heading = atan2(R[1, 0], R[0, 0]) + 0.5 * np.pi
     turn, back = rotation_of(heading, 0, 0) @ LEVEL.T, rotation_of(-heading, 0, 0) @ LEVEL.T
@@ -144,10 +144,10 @@ def told(R: Array, p: Array, rng: np.random.Generator, sigma: float) -> CameraPo
     )
 
 
-def annotate(image: NDArray[np.uint8], found: tuple[Detection, ...], path: Path) -> None:
-    """Write the image, three times as large, with what was found in it."""
+def annotate(image: NDArray[np.uint8], detections: tuple[Detection, ...], path: Path) -> None:
+    """Write the image, three times as large, with its detections."""
     big = cv2.resize(image[:, :, ::-1], None, fx=3, fy=3, interpolation=cv2.INTER_NEAREST)
-    for d in found:
+    for d in detections:
         x0, y0, x1, y1 = (3 * b for b in d.box)
         cv2.rectangle(big, (x0, y0), (x1, y1), (255, 255, 255), 1)
         flags = ("c" if d.cut else "") + ("o" if d.occluded else "")
@@ -166,7 +166,7 @@ def main() -> None:
     parser.add_argument("--tilt-sigma", type=float, default=0.5, help="pose error [deg]")
     parser.add_argument("--light", type=float, nargs=2, default=(1.0, 1.0), help="brightness")
     parser.add_argument("--noise", type=float, default=0.0, help="pixel noise [grey levels]")
-    parser.add_argument("--pictures", type=Path, help="folder for annotated frames with mistakes")
+    parser.add_argument("--images", type=Path, help="folder for annotated frames with mistakes")
     args = parser.parse_args()
     cv2.setNumThreads(1)
     rng = np.random.default_rng(args.seed)
@@ -174,17 +174,17 @@ def main() -> None:
     detector = Detector(camera, VisionParameters())
     study = Study()
     scenes = frames(args.frames, rng, tuple(args.light), args.noise)
-    for index, (image, geoms, R, p, things) in enumerate(scenes):
-        pose = told(R, p, rng, radians(args.tilt_sigma))
+    for index, (image, geoms, R, p, targets) in enumerate(scenes):
+        pose = perturbed(R, p, rng, radians(args.tilt_sigma))
         laps = []
         for _ in range(5):
             start = time.process_time()
-            found = detector.detect(image, pose)
+            detections = detector.detect(image, pose)
             laps.append(1e3 * (time.process_time() - start))
         study.times.append(min(laps))
-        mistakes = study.judge(found, sights(geoms, R, p, things, camera))
-        if args.pictures and mistakes:
-            annotate(image, found, args.pictures / f"vision_{index:03d}.png")
+        mistakes = study.judge(detections, sights(geoms, R, p, targets, camera))
+        if args.images and mistakes:
+            annotate(image, detections, args.images / f"vision_{index:03d}.png")
             print(index, *mistakes, sep="\n    ")
     study.report()
 

@@ -1,4 +1,4 @@
-"""What a camera really shows: things, how much of each can be seen, and the true pose."""
+"""Ground truth of a camera image: visible targets, their visible fractions and the pose."""
 
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MIN_PIXELS = 12  # a thing of which less can be seen does not count [pixel]
+MIN_PIXELS = 12  # a target of which less can be seen does not count [pixel]
 
 
 @dataclass(frozen=True)
-class Thing:
+class Target:
     """A cylinder of the scene and how much of it can be seen."""
 
     kind: str
@@ -29,17 +29,17 @@ class Thing:
 
 @dataclass(frozen=True)
 class Sight:
-    """A thing in one frame.
+    """A target in one frame.
 
     Attributes:
-        thing: what it is.
+        target: the object.
         distance: from the robot [m].
         bearing: [rad].
-        hidden: share of its outline that other things hide.
+        hidden: fraction of its outline that other targets hide.
         cut: the border of the image cuts it.
     """
 
-    thing: Thing
+    target: Target
     distance: float
     bearing: float
     hidden: float
@@ -53,7 +53,7 @@ class Sight:
     @property
     def counted(self) -> bool:
         """Whether the detector is asked to find it."""
-        if self.thing.kind == "beacon":
+        if self.target.kind == "beacon":
             return self.clear and self.distance < 5.0
         return 0.3 <= self.distance <= 2.5
 
@@ -68,14 +68,14 @@ def rotation_of(yaw: float, pitch: float, roll: float) -> Array:
     return Rz @ Rx @ Ry @ level
 
 
-def silhouette(thing: Thing, camera: PinholeCamera, R: Array, p: Array) -> tuple[Array, bool]:
+def silhouette(target: Target, camera: PinholeCamera, R: Array, p: Array) -> tuple[Array, bool]:
     """Mask of the whole cylinder as if alone, and whether the border cuts it."""
     angle = np.arange(48) * (2.0 * np.pi / 48)
     ring = np.stack(
-        [thing.x + thing.radius * np.cos(angle), thing.y + thing.radius * np.sin(angle)]
+        [target.x + target.radius * np.cos(angle), target.y + target.radius * np.sin(angle)]
     )
     points = np.concatenate(
-        [np.stack([*ring, np.full(48, z)], axis=1) for z in (0.0, thing.height)]
+        [np.stack([*ring, np.full(48, z)], axis=1) for z in (0.0, target.height)]
     )
     local = (points - p) @ R
     mask = np.zeros((camera.height, camera.width), np.uint8)
@@ -99,16 +99,16 @@ def silhouette(thing: Thing, camera: PinholeCamera, R: Array, p: Array) -> tuple
 
 
 def sights(
-    geoms: NDArray[np.int32], R: Array, p: Array, things: list[Thing], camera: PinholeCamera
+    geoms: NDArray[np.int32], R: Array, p: Array, targets: list[Target], camera: PinholeCamera
 ) -> list[Sight]:
-    """Things of which at least a few pixels can be seen, nearest first."""
-    found = []
-    for thing in things:
-        pixels = int(np.isin(geoms, thing.geoms).sum())
+    """Targets of which at least a few pixels can be seen, nearest first."""
+    sights = []
+    for target in targets:
+        pixels = int(np.isin(geoms, target.geoms).sum())
         if pixels < MIN_PIXELS:
             continue
-        full, cut = silhouette(thing, camera, R, p)
+        full, cut = silhouette(target, camera, R, p)
         hidden = 1.0 - pixels / max(int(full.sum()), 1)
-        distance, bearing = hypot(thing.x, thing.y), atan2(thing.y, thing.x)
-        found.append(Sight(thing, distance, bearing, hidden, cut))
-    return sorted(found, key=lambda s: s.distance)
+        distance, bearing = hypot(target.x, target.y), atan2(target.y, target.x)
+        sights.append(Sight(target, distance, bearing, hidden, cut))
+    return sorted(sights, key=lambda s: s.distance)

@@ -24,7 +24,7 @@ import mujoco
 import numpy as np
 from study_page import add_seeds
 from vision_score import Study
-from vision_truth import Array, Thing, sights
+from vision_truth import Array, Target, sights
 
 
 class Referee(Listener):
@@ -75,22 +75,22 @@ class Referee(Listener):
         self.renderer.update_scene(data, camera=HEAD_CAMERA)
         geoms = self.renderer.render()[:, :, 0]
         truth_sights = sights(
-            geoms, R_RC, p_RC, self.things(truth.obstacle_positions, R_RW, x, y), self.pinhole
+            geoms, R_RC, p_RC, self.targets(truth.obstacle_positions, R_RW, x, y), self.pinhole
         )
         mistakes = self.study.judge(record.frame.detections, truth_sights)
         if mistakes and self.verbose:
             print(f"{record.time:.2f} s", *mistakes, sep="\n    ")
 
-    def things(self, positions: Array, R_RW: Array, x: float, y: float) -> list[Thing]:
+    def targets(self, positions: Array, R_RW: Array, x: float, y: float) -> list[Target]:
         """All cylinders in the true robot frame."""
-        found = []
+        visible = []
         shapes = [
             *((o.color, o.radius, o.height) for o in self.layout.obstacles),
             *((b.name, b.radius, b.height) for b in self.layout.beacons),
         ]
         places = [*positions.tolist(), *(b.position for b in self.layout.beacons)]
         static = len(self.layout.static)
-        for i, ((label, radius, height), place) in enumerate(zip(shapes, places, strict=True)):
+        for i, ((label, radius, height), position) in enumerate(zip(shapes, places, strict=True)):
             obstacle = i < len(self.layout.obstacles)
             if not obstacle:
                 top, bottom = label.split("/")
@@ -100,10 +100,10 @@ class Referee(Listener):
             body = self.model.body(name)
             first = int(body.geomadr[0])
             geoms = tuple(range(first, first + int(body.geomnum[0])))
-            forward, left, _ = (R_RW @ np.array([place[0] - x, place[1] - y, 0.0])).tolist()
+            forward, left, _ = (R_RW @ np.array([position[0] - x, position[1] - y, 0.0])).tolist()
             kind = "obstacle" if obstacle else "beacon"
-            found.append(Thing(kind, label, forward, left, radius, height, geoms))
-        return found
+            visible.append(Target(kind, label, forward, left, radius, height, geoms))
+        return visible
 
     def close(self, exit_reason: str) -> None:
         """Free the renderer."""
@@ -130,9 +130,9 @@ def timed(simulation: Simulation, study: Study) -> None:
 
     def detect_timed(image, pose):
         start = time.process_time()
-        found = detect(image, pose)
+        detections = detect(image, pose)
         study.times.append(1e3 * (time.process_time() - start))
-        return found
+        return detections
 
     robot._vision.detect = detect_timed
 

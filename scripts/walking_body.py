@@ -18,7 +18,7 @@ SUBSTEPS = 2
 BUMP_FIELD = 2.5  # half of the side of the square with bumps [m]
 BUMP_FREE = 0.25  # half of the side of the square without, in its middle [m]
 BUMPS = 500
-DITCH = 0.2  # width of a ditch and of the board beside it [m]
+DITCH = 0.2  # width of a ditch and of the board next to it [m]
 DITCH_FIELD = 4.0  # half of the side of the square with ditches [m]
 
 
@@ -32,7 +32,7 @@ class Plant:
         friction: between soles and floor [1].
         mass: multiple of all masses [1].
         com_forward, com_left: shift of the centre of mass [m].
-        delay: of the servos' set-points, in control ticks [1].
+        delay: of the servos' setpoints, in control ticks [1].
         slope: of the floor, uphill in the direction `uphill` [rad].
         uphill: that direction [rad].
         bump: height of the boxes strewn on the floor [m].
@@ -102,20 +102,20 @@ def _touch_oneself(spec: mujoco.MjSpec) -> None:
 
 def _bump(spec: mujoco.MjSpec, height: float, rng: np.random.Generator) -> mujoco.MjsGeom:
     """A box somewhere on the floor, away from where the robot begins."""
-    place = np.zeros(2)
-    while max(abs(place)) < BUMP_FREE:
-        place = rng.uniform(-BUMP_FIELD, BUMP_FIELD, 2)
+    position = np.zeros(2)
+    while max(abs(position)) < BUMP_FREE:
+        position = rng.uniform(-BUMP_FIELD, BUMP_FIELD, 2)
     turn = rng.uniform(0.0, np.pi)
     return spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_BOX,
-        pos=[*place, 0.0],
+        pos=[*position, 0.0],
         size=[*rng.uniform(0.02, 0.07, 2), height],
         quat=[np.cos(0.5 * turn), 0.0, 0.0, np.sin(0.5 * turn)],
     )
 
 
 def _slats(spec: mujoco.MjSpec, depth: float) -> list[mujoco.MjsGeom]:
-    """Boards across the way, their tops where the floor was; the robot begins on one."""
+    """Boards across the path, their tops at the height of the floor; the robot begins on one."""
     return [
         spec.worldbody.add_geom(
             type=mujoco.mjtGeom.mjGEOM_BOX,

@@ -21,7 +21,7 @@ Script = Callable[[float], tuple[VelocityCommand, HeadTarget]]
 
 @dataclass
 class Trace:
-    """What a walk left behind, one row every `SAMPLE` ticks."""
+    """Records of a walk, one row every `SAMPLE` ticks."""
 
     tilt: list[float] = field(default_factory=list)
     truth: list[np.ndarray] = field(default_factory=list)

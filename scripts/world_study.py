@@ -38,7 +38,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     add_seeds(parser, range(100))
     parser.add_argument("--families", nargs="+", default=FAMILIES.split())
-    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} and pictures")
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} and images")
     options = parser.parse_args()
     table = [f"| {HEADER} |", "|---" * (HEADER.count("|") + 1) + "|"]
     for name in options.families:
@@ -115,7 +115,7 @@ def page(seeds: list[int], table: list[str]) -> str:
         "",
         f"{environment(('hsr8', 'numpy'))}. Seeds {seeds[0]} to {seeds[-1]}.",
         "",
-        "Rejected: worlds drawn without a way through, of all drawn. Crowded: attempts in which "
+        "Rejected: random worlds without a path to the goal, of all. Crowded: attempts in which "
         "something found no place. Nominal walk hits: a blind robot that goes straight from point "
         "to point at the nominal pace touches something. Way, its ratio to the straight lines, "
         "time: of the certificates, median and the range of nine in ten worlds. Of `paper` the "

@@ -275,7 +275,7 @@ def test_every_command_of_the_page_works(page, stand_ins, capsys, monkeypatch):
         "hsr8 run quick --sed 3",
         "hsr8 run quick --set world.n_movers=3",
         "hsr8 compare runs/quick sweeps/nothing",
-        "python scripts/world_study.py --sed 0-9",
+        "python scripts/push_study.py walking --sed 0-9",
         "python scripts/belief_study.py course --sed 0-9",
         "python scripts/tune_baselines.py tun",
         "python scripts/write_scenario_reference.py --now",
