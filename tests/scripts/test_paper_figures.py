@@ -13,19 +13,18 @@ def panels():
     return {p.name: p for p in field_figure.panels()}
 
 
-def test_every_way_of_figure_3_ends_at_the_goal_and_none_enters_the_disc(panels):
+def test_every_path_of_figure_3_ends_at_the_goal_and_none_enters_the_disc(panels):
     for name, panel in panels.items():
-        if "sum" in name or "ours" in name:
+        if "sum" in name or "default" in name:
             assert panel.arrived.all(), name
             assert panel.clearance.min() > 0.05, name
 
 
-def test_within_d_con_the_ways_bend_towards_the_arrival_heading(panels):
-    ours = panels["blend by distance (ours)"]
-    for way in ours.ways:
-        gone = np.hypot(*np.diff(way, axis=0).T) > 1e-9
-        steps = np.diff(way, axis=0)[gone]
-        distance = np.hypot(*(way[:-1][gone] - field_figure.TARGET).T)
+def test_within_d_con_the_paths_bend_towards_the_arrival_heading(panels):
+    for path in panels["blend by distance (default)"].paths:
+        gone = np.hypot(*np.diff(path, axis=0).T) > 1e-9
+        steps = np.diff(path, axis=0)[gone]
+        distance = np.hypot(*(path[:-1][gone] - field_figure.TARGET).T)
         heading = np.arctan2(steps[:, 1], steps[:, 0])
         error = np.abs(heading - field_figure.GOAL_HEADING)
         near, far = error[distance < 0.1], error[(distance > 0.7) & (distance < 0.9)]
