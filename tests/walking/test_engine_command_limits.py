@@ -2,10 +2,10 @@
 
 from collections import Counter
 from dataclasses import replace
-from math import cos, sin
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from walking.command import CommandState, HeadTarget, VelocityCommand
 from walking.command_limits import Limit
@@ -38,19 +38,9 @@ def commands(rng, every):
 
 
 def tilted(sensors, roll, pitch):
-    w, _, _, z = sensors.orientation.tolist()
-    r, p = 0.5 * roll, 0.5 * pitch
-    return replace(
-        sensors,
-        orientation=np.array(
-            [
-                w * cos(r) * cos(p) - z * sin(r) * sin(p),
-                w * sin(r) * cos(p) - z * cos(r) * sin(p),
-                w * cos(r) * sin(p) + z * sin(r) * cos(p),
-                z * cos(r) * cos(p) + w * sin(r) * sin(p),
-            ]
-        ),
-    )
+    attitude = Rotation.from_quat(sensors.orientation[[1, 2, 3, 0]])
+    x, y, z, w = (attitude * Rotation.from_euler("yx", [pitch, roll])).as_quat()
+    return replace(sensors, orientation=np.array([w, x, y, z]))
 
 
 class Observer:
@@ -107,8 +97,8 @@ class Observer:
         """Whether the footstep under way is one of them."""
         nominal = gait.nominal(self._engine._placement._transition.strides)
         return (
-            (not gait.double or gait._shift.end == gait.timing.double)
-            and gait._single.ticks == gait.timing.single
+            (not gait.double or gait.clock.shift.end == gait.timing.double)
+            and gait.clock.single.ticks == gait.timing.single
             and (gait.double or abs(gait.swing_height - gait.timing.swing_height) < ROUNDING)
             and self._usual.same(nominal, gait.landing)
         )

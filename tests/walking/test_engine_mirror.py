@@ -59,7 +59,7 @@ def commands(rng, ticks):
 
 def noisy(frame, rng):
     """A body that is pushed a little in every direction."""
-    lean = 0.004 * rng.standard_normal(2)
+    lean = (0.2 if rng.uniform() < 0.2 else 0.004) * rng.standard_normal(2)
     return replace(
         frame,
         gyro=frame.gyro + 0.03 * rng.standard_normal(3),
@@ -72,16 +72,18 @@ def test_the_mirrored_walk_is_the_walk_mirrored(robot, ideal_body, generator):
     pattern = replace(WalkingParameters().pattern, generator=generator)
     parameters = replace(WalkingParameters(), pattern=pattern)
     one, other = WalkingEngine(robot, parameters), WalkingEngine(robot, parameters)
-    rng, apart = np.random.default_rng(4), 0.0
+    rng, apart, caught = np.random.default_rng(4), 0.0, 0.0
     for command in commands(np.random.default_rng(3), 600):
         frame = noisy(ideal_body.sense(), rng)
         a = one.step(frame, command, HeadTarget(0.5, -0.2))
         b = other.step(sensors(frame), mirrored(command), HeadTarget(-0.5, -0.2))
         ideal_body.apply(a)
+        caught = max(caught, np.hypot(*one.state().balance.capture))
         apart = max(
             apart,
             np.abs(joints(a.position) - b.position).max(),
             np.abs(joints(a.setpoint) - b.setpoint).max(),
         )
     assert one.state().step_count > 5
+    assert caught > 0.02
     assert apart < 1e-6

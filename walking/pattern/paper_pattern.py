@@ -113,7 +113,7 @@ class PaperGenerator:
         ramp = ramps[0]
         if ramp.feet[0] is not ramp.feet[1]:
             return True
-        target = self._walking_target(ramps)
+        target = self.walking_target(ramps)
         if target.near(self._target):
             return True
         functions = self._solve(state, ramp, target)
@@ -147,7 +147,7 @@ class PaperGenerator:
     def forget(self) -> None:
         self._target, self._residual = None, (0.0, 0.0)
 
-    def _walking_target(self, ramps: Sequence[ZmpRamp]) -> WalkingTarget:
+    def walking_target(self, ramps: Sequence[ZmpRamp]) -> WalkingTarget:
         """Return the DCM of the planned footholds, and ζ of the periodic walk they lead to."""
         first = ramps[0]
         if len(ramps) == 1:
@@ -194,7 +194,7 @@ class PaperGenerator:
     ) -> None:
         """Approximate the DCM of an infeasible reference by a constant ZMP."""
         ramp = ramps[0]
-        target = WalkingTarget(self._walking_target(ramps).xi, None)
+        target = WalkingTarget(self.walking_target(ramps).xi, None)
         growth = exp(self._lipm.omega * ramp.ticks * CONTROL_PERIOD)
         functions, missed = [], []
         wanted = self._solve(state, ramp, target)

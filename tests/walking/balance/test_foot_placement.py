@@ -25,7 +25,7 @@ NONE = (0.0, 0.0)
 class Pendulum:
     """Steering, gait and pendulum; a DCM error is whatever the test says."""
 
-    def __init__(self, robot, generator, *, first=0):
+    def __init__(self, robot, generator):
         self.parameters = parameters = WalkingParameters(
             pattern=PatternParameters(generator=generator)
         )
@@ -44,7 +44,6 @@ class Pendulum:
         self.placement = FootPlacement(
             lipm, made, self.planner, self.gait, stabilizer=stabilizer, pendulum=self.capture
         )
-        self._first = first
 
     def tick(self, command, error=NONE):
         gait, steering, placement = self.gait, self.steering, self.placement
@@ -52,7 +51,7 @@ class Pendulum:
         steering.follow(command, 1.0, settled=True, balanced=True)
         gait.retime(steering.next_timing(gait.timing, stepping=gait.stepping))
         if not gait.stepping and steering.moving:
-            gait.start(self._first)
+            gait.start(0)
         region = support_region(self.sole, *gait.support_feet, self.parameters.pattern.sole_margin)
         ramps = placement.decide(
             steering.strides(STILL), steering.velocity, error, region, moving=steering.moving
@@ -108,36 +107,6 @@ def test_what_the_ankles_hold_moves_no_landing(robot, generator):
     walk.tick(command, (0.005, 0.003))
     assert walk.placement.moved == NONE
     assert Limit.BALANCE not in walk.placement.bound
-
-
-@pytest.mark.parametrize("generator", GENERATORS)
-@pytest.mark.parametrize(
-    ("velocity", "error"),
-    [
-        ((0.2, 0.05, 0.4), (0.03, 0.01)),
-        ((0.0, -0.08, 0.3), (-0.02, 0.025)),
-        ((0.3, 0.0, 0.0), (0.0, -0.03)),
-    ],
-)
-def test_mirrored_errors_move_mirrored_landings(robot, generator, velocity, error):
-    vx, vy, wz = velocity
-    sides = []
-    for side, first in ((1.0, 0), (-1.0, 1)):
-        command = VelocityCommand(vx + 0.05, side * vy, side * wz)
-        walk = Pendulum(robot, generator, first=first).to_swing(command)
-        walk.tick(command, (error[0], side * error[1]))
-        landing, placement = walk.gait.landing, walk.placement
-        sides.append(
-            (
-                [landing.x, side * landing.y, side * landing.yaw],
-                [placement.moved[0], side * placement.moved[1]],
-                placement.bound,
-            )
-        )
-    (landing, moved, bound), (other, other_moved, other_bound) = sides
-    assert landing == pytest.approx(other, abs=1e-6)
-    assert moved == pytest.approx(other_moved, abs=1e-6)
-    assert bound == other_bound
 
 
 def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, monkeypatch):

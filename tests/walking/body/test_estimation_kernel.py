@@ -82,15 +82,6 @@ def test_tilt_of_a_trunk_that_yaws_under_a_constant_lean():
     assert result == pytest.approx((lean * np.cos(angle), -lean * np.sin(angle)), abs=0.01)
 
 
-def test_tilt_noise_is_reduced():
-    rng, tilt = np.random.default_rng(0), Tilt()
-    rows = [
-        tilt.update(*rng.normal(0.0, 0.0025, 2).tolist(), rng.normal(0.0, 0.01, 3))
-        for _ in range(4000)
-    ]
-    assert np.std(rows[200:]) < 0.0006
-
-
 def test_rates_of_a_trunk_that_does_not_yaw_are_integrated():
     tilt = Tilt(1e-12)
     tilt.update(0.05, -0.02, [9.0, 9.0, 9.0])  # the first only says where it is

@@ -66,14 +66,6 @@ def test_a_foot_out_of_reach_is_said_so_and_keeps_its_orientation(robot):
     assert angles[3] == 0.0
 
 
-def test_legs_mirror_each_other(robot):
-    pose = FootPose(0.03, 0.05, -0.19, 0.05, 0.04, 0.2)
-    mirrored = FootPose(0.03, -0.05, -0.19, -0.05, 0.04, -0.2)
-    left = np.array(leg_angles(robot.legs[0], pose)[0])
-    right = np.array(leg_angles(robot.legs[1], mirrored)[0])
-    np.testing.assert_allclose(right, left * [-1, -1, 1, 1, 1, -1], atol=1e-12)
-
-
 @pytest.mark.parametrize("force", [(0.0, 0.0, 30.0), (8.0, -5.0, 30.0)])
 def test_support_torques_are_the_virtual_work_of_the_force(robot, force):
     # The joints do as much work on the foot as the floor takes, the base held still.
@@ -89,11 +81,3 @@ def test_support_torques_are_the_virtual_work_of_the_force(robot, force):
             ends.append(np.array([pose.x, pose.y, pose.z]))
         motion = (ends[0] - ends[1]) / (2.0 * step)
         assert torques[k] == pytest.approx(-np.dot(force, motion), abs=1e-6)
-
-
-def test_load_ahead_of_the_ankle_asks_for_a_pitch_torque(robot):
-    leg = robot.legs[0]
-    angles, _ = leg_angles(leg, FootPose(0.0, leg.hip_y, -0.2, 0.0, 0.0, 0.0))
-    torques = support_torques(leg.row, angles, (0.03, leg.hip_y, -0.2), (0.0, 0.0, 54.0))
-    assert torques[4] == pytest.approx(54.0 * 0.03)
-    assert torques[5] == pytest.approx(0.0, abs=1e-9)

@@ -28,16 +28,6 @@ def test_feet_stand_level_under_the_hips_in_the_ready_posture(robot):
         assert p[0] == pytest.approx(robot.legs[side].hip_x, abs=1e-3)
 
 
-def test_left_and_right_leg_are_mirror_images(robot):
-    left, right = robot.legs
-    assert left.hip_y == -right.hip_y
-    assert (left.thigh, left.shank, left.ankle_height) == (
-        right.thigh,
-        right.shank,
-        right.ankle_height,
-    )
-
-
 def test_sole_is_tiled_by_its_pads(robot):
     corners = [robot.frame_pose(f"l_sole_{pad}", robot.ready)[1] for pad in ("fl", "br")]
     foot = robot.frame_pose("l_foot", robot.ready)[1]

@@ -33,11 +33,6 @@ def follow(steering, command, *, ticks=1, fraction=1.0):
         steering.follow(command, fraction, settled=True, balanced=True)
 
 
-def mirrored(placement):
-    x, y, turned = placement
-    return x, -y, -turned
-
-
 @given(st.floats(-0.2, 0.2), st.floats(-0.05, 0.05), st.floats(-0.3, 0.3), either)
 def test_a_wish_within_the_limits_comes_through_unaltered(vx, vy, wz, selective):
     steering = steer(selective=selective)
@@ -84,19 +79,6 @@ def test_the_velocity_rises_no_faster_than_the_legs_can(walk):
             )
             for old, new, rate in zip(before, steering.velocity, most, strict=True):
                 assert abs(new) - abs(old) <= rate * CONTROL_PERIOD + 1e-12
-
-
-@given(walks, either)
-def test_mirrored_commands_give_the_mirrored_wish(walk, selective):
-    one, other = steer(selective=selective), steer(selective=selective)
-    for command, ticks in walk:
-        follow(one, command, ticks=ticks)
-        follow(other, VelocityCommand(command.vx, -command.vy, -command.wz), ticks=ticks)
-        right, left = one.strides(STILL), other.strides(STILL)
-        assert right.right == pytest.approx(mirrored(left.left), abs=1e-12)
-        assert right.left == pytest.approx(mirrored(left.right), abs=1e-12)
-        assert one.bound == other.bound
-        assert one.timing == other.timing
 
 
 @given(commands, either)

@@ -40,14 +40,6 @@ def tick(gait, velocity, *, moving=True):
     return ramps
 
 
-def test_it_stands_until_it_is_started(gait):
-    for _ in range(100):
-        tick(gait, STILL, moving=False)
-    assert gait.phase is Phase.STANDING
-    assert gait.completed == 0
-    assert gait.right_weight == 0.5
-
-
 def test_phases_follow_each_other(gait):
     gait.start(0)
     phases = []

@@ -139,19 +139,18 @@ def test_the_reaction_is_read_off_the_model(robot):
     assert 0.0 < reaction.knee < reaction.thrust
 
 
-def zmp_errors(robot, body, reaction):
-    """Multibody ZMP of the planned motion less the planned one, forward at 0.2 m/s [m]."""
+def test_the_multibody_zmp_is_near_the_planned_one(robot, ideal_body):
+    """Forward at 0.2 m/s; without the compensation the errors are 10 mm and 6 mm."""
     usual = WalkingParameters()
-    # The pads of a body without dynamics know nothing of its centre of pressure.
+    # The pads of a body without dynamics do not measure its centre of pressure.
     parameters = replace(usual, stabilizer=replace(usual.stabilizer, com_offset_gain=0.0))
     engine = WalkingEngine(robot, parameters)
-    engine._whole_body.compensation = SwingCompensation(engine._lipm, reaction)
     rows = []
     for _ in range(900):
-        targets = engine.step(body.sense(), VelocityCommand(0.2), HeadTarget())
-        body.apply(targets)
+        targets = engine.step(ideal_body.sense(), VelocityCommand(0.2), HeadTarget())
+        ideal_body.apply(targets)
         pelvis, pendulum = engine._whole_body.pelvis, engine._pendulum
-        rows.append([*targets.position, *pelvis[:2], pendulum.zmp_x, pendulum.zmp_y])
+        rows.append([*targets.position, *pelvis[:2], *pendulum.zmp])
     table = np.array(rows)
     rate = np.diff(table[:, :28], axis=0) / CONTROL_PERIOD
     change = np.diff(rate, axis=0) / CONTROL_PERIOD
@@ -164,17 +163,4 @@ def zmp_errors(robot, body, reaction):
         fx, fy, fz, nx, ny, _ = wrench
         zmp = table[k, 26:28] + [-(ny + height * fx) / fz, (nx - height * fy) / fz]
         errors.append(zmp - table[k, 28:])
-    return np.array(errors)
-
-
-def test_the_multibody_zmp_comes_near_the_planned_one(robot, ideal_body):
-    parameters = WalkingParameters()
-    reaction = leg_reaction(robot, parameters.pattern.pelvis_height, parameters.gait.swing_height)
-    errors = zmp_errors(robot, ideal_body, reaction)
-    # Without the compensation 10 mm and 6 mm.
-    assert np.sqrt((errors**2).mean(axis=0)) == pytest.approx([0.0, 0.0], abs=0.005)
-
-
-def test_a_pendulum_alone_lets_the_legs_move_the_zmp(robot, ideal_body):
-    errors = zmp_errors(robot, ideal_body, LegReaction(0.0, 0.0, 0.0))
-    assert np.sqrt((errors[:, 0] ** 2).mean()) > 0.008
+    assert np.sqrt((np.array(errors) ** 2).mean(axis=0)) == pytest.approx([0.0, 0.0], abs=0.005)

@@ -69,7 +69,7 @@ def start_of_support(stride=0.05):
     """A pendulum in periodic walking at the start of single support."""
     steps = feet(9, stride)
     generator = PaperGenerator(LIPM, PatternParameters())
-    target = generator._walking_target(reference(steps, 54))
+    target = generator.walking_target(reference(steps, 54))
     growth = exp(W * 54 * CONTROL_PERIOD)
     # Under a ZMP at rest ζ only decays.
     zeta = [growth * z for z in target.zeta]
@@ -111,7 +111,7 @@ def test_position_and_velocity_of_a_new_walk_are_reached_at_touch_down(tick, str
     state = start_of_support()
     steps, path = run(generator, state, feet(9), 54, (tick, feet(9, stride)))
     assert all(admitted for admitted, _, _ in path)
-    target = generator._walking_target(reference(steps, 1))
+    target = generator.walking_target(reference(steps, 1))
     dx, dy = state.x - 0.01, state.y - 0.042
     xi = (dx + state.vx / W, dy + state.vy / W)
     zeta = (dx - state.vx / W, dy - state.vy / W)

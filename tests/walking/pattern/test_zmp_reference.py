@@ -19,11 +19,6 @@ LEFT, RIGHT = Foothold(True, 0.0, 0.042, 0.1), Foothold(False, 0.05, -0.042, -0.
 TIMING = Timing(14, 54, 0.025)
 
 
-def test_it_mirrors():
-    x, y = REFERENCE.under(LEFT)
-    assert REFERENCE.under(Foothold(False, 0.0, -0.042, -0.1)) == pytest.approx((x, -y))
-
-
 def test_it_turns_with_the_foot():
     x, y = REFERENCE.under(Foothold(True, 0.0, 0.0, 0.0))
     assert REFERENCE.under(Foothold(True, 1.0, 2.0, 1.5707963267948966)) == pytest.approx(
@@ -52,11 +47,6 @@ def test_it_goes_from_foot_to_foot_without_jumps(ends, left):
     assert sum(r.ticks for r in ramps) == sum(left) + rest
     assert all(r.feet[0] is r.feet[1] for r in ramps if (r.ax, r.ay) == (r.bx, r.by))
     assert all(a.feet[1] == b.feet[0] for a, b in pairwise(ramps))
-
-
-def test_both_feet_carry_alike_halfway_between_them():
-    (ax, ay), (bx, by) = REFERENCE.under(LEFT), REFERENCE.under(RIGHT)
-    assert REFERENCE.between(LEFT, RIGHT) == pytest.approx(((ax + bx) / 2, (ay + by) / 2))
 
 
 def test_under_a_foot_it_is_ahead_of_the_ankle_and_inward():

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from walking.body.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
+from walking.body.joints import HEAD
 from walking.parameters import CONTROL_PERIOD, PatternParameters, StabilizerParameters
 from walking.servos.feedforward import FeedForward
 
@@ -23,14 +23,6 @@ SOLES = ((0.01, 0.042), (0.01, -0.042))
 
 def offsets(robot, soles=SOLES, right_load=0.5, acceleration=(0.0, 0.0)):
     return feed(robot).offsets(robot.ready, ORIGIN, soles, right_load, acceleration, task=STILL)
-
-
-def test_standing_offsets_mirror(robot):
-    offset = offsets(robot)
-    signs = np.array([-1, -1, 1, 1, 1, -1])
-    np.testing.assert_allclose(offset[RIGHT_LEG], signs * offset[LEFT_LEG], atol=1e-9)
-    arms = np.array([1, -1, -1, 1, -1, -1])
-    np.testing.assert_allclose(offset[RIGHT_ARM], arms * offset[LEFT_ARM], atol=1e-6)
 
 
 def test_a_loaded_knee_is_stretched_against_the_weight(robot):
