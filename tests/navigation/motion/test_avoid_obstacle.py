@@ -112,3 +112,12 @@ def test_a_centre_exactly_abeam_acts_only_if_the_third_condition_is_waived():
     assert field([0.0, 0.0], centres=abeam, abeam=True)[0] == pytest.approx([0.0, -1.0])
     behind_target = np.array([[3.0, 0.3]])
     assert not field([2.2, 0.0], centres=behind_target, abeam=True).any()
+
+
+def test_rigid_motion_moves_the_field_along(rotation):
+    rng = np.random.default_rng(3)
+    points, centres = rng.uniform(-1, 1, (100, 2)), rng.uniform(-1, 1, (5, 2))
+    s, r, shift = rng.uniform(0.1, 0.3, 5), rotation(0.6), np.array([1.0, 4.0])
+    u = field(points, centres, s, "outward")
+    moved = field(points @ r.T + shift, centres @ r.T + shift, s, "outward", r @ TARGET + shift)
+    assert moved == pytest.approx(u @ r.T, abs=1e-9)

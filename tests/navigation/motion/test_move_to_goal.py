@@ -181,6 +181,9 @@ def test_each_side_is_set_and_forgotten():
     side = ArrivalSide(EXTENDED)
     assert [side.update(ORIGIN, leg(beta)) for beta in (-3.0, 3.1)] == [-1, -1]
     assert [side.update(ORIGIN, leg(beta, 1)) for beta in (2.0, 2.5)] == [0, 1]
+    there = np.array([3.0, 2.0])
+    moved = replace(leg(-3.0, 2), target=leg(-3.0).target + there)
+    assert side.update(there, moved) == -1
 
 
 @pytest.mark.parametrize("p", [PAPER, POSTURE])

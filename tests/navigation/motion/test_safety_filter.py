@@ -134,3 +134,21 @@ def test_weightless_hypotheses_do_not_matter(limits):
 def test_a_standing_robot_keeps_its_course(limits):
     there = start(course=1.0)
     assert filter_of(limits).choose(there, np.zeros(2), discs([5.0, 0.0])) == (1.0, 0.0)
+
+
+def test_the_penalty_does_not_depend_on_the_frame(limits, rotation):
+    rng, filter_, shift = np.random.default_rng(1), filter_of(limits), np.array([2.0, -1.0])
+    for _ in range(20):
+        places, velocities = rng.uniform(-1, 1, (8, 2)), rng.normal(0, 0.1, (8, 2))
+        heading, a = rng.uniform(-3, 3, 2).tolist()
+        wanted, r, body = rng.normal(0, 0.1, 2), rotation(a), (0.1, 0.0, 0.2)
+        course = float(np.arctan2(wanted[1], wanted[0]))
+        here, there = (
+            filter_.penalty(
+                start((*origin, heading + turn), body, course + turn),
+                filter_.candidates(matrix @ wanted, course + turn),
+                discs(places @ matrix.T + origin, velocities @ matrix.T),
+            )
+            for origin, turn, matrix in ((np.zeros(2), 0.0, np.eye(2)), (shift, a, r))
+        )
+        assert here == pytest.approx(there, abs=1e-6)

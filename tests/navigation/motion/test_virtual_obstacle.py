@@ -94,3 +94,18 @@ def test_far_from_the_path_the_present_side_decides():
     assert VirtualSides(p).update(1, foot(1.0, far), (0.0, -1.0)) == 1
     assert VirtualSides(p).update(1, foot(1.0, -far), (0.0, 1.0)) == -1
     assert VirtualSides(p).update(1, foot(1.0, 0.02), (0.0, -1.0)) == -1
+
+
+def test_the_path_point_does_not_depend_on_the_frame(rotation):
+    r, shift = rotation(0.8), np.array([3.0, -1.0])
+    for robot in np.random.default_rng(3).uniform((0.1, -1.0), (1.0, 1.0), (20, 2)):
+        here = foot(*robot)
+        there = foot(*(r @ robot + shift), r @ VELOCITY, shift)
+        assert (there.along, there.lateral) == pytest.approx((here.along, here.lateral))
+        assert (there.x, there.y) == pytest.approx(r @ [here.x, here.y] + shift)
+        sides = []
+        for point, turn in ((here, np.eye(2)), (there, r)):
+            goal = turn @ [0.6, 0.8]
+            sides.append(VirtualSides(MovingObstacleParameters()).update(1, point, tuple(goal)))
+            assert point.normal(1) == pytest.approx(turn @ here.normal(1))
+        assert sides[0] == sides[1]
