@@ -8,7 +8,7 @@ gaits in the locomotion of vertebrates", Physiol. Rev. 1989).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 from walking.robot_measures import RobotMeasures
 
@@ -29,22 +29,18 @@ class Dimension:
     ankle: float = 0.0
 
     def __mul__(self, other: Dimension) -> Dimension:
-        return Dimension(*(a + b for a, b in zip(self._powers, other._powers, strict=True)))
+        return Dimension(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
     def __truediv__(self, other: Dimension) -> Dimension:
         return self * other**-1.0
 
     def __pow__(self, power: float) -> Dimension:
-        return Dimension(*(power * a for a in self._powers))
-
-    @property
-    def _powers(self) -> tuple[float, ...]:
-        return self.leg, self.hip, self.sole, self.time, self.weight, self.ankle
+        return Dimension(*(power * a for a in astuple(self)))
 
     def scale(self, value: float, old: RobotMeasures, new: RobotMeasures) -> float:
         """Scale a value from a robot with measures `old` to one with measures `new`."""
         factor = 1.0
-        for power, a, b in zip(self._powers, old.values(), new.values(), strict=True):
+        for power, a, b in zip(astuple(self), astuple(old), astuple(new), strict=True):
             factor *= (b / a) ** power
         return value * factor
 

@@ -4,6 +4,7 @@ from math import hypot
 
 import numpy as np
 
+from walking.arrays import Point
 from walking.balance.capture_step import CapturePendulum
 from walking.balance.com_offset import ComOffset
 from walking.balance.foot_placement import FootPlacement
@@ -209,7 +210,7 @@ class WalkingEngine:
         tilt = self._estimation.tilt
         return tilt is not None and hypot(*tilt) > self._fall_tilt
 
-    def _sense(self, sensors: BodySensors) -> tuple[float, float]:
+    def _sense(self, sensors: BodySensors) -> Point:
         """Update the state estimate; return roll and pitch of the trunk [rad]."""
         gait, whole_body = self._gait, self._whole_body
         zmps = (*self._pendulum.zmp, *self._zmp_shift)
@@ -219,7 +220,7 @@ class WalkingEngine:
         self._ticks += 1
         return self._estimation.update(sensors, gait.feet, plan, stepping=gait.stepping)
 
-    def _command(self, command: Command, error: tuple[float, float]) -> None:
+    def _command(self, command: Command, error: Point) -> None:
         settled = self._ticks * CONTROL_PERIOD > self._parameters.gait.settle_time
         off = hypot(*error)
         balanced = off < self._parameters.stabilizer.max_slew_error
@@ -251,7 +252,7 @@ class WalkingEngine:
         )
         return steering.strides((vx, vy, self._heading.rate(ahead, renew=begins or disturbed)))
 
-    def _maybe_start(self, error: tuple[float, float]) -> None:
+    def _maybe_start(self, error: Point) -> None:
         """Take a first footstep if the command or balance requires it."""
         gait, foot = self._gait, self._gait.footholds[0]
         ratio = self._parameters.stabilizer.step_error_ratio
@@ -282,7 +283,7 @@ class WalkingEngine:
             if self._touch.update(gait.swing_phase, force) and gait.swing_phase < 1.0:
                 gait.touchdown()
 
-    def _right_load(self, region: SupportRegion, zmp: tuple[float, float]) -> float:
+    def _right_load(self, region: SupportRegion, zmp: Point) -> float:
         """Return the planned load fraction of the right foot [1]."""
         gait = self._gait
         loading = region.load_fraction(*zmp) if gait.double else 1.0

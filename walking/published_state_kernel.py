@@ -73,7 +73,8 @@ def show(
     c, s = cos(odometry[2]), sin(odometry[2])
     points[4, 0] = odometry[0] + c * com[0] - s * com[1]
     points[4, 1] = odometry[1] + s * com[0] + c * com[1]
-    return turn(frame, vector)
+    _, _, c, s, _ = frame
+    return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
 
 
 @njit(cache=True)
@@ -122,11 +123,3 @@ def transform(frame: Frame, rows: Array, yaw: int) -> None:
         rows[k, 0], rows[k, 1] = ox + c * x - s * y, oy + s * x + c * y
         if yaw >= 0:
             rows[k, yaw] += direction
-
-
-@njit(cache=True)
-def turn(frame: Frame, vector: Point) -> Point:
-    """Rotate a vector of the plan frame into the odometry frame."""
-    _, _, c, s, _ = frame
-    x, y = vector
-    return c * x - s * y, s * x + c * y

@@ -1,6 +1,6 @@
 """Measures of a robot that its walk scales with, and those of HSR-VIII."""
 
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,10 +23,6 @@ class RobotMeasures:
     time: float
     weight: float
     ankle: float
-
-    def values(self) -> tuple[float, ...]:
-        """Return all measures in order."""
-        return astuple(self)
 
 
 HSR_VIII = RobotMeasures(

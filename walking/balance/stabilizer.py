@@ -2,6 +2,7 @@
 
 from math import exp
 
+from walking.arrays import Point
 from walking.balance.pole_placement import dcm_gain
 from walking.balance.step_timing import capture_time
 from walking.body.robot_model import RobotModel
@@ -43,26 +44,21 @@ class Stabilizer:
         self._omega = omega
         lag = float((robot.damping[4:6] / robot.stiffness[4:6]).max())
         self._gain = dcm_gain(omega, lag, parameters.dcm_rate)
-        sole = robot.sole
-        self._margin = (
-            sole.half_length - parameters.sole_margin,
-            sole.half_width - parameters.sole_margin,
-        )
+        sole, margin = robot.sole, parameters.sole_margin
+        self._margin = sole.half_length - margin, sole.half_width - margin
 
-    def zmp_shift(
-        self, zmp: tuple[float, float], error: tuple[float, float], region: SupportRegion
-    ) -> tuple[float, float]:
+    def zmp_shift(self, zmp: Point, error: Point, region: SupportRegion) -> Point:
         """Return the shift of the ZMP by the ankles against a DCM error [m]."""
         gain = self._gain
         x, y = region.clip(zmp[0] + gain * error[0], zmp[1] + gain * error[1])
         return x - zmp[0], y - zmp[1]
 
-    def exceeds(self, foot: Foothold, error: tuple[float, float], ratio: float) -> bool:
+    def exceeds(self, foot: Foothold, error: Point, ratio: float) -> bool:
         """Whether a DCM error [m] exceeds a ratio [1] of the ZMP margins of the sole."""
         x, y = rotate_back(foot.yaw, *error)
         return abs(x) > ratio * self._margin[0] or abs(y) > ratio * self._margin[1]
 
-    def holds(self, foot: Foothold, error: tuple[float, float]) -> bool:
+    def holds(self, foot: Foothold, error: Point) -> bool:
         """Whether the ankles can balance a DCM error [m] without a capture step."""
         return not self.exceeds(foot, error, self._parameters.capture_dead_zone)
 
@@ -71,8 +67,8 @@ class Stabilizer:
         planner: FootstepPlanner,
         support: Foothold,
         landing: Foothold,
-        error: tuple[float, float],
-        reference: tuple[float, float],
+        error: Point,
+        reference: Point,
         *,
         ticks_left: int,
     ) -> Capture:

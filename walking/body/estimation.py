@@ -71,18 +71,8 @@ class Estimation:
 
     def observe(self, sensors: BodySensors) -> None:
         """Measure the body and filter its tilt in a tick without a plan."""
-        robot = self._robot
         self.tilt = estimation_kernel.observe(
-            sensors.joint_position,
-            sensors.foot_force,
-            sensors.orientation,
-            sensors.gyro,
-            robot.com(sensors.joint_position),
-            self._filter,
-            robot.leg_rows,
-            self._body,
-            CONTROL_PERIOD,
-            self.measured,
+            *self._inputs(sensors), self._robot.leg_rows, self._body, CONTROL_PERIOD, self.measured
         )
 
     def update(self, sensors: BodySensors, feet: Array, plan: Plan, *, stepping: bool) -> Point:
@@ -97,17 +87,12 @@ class Estimation:
         Returns:
             roll and pitch of the trunk [rad].
         """
-        robot, odometry = self._robot, self._odometry
+        odometry = self._odometry
         tilt, self.dcm_error, self.pressure_error, self.pose = estimation_kernel.estimate(
-            sensors.joint_position,
-            sensors.foot_force,
-            sensors.orientation,
-            sensors.gyro,
-            robot.com(sensors.joint_position),
-            self._filter,
+            *self._inputs(sensors),
             odometry.state,
             self._error,
-            robot.leg_rows,
+            self._robot.leg_rows,
             self._body,
             odometry.growth,
             self._gains,
@@ -119,3 +104,8 @@ class Estimation:
         )
         self.tilt = tilt
         return tilt
+
+    def _inputs(self, sensors: BodySensors) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """Return the first arguments of `observe` and `estimate`."""
+        joints, com = sensors.joint_position, self._robot.com(sensors.joint_position)
+        return joints, sensors.foot_force, sensors.orientation, sensors.gyro, com, self._filter

@@ -367,7 +367,7 @@ def foot_pose(leg: Leg, angles: Angles) -> Pose:
 
 
 @njit(cache=True)
-def level(point: Vector, tilt: tuple[float, float]) -> Vector:
+def level(point: Vector, tilt: Point) -> Vector:
     """Transform a point of the base frame to the level frame, given roll and pitch [rad]."""
     cr, sr, cp, sp = cos(tilt[0]), sin(tilt[0]), cos(tilt[1]), sin(tilt[1])
     x, y, z = point

@@ -37,14 +37,14 @@ def advance(position: Array, velocity: Array, target: Point, limits: Array, moti
 
 @njit(cache=True)
 def camera_pose(
-    pan: float, tilt: float, places: Array, mounted: Array, rotation: Array, position: Array
+    pan: float, tilt: float, origins: Array, mounted: Array, rotation: Array, position: Array
 ) -> None:
     """Set the pose of the head camera in the base frame.
 
     Args:
         pan: left positive [rad].
         tilt: up positive [rad].
-        places: positions of the pan joint in the base, of the tilt joint on the neck, of the
+        origins: positions of the pan joint in the base, of the tilt joint on the neck, of the
             camera on the head (3, 3) [m].
         mounted: rotation of the camera on the head (3, 3).
         rotation: R_BC, set (3, 3).
@@ -52,7 +52,7 @@ def camera_pose(
     """
     ca, sa, cb, sb = cos(pan), sin(pan), cos(tilt), sin(tilt)
     rows = ((ca * cb, -sa, -ca * sb), (sa * cb, ca, -sa * sb), (sb, 0.0, cb))
-    neck, head, camera = places[0], places[1], places[2]
+    neck, head, camera = origins[0], origins[1], origins[2]
     for k in range(3):
         x, y, z = rows[k]
         for axis in range(3):

@@ -137,7 +137,8 @@ def pose(
     """
     pelvis = pelvis_of(feet, com, build[0])
     apart = _pose_legs(position, tilts, feet, which, pelvis, tilt, tilt_control, legs)
-    swing = arm_swing(apart, build[1], build[2])
+    # Counter-swing, backward positive on the side of the foot ahead.
+    swing = min(build[2], max(-build[2], build[1] * apart))
     position[12], position[13] = head
     position[14] += swing
     position[20] -= swing
@@ -149,18 +150,6 @@ def pelvis_of(feet: Array, com: Point, ahead: float) -> Vector:
     """Return the pelvis for a centre of mass `com` ahead of it; its heading is between the feet."""
     yaw = 0.5 * (feet[0][2] + feet[1][2])
     return com[0] - ahead * cos(yaw), com[1] - ahead * sin(yaw), yaw
-
-
-@njit(cache=True)
-def arm_swing(apart: float, gain: float, limit: float) -> float:
-    """Return the counter-swing of the left shoulder, backward positive; the right one mirrors it.
-
-    Args:
-        apart: left foot ahead of the right foot along the heading [m].
-        gain: pitch per distance [rad/m].
-        limit: maximum pitch [rad].
-    """
-    return min(limit, max(-limit, gain * apart))
 
 
 @njit(cache=True)

@@ -66,8 +66,8 @@ class RobotModel:
         self.motion = self._q, np.zeros(model.nv), np.zeros(model.nv)
         self.indices = self._q_index, self._v_index
         camera = model.frames[self._frame("camera")].placement
-        places = [*map(self._placement, HEAD_JOINTS), camera.translation.tolist()]
-        self._head = np.array(places), camera.rotation @ R_HC
+        origins = [*map(self._placement, HEAD_JOINTS), camera.translation.tolist()]
+        self._head = np.array(origins), camera.rotation @ R_HC
         self.mass = float(sum(inertia.mass for inertia in model.inertias))
         self.legs = (self._leg("l"), self._leg("r"))
         self.leg_rows = np.array([leg.row for leg in self.legs])

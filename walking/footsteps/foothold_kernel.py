@@ -8,7 +8,7 @@ from math import cos, sin
 import numpy as np
 from numba import njit
 
-from walking.arrays import Array
+from walking.arrays import Array, Point
 from walking.footsteps.stride import Placement
 
 Row = tuple[float, float, float, float]
@@ -34,7 +34,7 @@ def plan_walk(
     landing: Row,
     chain: Chain,
     moving: bool,
-    zmp: tuple[float, float],
+    zmp: Point,
     ticks: tuple[int, int, int, int, int],
     zmp_offset: ZmpOffset,
 ) -> tuple[Array, Array]:
@@ -78,7 +78,7 @@ def ramps(
     unloading: Row,
     support: Row,
     steps: Array,
-    zmp: tuple[float, float],
+    zmp: Point,
     ticks: tuple[int, int, int, int, int],
     zmp_offset: ZmpOffset,
     ends: bool,
@@ -138,7 +138,7 @@ def _landing(support: Row, strides: Placements) -> Row:
 
 
 @njit(cache=True)
-def _under(foot: Row, zmp_offset: ZmpOffset) -> tuple[float, float]:
+def _under(foot: Row, zmp_offset: ZmpOffset) -> Point:
     """Return the ZMP of single support on a foot [m]."""
     forward = zmp_offset[0]
     inward = -zmp_offset[1] if foot[3] > 0.0 else zmp_offset[1]

@@ -2,6 +2,7 @@
 
 from math import cos, sin, sqrt
 
+from walking.arrays import Point
 from walking.body.sole import Sole
 from walking.clamp import clamp
 from walking.command import CommandState
@@ -189,7 +190,7 @@ class FootstepPlanner:
         clear = stride_kernel.clear(y, turned, side, self._gait.capture_clearance, self._sole)
         return self._at(support, x, clear, turned)
 
-    def _within_reach(self, x: float, y: float, side: float) -> tuple[float, float]:
+    def _within_reach(self, x: float, y: float, side: float) -> Point:
         """Scale a landing in the frame of the support foot into the ellipse of reach [m]."""
         limits = self._limits
         centre = side * 2.0 * self._gait.half_stance

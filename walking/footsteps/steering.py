@@ -34,7 +34,6 @@ class Steering:
         self._command: Command = VelocityCommand()
         self._state: CommandState | None = None
         self._bound: list[Limit] = []
-        self._too_fast: tuple[VelocityCommand | None, list[Limit]] = (None, [])
         self.timing = planner.cadence(self.velocity)
 
     @property
@@ -136,7 +135,7 @@ class Steering:
             return
         if self._state is not None or self._differs(limited(command, self._limits)):
             bound.append(Limit.BALANCE)
-        bound.extend(self._speed_limits(command))
+        bound.extend(speed_limits(command, self._limits))
         if self._state is None:
             bound.extend(self._planner.stride_limits(self.velocity, self.timing.duration))
 
@@ -151,12 +150,6 @@ class Steering:
             or abs(wz - wanted[2]) > SAME_SPEED
         )
 
-    def _speed_limits(self, command: VelocityCommand) -> list[Limit]:
-        """Return the speed limits that bind on a command, cached for many ticks."""
-        if command is not self._too_fast[0]:
-            self._too_fast = (command, speed_limits(command, self._limits))
-        return self._too_fast[1]
-
     def _follow_velocity(self, command: VelocityCommand, speed_ratio: float) -> None:
         self._state = None
         bound, wanted = self._bound, command
@@ -167,7 +160,7 @@ class Steering:
         if self._selective and command.velocity == STILL:
             self._slew.start(STILL)
         limit = self._slew.follow(wanted)
-        bound.extend(self._speed_limits(command))
+        bound.extend(speed_limits(command, self._limits))
         velocity = self.velocity
         self.timing = self._planner.cadence(velocity)
         if self._differs(limit):

@@ -15,7 +15,7 @@ SWING = 10  # columns of a swing
 
 
 @njit(cache=True)
-def profile(ticks: int, ramp: tuple[float, float, float], period: float) -> Array:
+def profile(ticks: int, ramp: Vector, period: float) -> Array:
     """Return the accelerations of a swing over unit distance and height, and their preview sums.
 
     Args:
@@ -132,9 +132,7 @@ def swings(
 
 
 @njit(cache=True)
-def _moved(
-    swing: Array, reaction: Vector, forward: float, up: float, both: float
-) -> tuple[float, float]:
+def _moved(swing: Array, reaction: Vector, forward: float, up: float, both: float) -> Point:
     """Return the shift of the ZMP [m]; `both` is `up` weighted by the distance covered."""
     thrust, weight, knee = reaction[0], reaction[1] * swing[1], reaction[2] * swing[1] * up
     yaw = 0.5 * (swing[4] + swing[7])
@@ -146,7 +144,7 @@ def _moved(
 
 
 @njit(cache=True)
-def _under(foot: Row, zmp_offset: ZmpOffset) -> tuple[float, float]:
+def _under(foot: Row, zmp_offset: ZmpOffset) -> Point:
     """Return the ZMP of single support on a foot [m]."""
     forward = zmp_offset[0]
     inward = -zmp_offset[1] if foot[3] > 0.0 else zmp_offset[1]
@@ -155,9 +153,7 @@ def _under(foot: Row, zmp_offset: ZmpOffset) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _swing(
-    row: Array, begin: int, lift: float, origin: Row, landing: Row, zmp: tuple[float, float]
-) -> None:
+def _swing(row: Array, begin: int, lift: float, origin: Row, landing: Row, zmp: Point) -> None:
     row[0], row[1] = begin, lift
     for k in range(3):
         row[2 + k], row[5 + k] = origin[k], landing[k]

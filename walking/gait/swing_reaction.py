@@ -77,7 +77,7 @@ def leg_reaction(robot: RobotModel, height: float, lift: float) -> LegReaction:
     raised = (posture(0.0, middle + SMALL) - posture(0.0, middle - SMALL)) / (2.0 * SMALL)
     rest, load = np.zeros_like(q), robot.mass * GRAVITY
 
-    def moment(acceleration: np.ndarray) -> tuple[float, float]:
+    def moment(acceleration: np.ndarray) -> Point:
         """Return the moment of an acceleration about x and y at the floor under the foot [N m]."""
         _, moved = robot.inverse_dynamics(q, rest, acceleration, (0.0, 0.0))
         _, still = robot.inverse_dynamics(q, rest, rest, (0.0, 0.0))

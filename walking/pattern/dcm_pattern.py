@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from walking.arrays import Point
 from walking.parameters import CONTROL_PERIOD
 from walking.pattern import zmp_layout_kernel
 from walking.pattern.lipm import Lipm
@@ -11,7 +12,7 @@ from walking.pattern.ramps import ZmpRamp, table_of
 from walking.pattern.support import SupportRegion
 
 
-def dcm_reference(lipm: Lipm, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+def dcm_reference(lipm: Lipm, ramps: Sequence[ZmpRamp]) -> Point:
     """Return the DCM from which a reference can be walked for ever: the backward recursion [m].
 
     Beyond the last ramp the ZMP stays and the DCM rests on it. A reference s seconds ahead has the
@@ -41,16 +42,10 @@ class DcmGenerator(TrackingGenerator):
         y = first.ay + (first.by - first.ay) * middle
         self.track(state, dcm_reference(self._lipm, ramps), (x, y), region)
 
-    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> Point:
         return dcm_reference(self._lipm, ramps)
 
-    def track(
-        self,
-        state: PendulumState,
-        dcm: tuple[float, float],
-        zmp: tuple[float, float],
-        region: SupportRegion,
-    ) -> None:
+    def track(self, state: PendulumState, dcm: Point, zmp: Point, region: SupportRegion) -> None:
         """Advance `state` in place towards a DCM.
 
         Args:

@@ -6,6 +6,7 @@ Kajita et al., IROS 2001; divergent component of motion ξ = x + x'/ω: Takenaka
 from dataclasses import dataclass
 from math import cosh, exp, sinh, sqrt
 
+from walking.arrays import Point
 from walking.parameters import CONTROL_PERIOD, GRAVITY
 
 
@@ -41,7 +42,7 @@ class Lipm:
         self.tick = (self.omega, self._cosh, self._sinh, CONTROL_PERIOD)
         self._ramps: dict[int, RampCoefficients] = {}
 
-    def step(self, position: float, velocity: float, zmp: float) -> tuple[float, float]:
+    def step(self, position: float, velocity: float, zmp: float) -> Point:
         """Return position [m] and velocity [m/s] one tick later under a constant ZMP."""
         d, w = position - zmp, self.omega
         return (
@@ -49,9 +50,7 @@ class Lipm:
             d * w * self._sinh + velocity * self._cosh,
         )
 
-    def hold(
-        self, position: float, velocity: float, zmp: float, time: float
-    ) -> tuple[float, float]:
+    def hold(self, position: float, velocity: float, zmp: float, time: float) -> Point:
         """Return position [m] and velocity [m/s] a `time` [s] later under a constant ZMP."""
         w = self.omega
         c, s, d = cosh(w * time), sinh(w * time), position - zmp

@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, inf, log, sqrt
 
+from walking.arrays import Point
 from walking.clamp import clamp
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern.dcm_pattern import DcmGenerator, dcm_reference
@@ -79,8 +80,8 @@ class WalkingTarget:
         zeta: convergent component relative to the nominal ZMP; None leaves it free [m].
     """
 
-    xi: tuple[float, float]
-    zeta: tuple[float, float] | None
+    xi: Point
+    zeta: Point | None
 
     def near(self, other: "WalkingTarget | None") -> bool:
         """Whether another target differs by rounding only."""
@@ -137,7 +138,7 @@ class PaperGenerator:
             self._approximate(state, ramps, region)
         self._follow(state, ramp)
 
-    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> Point:
         (x, y), (rx, ry) = state.dcm(self._lipm.omega), self._residual
         return x - rx, y - ry
 
@@ -156,7 +157,7 @@ class PaperGenerator:
         xi = rotate(-first.feet[0].yaw, x - first.bx, y - first.by)
         return WalkingTarget(xi, self._periodic(ramps))
 
-    def _periodic(self, ramps: Sequence[ZmpRamp]) -> tuple[float, float] | None:
+    def _periodic(self, ramps: Sequence[ZmpRamp]) -> Point | None:
         """Return ζ at the end of the last single support on this side, in the frame of its foot."""
         x, y = ramps[0].bx, ramps[0].by
         side, zeta = ramps[0].feet[0].left, None
@@ -223,7 +224,7 @@ class PaperGenerator:
             left = until
 
 
-def _room(ramp: ZmpRamp, region: SupportRegion) -> tuple[float, float]:
+def _room(ramp: ZmpRamp, region: SupportRegion) -> Point:
     """Return the range of the ZMP about its nominal point along and across the sole [m]."""
     foot = ramp.feet[0]
     x, y, _, _, length, width = region.row[4:].tolist()

@@ -8,6 +8,7 @@ time. Two track any reference, with delay if necessary. Those of `paper_pattern`
 from collections.abc import Sequence
 from typing import Protocol
 
+from walking.arrays import Point
 from walking.pattern.pendulum import PendulumState
 from walking.pattern.ramps import ZmpRamp
 from walking.pattern.support import SupportRegion
@@ -42,7 +43,7 @@ class PatternGenerator(Protocol):
             region: admissible ZMP.
         """
 
-    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> Point:
         """Return the reference of the DCM [m] for balance feedback."""
 
     def holds(self, ramps: Sequence[ZmpRamp]) -> bool:

@@ -38,7 +38,7 @@ class PendulumState:
         """Return the divergent component of motion [m] for ω [1/s]."""
         return self.x + self.vx / omega, self.y + self.vy / omega
 
-    def step(self, lipm: Lipm, zmp: tuple[float, float], region: SupportRegion) -> None:
+    def step(self, lipm: Lipm, zmp: Point, region: SupportRegion) -> None:
         """Advance by a tick under a constant ZMP [m], clipped to a region."""
         px, py = region.clip(*zmp)
         self.x, self.vx = lipm.step(self.x, self.vx, px)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from walking.arrays import Point
 from walking.parameters import PatternParameters
 from walking.pattern.lipm import Lipm
 from walking.pattern.pattern import TrackingGenerator
@@ -37,11 +38,11 @@ class PreviewGenerator(TrackingGenerator):
         py -= gains.position * state.y + gains.velocity * state.vy
         state.step(lipm, (px, py), region)
 
-    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> Point:
         # With a weight on the ZMP rate, preview control deviates from the DCM of the footholds.
         return state.dcm(self._lipm.omega)
 
-    def _preview(self, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+    def _preview(self, ramps: Sequence[ZmpRamp]) -> Point:
         """Return Σ_j f_j p_ref(j) over the horizon, and with its last point beyond."""
         sums, moments = self._gains.sums, self._gains.moments
         horizon = len(sums) - 1

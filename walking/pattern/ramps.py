@@ -5,7 +5,7 @@ from typing import overload
 
 import numpy as np
 
-from walking.arrays import Array
+from walking.arrays import Array, Point
 from walking.foothold import Foothold
 from walking.value import comparable_value
 
@@ -59,7 +59,7 @@ class Ramps(Sequence[ZmpRamp]):
         return ZmpRamp(int(ticks), ax, ay, bx, by, (first, second))
 
     @property
-    def goal(self) -> tuple[float, float]:
+    def goal(self) -> Point:
         """ZMP at the end of the first ramp [m]."""
         x, y = self.table[0, 3:5].tolist()
         return x, y

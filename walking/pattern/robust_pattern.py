@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
-from walking.arrays import Array, Vector
+from walking.arrays import Array, Point, Vector
 from walking.body.sole import Sole
 from walking.parameters import CONTROL_PERIOD, PatternParameters
 from walking.pattern import pendulum_kernel, zmp_layout_kernel, zmp_solver_kernel
@@ -46,7 +46,7 @@ class ZmpPlan:
 
     knots: Array
     ramps: Array
-    dual: tuple[float, float]
+    dual: Point
     next: int = 0
 
 
@@ -87,13 +87,15 @@ class RobustGenerator:
             self._plan, self._age = candidate[1], 0
         else:
             self._replan(state, ramps)
-        if self._plan is None:
+        plan, tick = self._plan, self._lipm.tick
+        if plan is None:
             self._tracker.advance(state, ramps, region)
             return
-        self._follow(state, self._plan)
+        then, plan.next = pendulum_kernel.follow(plan.knots, plan.next, state.row, tick)
+        state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y = then
         self._age += 1
 
-    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> tuple[float, float]:
+    def planned_dcm(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> Point:
         if self._plan is None:
             return dcm_reference(self._lipm, ramps)
         return state.dcm(self._lipm.omega)
@@ -107,12 +109,6 @@ class RobustGenerator:
             return False
         planned = _supports(plan.ramps[:AHEAD])
         return all((end + age, feet) in planned for end, feet in _supports(table_of(ramps)[:2]))
-
-    def _follow(self, state: PendulumState, plan: ZmpPlan) -> None:
-        """Advance the pendulum by a tick along a plan."""
-        tick = self._lipm.tick
-        then, plan.next = pendulum_kernel.follow(plan.knots, plan.next, state.row, tick)
-        state.x, state.y, state.vx, state.vy, state.zmp_x, state.zmp_y = then
 
     def _replan(self, state: PendulumState, ramps: Sequence[ZmpRamp]) -> None:
         """Plan for a reference that was not admitted, or keep the present plan, or none."""

@@ -19,7 +19,7 @@ from math import cos, exp, hypot, sin
 import numpy as np
 from numba import njit
 
-from walking.arrays import Array, Indices, Point
+from walking.arrays import Array, Indices, Point, Vector
 from walking.pattern.pendulum_kernel import Pendulum, Tick
 
 Sole = tuple[float, float, float]
@@ -120,7 +120,7 @@ def sides(cell: Array, x: float, y: float) -> Point:
 
 
 @njit(cache=True)
-def _ramp(wh: float, ticks: float) -> tuple[float, float, float]:
+def _ramp(wh: float, ticks: float) -> Vector:
     """See `Lipm.ramp`."""
     if ticks == 0.0:
         return 1.0, 0.0, 0.0

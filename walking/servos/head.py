@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from walking.arrays import Array
+from walking.arrays import Array, Point
 from walking.body import head_kernel
 from walking.command import HeadTarget
 from walking.parameters import CONTROL_PERIOD, HeadParameters
@@ -22,7 +22,7 @@ class Head:
         motion = parameters.max_rate, parameters.max_acceleration, CONTROL_PERIOD
         self._motion = np.array(motion)
 
-    def advance(self, target: HeadTarget) -> tuple[float, float]:
+    def advance(self, target: HeadTarget) -> Point:
         """Return the setpoints of pan and tilt of this tick [rad]."""
         return head_kernel.advance(
             self._position, self._velocity, (target.pan, target.tilt), self._limits, self._motion

@@ -35,14 +35,9 @@ class Posture:
         self._tilt = np.zeros((2, 2))
 
     def pelvis(self, gait: Gait, com: Point) -> Vector:
-        """Return the pelvis with the nominal centre of mass, fixed ahead of the base, at `com`.
+        """Return the pelvis, x, y [m], heading [rad], with the nominal centre of mass at `com` [m].
 
-        Args:
-            gait: feet.
-            com: of the pendulum, in the plan frame [m].
-
-        Returns:
-            x, y [m], heading [rad] in the plan frame.
+        The nominal centre of mass is fixed ahead of the base.
         """
         return leg_kernel.pelvis_of(gait.feet, com, self._ahead)
 

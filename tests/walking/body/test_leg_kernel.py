@@ -52,14 +52,3 @@ def test_offsets_are_torques_and_rates_over_stiffness(seed, load):
     np.testing.assert_allclose(result[unloaded], expected[unloaded], rtol=0.0, atol=1e-12)
     fractions = [abs(result - expected)[part].max() for part in (slice(0, 6), slice(6, 12))]
     assert [fraction > 1e-6 for fraction in fractions] == [load < 1.0, load > 0.0]
-
-
-@given(st.floats(-1.0, 1.0))
-def test_the_swing_of_the_arms_is_odd_and_limited(apart):
-    swing = leg_kernel.arm_swing(apart, 2.0, 0.35)
-    assert swing == -leg_kernel.arm_swing(-apart, 2.0, 0.35)
-    assert abs(swing) <= 0.35
-
-
-def test_the_left_arm_goes_back_when_the_left_foot_is_ahead():
-    assert leg_kernel.arm_swing(0.05, 2.0, 0.35) > 0.0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from walking.body.joints import HEAD, LEFT_LEG, RIGHT_LEG
+from walking.body.joints import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 from walking.body.leg_kinematics import foot_pose
 from walking.foothold import Foothold
 from walking.footsteps.planner import FootstepPlanner
@@ -64,3 +64,13 @@ def test_a_foot_in_the_air_stays_level_under_a_tilted_trunk(robot, gait):
     assert foot_pose(robot.legs[1], tuple(angles.tolist())).pitch == pytest.approx(
         -wanted, abs=5e-3
     )
+
+
+@pytest.mark.parametrize(("apart", "swing"), [(0.05, 0.1), (-0.05, -0.1), (0.5, 0.35)])
+def test_the_arms_swing_against_the_feet_within_limits(robot, gait, apart, swing):
+    gait.feet[0, :3], gait.feet[1, :3] = (0.5 * apart, 0.04, 0.0), (-0.5 * apart, -0.04, 0.0)
+    q = Posture(robot, PARAMETERS).joints(gait, (0.0, 0.0), (0.0, 0.0), (0.0, 0.0))[0]
+    shoulders = (
+        q[[LEFT_ARM.start, RIGHT_ARM.start]] - robot.ready[[LEFT_ARM.start, RIGHT_ARM.start]]
+    )
+    assert shoulders == pytest.approx([swing, -swing])
