@@ -1,4 +1,4 @@
-"""Every altered command is accounted for."""
+"""Report of limited commands."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Dimensions multiply like numbers, and carry values from robot to robot and back."""
+"""Dimensions multiply, and scale values from robot to robot and back."""
 
 from dataclasses import replace
 

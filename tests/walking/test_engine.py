@@ -113,16 +113,6 @@ def test_two_engines_compute_the_same(robot, ideal_body):
     assert (one == other).all()
 
 
-def test_planned_footsteps_are_given_in_the_odometry_frame(robot, ideal_body):
-    engine, _ = run(robot, ideal_body, always(0.2, 0.0, 0.0), 4.0)
-    state = engine.state()
-    assert abs(state.footsteps[0].x - state.odometry.x) < 0.1
-    assert state.footsteps[1].left is not state.footsteps[0].left
-    assert state.footsteps[1].x > state.footsteps[0].x
-    assert np.hypot(*(state.com - [state.odometry.x, state.odometry.y])) < 0.05
-    assert np.hypot(*(state.dcm - state.com)) < 0.1
-
-
 def test_a_lying_robot_knows_it_and_does_not_step(robot, ideal_body):
     engine = WalkingEngine(robot, WalkingParameters())
     lying = np.array([np.cos(0.7), np.sin(0.7), 0.0, 0.0])

@@ -1,4 +1,4 @@
-"""Report of limits against the footsteps themselves: limited if, and only if, they differ."""
+"""Report of limits against the footsteps: limited if, and only if, they differ."""
 
 from collections import Counter
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Kernels: the warm-up compiles all of them, and compiled they equal plain Python."""
+"""Kernels: warm-up, and an uncompiled walk."""
 
 from dataclasses import replace
 

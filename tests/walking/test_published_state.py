@@ -1,4 +1,4 @@
-"""What a snapshot tells: a camera on a tilted body, and the plan where odometry has the feet."""
+"""Published state: camera on a tilted body, and the plan in the odometry frame."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Parameters derived for other robots: dynamic similarity."""
+"""Parameters scaled to other robots by dynamic similarity."""
 
 from dataclasses import astuple, fields, replace
 from math import sqrt

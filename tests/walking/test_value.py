@@ -1,3 +1,5 @@
+"""Immutable values."""
+
 import pickle
 
 from walking.foothold import Foothold

@@ -1,4 +1,4 @@
-"""Walking, and what follows a fall."""
+"""Walking, falling and getting up."""
 
 from dataclasses import replace
 from math import cos, pi, sin

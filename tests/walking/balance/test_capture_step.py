@@ -1,4 +1,4 @@
-"""Two pendulums that are one unless the body is being caught."""
+"""Pendulums of plan and body during a capture step."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -24,7 +24,7 @@ DOUBLE, LEFT = 14, 30
 
 
 class Plan(TrackingGenerator):
-    """A generator with a plan of its own, whatever the reference: the ZMP stays."""
+    """Generator with a constant planned ZMP, independent of the reference."""
 
     selective = True
 

@@ -1,4 +1,4 @@
-"""The offset of a body whose mass centre is not where the model has it."""
+"""CoM offset of a body whose centre of mass differs from the model."""
 
 from itertools import pairwise
 from math import pi, sin

@@ -1,4 +1,4 @@
-"""Where the swing foot lands, on a pendulum without a body."""
+"""Landing of the swing foot, on a pendulum without a body."""
 
 import pytest
 

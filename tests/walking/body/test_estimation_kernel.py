@@ -1,4 +1,4 @@
-"""What the sensors say of the body, compiled: against plain Python, and what it is meant to be."""
+"""Attitude, complementary filter and error filter."""
 
 from math import cos, pi, sin
 
@@ -113,16 +113,6 @@ def test_slip_of_the_foot_becomes_velocity_of_the_body():
     for _ in range(400):
         follow(error, (0.0, 0.0), slip=(0.05, 0.0))
     assert error[2] == pytest.approx(0.05, rel=0.05)
-
-
-def test_both_axes_are_filtered_alike():
-    rng = np.random.default_rng(2)
-    one, other = np.zeros(5), np.zeros(5)
-    for _ in range(50):
-        inputs = rng.normal(0.0, 0.01, (3, 2)).tolist()
-        follow(one, *map(tuple, inputs))
-        follow(other, *(tuple(pair[::-1]) for pair in inputs))
-        assert (one[[0, 2, 1, 3]] == other[[1, 3, 0, 2]]).all()
 
 
 def test_what_is_measured_as_predicted_moves_as_the_pendulum():

@@ -1,4 +1,4 @@
-"""Dead reckoning by the feet."""
+"""Dead reckoning by the stance foot."""
 
 from itertools import pairwise
 from math import cos, pi, sin

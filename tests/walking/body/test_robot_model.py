@@ -1,4 +1,4 @@
-"""The robot's numbers as read from MJCF."""
+"""Robot model read from MJCF."""
 
 import re
 from math import pi

@@ -1,4 +1,4 @@
-"""Steady gains of the error filter."""
+"""Steady-state Kalman gains of the error filter."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The period of a walk."""
+"""Gait cycle."""
 
 import pytest
 

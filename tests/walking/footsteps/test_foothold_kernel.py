@@ -1,4 +1,4 @@
-"""Footholds chained and made a reference, against the same in plain Python."""
+"""Chain of footholds against the planner."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""The heading hold on a body that turns as it is told."""
+"""Heading control on a body that follows its yaw rate."""
 
 from math import pi, sin
 
@@ -35,12 +35,6 @@ def test_a_steady_slip_is_held_although_one_footstep_turns_for_two_and_the_body_
         if phase == CYCLE - 1:
             settled.append(plan + slip)
     assert settled[-1] == pytest.approx(settled[-6], abs=1e-5)
-
-
-def test_it_holds_what_it_was_told_to_rest_at():
-    hold = HeadingHold(PARAMETERS)
-    hold.reset(0.2)
-    assert hold.rate(0.2, renew=True) == 0.0
 
 
 def test_one_rate_serves_a_cycle():

@@ -1,4 +1,4 @@
-"""The speed hold on a body that slips as it walks."""
+"""Speed control on a body that slips."""
 
 from math import cos, pi, sin
 

@@ -1,4 +1,4 @@
-"""What steering makes of commands, and its account of it."""
+"""Steering: commands to strides, and the report of limits."""
 
 import pytest
 from hypothesis import given
@@ -96,6 +96,13 @@ def test_to_stand_is_obeyed_at_once_where_the_pattern_selects_and_in_the_braking
         assert steering.moving is (Limit.ACCELERATION in steering.bound)
     follow(steering, VelocityCommand(), ticks=round(LIMITS.braking_time / CONTROL_PERIOD))
     assert not steering.moving
+
+
+def test_a_slowed_walk_keeps_the_direction_of_the_command():
+    steering = steer()
+    follow(steering, VelocityCommand(0.2, 0.05, 0.3), ticks=1000, fraction=0.4)
+    assert steering.velocity == pytest.approx((0.08, 0.02, 0.12))
+    assert steering.bound == (Limit.BALANCE,)
 
 
 def test_footsteps_that_close_the_stance_keep_the_time_of_the_walk():

@@ -1,4 +1,4 @@
-"""Landings of a velocity, against the same in plain Python and against what they are to be."""
+"""Strides of a velocity."""
 
 from math import cos, sin
 

@@ -1,4 +1,4 @@
-"""Times of a footstep: they may change under way, what has been reached may not."""
+"""Timing of a footstep, changed while it is under way."""
 
 import pytest
 

@@ -22,8 +22,3 @@ def test_minimum_jerk_starts_and_ends_at_rest_and_peaks_in_the_middle():
     assert speed.max() == pytest.approx(PEAK, rel=1e-4)
     assert abs(speed[[0, -1]]).max() < 1e-4
     assert abs(force[[0, -1]]).max() < 0.1
-
-
-def test_outside_its_time_minimum_jerk_stays_where_it_is():
-    assert minimum_jerk(-1.0) == 0.0
-    assert minimum_jerk(2.0) == 1.0

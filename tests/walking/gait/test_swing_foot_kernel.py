@@ -1,4 +1,4 @@
-"""References of the feet, compiled: the swing is minimum jerk to a landing that may move."""
+"""Foot references: minimum-jerk swing to a landing that may move."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The compiled reaction of the legs against the same in plain Python."""
+"""Table of planned swings."""
 
 import numpy as np
 import pytest

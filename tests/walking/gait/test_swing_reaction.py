@@ -1,4 +1,4 @@
-"""The pelvis makes up for what the swinging legs do to the ZMP."""
+"""Compensation of the swing leg's reaction by the pelvis."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""A change that the ZMP cannot follow is made in part, and nothing else is touched."""
+"""Transition to a plan that the generator admits in part only."""
 
 import numpy as np
 import pytest
@@ -118,12 +118,17 @@ class FromHere(UpTo):
         )
 
 
-def test_a_walk_ends_by_the_shortest_footstep_from_which_it_can(setting):
+def ending(setting):
+    """The setting with a `FromHere` generator, in a fast walk."""
     gait, _, _, region = setting
     generator = FromHere(gait)
-    transition = Transition(gait, generator)
-    setting = gait, generator, transition, region
+    setting = gait, generator, Transition(gait, generator), region
     tick(setting, FAST)
+    return setting, generator, setting[2]
+
+
+def test_a_walk_ends_by_the_shortest_footstep_from_which_it_can(setting):
+    setting, generator, transition = ending(setting)
     fast = transition.landing.x
     generator.least = 0.3 * fast
     ramps = tick(setting, STILL, moving=False)
@@ -134,11 +139,7 @@ def test_a_walk_ends_by_the_shortest_footstep_from_which_it_can(setting):
 
 
 def test_a_walk_that_cannot_end_yet_goes_on(setting):
-    gait, _, _, region = setting
-    generator = FromHere(gait)
-    transition = Transition(gait, generator)
-    setting = gait, generator, transition, region
-    tick(setting, FAST)
+    setting, generator, transition = ending(setting)
     generator.least = 2.0 * transition.landing.x
     tick(setting, STILL, moving=False)
     assert transition.moving

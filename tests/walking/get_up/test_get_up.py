@@ -1,4 +1,4 @@
-"""Getting up on a trunk that is where the test puts it."""
+"""Fall recovery with a trunk attitude set by the test."""
 
 from math import cos, pi, sin
 

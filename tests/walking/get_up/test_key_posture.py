@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from walking.body.joints import JOINT_NAMES
 from walking.get_up.get_up_motion import MOTIONS
 from walking.get_up.key_posture import STRAIGHT
 
@@ -27,12 +26,3 @@ def test_every_posture_is_within_the_joints_limits(robot, posture):
     angles = np.array(posture.angles())
     assert (angles >= robot.lower).all()
     assert (angles <= robot.upper).all()
-
-
-@pytest.mark.parametrize("posture", POSTURES, ids=lambda p: p.name)
-def test_outward_is_outward_on_both_sides(posture):
-    angles = dict(zip(JOINT_NAMES, posture.angles(), strict=True))
-    assert angles["l_hip_roll"] == posture.legs[0][1]
-    assert angles["r_hip_roll"] == -posture.legs[1][1]
-    assert angles["l_shoulder_roll"] == posture.arms[0][1]
-    assert angles["r_shoulder_roll"] == -posture.arms[1][1]

@@ -35,11 +35,6 @@ def test_dcm_under_a_ramp(ticks):
     assert after == pytest.approx(x + v / LIPM.omega, abs=1e-9)
 
 
-def test_a_ramp_of_equal_ends_is_a_constant_zmp():
-    c = LIPM.ramp(20)
-    assert c.first + c.last == pytest.approx(c.growth - 1.0)
-
-
 def test_any_time_under_a_constant_zmp():
     np.testing.assert_allclose(
         LIPM.hold(0.03, -0.2, 0.01, 0.0123),

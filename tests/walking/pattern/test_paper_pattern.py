@@ -1,4 +1,4 @@
-"""ZMP functions that bring the pendulum to a walking state."""
+"""ZMP functions that lead the pendulum to a walking state."""
 
 from math import exp
 

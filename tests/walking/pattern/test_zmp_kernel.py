@@ -1,4 +1,4 @@
-"""The program of the knots against its own optimality conditions."""
+"""ZMP planning: layout, solution of the quadratic program, and the pendulum along it."""
 
 from types import SimpleNamespace
 

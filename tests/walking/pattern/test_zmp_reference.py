@@ -1,4 +1,4 @@
-"""The ZMP that footholds ask for: under the foot that carries, never jumping."""
+"""ZMP reference: under the support foot, without jumps."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Touchdown of a swinging foot."""
+"""Touchdown detection."""
 
 from walking.parameters import EstimatorParameters
 from walking.servos.touchdown import TouchdownDetector
