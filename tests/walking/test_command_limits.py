@@ -27,7 +27,7 @@ def walk(engine, body, command, seconds):
     return reports
 
 
-def test_before_the_body_has_settled_nothing_is_given(engine, ideal_body):
+def test_before_settling_zero_is_applied(engine, ideal_body):
     report = walk(engine, ideal_body, VelocityCommand(0.2), 0.1)[-1]
     assert report.limits == (Limit.SETTLING,)
     assert report.applied == VelocityCommand()
@@ -55,14 +55,14 @@ def test_acceleration_binds_until_the_speed_is_reached(engine, ideal_body):
         (CommandState(swing_height=0.2), Limit.SWING_HEIGHT),
     ],
 )
-def test_the_limit_that_binds_is_named(engine, ideal_body, command, limit):
+def test_the_binding_limit_is_reported(engine, ideal_body, command, limit):
     report = walk(engine, ideal_body, command, 3.0)[-1]
     assert report.commanded == command
     assert limit in report.limits
     assert report.applied != command
 
 
-def test_what_is_given_for_a_command_state_is_within_the_limits(engine, ideal_body):
+def test_the_applied_command_state_is_within_the_limits(engine, ideal_body):
     applied = walk(engine, ideal_body, CommandState(0.05, 2.0, 0.3, 0.1, 0.0, 0.2), 1.0)[-1].applied
     assert applied.forward == LIMITS.step_forward
     assert applied.single_support == pytest.approx(LIMITS.min_single)
@@ -72,7 +72,7 @@ def test_what_is_given_for_a_command_state_is_within_the_limits(engine, ideal_bo
     assert wide.side == pytest.approx(2.0 * HALF_STANCE + LIMITS.step_side)
 
 
-def test_a_footstep_within_all_limits_is_given_as_asked(engine, ideal_body):
+def test_a_footstep_within_all_limits_is_applied_as_commanded(engine, ideal_body):
     command = CommandState(0.3, 0.08, 0.06, 0.09, 0.05, 0.02)
     reports = walk(engine, ideal_body, command, 3.0)
     assert sum(not r.limited for r in reports) > 100
@@ -101,7 +101,7 @@ def test_nothing_is_altered_by_standing_until_the_body_has_settled(engine, ideal
     assert not any(r.limited for r in walk(engine, ideal_body, VelocityCommand(), 1.0))
 
 
-def test_a_landing_asked_for_too_late_is_reported(engine, ideal_body):
+def test_a_frozen_landing_is_reported(engine, ideal_body):
     walk(engine, ideal_body, VelocityCommand(0.1), 2.0)
     frozen = 0
     for k in range(200):

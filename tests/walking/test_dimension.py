@@ -35,14 +35,14 @@ def test_they_multiply():
 
 
 @given(DIMENSION, DIMENSION, ROBOT, ROBOT)
-def test_a_product_is_carried_as_its_factors(one, other, old, new):
+def test_a_product_scales_as_its_factors(one, other, old, new):
     whole = (one * other).scale(6.0, old, new)
     assert whole == pytest.approx(one.scale(2.0, old, new) * other.scale(3.0, old, new))
 
 
 @pytest.mark.parametrize("rule", [LENGTH, RATE, DECAY_PER_TICK, GAIN_PER_TICK])
 @given(ROBOT, ROBOT)
-def test_the_way_leads_back_and_over_a_third_robot(rule, old, new):
+def test_scaling_is_invertible_and_composes_over_a_third_robot(rule, old, new):
     there = rule.scale(0.3, old, new)
     assert rule.scale(there, new, old) == pytest.approx(0.3)
     between = rule.scale(0.3, old, HSR_VIII)

@@ -12,12 +12,7 @@ from walking.engine import WalkingEngine
 from walking.footsteps import foothold_kernel, stride_kernel
 from walking.gait import swing_foot_kernel, swing_kernel
 from walking.parameters import WalkingParameters
-from walking.pattern import (
-    pendulum_kernel,
-    support_kernel,
-    zmp_layout_kernel,
-    zmp_solver_kernel,
-)
+from walking.pattern import pendulum_kernel, support_kernel, zmp_layout_kernel, zmp_solver_kernel
 from walking.warm_up import warm_up
 
 KERNELS = [

@@ -66,7 +66,7 @@ def gait(robot):
     return gait
 
 
-def seen(robot, gait, odometry):
+def published(robot, gait, odometry):
     return published_plan(
         gait,
         PendulumState(0.01, 0.005, 0.1, -0.2, 0.02, 0.01),
@@ -80,7 +80,7 @@ def seen(robot, gait, odometry):
 
 
 def test_the_support_foot_is_first_and_where_odometry_sees_it(robot, gait):
-    plan = seen(robot, gait, ORIGIN)
+    plan = published(robot, gait, ORIGIN)
     first = plan.footsteps[0]
     assert (first.x, first.y, first.yaw) == pytest.approx((LEFT.x, LEFT.y, LEFT.yaw))
     assert [foot.left for foot in plan.footsteps[:4]] == [True, False, True, False]
@@ -90,8 +90,8 @@ def test_the_support_foot_is_first_and_where_odometry_sees_it(robot, gait):
 
 
 def test_all_of_it_moves_with_the_odometry_frame(robot, gait):
-    one = seen(robot, gait, ORIGIN)
-    other = seen(robot, gait, Odometry(0.7, -1.2, 0.9, np.zeros((3, 3))))
+    one = published(robot, gait, ORIGIN)
+    other = published(robot, gait, Odometry(0.7, -1.2, 0.9, np.zeros((3, 3))))
     c, s = np.cos(0.9), np.sin(0.9)
     R, p = np.array([[c, -s], [s, c]]), np.array([0.7, -1.2])
     for a, b in (
@@ -113,7 +113,7 @@ def test_all_of_it_moves_with_the_odometry_frame(robot, gait):
 
 
 def test_points_keep_their_places_about_the_pendulum(robot, gait):
-    plan = seen(robot, gait, ORIGIN)
+    plan = published(robot, gait, ORIGIN)
     c, s = np.cos(LEFT.yaw), np.sin(LEFT.yaw)  # the planned support foot has no yaw
     R = np.array([[c, -s], [s, c]])
     assert plan.zmp - plan.balance.com == pytest.approx(R @ [0.01, 0.005])
@@ -123,6 +123,6 @@ def test_points_keep_their_places_about_the_pendulum(robot, gait):
 
 
 def test_the_measured_dcm_is_the_planned_one_and_its_error(robot, gait):
-    plan = seen(robot, gait, ORIGIN)
+    plan = published(robot, gait, ORIGIN)
     apart = np.array([0.001 + 0.01 / 7.2, -0.002 + 0.02 / 7.2])
     assert np.hypot(*(plan.balance.dcm - plan.dcm)) == pytest.approx(np.hypot(*apart))

@@ -29,7 +29,7 @@ def numbers(parameters: WalkingParameters) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("section", SECTIONS, ids=lambda section: section.__name__)
-def test_every_number_says_what_it_goes_with(section):
+def test_every_parameter_has_a_scaling_rule(section):
     floats = {f.name for f in fields(section) if isinstance(f.default, float)}
     unmarked = floats - set(rules_of(section))
     assert not unmarked, f"mark them as in walking/dimension.py: {sorted(unmarked)}"

@@ -81,7 +81,7 @@ def test_once_up_it_goes_on_with_the_odometry_and_the_count_of_steps(robot, idea
     assert not after.fallen
     assert after.step_count >= before.step_count > 0
     moved = np.hypot(after.odometry.x - before.odometry.x, after.odometry.y - before.odometry.y)
-    assert moved < 0.2  # what the tipping trunk makes of the legs
+    assert moved < 0.2  # by the legs of the tipping trunk
     hidden = after.odometry.covariance - before.odometry.covariance
     assert hidden[0, 0] == pytest.approx(RISING.get_up.displacement_sigma**2, rel=0.1)
     walk(walker, standing, 400)

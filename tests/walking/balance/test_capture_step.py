@@ -89,7 +89,7 @@ def test_the_plan_goes_on_and_the_body_is_led_to_the_other_foothold(move):
     assert (body.zmp_x, body.zmp_y) == pytest.approx(ZMP)
 
 
-def test_a_footstep_in_a_hurry_has_no_plan():
+def test_a_shortened_footstep_has_no_plan():
     state = PendulumState(*dcm_reference(LIPM, reference(LANDING)))
     pendulum, _ = capture(state, LANDING, shortened=True)
     pendulum.advance(reference(LANDING), LANDING, REGION)

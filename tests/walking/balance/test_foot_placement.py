@@ -23,7 +23,7 @@ NONE = (0.0, 0.0)
 
 
 class Pendulum:
-    """Steering, gait and pendulum; a DCM error is whatever the test says."""
+    """Steering, gait and pendulum with a DCM error chosen by the test."""
 
     def __init__(self, robot, generator):
         self.parameters = parameters = WalkingParameters(
@@ -70,7 +70,7 @@ class Pendulum:
 
 
 @pytest.mark.parametrize("generator", GENERATORS)
-def test_a_steady_undisturbed_walk_is_as_it_is_wished(robot, generator):
+def test_a_steady_undisturbed_walk_follows_the_wanted_strides(robot, generator):
     walk, command = Pendulum(robot, generator), VelocityCommand(0.2, 0.03, 0.2)
     walk.to_swing(command)
     for _ in range(200):
@@ -86,7 +86,7 @@ def test_a_steady_undisturbed_walk_is_as_it_is_wished(robot, generator):
 @pytest.mark.parametrize(
     ("error", "axis"), [((0.025, 0.0), 0), ((-0.025, 0.0), 0), ((0.0, 0.02), 1)]
 )
-def test_a_landing_goes_after_the_body_and_says_why(robot, generator, error, axis):
+def test_a_capture_step_follows_the_error_and_reports_balance(robot, generator, error, axis):
     walk, command = Pendulum(robot, generator), VelocityCommand(0.1)
     walk.to_swing(command)
     if walk.gait.swing == 1:
@@ -101,7 +101,7 @@ def test_a_landing_goes_after_the_body_and_says_why(robot, generator, error, axi
 
 
 @pytest.mark.parametrize("generator", GENERATORS)
-def test_what_the_ankles_hold_moves_no_landing(robot, generator):
+def test_errors_within_the_dead_zone_move_no_landing(robot, generator):
     walk, command = Pendulum(robot, generator), VelocityCommand(0.1)
     walk.to_swing(command)
     walk.tick(command, (0.005, 0.003))
@@ -109,7 +109,7 @@ def test_what_the_ankles_hold_moves_no_landing(robot, generator):
     assert Limit.BALANCE not in walk.placement.bound
 
 
-def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, monkeypatch):
+def test_an_infeasible_change_is_made_in_part_and_reported(robot, monkeypatch):
     walk = Pendulum(robot, "robust").to_swing(VelocityCommand(0.1))
     slow, before = walk.gait.landing.x, walk.placement.applied
     arguments = []
@@ -131,7 +131,7 @@ def test_a_change_that_the_zmp_cannot_follow_is_made_in_part_and_told(robot, mon
 
 
 @pytest.mark.parametrize("generator", GENERATORS)
-def test_a_wish_that_comes_too_late_is_reported(robot, generator):
+def test_a_late_change_is_reported_as_frozen_landing(robot, generator):
     walk, command = Pendulum(robot, generator), VelocityCommand(0.2)
     walk.to_swing(command, phase=0.9)
     landing = walk.gait.landing

@@ -23,7 +23,7 @@ def landing_error(time, planned, off, ahead):
 
 @pytest.mark.parametrize("ahead", [-0.02, 0.0, 0.015])
 @pytest.mark.parametrize(("off", "reach"), [(0.06, 0.15), (-0.05, -0.12), (0.07, 0.05)])
-def test_it_is_the_last_tick_at_which_the_landing_does(off, ahead, reach):
+def test_capture_time_is_the_latest_sufficient_tick(off, ahead, reach):
     planned = 0.34
     ticks = [
         k

@@ -83,7 +83,7 @@ def test_observing_leaves_odometry_and_error_alone(robot, ideal_body):
 
 
 def test_weight_going_over_to_a_foot_is_no_motion_of_the_body(robot, ideal_body):
-    """Seen from a foot half a centimetre off its place, the body is off by as much, at once."""
+    """Seen from a foot half a centimetre off its position, the body is off by as much, at once."""
     estimate, sensors = estimation(robot), ideal_body.sense()
     estimate.observe(sensors)
     body = estimate.body
@@ -110,9 +110,12 @@ def test_a_body_as_planned_has_no_error_wherever_the_plan_is_and_however_it_is_t
         c, s = np.cos(angle), np.sin(angle)
         return np.array([c * point[0] - s * point[1], s * point[0] + c * point[1]])
 
-    places = [at + turned(turn, (foot.x, foot.y)) for foot in body.feet]
+    positions = [at + turned(turn, (foot.x, foot.y)) for foot in body.feet]
     feet = np.array(
-        [(*place, turn + foot.yaw, 0.0) for place, foot in zip(places, body.feet, strict=True)]
+        [
+            (*position, turn + foot.yaw, 0.0)
+            for position, foot in zip(positions, body.feet, strict=True)
+        ]
     )
     origin = np.array([0.11, 0.07])
     planned = turned(-yaw, at + turned(turn, body.com[:2]) - origin)

@@ -84,7 +84,7 @@ def test_tilt_of_a_trunk_that_yaws_under_a_constant_lean():
 
 def test_rates_of_a_trunk_that_does_not_yaw_are_integrated():
     tilt = Tilt(1e-12)
-    tilt.update(0.05, -0.02, [9.0, 9.0, 9.0])  # the first only says where it is
+    tilt.update(0.05, -0.02, [9.0, 9.0, 9.0])  # initializes the filter
     for _ in range(100):
         result = tilt.update(0.0, 0.0, [0.1, -0.3, 0.0])
     time = 100 * CONTROL_PERIOD
@@ -115,7 +115,7 @@ def test_slip_of_the_foot_becomes_velocity_of_the_body():
     assert error[2] == pytest.approx(0.05, rel=0.05)
 
 
-def test_what_is_measured_as_predicted_moves_as_the_pendulum():
+def test_the_error_filter_predicts_with_the_pendulum():
     """Over one tick, to the third order of time."""
     error = np.array([0.01, 0.0, -0.05, 0.0, -1.0])
     x, v = LIPM.step(0.01, -0.05, 0.004)

@@ -19,8 +19,8 @@ def test_rates_are_quotients_of_differences():
     motion = np.zeros(33), np.zeros(32), np.zeros(32)
     where = rng.permutation(26) + 7, rng.permutation(26) + 6
     for now in angles[1:]:
-        law = np.array([0.5, 1000.0, CONTROL_PERIOD])
-        rest = (*motion, *where, (1.0, 2.0, 0.0), (0.3, -0.2), law)
+        inertia = np.array([0.5, 1000.0, CONTROL_PERIOD])
+        rest = (*motion, *where, (1.0, 2.0, 0.0), (0.3, -0.2), inertia)
         leg_kernel.rates(now, before, velocity, *rest)
     np.testing.assert_allclose(velocity, (angles[2] - angles[1]) / CONTROL_PERIOD)
     np.testing.assert_array_equal(before, angles[2])

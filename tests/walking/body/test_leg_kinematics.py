@@ -57,7 +57,7 @@ def test_inverse_kinematics_reach_the_pose_in_pinocchio(robot, side, part, frame
         np.testing.assert_allclose(p_again, p, atol=1e-9)
 
 
-def test_a_foot_out_of_reach_is_said_so_and_keeps_its_orientation(robot):
+def test_a_foot_out_of_reach_is_reported_and_keeps_its_orientation(robot):
     pose = FootPose(0.05, 0.05, -0.30, 0.1, -0.1, 0.2)
     angles, reached = leg_angles(robot.legs[0], pose)
     again = foot_pose(robot.legs[0], angles)

@@ -15,7 +15,7 @@ def test_errors_of_an_even_floor_slow_nothing():
     assert {caution.update(PARAMETERS.slowdown_start_error * k / 10) for k in range(11)} == {1.0}
 
 
-def test_the_share_falls_with_the_error_down_to_the_least():
+def test_the_speed_ratio_falls_with_the_error_to_its_minimum():
     fractions = [Slowdown(PARAMETERS).update(0.001 * k) for k in range(100)]
     assert fractions == sorted(fractions, reverse=True)
     assert fractions[-1] == pytest.approx(PARAMETERS.min_speed_ratio)

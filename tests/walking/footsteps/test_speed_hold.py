@@ -15,7 +15,7 @@ slips = st.floats(-0.015, 0.015)
 
 
 def walk(velocity, slip, *, cycles=25, disturbed=lambda tick: False, hold=None, sway=0.0):
-    """Corrections tick by tick of a body on an arc, faster by `slip` than it is told.
+    """Corrections tick by tick of a body on an arc, faster by `slip` than commanded.
 
     Its heading sways by `sway` [rad] within a cycle.
     """

@@ -34,7 +34,7 @@ def follow(steering, command, *, ticks=1, fraction=1.0):
 
 
 @given(st.floats(-0.2, 0.2), st.floats(-0.05, 0.05), st.floats(-0.3, 0.3), either)
-def test_a_wish_within_the_limits_comes_through_unaltered(vx, vy, wz, selective):
+def test_a_command_within_the_limits_is_followed_exactly(vx, vy, wz, selective):
     steering = steer(selective=selective)
     follow(steering, VelocityCommand(vx, vy, wz), ticks=LONG)
     assert steering.velocity == (vx, vy, wz)
@@ -46,7 +46,7 @@ def test_a_wish_within_the_limits_comes_through_unaltered(vx, vy, wz, selective)
 
 
 @given(walks, either)
-def test_a_command_is_reported_as_altered_if_and_only_if_it_is(walk, selective):
+def test_a_command_is_reported_as_limited_if_and_only_if_it_is(walk, selective):
     steering = steer(selective=selective)
     for command, ticks in walk:
         for _ in range(ticks):

@@ -16,7 +16,7 @@ velocities = st.tuples(st.floats(-0.5, 0.5), st.floats(-0.3, 0.3), st.floats(-2.
 
 
 @given(velocities)
-def test_the_other_way_round_the_feet_change_places(velocity):
+def test_a_mirrored_velocity_swaps_the_strides(velocity):
     vx, vy, wz = velocity
     here, there, moved = stride_kernel.strides(velocity, TIME, LIMITS, BUILD)
     mirrored = stride_kernel.strides((vx, -vy, -wz), TIME, LIMITS, BUILD)
@@ -33,8 +33,8 @@ def test_two_footsteps_move_the_stance_by_the_velocity_where_no_limit_binds(velo
     middle, heading = 0.0, 0.0
     for (x, y, turned), stance in ((right, -HALF), (left, HALF)):
         # From the middle of the stance to that of the next, from the support foot's side.
-        way = x + 1j * y - 1j * stance - 1j * stance * np.exp(1j * turned)
-        middle += np.exp(-0.5j * turned) * way
+        displacement = x + 1j * y - 1j * stance - 1j * stance * np.exp(1j * turned)
+        middle += np.exp(-0.5j * turned) * displacement
         heading += turned
     assert middle == pytest.approx(2.0 * TIME * (vx + 1j * vy), abs=1e-12)
     assert heading == pytest.approx(2.0 * TIME * wz, abs=1e-12)

@@ -124,7 +124,7 @@ def test_early_contact_leaves_the_foot_where_it_is(gait):
 
 
 @pytest.mark.parametrize("lead", [2, 20, 40])
-def test_a_hurried_footstep_is_down_in_time_and_the_next_takes_its_own(gait, lead):
+def test_a_shortened_footstep_lands_in_time_and_the_next_has_the_usual_time(gait, lead):
     gait.start(0)
     for _ in range(START + STEP - round(GAIT.double_support * STEP) + lead):
         tick(gait, FORWARD)
@@ -146,7 +146,7 @@ def test_a_hurried_footstep_is_down_in_time_and_the_next_takes_its_own(gait, lea
     assert gait.ticks_left == STEP
 
 
-def test_a_footstep_never_hurries_into_a_later_end(gait):
+def test_shorten_never_delays_a_footstep(gait):
     gait.start(0)
     for _ in range(START + STEP):
         tick(gait, FORWARD)
@@ -155,15 +155,15 @@ def test_a_footstep_never_hurries_into_a_later_end(gait):
     assert gait.ticks_left == before
 
 
-def test_a_hurried_footstep_leaves_the_foot_time_for_its_way(gait):
+def test_a_shortened_footstep_respects_the_swing_speed(gait):
     gait.start(0)
     for _ in range(START + STEP):
         tick(gait, FORWARD)
     landing = gait.landing
     far = Foothold(landing.left, landing.x + 0.2, landing.y, landing.yaw)
     assert gait.shorten(0, far)
-    way = far.x - gait.feet[gait.swing, 0]
-    assert gait.ticks_left * CONTROL_PERIOD >= 1.875 * way / GAIT.swing_speed
+    distance = far.x - gait.feet[gait.swing, 0]
+    assert gait.ticks_left * CONTROL_PERIOD >= 1.875 * distance / GAIT.swing_speed
 
 
 def test_the_cached_reference_of_a_tick_equals_a_new_one(gait):

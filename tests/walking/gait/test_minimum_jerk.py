@@ -15,10 +15,13 @@ def test_minimum_jerk_is_symmetric_in_time(fraction):
 
 def test_minimum_jerk_starts_and_ends_at_rest_and_peaks_in_the_middle():
     fractions = np.linspace(0.0, 1.0, 2001)
-    way = np.array([minimum_jerk(s) for s in fractions])
-    speed, force = np.gradient(way, fractions), np.gradient(np.gradient(way, fractions), fractions)
-    assert way[0] == 0.0
-    assert way[-1] == 1.0
+    position = np.array([minimum_jerk(s) for s in fractions])
+    speed, force = (
+        np.gradient(position, fractions),
+        np.gradient(np.gradient(position, fractions), fractions),
+    )
+    assert position[0] == 0.0
+    assert position[-1] == 1.0
     assert speed.max() == pytest.approx(PEAK, rel=1e-4)
     assert abs(speed[[0, -1]]).max() < 1e-4
     assert abs(force[[0, -1]]).max() < 0.1

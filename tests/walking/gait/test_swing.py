@@ -22,7 +22,7 @@ def test_a_foot_that_stands_rests_on_its_foothold_at_the_height_it_has():
     assert feet[1, HEIGHT] == 1.0
 
 
-def test_a_way_takes_its_time():
+def test_min_ticks_respect_the_peak_speed():
     foot = resting(STANCE)[0]
     ticks = min_ticks(foot, Foothold(True, 0.13, 0.08, 0.0), 0.5)
     assert (ticks - 1) * CONTROL_PERIOD < PEAK * 0.05 / 0.5 <= ticks * CONTROL_PERIOD

@@ -62,11 +62,11 @@ def reaction_of(k, stride):
     moved = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])
     height = lift * np.polynomial.Polynomial([0, 4, -4]) ** 3
     a, b, zmp = np.array(origin[:2]), np.array(landing[:2]), np.array([zx + 0.01, zy])
-    place = a + (b - a) * moved(u)
+    position = a + (b - a) * moved(u)
     up = height.deriv(2)(u) / T**2
     return (
         -REACTION.thrust * (b - a) * moved.deriv(2)(u) / T**2
-        + REACTION.weight * up * (place - zmp)
+        + REACTION.weight * up * (position - zmp)
         - REACTION.knee * up * np.array([1.0, 0.0])
     )
 
@@ -94,8 +94,8 @@ def turned(planned, angle):
 
     def foothold(row):
         x, y, yaw, left = row
-        place = turn * complex(x, y)
-        return (place.real, place.imag, yaw + angle, left)
+        position = turn * complex(x, y)
+        return (position.real, position.imag, yaw + angle, left)
 
     return replace(
         planned,

@@ -72,7 +72,7 @@ def test_an_admitted_change_is_made_at_once(setting):
     assert transition.landing.x == pytest.approx(0.3 * TIME)
 
 
-def test_the_largest_admitted_share_is_found(setting):
+def test_bisection_takes_the_maximum_admitted_fraction(setting):
     _, generator, transition, _ = setting
     tick(setting, SLOW)
     slow = transition.landing.x
@@ -96,7 +96,7 @@ def test_if_nothing_is_admitted_the_old_plan_goes_on(setting):
     assert gait.clock == clock
 
 
-def test_times_change_by_the_same_share(setting):
+def test_timing_changes_by_the_same_fraction(setting):
     gait, generator, transition, _ = setting
     tick(setting, SLOW)
     generator.reach = 0.5 * (transition.landing.x + 3.0 * transition.landing.x) + 1e-9
@@ -172,7 +172,7 @@ def test_a_foot_that_has_met_the_floor_is_where_it_is(setting):
     assert transition.landing == gait.landing
 
 
-def test_while_the_body_is_caught_the_plan_keeps_its_own_landing(setting):
+def test_during_a_capture_step_the_plan_keeps_its_landing(setting):
     gait, _, transition, _ = setting
     swinging(setting)
     kept = transition.landing

@@ -25,7 +25,7 @@ def test_the_vertical_is_the_one_that_the_rotation_gives(yaw, pitch, roll):
 
 
 @given(ANGLE, st.floats(-0.6, 0.6))
-def test_each_side_is_told_whatever_the_heading(yaw, tilt):
+def test_the_lying_side_is_independent_of_the_heading(yaw, tilt):
     right = 0.5 * pi
     for side, pitch, roll in (
         (Lying.FRONT, right + tilt, 0.0),
@@ -44,7 +44,7 @@ def test_the_mirror_swaps_left_and_right_alone(angle):
     assert mirrored is swapped.get(side, side)
 
 
-def test_rest_takes_its_time_and_starts_anew_after_a_jolt():
+def test_rest_needs_its_duration_and_restarts_after_a_jolt():
     parameters = GetUpParameters(rest_rate=0.3, rest_time=0.05)
     rest = RestDetector(parameters)
     slow, fast = (0.2, -0.2, 0.1), (0.0, 0.0, -0.4)

@@ -31,9 +31,9 @@ def test_it_arrives_in_time_and_holds(robot):
     goal = 0.5 * (robot.ready + np.clip(np.zeros(26), robot.lower, robot.upper))
     track = PostureTrack(robot, SPEED, robot.ready)
     track.aim(goal, 0.5, 0.1)
-    way = []
+    path = []
     while not track.done:
-        way.append(track.advance())
-    assert len(way) == 120
-    assert way[99] == pytest.approx(goal)
-    assert way[-1] == pytest.approx(goal)
+        path.append(track.advance())
+    assert len(path) == 120
+    assert path[99] == pytest.approx(goal)
+    assert path[-1] == pytest.approx(goal)

@@ -122,7 +122,7 @@ def test_position_and_velocity_of_a_new_walk_are_reached_at_touch_down(tick, str
         assert region.clip(x, y) == (x, y)
 
 
-def test_a_change_too_late_is_turned_down_and_the_zmp_stays_in_the_sole():
+def test_a_late_change_is_rejected_and_the_zmp_stays_in_the_sole():
     generator = PaperGenerator(LIPM, PatternParameters())
     state = start_of_support()
     _, path = run(generator, state, feet(9), 54, (48, feet(9, 0.12)))
@@ -133,7 +133,7 @@ def test_a_change_too_late_is_turned_down_and_the_zmp_stays_in_the_sole():
         assert region.clip(x, y) == pytest.approx((x, y), abs=1e-12)
 
 
-def test_what_could_not_be_reached_is_told():
+def test_the_residual_of_an_infeasible_target_is_reported():
     generator = PaperGenerator(LIPM, PatternParameters())
     state = start_of_support()
     state.vx += 0.4

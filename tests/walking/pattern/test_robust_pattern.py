@@ -80,7 +80,7 @@ def test_a_new_landing_is_walked_to_exactly(tick):
     assert rates.max() < PARAMETERS.zmp_rate + 1e-9
 
 
-def test_an_infeasible_landing_is_turned_down_and_the_last_plan_walked_on():
+def test_an_infeasible_landing_is_rejected_and_the_last_plan_continued():
     before, after = feet(0.05), feet(0.15)
     state = walking(before)
     state.vx += 0.02
@@ -98,7 +98,7 @@ def test_an_infeasible_landing_is_turned_down_and_the_last_plan_walked_on():
     assert (state.zmp_x, state.zmp_y) == pytest.approx(kept[-1][1:], abs=1e-9)
 
 
-def test_what_a_forced_plan_misses_is_told_and_the_zmp_stays_in_the_sole():
+def test_after_a_push_the_dcm_error_is_reported_and_the_zmp_stays_in_the_sole():
     steps = feet(0.05)
     state = walking(steps)
     state.vx += 1.5

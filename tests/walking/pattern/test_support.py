@@ -50,7 +50,7 @@ def test_clipping_twice_changes_nothing(x, y):
     assert region.clip(*once) == pytest.approx(once, abs=1e-12)
 
 
-def test_load_share_runs_from_one_foot_to_the_other():
+def test_load_fraction_runs_from_one_foot_to_the_other():
     left = Foothold(True, 0.0, 0.042, 0.0)
     region = support_region(SOLE, RIGHT, left, MARGIN)
     assert region.load_fraction(0.01, -0.042) == pytest.approx(0.0)

@@ -53,7 +53,7 @@ def box(centre, angle, nominal):
 
 
 def draw(seed, reach):
-    """Cells on feet of all directions, and a DCM `reach` of the way to the farthest."""
+    """Cells on feet of all directions, and a DCM at the fraction `reach` of the farthest."""
     rng = np.random.default_rng(seed)
     cells, farthest, k = [], np.zeros(2), 0
     for knots in (1, 4, 2, 1):
@@ -82,7 +82,7 @@ def points_of(cells, fit):
 
 
 @given(st.integers(0, 10**6), st.floats(0.0, 0.99))
-def test_what_can_be_brought_about_is(seed, reach):
+def test_a_feasible_program_reaches_the_dcm_within_the_boxes(seed, reach):
     cells, dcm = draw(seed, reach)
     fit = Fit(cells, *dcm)
     assert fit.solve(START)
@@ -96,7 +96,7 @@ def test_what_can_be_brought_about_is(seed, reach):
 
 @settings(max_examples=30)
 @given(st.integers(0, 10**6), st.floats(0.0, 0.9))
-def test_no_neighbour_that_does_the_same_is_nearer(seed, reach):
+def test_the_solution_satisfies_the_optimality_conditions(seed, reach):
     """The move is orthogonal to every direction that keeps DCM and boxes."""
     cells, dcm = draw(seed, reach)
     fit = Fit(cells, *dcm)
@@ -134,7 +134,7 @@ def test_the_solution_is_found_at_once_from_its_own_dual():
 
 
 @given(st.integers(0, 10**6), st.floats(-3.1, 3.1), st.floats(1.001, 5.0))
-def test_what_is_out_of_reach_is_turned_down(seed, direction, beyond):
+def test_an_infeasible_program_is_detected(seed, direction, beyond):
     cells, _ = draw(seed, 0.0)
     towards = np.array([np.cos(direction), np.sin(direction)])
     middle, reach = np.zeros(2), 0.0

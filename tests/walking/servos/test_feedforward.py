@@ -44,7 +44,7 @@ def test_a_moving_head_is_led_by_its_lag(robot):
 
 
 def test_the_ankle_has_the_moment_of_the_whole_body_about_it(robot):
-    """A body that tips sideways in slow motion: at rest over one foot, its mass beside it."""
+    """A body that tips sideways in slow motion: at rest over one foot, its mass next to it."""
     compliant = feed(robot, velocity_gain=0.0, inertia_gain=0.0)
     q = robot.ready
     offset = compliant.offsets(q, ORIGIN, SOLES, 0.0, (0.0, 0.0), task=STILL)
@@ -64,7 +64,7 @@ def test_shared_loads_put_the_zmp_under_either_sole(robot):
 
 
 def balanced(robot, right_load, shift, gyro=(0.0, 0.0, 0.0)):
-    """What the ankles' task adds to the offsets."""
+    """Offsets added by the task of the ankles."""
     arguments = (robot.ready, ORIGIN, SOLES, right_load, (0.0, 0.0))
     without = feed(robot).offsets(*arguments, task=STILL)
     return feed(robot).offsets(*arguments, task=((0.0, 0.0), shift, gyro)) - without

@@ -15,5 +15,5 @@ def test_touch_down_needs_the_phase_the_force_and_the_duration():
     assert not touch.update(0.76, 50.0)
 
 
-def test_one_touch_is_none():
+def test_a_single_tick_of_contact_is_not_a_touchdown():
     assert not TouchdownDetector(PARAMETERS).update(0.7, 50.0)

@@ -71,7 +71,7 @@ def test_the_trunk_turns_as_fast_as_the_feet_between_two_ticks(body):
     assert whole.turn_rate == 0.0
 
 
-def test_the_servos_are_told_of_the_pendulum_s_acceleration(robot, body):
+def test_feedforward_includes_the_acceleration_of_the_pendulum(robot, body):
     whole, gait = body()
     targets = follow(whole, zmp=(-0.01, 0.005))
     height = PARAMETERS.pattern.pelvis_height - robot.legs[0].hip_z
