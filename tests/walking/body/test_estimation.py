@@ -110,13 +110,7 @@ def test_a_body_as_planned_has_no_error_wherever_the_plan_is_and_however_it_is_t
         c, s = np.cos(angle), np.sin(angle)
         return np.array([c * point[0] - s * point[1], s * point[0] + c * point[1]])
 
-    positions = [at + turned(turn, (foot.x, foot.y)) for foot in body.feet]
-    feet = np.array(
-        [
-            (*position, turn + foot.yaw, 0.0)
-            for position, foot in zip(positions, body.feet, strict=True)
-        ]
-    )
+    feet = np.array([(*(at + turned(turn, (f.x, f.y))), turn + f.yaw, 0.0) for f in body.feet])
     origin = np.array([0.11, 0.07])
     planned = turned(-yaw, at + turned(turn, body.com[:2]) - origin)
     for off in ((0.0, 0.0), (0.004, -0.003)):

@@ -54,10 +54,8 @@ def test_nothing_is_made_up_for_before_two_footsteps_of_a_steady_walk():
     assert set(walk((0.2, 0.0, 0.0), (0.01, 0.0), cycles=1)) == {(0.0, 0.0)}
     hold = SpeedHold(PARAMETERS)
     walk((0.2, 0.0, 0.0), (0.01, 0.0), hold=hold)
-    assert hold.correction((0.0, 0.0, 0.0), (0.3, 0.0, 0.0), begins=False, disturbed=False) == (
-        0.0,
-        0.0,
-    )
+    other = (0.3, 0.0, 0.0)
+    assert hold.correction((0.0, 0.0, 0.0), other, begins=False, disturbed=False) == (0.0, 0.0)
 
 
 def test_footsteps_that_balance_are_not_learned_from():
