@@ -69,7 +69,7 @@ say "installing the locked packages (about a minute the first time)"
 say "installing hsr8 itself, editable"
 "${pip[@]}" install -qq --no-deps --no-build-isolation --no-index --editable .
 
-source=egl
+source=rendered
 if ! gl_draws && ! { apt_install libegl1 libgl1 && gl_draws; }; then
     warn "no OpenGL to draw with: camera and videos need it; as root: apt-get install libegl1 libgl1"
     source=analytic
