@@ -5,7 +5,13 @@ from pathlib import Path
 import pytest
 from check_words import PACKAGES, ROOT, check_file, check_python, check_text, files
 
-NOT_YET = ("docs/results",)  # pages still to be rewritten; only ever shorter
+PAGES_LEFT = (  # pages of docs/results still to be rewritten; only ever shorter
+    *("baselines", "belief", "course", "determinism", "failures", "families", "faults"),
+    *("gaze", "gaze-full", "gaze-tuning", "getup", "log", "loop-time", "paper", "pattern"),
+    *("robustness", "scaled-robots", "soak", "speed", "tests", "video", "vision", "walking"),
+    *("walking-tick", "worlds"),
+)
+NOT_YET = [f"docs/results/{page}.md" for page in PAGES_LEFT]
 
 
 def _pages() -> list[Path]:
