@@ -14,7 +14,6 @@ from typing import Any, get_args
 import tyro
 
 from hsr8.cli.crash import crash_report
-from hsr8.cli.loading import loading
 from hsr8.cli.options import Command
 from hsr8.cli.renamed import require_present_names
 from hsr8.errors import Hsr8Error, UsageError
@@ -81,8 +80,8 @@ def _run(words: list[str]) -> int:
             if command is None:
                 return 0
             name = next(name for name, kind in COMMANDS.items() if isinstance(command, kind))
-            with loading():  # not before: MuJoCo, Rerun and SciPy take seconds
-                module = importlib.import_module(f"hsr8.cli.{name.replace('-', '_')}")
+            # Not before: MuJoCo, Rerun and SciPy take seconds.
+            module = importlib.import_module(f"hsr8.cli.{name.replace('-', '_')}")
             code: int = module.main(command)
     except Hsr8Error as error:
         notes = getattr(error, "__notes__", [])

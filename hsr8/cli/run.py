@@ -5,7 +5,6 @@ import sys
 from dataclasses import replace
 
 from hsr8.cli.command_line import command_words, log_level, option_tables, settings
-from hsr8.cli.loading import loading
 from hsr8.cli.options import Run
 from hsr8.scenario.loader import load_scenario
 
@@ -23,8 +22,7 @@ def main(options: Run) -> int:
     )
     if not options.quiet:
         print(f"{scenario.name}, seed {scenario.seed}", file=sys.stderr, flush=True)
-    with loading():
-        from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
+    from hsr8.cli.recorded_run import start  # noqa: PLC0415  takes seconds
 
     repeated = replace(options, seed=scenario.seed, view=None)
     return start(options, scenario, log, tuple(map(shlex.quote, command_words(repeated))))

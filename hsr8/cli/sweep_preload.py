@@ -9,15 +9,13 @@ import os
 import signal
 from contextlib import suppress
 
-from hsr8.cli.loading import loading
 from hsr8.parent_watch import end_with_parent
 
 end_with_parent(os.getppid(), signal.SIGKILL)
 
-with loading():
-    import hsr8.cli.recorded_run  # noqa: F401  chooses the OpenGL backend before MuJoCo loads
-    from hsr8.loop import Simulation
-    from hsr8.scenario.loader import load_scenario
+import hsr8.cli.recorded_run  # noqa: E402, F401  chooses the OpenGL backend before MuJoCo loads
+from hsr8.loop import Simulation  # noqa: E402
+from hsr8.scenario.loader import load_scenario  # noqa: E402
 
 # A short run loads the compiled kernels. If it fails, the runs of the sweep report the reason.
 with suppress(Exception):

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hsr8.errors import ScenarioError
+from hsr8.evaluation.sweep.table import flatten
 from hsr8.recorder.run.manifest import versions
 from hsr8.scenario.loader import dump, loads
 from hsr8.version import VERSION
@@ -83,8 +84,9 @@ class Definition:
 
 def scenario_differences(one: Definition, other: Definition) -> Differences:
     """Return the scenario keys whose values differ, with both values as JSON; absent is ``-``."""
-    tables = [dict(_flatten(tomllib.loads(_resolved(d.scenario)))) for d in (one, other)]
-    differences = _differences(*tables)
+    tables = [flatten(tomllib.loads(_resolved(d.scenario))) for d in (one, other)]
+    texts = ({key: json.dumps(value, default=str) for key, value in t.items()} for t in tables)
+    differences = _differences(*texts)
     return {key: differences[key] for key in sorted(differences.keys() - set(MAY_DIFFER))}
 
 
@@ -133,14 +135,3 @@ def _resolved(text: str) -> str:
         return dump(loads(text))
     except ScenarioError:
         return text
-
-
-def _flatten(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    if isinstance(value, dict) and value:
-        for key, inner in value.items():
-            yield from _flatten(inner, f"{path}.{key}" if path else key)
-    elif isinstance(value, list) and value and isinstance(value[0], dict):
-        for k, inner in enumerate(value):
-            yield from _flatten(inner, f"{path}.{k}")
-    else:
-        yield path, json.dumps(value, default=str)

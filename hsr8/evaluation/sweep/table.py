@@ -10,10 +10,12 @@ from hsr8.recorder.files import atomic
 
 
 def flatten(result: RunResult, prefix: str = "") -> RunResult:
-    """Return `result` with ``a: {b: 1}`` as ``a.b: 1``."""
+    """Return `result` with ``a: {b: 1}`` as ``a.b: 1`` and ``a: [{b: 1}]`` as ``a.0.b: 1``."""
     columns: RunResult = {}
     for key, value in result.items():
-        if isinstance(value, dict):
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            columns |= flatten({str(k): part for k, part in enumerate(value)}, f"{prefix}{key}.")
+        elif isinstance(value, dict):
             columns |= flatten(value, f"{prefix}{key}.")
         else:
             columns[prefix + key] = value
