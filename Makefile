@@ -12,7 +12,7 @@ XDIST ?= -n 2 --dist loadfile
 .DEFAULT_GOAL := help
 .PHONY: help setup run test test-all lint types layers fix lock build clean
 
-help:  ## this list
+help:  ## list of targets
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup:  ## virtual environment, locked packages, OpenGL for machines without a display
@@ -21,10 +21,10 @@ setup:  ## virtual environment, locked packages, OpenGL for machines without a d
 run: setup  ## the paper's experiment, then its video: make run ARGS="--seed 7"
 	@bash scripts/run_paper.sh $(ARGS)
 
-test: setup  ## the fast test suite: make test ARGS="-k gait"
+test: setup  ## fast test suite: make test ARGS="-k gait"
 	@$(PY) -m pytest $(XDIST) $(ARGS)
 
-test-all: setup  ## the slow studies too
+test-all: setup  ## all tests, including the slow studies
 	@$(PY) -m pytest $(XDIST) -m "slow or not slow" --timeout 3600 $(ARGS)
 
 lint: setup  ## ruff: style and formatting
@@ -34,18 +34,18 @@ lint: setup  ## ruff: style and formatting
 types: setup  ## mypy, strict
 	@$(PY) -m mypy
 
-layers: setup  ## who may import whom
+layers: setup  ## import rules
 	@.venv/bin/lint-imports --no-logo
 
-fix: setup  ## let ruff mend and format; write docs/scenarios.md anew
+fix: setup  ## ruff fixes and formatting; regenerate docs/scenarios.md
 	@$(PY) -m ruff check --fix $(SOURCES)
 	@$(PY) -m ruff format $(SOURCES)
 	@$(PY) scripts/write_scenario_reference.py
 
-lock:  ## resolve the dependencies anew into requirements.lock (needs the network)
+lock:  ## resolve the dependencies into requirements.lock (needs the network)
 	@bash scripts/lock.sh $(ARGS)
 
-build: setup  ## build the wheel and try it in an environment of its own
+build: setup  ## build the wheel and test it in a separate environment
 	@bash scripts/smoke_wheel.sh
 
 clean:  ## remove caches and build products; runs/ and .venv stay

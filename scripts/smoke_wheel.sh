@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Build the wheel, install it into an environment where this checkout cannot be seen, and use
-# what it ships: command line, scenarios, models.
+# its contents: command line, scenarios, models.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -12,7 +12,7 @@ rm -rf dist
 .venv/bin/python -m hatchling build --target wheel >/dev/null
 wheels=(dist/hsr8-*.whl)
 
-echo ":: installing ${wheels[0]} into an environment of its own"
+echo ":: installing ${wheels[0]} into a separate environment"
 .venv/bin/python -m venv "$scratch/venv"
 "$scratch/venv/bin/python" -m pip install -qq --no-deps --no-index "${wheels[0]}"
 # Dependencies are borrowed from .venv by path. A borrowed folder's own .pth files are not read,
