@@ -16,6 +16,7 @@ PARAMETERS = EstimatorParameters()
 LIPM = Lipm(0.19)
 GAINS = steady_gains(LIPM.omega, PARAMETERS)
 FILTER = np.array([*GAINS, LIPM.omega])
+SEEDS = st.integers(0, 10**6)
 
 
 class Tilt:
@@ -125,3 +126,40 @@ def test_the_error_filter_predicts_with_the_pendulum():
     follow(error, (error[0] + 1.0, 0.0), (error[0], 0.0), (error[2], 0.0))
     assert error[0] == pytest.approx(x + GAINS[0], abs=1e-4)
     assert error[2] == pytest.approx(v + GAINS[1], abs=1e-3)
+
+
+@given(SEEDS)
+def test_a_level_point_keeps_its_distance(seed):
+    point = tuple(np.random.default_rng(seed).normal(0.0, 0.1, 3).tolist())
+    levelled = estimation_kernel.level(point, (0.2, -0.3))
+    assert np.linalg.norm(levelled) == pytest.approx(np.linalg.norm(point))
+
+
+@pytest.mark.parametrize(("pad", "x", "y"), [(0, 1, 1), (1, 1, -1), (2, -1, 1), (3, -1, -1)])
+def test_the_centre_of_pressure_is_at_the_loaded_corner(pad, x, y):
+    corner = (9.0, 0.01 + 0.05 * x, 0.03 * y)
+    assert estimation_kernel.load_of(9.0 * np.eye(4)[pad], (0.01, 0.05, 0.03)) == pytest.approx(
+        corner
+    )
+
+
+def test_both_axes_are_filtered_alike():
+    rng = np.random.default_rng(2)
+    one, other = np.zeros(5), np.zeros(5)
+    for _ in range(50):
+        inputs = rng.normal(0.0, 0.01, (3, 2)).tolist()
+        follow(one, *map(tuple, inputs))
+        follow(other, *(tuple(pair[::-1]) for pair in inputs))
+        assert (one[[0, 2, 1, 3]] == other[[1, 3, 0, 2]]).all()
+
+
+@given(SEEDS)
+def test_a_body_on_its_plan_has_no_error_in_any_frame(seed):
+    rng = np.random.default_rng(seed)
+    x, y, yaw, turn = rng.uniform(-0.5, 0.5, 4).tolist()
+    arm = rng.uniform(-0.1, 0.1, 2).tolist()
+    c, s = cos(turn), sin(turn)
+    planned = (x + c * arm[0] - s * arm[1], y + s * arm[0] + c * arm[1])
+    com = (0.3 + arm[0], -0.2 + arm[1])
+    error = estimation_kernel.com_error(com, (0.3, -0.2, yaw), (x, y, yaw + turn, 0.0), planned)
+    assert error == pytest.approx((0.0, 0.0, planned[0] - x, planned[1] - y), abs=1e-12)
