@@ -55,7 +55,7 @@ def executor(entry):
 def _results(executor, count):
     results = {}
     while len(results) < count:
-        results |= {job.seed: result for job, result in executor.wait(5.0)}
+        results |= {job.seed: result for job, result in executor.wait(0.2)}
     assert executor.wait(0.0) == []
     return results
 

@@ -14,7 +14,7 @@ COMMANDS = [
     ["diff", "SAME"],
     ["compare", "SAME"],
     ["verify"],
-    ["plot"],
+    ["plot", "--what", "tilt"],
 ]
 
 
