@@ -1,0 +1,1 @@
+"""Robots: description files, models in MJCF or URDF, and the normal form that the simulator uses."""

@@ -1,0 +1,197 @@
+"""Robot description: the file ``robot.toml`` next to a model, its keys and their meaning."""
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from annotated_types import Interval, Len
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+
+from hsr8.errors import ModelError
+
+Name = Annotated[str, Len(1, 200)]
+Pair = tuple[Name, Name]
+Angle = Annotated[float, Interval(ge=-7.0, le=7.0)]
+Positive = Annotated[float, Interval(gt=0.0, le=1e6)]
+Length = Annotated[float, Interval(ge=-5.0, le=5.0)]
+Size = Annotated[float, Interval(gt=0.0, le=5.0)]
+Sigma = Annotated[float, Interval(ge=0.0, le=1.0)]
+
+
+class Table(BaseModel):
+    """Table of a description: strict types, no unknown keys, immutable."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class SoleRectangle(Table):
+    """Rectangle of the left sole in the foot's body or link; the right one is its mirror image."""
+
+    front: Length
+    """Front edge, forward of the origin [m]."""
+    back: Length
+    """Back edge, forward of the origin; usually negative [m]."""
+    left: Length
+    """Left edge, to the left of the origin [m]."""
+    right: Length
+    """Right edge, to the left of the origin; usually negative [m]."""
+    height: Length
+    """Height of the sole above the origin; usually negative [m]."""
+
+
+class CameraMount(Table):
+    """Camera fixed to a body or link."""
+
+    body: Name
+    """Body or link that carries the camera."""
+    position: tuple[Length, Length, Length]
+    """Position in the base's directions from the origin of the body, at zero angles [m]."""
+    tilt_deg: Annotated[float, Interval(ge=-90.0, le=90.0)] = 0.0
+    """Elevation of the optical axis, upward positive [deg]."""
+
+
+class ServoRule(Table):
+    """Position servos by rule, for models without usable servos of their own."""
+
+    compliance: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.1
+    """Relative compliance of a leg servo: weight times height over stiffness [rad/rad]."""
+    lag: Annotated[float, Interval(gt=0.0, le=1.0)] = 0.05
+    """Maximum ratio of damping to stiffness of a leg servo [s]."""
+    upper_hz: Annotated[float, Interval(gt=0.0, le=1000.0)] = 6.0
+    """Natural frequency of the other servos [Hz]."""
+
+
+class SpeedEnvelope(Table):
+    """Speeds that the robot walks at without falling, measured by ``hsr8 robot calibrate``."""
+
+    vx: Positive
+    """Forward [m/s]."""
+    vx_backward: Positive
+    """Backward [m/s]."""
+    vy: Positive
+    """Sideways [m/s]."""
+    wz: Positive
+    """Turn rate [rad/s]."""
+
+
+class Calibration(Table):
+    """Properties measured in simulation by ``hsr8 robot calibrate``."""
+
+    date: Name
+    """Day of the measurement."""
+    version: Name
+    """Version of hsr8."""
+    command: Name
+    """Command that measured."""
+    speed: SpeedEnvelope
+    """Speed envelope."""
+    acceleration: Positive
+    """Acceleration of navigation commands [m/s²]."""
+    turn_delay: Sigma
+    """Delay from a commanded turn rate to half of it [s]."""
+    lag: Sigma
+    """Delay of the joints behind their targets [s]."""
+    forward_noise: Sigma
+    """Random walk of the odometry along the heading [m/√s]."""
+    lateral_noise: Sigma
+    """Random walk of the odometry across the heading [m/√s]."""
+    tilt_sigma: Sigma
+    """Standard deviation of the tilt of the camera pose [rad]."""
+    roll_sigma: Sigma
+    """Standard deviation of its roll [rad]."""
+    yaw_sigma: Sigma
+    """Standard deviation of its yaw against the heading by odometry [rad]."""
+    height_sigma: Sigma
+    """Standard deviation of its height [m]."""
+
+
+class RobotDescription(Table):
+    """Robot: its model file, the roles of its parts, and what the model does not say."""
+
+    model: Name
+    """MJCF or URDF file; a relative path is searched as `docs/robots.md` lists."""
+    feet: Pair
+    """Bodies or links of the left and the right foot."""
+    base: Name | None = None
+    """Body of the pelvis; default: the body with the free joint, or the root link."""
+    sole: SoleRectangle | Pair | None = None
+    """Rectangle of the left sole, or the names of the left and the right geom; default: the lowest
+    4 mm of the foot's collision shapes, else of its visual ones."""
+    zero: dict[Name, Angle] = {}
+    """Joint angles at which the legs are straight and the soles flat, where not zero [rad]."""
+    head: Pair | None = None
+    """Pan and tilt joint of the head."""
+    shoulders: Pair | None = None
+    """Left and right shoulder pitch joint, which swing while walking."""
+    posture: dict[Name, Angle] = {}
+    """Angles of the joints other than legs and head while walking [rad]."""
+    srdf: Name | None = None
+    """SRDF file with a group state that completes `posture`; relative to the description."""
+    state: Name | None = None
+    """Name of that group state."""
+    camera: Name | CameraMount | None = None
+    """Camera of the model, or where to mount one; default: the only camera of a body, or in front
+    of the head or the upper trunk."""
+    vertical_fov_deg: Annotated[float, Interval(ge=10.0, le=120.0)] | None = None
+    """Vertical field of view of the camera; default: that of the scenario [deg]."""
+    radius: Size | None = None
+    """Radius of the walking robot for navigation; default: from its shapes in the ready posture
+    [m]."""
+    servo: Literal["own", "rule"] | ServoRule | None = None
+    """Position servos of the model, or by rule; default: own if the model has them."""
+    effort: dict[Name, Positive] = {}
+    """Maximum torque by joint, where the model is silent or wrong [N m]."""
+    speed: dict[Name, Positive] = {}
+    """Maximum speed by joint, where the model is silent or wrong [rad/s]."""
+    rigid: tuple[Name, ...] = ()
+    """Joints to fix at their angle in the ready posture."""
+    packages: dict[Name, Name] = {}
+    """Folder of each package named in a ``package://`` path of a URDF file."""
+    head_rate: Positive | None = None
+    """Maximum rate of the head joints; default: from their speed limits [rad/s]."""
+    head_acceleration: Positive | None = None
+    """Maximum angular acceleration of the head joints [rad/s²]."""
+    calibration: Calibration | None = None
+    """Properties measured by ``hsr8 robot calibrate``."""
+
+    @model_validator(mode="after")
+    def _complete(self) -> "RobotDescription":
+        if (self.srdf is None) != (self.state is None):
+            raise ValueError("srdf and state go together: expected both or neither")
+        if self.feet[0] == self.feet[1]:
+            raise ValueError(f"feet: left and right are the same body, {self.feet[0]!r}")
+        return self
+
+
+def read_description(file: Path) -> RobotDescription:
+    """Read a description file.
+
+    Raises:
+        ModelError: the file cannot be read, or a key is wrong; the message lists every mistake.
+    """
+    try:
+        data = tomllib.loads(file.read_bytes().decode("utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise ModelError(f"{file}: cannot be read: {error}") from error
+    return checked(data, str(file))
+
+
+def checked(data: dict[str, Any], source: str) -> RobotDescription:
+    """Return the description with these keys.
+
+    Raises:
+        ModelError: a key is wrong; the message begins with `source` and lists every mistake.
+    """
+    try:
+        return RobotDescription.model_validate_json(json.dumps(data, default=str))
+    except ValidationError as error:
+        lines = [
+            f"  {_dotted(e['loc'])}: {e['msg'].removeprefix('Value error, ')}, got {e['input']!r}"
+            for e in error.errors(include_url=False)
+        ]
+        raise ModelError("\n".join([f"{source}: invalid robot description", *lines])) from error
+
+
+def _dotted(location: tuple[int | str, ...]) -> str:
+    return ".".join(map(str, location)) or "robot"
