@@ -1,1 +1,1 @@
-"""Robots: description files, models in MJCF or URDF, and the normal form that the simulator uses."""
+"""Robots: description files, MJCF and URDF models, and their normal form."""
