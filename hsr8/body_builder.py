@@ -2,6 +2,7 @@
 
 import mujoco
 
+from hsr8.robots.models import reading_models
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.body.body import Body
@@ -10,7 +11,6 @@ from hsr8.world.body.physics import PhysicsBody
 from hsr8.world.body.pushes import schedule
 from hsr8.world.field.layout import Layout
 from hsr8.world.model.assembly import Optics, assemble
-from hsr8.world.model.models import reading_models
 from walking.parameters import CONTROL_PERIOD
 
 

@@ -15,11 +15,11 @@ from hsr8.errors import ScenarioError, UsageError
 from hsr8.plugin_decisions import PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_plugin
 from hsr8.robot import Robot
+from hsr8.robots.models import models_dir, reading_models
 from hsr8.scenario.mission import Walk
 from hsr8.scenario.schema import Scenario
 from hsr8.seeds import named_rng
 from hsr8.world.field.layout import Layout
-from hsr8.world.model.models import models_dir, reading_models
 from navigation.baselines.choice import build_planner
 from navigation.belief.estimator import Estimator
 from navigation.gaze.planner import GazePlanner

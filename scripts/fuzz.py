@@ -22,8 +22,8 @@ from hsr8.errors import ScenarioError, SimulationDiverged, UsageError
 from hsr8.evaluation.sweep import folder as sweep_folder
 from hsr8.loop import Simulation
 from hsr8.recorder.run import run_folder
+from hsr8.robots import models
 from hsr8.scenario.loader import BUILT_IN, built_in_names, load_scenario, loads
-from hsr8.world.model import models
 from vision.color import COLOR_CLASSES, ColorTable
 from vision.color_file import load_table, save_table
 from vision.errors import VisionError

@@ -14,8 +14,8 @@ from hsr8.gl import APT_LINE, BACKENDS, REQUESTED, VULKAN_LINE, is_software
 from hsr8.recorder.files import atomic
 from hsr8.recorder.run.manifest import versions
 from hsr8.render import viewer
+from hsr8.robots.models import models_dir
 from hsr8.version import VERSION
-from hsr8.world.model.models import models_dir
 
 PROBE_LIMIT = 60.0  # an OpenGL that takes longer hangs [s]
 VULKAN_FOLDERS = ("/usr/share", "/usr/local/share", "/etc")

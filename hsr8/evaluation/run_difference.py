@@ -16,7 +16,7 @@ from hsr8.recorder.run.measurements import Measurement
 from hsr8.recorder.run.run_reader import Run
 from hsr8.recorder.run.tape import Block
 from hsr8.recorder.run.walking_table import COLUMNS
-from hsr8.world.model.models import models_dir
+from hsr8.robots.models import models_dir
 from walking.body.joints import JOINT_NAMES
 from walking.parameters import CONTROL_PERIOD
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from annotated_types import Interval, Len
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from hsr8.errors import ModelError
 
@@ -52,7 +52,7 @@ class CameraMount(Table):
 
 
 class ServoRule(Table):
-    """Position servos by rule, for models without usable servos of their own."""
+    """Position servos by rule, for models without usable servos."""
 
     compliance: Annotated[float, Interval(gt=0.0, le=10.0)] = 0.1
     """Relative compliance of a leg servo: weight times height over stiffness [rad/rad]."""
@@ -113,6 +113,8 @@ class RobotDescription(Table):
     """MJCF or URDF file; a relative path is searched as `docs/robots.md` lists."""
     feet: Pair
     """Bodies or links of the left and the right foot."""
+    robot_descriptions: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")] | None = None
+    """Module of the package `robot_descriptions` that fetches the model where it is missing."""
     base: Name | None = None
     """Body of the pelvis; default: the body with the free joint, or the root link."""
     sole: SoleRectangle | Pair | None = None

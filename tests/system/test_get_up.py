@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from hsr8.body_builder import build_body, build_model
+from hsr8.robots.models import models_dir
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.index import ModelIndex
-from hsr8.world.model.models import models_dir
 from walking.body.robot_model import RobotModel
 from walking.get_up.get_up import GetUp, Outcome
 from walking.get_up.key_posture import STRAIGHT

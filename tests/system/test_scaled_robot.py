@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scaled_model import scale_robot
 
-from hsr8.world.model.models import models_dir
+from hsr8.robots.models import models_dir
 from walking.body.joints import JOINT_NAMES
 from walking.body.robot_model import RobotModel
 from walking.command import CommandState, HeadTarget, VelocityCommand

@@ -14,9 +14,9 @@ from typing import Any
 from hsr8.errors import ScenarioError
 from hsr8.evaluation.sweep.table import flatten
 from hsr8.recorder.run.manifest import versions
+from hsr8.robots.models import models_dir
 from hsr8.scenario.loader import dump, loads
 from hsr8.version import VERSION
-from hsr8.world.model.models import models_dir
 
 PACKAGES = ("hsr8", "navigation", "walking", "vision")
 NOT_IN_DIGEST = ("cli", "render", "evaluation/sweep", "_models")  # folders and files of hsr8

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hsr8.errors import SimulationDiverged
+from hsr8.robots.models import reading_models
 from hsr8.scenario.fault import Fault
 from hsr8.scenario.sensor_noise import SensorNoise
 from hsr8.world.body.pushes import Pusher, ScheduledPush
@@ -15,7 +16,6 @@ from hsr8.world.body.sensors import SensorSuite
 from hsr8.world.body.surroundings import Surroundings
 from hsr8.world.body.world_faults import WorldFaults
 from hsr8.world.field.layout import Layout
-from hsr8.world.model.models import reading_models
 from hsr8.world.rotation import heading, quaternion_from_yaw, quaternion_product, up_component
 from hsr8.world.truth.saturation import SaturationWatch
 from hsr8.world.truth.truth import Truth

@@ -13,10 +13,10 @@ from typing import Any, Literal
 import mujoco
 import numpy as np
 
+from hsr8.robots.models import models_dir, reading_models
 from hsr8.scenario.fault import Bump
 from hsr8.world.field.layout import Beacon, Layout, Obstacle
 from hsr8.world.model.model_check import check_model
-from hsr8.world.model.models import models_dir, reading_models
 from vision.color import COLOR_CLASSES
 
 Quality = Literal["vision", "show"]

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.world.model.models import reading_models
+from hsr8.robots.models import reading_models
 from walking.body.joints import JOINT_NAMES
 
 Ints = NDArray[np.intp]

@@ -5,7 +5,7 @@ import pytest
 from hsr8.cli import doctor
 from hsr8.cli.main import entry
 from hsr8.gl import APT_LINE, VULKAN_LINE
-from hsr8.world.model import models
+from hsr8.robots import models
 
 
 @pytest.fixture(autouse=True)

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from hsr8.robots.models import models_dir
 from hsr8.world.body.kinematic import KinematicBody
 from hsr8.world.field.layout import Obstacle
 from hsr8.world.field.motion import Line
-from hsr8.world.model.models import models_dir
 from walking.body.robot_model import RobotModel
 from walking.command import HeadTarget, VelocityCommand
 from walking.engine import WalkingEngine

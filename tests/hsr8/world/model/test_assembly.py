@@ -2,12 +2,12 @@ import mujoco
 import numpy as np
 import pytest
 
+from hsr8.robots.models import models_dir
 from hsr8.scenario.loader import load_scenario
 from hsr8.world.body.physics import place_robot
 from hsr8.world.field.generator import draw_layout
 from hsr8.world.model.assembly import Optics, assemble
 from hsr8.world.model.index import ModelIndex
-from hsr8.world.model.models import models_dir
 from walking.body.joints import JOINT_NAMES
 
 

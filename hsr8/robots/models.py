@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hsr8.errors import ModelError
 
-PACKAGE = Path(__file__).resolve().parents[2]
+PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def models_dir() -> Path:

@@ -4,7 +4,7 @@ import shutil
 import pytest
 
 from hsr8.cli.main import entry
-from hsr8.world.model import models
+from hsr8.robots import models
 
 LIGHT = ["--camera", "analytic", "--quiet", "--no-log", "--duration", "0.1"]
 ROBOT = "hsr8/hsr8.xml"

