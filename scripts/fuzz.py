@@ -53,7 +53,7 @@ ON_SWEEPS: tuple[tuple[str, ...], ...] = (
 RARE = {"verify": 0.15, "plot": 0.1, "render": 0.1}  # probability of the slow commands
 RARE |= {"check": 0.3, "sweep": 0.02}
 LIGHT = ("--body", "kinematic", "--camera", "analytic")
-KINDS = ("text", "table", "setting", "start", "model", "folder", "sweep", "colours")
+KINDS = ("text", "table", "setting", "start", "model", "folder", "sweep", "colors")
 FILES = (
     run_folder.SCENARIO,
     run_folder.MANIFEST,
@@ -139,8 +139,8 @@ class Folders:
         if sweep is not None:
             names = (sweep_folder.DEFINITION, sweep_folder.RESULTS, run_folder.SCENARIO)
             self._of_sweep = contents_of(sweep, names)
-        save_table(ColorTable(COLOR_CLASSES), scratch / "colours.npz")
-        self._colors = contents_of(scratch, ("colours.npz",))
+        save_table(ColorTable(COLOR_CLASSES), scratch / "colors.npz")
+        self._colors = contents_of(scratch, ("colors.npz",))
 
     def damaged(self, rng: random.Random, whole: dict[str, bytes]) -> Path:
         """Return a new copy with one or two damaged files."""
@@ -182,9 +182,9 @@ class Folders:
         words = [str(places.get(word, word)) for word in command]
         ask([*words[0].split(), *words[1:]])
 
-    def colours_case(self, rng: random.Random) -> None:
+    def colors_case(self, rng: random.Random) -> None:
         """Read a damaged colour table."""
-        load_table(self.damaged(rng, self._colors) / "colours.npz")
+        load_table(self.damaged(rng, self._colors) / "colors.npz")
 
 
 def contents_of(folder: Path, names: tuple[str, ...]) -> dict[str, bytes]:
@@ -222,8 +222,8 @@ def one(rng: random.Random, kind: str, folders: Folders | None, schema: list[Any
             model_case(rng)
         else:
             assert folders is not None
-            if kind == "colours":
-                folders.colours_case(rng)
+            if kind == "colors":
+                folders.colors_case(rng)
             else:
                 folders.case(rng, ON_SWEEPS if kind == "sweep" else COMMANDS)
     except (ScenarioError, SimulationDiverged, UsageError, VisionError) as error:

@@ -1,7 +1,7 @@
 """Images of the simulated camera with the masks that `hsr8 color-table` learns from.
 
 python scripts/label_images.py --out runs/labelled --count 8
-hsr8 color-table runs/labelled/[0-9][0-9].png --out runs/colours.npz
+hsr8 color-table runs/labelled/[0-9][0-9].png --out runs/colors.npz
 """
 
 import argparse

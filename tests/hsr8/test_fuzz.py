@@ -68,7 +68,7 @@ def test_any_run_folder_is_read_or_refused(run, tmp_path, monkeypatch):
 
 def test_any_color_table_is_read_or_refused(tmp_path):
     folders = fuzz.Folders(tmp_path, tmp_path)
-    results = {fuzz.one(random.Random(k), "colours", folders, SCHEMA) for k in range(100)}
+    results = {fuzz.one(random.Random(k), "colors", folders, SCHEMA) for k in range(100)}
     assert "refused" in results
     assert results <= {"valid", "refused"}
 
