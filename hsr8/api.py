@@ -1,4 +1,4 @@
-"""Runs from Python, with an optional custom planner or gaze controller."""
+"""Runs from Python, with an optional custom planner, gaze controller or walker."""
 
 import shlex
 from collections.abc import Mapping, Sequence
@@ -9,6 +9,7 @@ from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import UsageError
 from hsr8.evaluation.recording import Recording, Result, renderer_of
 from hsr8.loop import Simulation
+from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.log_level import LogLevel
 from hsr8.recorder.record import Listener
 from hsr8.recorder.run.manifest import CALL, Manifest
@@ -26,6 +27,7 @@ def run(
     log: bool | str = True,
     planner: MotionPlanner | None = None,
     gaze: GazeController | None = None,
+    walker: CustomWalker | None = None,
     listeners: Sequence[Listener] = (),
 ) -> Result:
     """Run a scenario.
@@ -38,13 +40,14 @@ def run(
         log: also write the Rerun log; True, False, ``"minimal"``, ``"standard"`` or ``"full"``.
         planner: replaces the planner of the scenario.
         gaze: replaces the gaze controller of the scenario.
+        walker: replaces the walking engine of the scenario.
         listeners: receive every record.
 
     Raises:
         ScenarioError: the scenario or a setting is invalid, or its world cannot be drawn.
         RenderingUnavailable: the camera needs OpenGL and there is none.
-        UsageError: the run folder cannot be made, `log` is not a level, or `planner` or `gaze`
-            returned an invalid decision.
+        UsageError: the run folder cannot be made, `log` is not a level, or `planner`, `gaze` or
+            `walker` returned an invalid value.
         RecordingFailed: the run folder can no longer be written.
         TypeError: settings were given for a loaded scenario.
         KeyboardInterrupt: Ctrl-C; the run folder is complete up to then.
@@ -54,7 +57,7 @@ def run(
     if isinstance(scenario, Scenario) and settings:
         raise TypeError("settings: need the name or file of a scenario, got a loaded scenario")
     loaded = loaded if seed is None else loaded.with_seed(seed)
-    simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze)
+    simulation = Simulation(loaded, loaded.seed, planner=planner, gaze=gaze, walker=walker)
     recording = Recording(simulation, listeners)
     if out is not None:
         renderer = renderer_of(loaded)
@@ -62,7 +65,8 @@ def run(
         source = path / SCENARIO if isinstance(scenario, Scenario) else scenario
         words = ["hsr8", "run", str(source), "--seed", str(loaded.seed)]
         words += ["--set", *as_words(settings)] if settings else []
-        command = _call(planner, gaze) or tuple(map(shlex.quote, words))
+        plugins = {"planner": planner, "gaze": gaze, "walker": walker}
+        command = _call(plugins) or tuple(map(shlex.quote, words))
         manifest = Manifest.now(loaded.name, loaded.seed, command, renderer)
         recording.into(path, manifest, log=level)
     result = recording.run()
@@ -71,12 +75,11 @@ def run(
     return result
 
 
-def _call(planner: MotionPlanner | None, gaze: GazeController | None) -> tuple[str, ...]:
-    """Return the call with the classes of a planner and gaze object; empty without them."""
-    objects = {"planner": planner, "gaze": gaze}
+def _call(plugins: Mapping[str, object]) -> tuple[str, ...]:
+    """Return the call with the classes of user-defined objects; empty without them."""
     names = [
         f"{key}={type(value).__module__}.{type(value).__qualname__}"
-        for key, value in objects.items()
+        for key, value in plugins.items()
         if value is not None
     ]
     return (f"{CALL}{', '.join(names)})",) if names else ()

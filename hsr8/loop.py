@@ -12,6 +12,7 @@ from hsr8.body_builder import build_body, build_model
 from hsr8.decisions import GazeController, MotionPlanner
 from hsr8.errors import ScenarioError, SimulationDiverged
 from hsr8.event_watch import Event, EventWatch
+from hsr8.plugin_walker import CustomWalker
 from hsr8.recorder.frame_record import FrameRecord
 from hsr8.recorder.record import Listener, TickRecord
 from hsr8.recorder.run.tape import TapeWriter
@@ -66,6 +67,7 @@ class Simulation:
         listeners: receive every record; they never change the run.
         planner: replaces the motion planner of the scenario.
         gaze: replaces the gaze planner of the scenario.
+        walker: replaces the walking engine of the scenario.
 
     Attributes:
         scenario: what to run.
@@ -81,7 +83,7 @@ class Simulation:
     Raises:
         ScenarioError: the seed is invalid, or the world cannot be drawn.
         ModelError: the robot or field model is missing or invalid.
-        UsageError: the planner or gaze, given or named by the scenario, is invalid.
+        UsageError: the planner, gaze or walker, given or named by the scenario, is invalid.
         RenderingUnavailable: in ``with`` or `run`: the camera needs OpenGL, which is missing.
     """
 
@@ -93,6 +95,7 @@ class Simulation:
         *,
         planner: MotionPlanner | None = None,
         gaze: GazeController | None = None,
+        walker: CustomWalker | None = None,
     ) -> None:
         self.scenario = scenario
         self.seed = scenario.with_seed(seed).seed
@@ -103,7 +106,7 @@ class Simulation:
         self.exit_reason: str | None = None
         self.tick = 0
         self._body = build_body(scenario, self.seed, self.layout, self.model)
-        self._robot = self._build_robot(planner, gaze)
+        self._robot = self._build_robot(planner, gaze, walker)
         self._watch = EventWatch(scenario.fault)
         self._sensor_faults = SensorFaults(scenario.fault)
         self._servo_faults = ServoFaults(scenario.fault)
@@ -125,10 +128,17 @@ class Simulation:
         self._end: tuple[int, str] | None = None
         self._published: FrameRecord | None = None
 
-    def _build_robot(self, planner: MotionPlanner | None, gaze: GazeController | None) -> Robot:
+    def _build_robot(
+        self,
+        planner: MotionPlanner | None,
+        gaze: GazeController | None,
+        walker: CustomWalker | None,
+    ) -> Robot:
         scenario = self.scenario
         try:
-            return build_robot(scenario, self.layout, self.seed, planner=planner, gaze=gaze)
+            return build_robot(
+                scenario, self.layout, self.seed, planner=planner, gaze=gaze, walker=walker
+            )
         except (ValueError, ArithmeticError, MemoryError) as error:
             raise ScenarioError(
                 f"scenario {scenario.name!r}: invalid parameters in walking, vision, belief or "

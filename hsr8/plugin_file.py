@@ -1,4 +1,4 @@
-"""User-defined planners and gazes in Python files, named as ``FILE.py:CLASS``."""
+"""User-defined planners, gazes and walkers in Python files, named as ``FILE.py:CLASS``."""
 
 import hashlib
 import sys

@@ -1,5 +1,6 @@
 """Builder of the robot side of a scenario."""
 
+from functools import partial
 from math import pi
 
 import numpy as np
@@ -14,6 +15,7 @@ from hsr8.decisions import Decisions, GazeController, MissionPlanner, MotionPlan
 from hsr8.errors import ScenarioError, UsageError
 from hsr8.plugin_decisions import PluginGaze, PluginPlanner
 from hsr8.plugin_file import load_plugin
+from hsr8.plugin_walker import CustomWalker, PluginEngine, PluginWalker, RobotInfo
 from hsr8.robot import Robot
 from hsr8.robots.models import models_dir, reading_models
 from hsr8.scenario.mission import Walk
@@ -58,6 +60,7 @@ def build_robot(
     *,
     planner: MotionPlanner | None = None,
     gaze: GazeController | None = None,
+    walker: CustomWalker | None = None,
 ) -> Robot:
     """Return the robot of `scenario` in `layout`.
 
@@ -67,12 +70,12 @@ def build_robot(
         seed: draws particles, random commands and samples of the planner.
         planner: replaces the motion planner of the scenario.
         gaze: replaces the gaze planner of the scenario.
+        walker: replaces the walking engine of the scenario.
     """
     camera = head_camera(scenario)
-    body = robot_model()
     schedule = build_schedule(scenario, named_rng(seed, "command"))
     return Robot(
-        walking=Walker(body, walking_parameters(body, scenario)),
+        walking=build_walker(scenario, walker),
         fov=field_of_view(scenario, camera),
         vision=Detector(camera, scenario.vision, arms()),
         pose=scenario.vision.pose,
@@ -81,6 +84,26 @@ def build_robot(
         decisions=build_decisions(scenario, layout, seed, schedule, planner=planner, gaze=gaze),
         schedule=schedule,
     )
+
+
+def build_walker(scenario: Scenario, walker: CustomWalker | None = None) -> Walker:
+    """Return the walker of `scenario`.
+
+    Args:
+        scenario: what to build.
+        walker: replaces the walking engine of the scenario.
+
+    Raises:
+        UsageError: the walker, given or named by the scenario, is invalid.
+    """
+    body = robot_model()
+    parameters = walking_parameters(body, scenario)
+    if walker is None and scenario.plugin.walker:
+        walker = load_plugin(scenario.plugin.walker)
+    if walker is None:
+        return Walker(body, parameters)
+    plugin = PluginWalker(walker, RobotInfo.of(body, models_dir() / "hsr8" / "hsr8.xml"))
+    return Walker(body, parameters, partial(PluginEngine, plugin, body, parameters))
 
 
 def walking_parameters(body: RobotModel, scenario: Scenario) -> WalkingParameters:

@@ -1,6 +1,9 @@
 """Walker: the walking engine, and getting up after a fall."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from typing import Protocol
 
 import numpy as np
 
@@ -18,6 +21,35 @@ from walking.targets import JointTargets
 from walking.warm_up import warm_up
 
 
+class Engine(Protocol):
+    """Walking from standing until the first fall; `WalkingEngine` or a replacement."""
+
+    @property
+    def command_limits(self) -> CommandLimits:
+        """How the last command was limited."""
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """Constraints that limited the last command."""
+
+    @property
+    def zmp_depth(self) -> float:
+        """Distance of the last planned ZMP from the edge of the support polygon [m]."""
+
+    @property
+    def fallen(self) -> bool:
+        """Whether the tilt of the trunk is that of a fallen robot."""
+
+    def step(self, sensors: BodySensors, command: Command, head: HeadTarget) -> JointTargets:
+        """Run one control tick and return the setpoints of all joints."""
+
+    def observe(self, sensors: BodySensors) -> None:
+        """Update only the attitude in a tick in which something else moves the joints."""
+
+    def state(self) -> WalkingState:
+        """Return the state after the last tick."""
+
+
 class Walker:
     """Walking engine with fall recovery: call `step` once per control tick of 5 ms.
 
@@ -27,17 +59,26 @@ class Walker:
     Args:
         robot: model of the robot.
         parameters: of walking and getting up.
+        engine: makes the engine that continues an odometry; by default a `WalkingEngine`.
 
     Attributes:
         get_up: recovery from the present fall, None while walking.
     """
 
-    def __init__(self, robot: RobotModel, parameters: WalkingParameters) -> None:
+    def __init__(
+        self,
+        robot: RobotModel,
+        parameters: WalkingParameters,
+        engine: Callable[[LegOdometry], Engine] | None = None,
+    ) -> None:
         self._robot = robot
         self._parameters = parameters
-        warm_up(robot, parameters)
+        if engine is None:
+            warm_up(robot, parameters)
+            engine = partial(WalkingEngine, robot, parameters)
+        self._make_engine = engine
         self._odometry = LegOdometry(parameters.odometry)
-        self._engine = WalkingEngine(robot, parameters, self._odometry)
+        self._engine = engine(self._odometry)
         self.get_up: GetUp | None = None
         self._command: Command = VelocityCommand()
         self._steps = 0
@@ -115,5 +156,5 @@ class Walker:
         p = self._parameters
         self._steps = self.state().step_count
         self._odometry.interrupt(p.get_up.displacement_sigma, p.get_up.yaw_sigma)
-        self._engine = WalkingEngine(self._robot, p, self._odometry)
+        self._engine = self._make_engine(self._odometry)
         self.get_up = None

@@ -27,7 +27,7 @@ def main(options: Check) -> int:
 
     Raises:
         ScenarioError: the scenario is invalid or its world cannot be drawn.
-        UsageError: its planner or gaze cannot be made, or the image cannot be written.
+        UsageError: a plugin cannot be made, or the image cannot be written.
     """
     scenario = load_scenario(options.scenario, settings(options), options.seed)
     require_plugins(scenario.plugin)

@@ -27,7 +27,7 @@ def crash_report(folder: Path | None = None) -> Iterator[None]:
         folder: of ``crash.txt``; a new temporary folder by default.
 
     Raises:
-        UsageError: a user-defined planner or gaze raised an exception.
+        UsageError: a plugin raised an exception.
         InternalError: hsr8 raised an unexpected exception.
     """
     try:

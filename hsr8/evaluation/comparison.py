@@ -188,7 +188,7 @@ def compare(a: Side, b: Side, metrics: Sequence[str] = ()) -> Comparison:
 
 
 def _plugin(side: Side) -> str:
-    """Return the call that ran a custom planner or gaze; ``-`` for the scenario's."""
+    """Return the call that ran user-defined objects; ``-`` for those of the scenario."""
     command = " ".join(side.definition.command_words)
     return command if command.startswith(CALL) else "-"
 

@@ -1,4 +1,4 @@
-"""Section ``[plugin]``: a user-defined planner and gaze."""
+"""Section ``[plugin]``: a user-defined planner, gaze and walker."""
 
 from typing import Annotated
 
@@ -10,14 +10,17 @@ Reference = Annotated[str, Field(pattern=r"^$|^.+\.py:[A-Za-z_][A-Za-z0-9_]*$")]
 
 
 class Plugin(Section):
-    """User-defined planner and gaze, each a class in a Python file."""
+    """User-defined planner, gaze and walker, each a class in a Python file."""
 
     planner: Reference = ""
     """FILE.py:CLASS with a method `plan`; replaces `navigation.planner`; empty: none."""
     gaze: Reference = ""
     """FILE.py:CLASS with a method `choose`; replaces `navigation.gaze`; empty: none."""
+    walker: Reference = ""
+    """FILE.py:CLASS with a method `step`; replaces the walking engine; empty: none."""
 
     @property
     def named(self) -> tuple[str, ...]:
         """References that are given, planner first."""
-        return tuple(reference for reference in (self.planner, self.gaze) if reference)
+        references = self.planner, self.gaze, self.walker
+        return tuple(reference for reference in references if reference)

@@ -66,7 +66,7 @@ BASIC = _dotted(
         "navigation.mission": "r_via r_goal heading_tolerance",
         "navigation.gaze": "mode",
         "navigation.planner": "method",
-        "plugin": "planner gaze",
+        "plugin": "planner gaze walker",
         "fault": "kind start duration magnitude",
         "criteria": "goal_reached max_collisions max_falls",
     }

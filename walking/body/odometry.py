@@ -4,7 +4,7 @@ from math import cos, sin
 
 import numpy as np
 
-from walking.arrays import Array
+from walking.arrays import Array, Point
 from walking.body import estimation_kernel
 from walking.parameters import CONTROL_PERIOD, OdometryParameters
 from walking.value import value
@@ -92,6 +92,19 @@ class LegOdometry:
                 parameters.slip_ratio,
             ]
         )
+
+    def advance(
+        self, heading: float, feet: tuple[Point, Point], right_load: float, *, stepping: bool
+    ) -> None:
+        """Run one tick of dead reckoning from measurements, see `estimation_kernel.reckon`.
+
+        Args:
+            heading: of the IMU [rad].
+            feet: horizontal position of the left and right foot in the robot frame [m].
+            right_load: load fraction of the right foot [1].
+            stepping: whether a footstep is under way.
+        """
+        estimation_kernel.reckon(self.state, heading, feet, right_load, stepping, self.growth)
 
     def interrupt(self, displacement: float, turn: float) -> None:
         """Restart from new footholds after an unmeasured motion; the heading is that of the IMU.
