@@ -19,7 +19,7 @@ class PoseParameters:
     """Standard deviation of its roll [rad]."""
     yaw_sigma: Sigma = 0.0005
     """Standard deviation of its yaw relative to the robot's heading [rad]."""
-    height_sigma: Sigma = 0.0003
+    height_sigma: Annotated[Sigma, "m"] = 0.0003
     """Standard deviation of its height [m]."""
 
 
@@ -27,7 +27,8 @@ class PoseParameters:
 class SplitParameters:
     """Segmentation of merged blobs."""
 
-    radius_tolerance: float = 0.04  # difference of the radii of a foot and a head that match [m]
+    # difference of the radii of a foot and a head that match
+    radius_tolerance: Annotated[float, "m"] = 0.04
     side_tolerance: float = 2.5  # difference of the sides of a foot and a head that match [column]
     side_sigma: float = 1.0  # standard deviation of an end of a piece of the outline [column]
     misfit_factor: float = 2.0  # max_misfit of a part relative to that of a whole blob [1]
@@ -42,17 +43,17 @@ class VisionParameters:
 
     color_table: str = ""
     """File of a colour table made by `hsr8 color-table`; empty: the built-in colour classes."""
-    obstacle_height: Annotated[float, Interval(ge=0.001, le=100.0)] = 0.30
+    obstacle_height: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 0.30
     """Height of every obstacle [m]."""
-    min_radius: Annotated[float, Interval(ge=0.001, le=100.0)] = 0.05
+    min_radius: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 0.05
     """Minimum radius of an obstacle [m]."""
-    max_radius: Annotated[float, Interval(ge=0.001, le=100.0)] = 0.12
+    max_radius: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 0.12
     """Maximum radius of an obstacle [m]."""
-    beacon_height: float = 0.60  # its two colours meet in the middle [m]
-    beacon_radius: float = 0.05  # [m]
-    max_obstacle_range: Annotated[float, Interval(ge=0.001, le=100.0)] = 4.5
+    beacon_height: Annotated[float, "m"] = 0.60  # its two colours meet in the middle
+    beacon_radius: Annotated[float, "m"] = 0.05
+    max_obstacle_range: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 4.5
     """Maximum distance of a reported obstacle [m]."""
-    max_beacon_range: Annotated[float, Interval(ge=0.001, le=100.0)] = 5.5
+    max_beacon_range: Annotated[float, Interval(ge=0.001, le=100.0), "m"] = 5.5
     """Maximum distance of a reported beacon [m]."""
     min_area: int = 20  # minimum area of an obstacle's blob [pixel]
     min_beacon_area: int = 5  # minimum area of the blob of one colour of a beacon [pixel]
@@ -66,7 +67,7 @@ class VisionParameters:
     covariance_inflation: float = 4.0  # minimum inflation for a blob that no cylinder explains [1]
     max_occlusion_fraction: float = 0.1  # of a rim next to another colour: more is occluded [1]
     max_relative_sigma: float = 0.35  # maximum standard deviation of a distance / distance [1]
-    beacon_radius_sigma: float = 0.0005  # standard deviation of a beacon's radius [m]
+    beacon_radius_sigma: Annotated[float, "m"] = 0.0005  # standard deviation of a beacon's radius
     min_beacon_seam_fraction: float = 0.6  # minimum width of the seam / width of the upper colour
     beacon_side_tolerance: float = 4.0  # difference of the two colours' sides [sigma]
     beacon_misfit_factor: float = 5.0  # max_misfit of a beacon relative to that of an obstacle [1]

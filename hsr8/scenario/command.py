@@ -7,10 +7,10 @@ from pydantic import AfterValidator, model_validator
 
 from hsr8.scenario.section import Section, ordered
 
-Velocity = Annotated[float, Interval(ge=-1.0, le=1.0)]
-TurnRate = Annotated[float, Interval(ge=-4.0, le=4.0)]
+Velocity = Annotated[float, Interval(ge=-5.0, le=5.0), "m/s"]
+TurnRate = Annotated[float, Interval(ge=-10.0, le=10.0), "rad/s"]
 Fraction = Annotated[float, Interval(ge=0.0, le=1.0)]
-Seconds = Annotated[float, Interval(ge=0.005, le=7200.0)]
+Seconds = Annotated[float, Interval(ge=0.005, le=7200.0), "s"]
 VelocityRange = Annotated[tuple[Velocity, Velocity], AfterValidator(ordered)]
 TurnRange = Annotated[tuple[TurnRate, TurnRate], AfterValidator(ordered)]
 SecondsRange = Annotated[tuple[Seconds, Seconds], AfterValidator(ordered)]
@@ -19,24 +19,25 @@ SecondsRange = Annotated[tuple[Seconds, Seconds], AfterValidator(ordered)]
 class Footsteps(Section):
     """Explicit footsteps, all alike: the command state of the walking pattern."""
 
-    single_support: Annotated[float, Interval(gt=0.0, le=2.0)] = 0.27
+    # Times of the pendulum, √(height / g), hence √m.
+    single_support: Annotated[float, Interval(gt=0.0, le=2.0), "m^0.5"] = 0.27
     """Duration of the single support [s]."""
-    double_support: Annotated[float, Interval(gt=0.0, le=2.0)] = 0.07
+    double_support: Annotated[float, Interval(gt=0.0, le=2.0), "m^0.5"] = 0.07
     """Duration of the preceding double support [s]."""
-    forward: Annotated[float, Interval(ge=-0.5, le=0.5)] = 0.0
+    forward: Annotated[float, Interval(ge=-2.0, le=2.0), "m"] = 0.0
     """Advance of the stance centre per footstep [m]."""
-    side: Annotated[float, Interval(gt=0.0, le=0.5)] = 0.084
+    side: Annotated[float, Interval(gt=0.0, le=2.0), "m"] = 0.084
     """Distance between the feet at landing [m]."""
     direction: Annotated[float, Interval(ge=-1.5, le=1.5)] = 0.0
     """Yaw of the landing foot relative to the support foot, counter-clockwise positive [rad]."""
-    swing_height: Annotated[float, Interval(gt=0.0, le=0.2)] = 0.025
+    swing_height: Annotated[float, Interval(gt=0.0, le=1.0), "m"] = 0.025
     """Maximum height of the swing foot [m]."""
 
 
 class Stretch(Section):
     """Constant velocity, or footsteps all alike, for a time."""
 
-    duration: Annotated[float, Interval(gt=0.0, le=7200.0)]
+    duration: Annotated[float, Interval(gt=0.0, le=7200.0), "s"]
     """Duration [s]."""
     vx: Velocity = 0.0
     """Forward velocity [m/s]."""

@@ -18,7 +18,7 @@ PushedBody = Literal[
     "r_foot_link",
 ]
 PushDuration = Annotated[float, Interval(ge=0.005, le=60.0)]
-Impulse = Annotated[float, Interval(gt=0.0, le=100.0)]
+Impulse = Annotated[float, Interval(gt=0.0, le=1000.0), "N s"]
 ImpulseRange = Annotated[tuple[Impulse, Impulse], AfterValidator(ordered)]
 DegreesRange = Annotated[tuple[Degrees, Degrees], AfterValidator(ordered)]
 
@@ -26,7 +26,7 @@ DegreesRange = Annotated[tuple[Degrees, Degrees], AfterValidator(ordered)]
 class RandomPushes(Section):
     """Consecutive pushes drawn from the seed."""
 
-    start: Annotated[float, Interval(ge=0.0, le=7200.0)] = 3.0
+    start: Annotated[float, Interval(ge=0.0, le=7200.0), "s"] = 3.0
     """Earliest time of the first push [s]."""
     interval: SecondsRange = (2.0, 4.0)
     """Minimum and maximum time between pushes [s]."""

@@ -10,9 +10,9 @@ from hsr8.scenario.section import CONTROL_PERIOD_MS, Degrees, Point, Section
 from hsr8.suggestion import suggestion
 from walking.body.joints import JOINT_NAMES, LEFT_LEG, RIGHT_LEG
 
-StartTime = Annotated[float, Interval(ge=0.0, le=7200.0)]
-FaultDuration = Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=7200.0)]
-Offset = Annotated[float, Interval(ge=-0.5, le=0.5)]
+StartTime = Annotated[float, Interval(ge=0.0, le=7200.0), "s"]
+FaultDuration = Annotated[float, Interval(ge=0.001 * CONTROL_PERIOD_MS, le=7200.0), "s"]
+Offset = Annotated[float, Interval(ge=-2.0, le=2.0), "m"]
 Fraction = Annotated[float, Interval(ge=0.0, le=1.0)]
 Angle = Annotated[float, Interval(ge=-0.5, le=0.5)]
 Foot = Literal["left", "right", "both"]
@@ -242,7 +242,7 @@ class LowFriction(_Fault):
     """Friction coefficient of the soles; normally 0.8 [1]."""
     position: Point | None = None
     """Centre of the slippery patch in W; default: everywhere [m]."""
-    radius: Annotated[float, Interval(gt=0.0, le=20.0)] | None = None
+    radius: Annotated[float, Interval(gt=0.0, le=100.0), "m"] | None = None
     """Radius of the patch; default: 0.3 [m]."""
 
     @model_validator(mode="after")
@@ -261,11 +261,11 @@ class Bump(_Fault):
     """A low disc lies on the floor, invisible to the camera; requires the full body."""
 
     kind: Literal["bump"]
-    magnitude: Annotated[float, Interval(ge=0.001, le=0.05)]
+    magnitude: Annotated[float, Interval(ge=0.001, le=0.5), "m"]
     """Height [m]."""
     position: Point
     """Centre in W [m]."""
-    radius: Annotated[float, Interval(ge=0.01, le=0.5)] = 0.1
+    radius: Annotated[float, Interval(ge=0.01, le=2.0), "m"] = 0.1
     """Radius [m]."""
 
 

@@ -7,8 +7,7 @@ from annotated_types import Interval
 from hsr8.scenario.section import Section
 from hsr8.scenario.world import Start
 
-# The search for a feasibility certificate takes a time in proportion to 1 / speed.
-WalkingSpeed = Annotated[float, Interval(ge=0.05, le=2.0)]
+WalkingSpeed = Annotated[float, Interval(ge=0.01, le=5.0), "m/s"]
 
 
 class SpeedEnvelope(Section):
@@ -20,9 +19,9 @@ class SpeedEnvelope(Section):
     """Maximum backward speed [m/s]."""
     vy: WalkingSpeed = 0.08
     """Maximum sideways speed [m/s]."""
-    wz: Annotated[float, Interval(ge=0.05, le=3.0)] = 0.8
+    wz: Annotated[float, Interval(ge=0.01, le=10.0), "rad/s"] = 0.8
     """Maximum turn rate [rad/s]."""
-    acceleration: Annotated[float, Interval(ge=0.05, le=5.0)] = 0.3
+    acceleration: Annotated[float, Interval(ge=0.005, le=20.0), "m/s²"] = 0.3
     """Maximum acceleration [m/s²]."""
 
 

@@ -66,7 +66,7 @@ class Scenario(Section):
     """Description in one or two sentences."""
     seed: Annotated[int, Interval(ge=0, le=MAX_SEED)] = 0
     """Seed of the world and of all noise [1]."""
-    duration: Annotated[float, Interval(gt=0.0, le=7200.0)] = 240.0
+    duration: Annotated[float, Interval(gt=0.0, le=7200.0), "s"] = 240.0
     """Maximum simulated time [s]."""
     world: World = World()
     """Field, obstacles, beacons and light."""

@@ -20,7 +20,7 @@ from hsr8.scenario.section import (
     ordered,
 )
 
-Side = Annotated[float, Interval(ge=1.0, le=20.0)]
+Side = Annotated[float, Interval(ge=0.5, le=100.0), "m"]
 Bearing = Annotated[float, Interval(ge=0.0, le=180.0)]
 BearingRange = Annotated[tuple[Bearing, Bearing], AfterValidator(ordered)]
 
@@ -74,7 +74,7 @@ class CircleMover(_Mover):
     motion: Literal["circle"]
     centre: Point
     """Centre of the circle in W [m]."""
-    path_radius: Annotated[float, Interval(gt=0.0, le=10.0)]
+    path_radius: Annotated[float, Interval(gt=0.0, le=50.0), "m"]
     """Radius of the circle [m]."""
     angle_deg: Degrees = 0.0
     """Initial angle on the circle, counter-clockwise from x of W [deg]."""
@@ -142,7 +142,7 @@ class World(Section):
     """Moving obstacles on collision courses."""
     beacons: bool = True
     """Whether the field has six beacons: two-colour landmarks at known places."""
-    beacon_displacement: Annotated[float, Interval(ge=-2.0, le=2.0)] = 0.0
+    beacon_displacement: Annotated[float, Interval(ge=-10.0, le=10.0), "m"] = 0.0
     """Displacement of the first beacon from its known place, along the border [m]."""
     brightness: Annotated[float, Interval(ge=0.1, le=2.0)] = 1.0
     """Relative intensity of all lights [1]."""

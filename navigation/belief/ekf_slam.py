@@ -137,8 +137,8 @@ class EkfSlam:
         x[:3], F = propagate(x[:3], previous[1], frame.odometry)
         P[:3] = F @ P[:3]
         P[:, :3] = P[:, :3] @ F.T
-        drift = self._localization.drift**2 * (frame.time - previous[0])
-        P[:3, :3] += rotation @ frame.motion_covariance @ rotation.T + drift * np.eye(3)
+        drift = self._localization.drift_rate() * (frame.time - previous[0])
+        P[:3, :3] += rotation @ frame.motion_covariance @ rotation.T + drift
         self._P = 0.5 * (P + P.T)
 
     def _correct(self, frame: Frame) -> list[int]:
@@ -200,7 +200,7 @@ class EkfSlam:
             self._missing.clear()
             self._relocalization.begin()
             self.lost = True
-            self._reset_covariance(self._localization.lost_sigma)
+            self._reset_covariance(self._localization.lost_covariance())
 
     def _recover(self, frame: Frame) -> None:
         """Relocalize from the recent detections."""
@@ -211,16 +211,16 @@ class EkfSlam:
         self.lost = False
         self.recoveries += 1
         self._x[:3] = pose
-        self._reset_covariance(self._localization.recovery_sigma)
+        self._reset_covariance(self._localization.recovery_covariance())
         # The tracks of the landmarks end with the wrong pose; new tracks are assigned to them.
         self._ids = [-1 - i for i in range(len(self._ids))]
         self._correct(frame)
 
-    def _reset_covariance(self, sigma: float) -> None:
+    def _reset_covariance(self, covariance: Array) -> None:
         """Set the covariance of a pose independent of all landmarks."""
         self._P[:3, :] = 0.0
         self._P[:, :3] = 0.0
-        self._P[:3, :3] = sigma * sigma * np.eye(3)
+        self._P[:3, :3] = covariance
 
     def _reassigned(self, k: int, track: Track) -> bool:
         """Assign a new track to the landmark without one at its position, if there is one."""

@@ -107,7 +107,7 @@ class Localizer:
     def _restart(self) -> None:
         """Re-initialize, lost, at the last valid pose."""
         self.faults += 1
-        self._set(self._last_valid, np.eye(3) * self._parameters.lost_sigma**2)
+        self._set(self._last_valid, self._parameters.lost_covariance())
         self.lost = True
         self._relocalization.begin()
 
@@ -122,9 +122,9 @@ class Localizer:
         middle = last[2] + 0.5 * turn
         dx, dy = rotate(-middle, (odometry[0] - last[0], odometry[1] - last[1]))
         f = self._filter
-        drift = self._parameters.drift**2 * (frame.time - previous[0])
+        drift = self._parameters.drift_rate() * (frame.time - previous[0])
         rotation = yaw_rotation(float(f.x[2]))
-        f.Q = rotation @ frame.motion_covariance @ rotation.T + drift * np.eye(3)
+        f.Q = rotation @ frame.motion_covariance @ rotation.T + drift
         f.predict(increment=np.array([dx, dy, turn]))
         self._symmetrize()
 
@@ -157,7 +157,7 @@ class Localizer:
         if self._relocalization.is_lost(time, accepted, rejected):
             self._relocalization.begin()
             self.lost = True
-            self._filter.P = np.eye(3) * self._parameters.lost_sigma**2
+            self._filter.P = self._parameters.lost_covariance()
 
     def _recover(self, frame: Frame, beacons: list[Observation]) -> None:
         """Relocalize from the recent detections."""
@@ -166,5 +166,5 @@ class Localizer:
             return
         self.lost = False
         self.recoveries += 1
-        self._set(pose, np.eye(3) * self._parameters.recovery_sigma**2)
+        self._set(pose, self._parameters.recovery_covariance())
         self._correct(frame, beacons)

@@ -89,7 +89,7 @@ class MapRelocalization:
         if not hypotheses:
             return None
         most, best = max(hypotheses, key=lambda h: h[0])
-        unique = all(n < most or _equal(h, best, p.pose_tolerance) for n, h in hypotheses)
+        unique = all(n < most or _equal(h, best, p) for n, h in hypotheses)
         return best if unique else None
 
     def _pairs(
@@ -123,6 +123,6 @@ def _inliers(
     return list(pairs.values()), list(pairs)
 
 
-def _equal(a: Array, b: Array, tolerance: float) -> bool:
+def _equal(a: Array, b: Array, p: RelocalizationParameters) -> bool:
     dx, dy, turn = (a - b).tolist()
-    return hypot(dx, dy) < tolerance and abs(wrap(turn)) < tolerance
+    return hypot(dx, dy) < p.position_tolerance and abs(wrap(turn)) < p.heading_tolerance

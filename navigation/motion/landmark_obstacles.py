@@ -29,7 +29,7 @@ class LandmarkObstacles:
     ) -> None:
         self._range = parameters.attention_range
         self._tracks = tuple(
-            _static_track(number - len(known), name, position, radius, parameters.sigma)
+            _static_track(number - len(known), name, position, radius, parameters)
             for number, (name, position) in enumerate(known.items())
         )
 
@@ -44,14 +44,14 @@ class LandmarkObstacles:
 
 
 def _static_track(
-    number: int, name: str, position: tuple[float, float], radius: float, sigma: float
+    number: int, name: str, position: tuple[float, float], radius: float, p: LandmarkParameters
 ) -> Track:
     return Track(
         id=number,
         label=name,
         position=np.array(position),
         velocity=np.zeros(2),
-        covariance=sigma**2 * np.eye(4),
+        covariance=np.diag(np.square([p.sigma, p.sigma, p.velocity_sigma, p.velocity_sigma])),
         radius=radius,
         radius_sigma=0.0,
         motion=Motion.STATIC,

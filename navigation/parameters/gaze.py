@@ -29,42 +29,45 @@ GazeMode = Literal[
 class EvaluationParameters:
     """Partial evaluations (1)-(4)."""
 
-    d_nm: Positive = 0.30
+    d_nm: Annotated[Positive, "m"] = 0.30
     """Minimum distance of the sample points of the local map [m]."""
-    d_fm: Annotated[float, Ge(0.01), Le(50.0)] = 1.30
+    d_fm: Annotated[float, Ge(0.01), Le(50.0), "m"] = 1.30
     """Maximum distance of the sample points of the local map [m]."""
     map_ratio: Literal["printed", "fraction"] = "fraction"
     """psi_lm: N_lp/N_cp as printed, or the fraction N_lp/(N_lp + N_cp)."""
 
-    ring_step: float = 0.20  # distance of the sample points along a ray [m]
+    ring_step: Annotated[float, "m"] = 0.20  # distance of the sample points along a ray
     ray_step: float = pi / 18.0  # angle between the rays of sample points [rad]
     lambda_cf: float = 0.85  # confidence below which a sample point is under-confident [1]
-    t_sf: float = 0.05  # position uncertainty at which psi_sf is one [m]
+    t_sf: Annotated[float, "m"] = 0.05  # position uncertainty at which psi_sf is one
     t_heading: float = 0.09  # heading uncertainty at which psi_sf is one; 0 ignores it [rad]
-    omega_o: float = 20.0  # normalization of the obstacle evaluation [1/m]
-    gamma_o: float = 0.25  # obstacle evaluation at which psi_ob is one [1/s]
-    min_distance: float = 0.05  # lower bound of the distance in the obstacle evaluation [m]
-    aim_height: float = 0.05  # height on an obstacle at which the gaze aims [m]
-    d_n_thres: float = 0.80  # obstacle-free distance at which psi_way is one [m]
-    attention_range: float = 2.5  # maximum distance of obstacles in the set O [m]
-    beacon_range: float = 4.5  # maximum distance of beacons that get votes [m]
+    omega_o: Annotated[float, "1/m"] = 20.0  # normalization of the obstacle evaluation
+    gamma_o: Annotated[float, "1/s"] = 0.25  # obstacle evaluation at which psi_ob is one
+    # lower bound of the distance in the obstacle evaluation
+    min_distance: Annotated[float, "m"] = 0.05
+    aim_height: Annotated[float, "m"] = 0.05  # height on an obstacle at which the gaze aims
+    d_n_thres: Annotated[float, "m"] = 0.80  # obstacle-free distance at which psi_way is one
+    attention_range: Annotated[float, "m"] = 2.5  # maximum distance of obstacles in the set O
+    beacon_range: Annotated[float, "m"] = 4.5  # maximum distance of beacons that get votes
 
 
 @dataclass(frozen=True)
 class DeadlineParameters:
     """Votes by age over half the worst-case time to collision."""
 
-    static_speed: float = 0.02  # assumed speed of a static obstacle [m/s]
+    static_speed: Annotated[float, "m/s"] = 0.02  # assumed speed of a static obstacle
     unknown_speed: float = 0.70  # assumed speed of an undecided obstacle, ratio to the robot's [1]
     mover_speed: float = 0.80  # maximum assumed speed of a mover, ratio to the robot's [1]
     exponent: float = 1.5  # exponent of the urgency [1]
     max_urgency: float = 4.0  # upper bound of the urgency [1]
-    unknown_bonus: float = 1.0  # age added to undecided obstacles [s]
-    fresh_bonus: float = 3.0  # additional age of undecided obstacles of few detections [s]
+    unknown_bonus: Annotated[float, "s"] = 1.0  # age added to undecided obstacles
+    # additional age of undecided obstacles of few detections
+    fresh_bonus: Annotated[float, "s"] = 3.0
     fresh_hits: int = 8  # number of detections below which they are few [1]
     static_weight: float = 0.12  # weight of static obstacles [1]
     map_weight: float = 0.05  # weight of the local map [1]
-    map_rings: tuple[float, ...] = (0.45, 0.8, 1.2, 1.7)  # distances of the ground that votes [m]
+    # distances of the ground that votes
+    map_rings: Annotated[tuple[float, ...], "m"] = (0.45, 0.8, 1.2, 1.7)
     map_rays: int = 17  # number of its directions, over the whole reach of the gaze [1]
     path_weight: float = 0.2  # weight of the floor along the path [1]
     unseen_ground_weight: float = 0.8  # vote for unseen ground that slows the robot down [1]
@@ -74,12 +77,12 @@ class DeadlineParameters:
     switch_ratio: float = 1.03  # gain in the gaze map that moves the gaze [1]
     saccade_time: float = 0.25  # prediction time of the votes: duration of a saccade [s]
     look_ratio: float = 0.5  # fraction of the time to collision within which to look again [1]
-    min_time: float = 0.4  # lower bound of the time to collision [s]
+    min_time: Annotated[float, "s"] = 0.4  # lower bound of the time to collision
     min_age: float = 0.1  # age of what the latest frame shows [s]
-    max_age: float = 8.0  # upper bound of the age of ground [s]
-    clearance: float = 0.05  # gap that counts as a collision [m]
+    max_age: Annotated[float, "s"] = 8.0  # upper bound of the age of ground
+    clearance: Annotated[float, "m"] = 0.05  # gap that counts as a collision
     map_speed: float = 0.70  # assumed speed of movers from unseen ground, ratio to the robot's [1]
-    path_distance: float = 0.8  # distance of the floor along the path that votes [m]
+    path_distance: Annotated[float, "m"] = 0.8  # distance of the floor along the path that votes
     look_request_tilt: float = -0.6  # tilt of a requested look: shows the floor from 0.3 m on [rad]
 
 
@@ -87,7 +90,8 @@ class DeadlineParameters:
 class InformationParameters:
     """Greedy information gain: expected accuracy of one detection."""
 
-    sight_sigma: float = 0.01  # standard deviation of a detected position at distance 0 [m]
+    # standard deviation of a detected position at distance 0
+    sight_sigma: Annotated[float, "m"] = 0.01
     sight_rate: float = 0.015  # increase of the standard deviation with distance [1]
     presence: float = 0.02  # probability of an obstacle at a sample point never seen [1]
 
@@ -97,9 +101,9 @@ class UrgencyParameters:
     """Votes of obstacles by age over time to collision; the other evaluations as in (6)."""
 
     max_urgency: float = 10.0  # upper bound of the urgency [1]
-    bonus: float = 0.3  # age added to decided obstacles [s]
-    unknown_bonus: float = 1.0  # age added to undecided obstacles [s]
-    min_time: float = 0.4  # lower bound of the time to collision [s]
+    bonus: Annotated[float, "s"] = 0.3  # age added to decided obstacles
+    unknown_bonus: Annotated[float, "s"] = 1.0  # age added to undecided obstacles
+    min_time: Annotated[float, "s"] = 0.4  # lower bound of the time to collision
     side_weight: float = 0.6  # weight of obstacles at a right angle to the path [1]
     static_weight: float = 0.15  # weight of static obstacles [1]
     unseen_ground_weight: float = 0.8  # vote for unseen ground that slows the robot down [1]
@@ -145,7 +149,7 @@ class GazeParameters:
     """Tilt of the fixed gaze and of the sweep [rad]."""
     sweep_amplitude: NonNegative = 1.2
     """Pan amplitude of the sweep [rad]."""
-    sweep_period: Positive = 4.0
+    sweep_period: Annotated[Positive, "s"] = 4.0
     """Period of the sweep [s]."""
 
     arrival_tolerance: float = 0.06  # distance from the target at which a saccade ends [rad]

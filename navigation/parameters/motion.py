@@ -15,23 +15,23 @@ from navigation.parameters.bounds import NonNegative, Positive
 class UnivectorParameters:
     """Univector field (7)-(10)."""
 
-    s_robot: Positive = 0.12
+    s_robot: Annotated[Positive, "m"] = 0.12
     """Radius of the robot [m]."""
-    margin: NonNegative = 0.03
+    margin: Annotated[NonNegative, "m"] = 0.03
     """Margin added to the robot's radius in S_r [m]."""
-    eta_vo: NonNegative = 0.5
+    eta_vo: Annotated[NonNegative, "s"] = 0.5
     """Gain of the extended radius on the speed of the obstacle [s]."""
-    eta_imp: NonNegative = 0.05
+    eta_imp: Annotated[NonNegative, "m"] = 0.05
     """Gain of the extended radius on the partial evaluations [m]."""
-    d_con: Positive = 0.80
+    d_con: Annotated[Positive, "m"] = 0.80
     """Distance within which the field bends towards the arrival heading [m]."""
     arrival: Literal["hard", "ramped", "nposture"] = "ramped"
     """(8): switched at d_con as printed, ramped in, or Kim's posture field."""
-    d_e: Positive = 0.20
+    d_e: Annotated[Positive, "m"] = 0.20
     """Radius offset of the spiral (9) [m]."""
-    d_b: Positive = 0.25
+    d_b: Annotated[Positive, "m"] = 0.25
     """Width of the outer band of (9) [m]."""
-    k_r: Positive = 0.30
+    k_r: Annotated[Positive, "m"] = 0.30
     """Curvature of the outer spiral (9) [m]."""
     inside: Literal["zero", "outward"] = "outward"
     """Field inside the extended radius: zero as printed, or straight outward."""
@@ -54,15 +54,18 @@ class UnivectorParameters:
     side_set: float = 2.304  # |beta| above which the ramped arrival latches its side [rad]
     side_clear: float = 1.798  # |beta| below which the ramped arrival releases its side [rad]
     posture_gain: float = 8.0  # gain of Kim's posture field [1]
-    posture_offset: float = 0.25  # distance of its reference point beyond the destination [m]
-    holonomic_distance: float = 0.45  # distance within which the body turns to the goal heading [m]
-    slow_distance: float = 0.30  # distance from the goal within which k_rho falls [m]
+    # distance of its reference point beyond the destination
+    posture_offset: Annotated[float, "m"] = 0.25
+    # distance within which the body turns to the goal heading
+    holonomic_distance: Annotated[float, "m"] = 0.45
+    slow_distance: Annotated[float, "m"] = 0.30  # distance from the goal within which k_rho falls
     slow_fraction: float = 0.2  # k_rho at the goal [1]
     goal_fraction: float = 0.6  # fraction of the room at a destination left to an obstacle [1]
-    min_goal_gap: float = 0.02  # lower bound of that room [m]
-    min_goal_offset: float = 0.03  # lower bound of d_e at a destination [m]
+    min_goal_gap: Annotated[float, "m"] = 0.02  # lower bound of that room
+    min_goal_offset: Annotated[float, "m"] = 0.03  # lower bound of d_e at a destination
     virtual_weight: float = 1.5  # weight of dynamic virtual obstacles in the blend by distance [1]
-    memory: float = 1.0  # time unseen after which only the safety filter avoids a mover [s]
+    # time unseen after which only the safety filter avoids a mover
+    memory: Annotated[float, "s"] = 1.0
 
 
 @dataclass(frozen=True)
@@ -77,21 +80,23 @@ class MovingObstacleParameters:
     """Velocity modification: off, roots of the quadratic, or sampled speeds."""
     radius: Literal["extended", "physical"] = "physical"
     """Radius in velocity modification: S_oe, or the physical radii and a margin."""
-    margin: NonNegative = 0.05
+    margin: Annotated[NonNegative, "m"] = 0.05
     """Margin added to the physical radii [m]."""
-    horizon: Positive = 6.0
+    horizon: Annotated[Positive, "s"] = 6.0
     """Maximum time to collision in velocity modification [s]."""
     wait_in_band: bool = True
     """Whether a robot inside the collision band may brake, which only delays the collision."""
 
     omega_dist: float = 12.0  # length of the virtual path in (11) as printed [1]
-    path_time: float = 6.0  # length of the uncapped virtual path per relative speed [s]
-    side_switch: float = 0.05  # distance from the path within which the goal decides the side [m]
-    side_hold: float = 0.08  # distance beyond the path at which the uncapped form changes side [m]
+    path_time: Annotated[float, "s"] = 6.0  # length of the uncapped virtual path per relative speed
+    # distance from the path within which the goal decides the side
+    side_switch: Annotated[float, "m"] = 0.05
+    # distance beyond the path at which the uncapped form changes side
+    side_hold: Annotated[float, "m"] = 0.08
     side_aligned: float = 0.2  # sine of path to goal below which the goal does not decide [1]
-    min_speed: float = 0.015  # speed below which an obstacle has no virtual path [m/s]
+    min_speed: Annotated[float, "m/s"] = 0.015  # speed below which an obstacle has no virtual path
     samples: int = 21  # number of sampled speeds [1]
-    acceleration_time: float = 0.8  # time over which a sampled speed may be reached [s]
+    acceleration_time: Annotated[float, "s"] = 0.8  # time over which a sampled speed may be reached
 
 
 @dataclass(frozen=True)
@@ -102,11 +107,12 @@ class UnseenGroundParameters:
     """Whether unseen ground limits the speed."""
 
     confidence: float = 0.3  # confidence below which ground counts as unseen [1]
-    near: float = 0.36  # nearest ground checked; a look 20 deg down shows none nearer [m]
-    far: float = 0.60  # farthest ground checked [m]
-    half_width: float = 0.10  # half width of the ground checked [m]
+    # nearest ground checked; a look 20 deg down shows none nearer
+    near: Annotated[float, "m"] = 0.36
+    far: Annotated[float, "m"] = 0.60  # farthest ground checked
+    half_width: Annotated[float, "m"] = 0.10  # half width of the ground checked
     rows: int = 4  # rows of points from the nearest to the farthest [1]
-    speed: float = 0.03  # maximum speed towards unseen ground [m/s]
+    speed: Annotated[float, "m/s"] = 0.03  # maximum speed towards unseen ground
 
 
 @dataclass(frozen=True)
@@ -117,39 +123,45 @@ class SafetyFilterParameters:
     """Whether the safety filter is used."""
     reachable: bool = False
     """Whether an unseen mover also counts as its reachable set."""
-    margin: NonNegative = 0.045
+    margin: Annotated[NonNegative, "m"] = 0.045
     """Distance to the bodies of obstacles, for a stepping foot beyond `univector.s_robot` [m]."""
 
     headings: int = 24  # number of candidate directions [1]
     speeds: int = 6  # number of candidate speeds per direction [1]
     steps: int = 4  # footsteps in the rollout before the straight path [1]
-    turn_change: float = 0.4  # maximum change of the turn rate between footsteps [rad/s]
-    static_horizon: float = 2.0  # maximum time to collision with static obstacles [s]
-    moving_horizon: float = 6.0  # maximum time to collision with movers [s]
-    bend_time: float = 2.0  # time over which the path of a turning mover is averaged [s]
-    reversal_horizon: float = 2.5  # maximum time to collision with the reversal of a mover [s]
-    urgent_time: float = 1.5  # time to collision below which a collision is urgent [s]
+    # maximum change of the turn rate between footsteps
+    turn_change: Annotated[float, "rad/s"] = 0.4
+    static_horizon: Annotated[float, "s"] = 2.0  # maximum time to collision with static obstacles
+    moving_horizon: Annotated[float, "s"] = 6.0  # maximum time to collision with movers
+    # time over which the path of a turning mover is averaged
+    bend_time: Annotated[float, "s"] = 2.0
+    # maximum time to collision with the reversal of a mover
+    reversal_horizon: Annotated[float, "s"] = 2.5
+    urgent_time: Annotated[float, "s"] = 1.5  # time to collision below which a collision is urgent
     urgent_weight: float = 20.0  # penalty of an urgent collision [1]
     weight: float = 6.0  # penalty of any other collision [1]
     change_weight: float = 0.15  # penalty of a change of velocity [1]
     particle_weight: float = 2.0  # weight of all particles of a lost mover together [1]
     reversal_weight: float = 0.12  # weight of the reversal of a visible mover [1]
-    reachable_radius: float = 0.4  # maximum growth of the reachable set [m]
-    reachable_delay: float = 0.3  # time unseen before the reachable set grows [s]
-    reachable_age: float = 6.0  # time unseen after which the reachable set is dropped [s]
-    max_sigma: float = 0.06  # maximum position uncertainty added to the radius of a mover [m]
+    reachable_radius: Annotated[float, "m"] = 0.4  # maximum growth of the reachable set
+    reachable_delay: Annotated[float, "s"] = 0.3  # time unseen before the reachable set grows
+    # time unseen after which the reachable set is dropped
+    reachable_age: Annotated[float, "s"] = 6.0
+    # maximum position uncertainty added to the radius of a mover
+    max_sigma: Annotated[float, "m"] = 0.06
     inside_weight: float = 10.0  # penalty of a collision with a disc that contains the robot [1]
     inside_depth: float = 40.0  # additional penalty per depth as a fraction of its radius [1]
-    inside_closing: float = 100.0  # additional penalty per closing speed [s/m]
+    inside_closing: Annotated[float, "s/m"] = 100.0  # additional penalty per closing speed
 
 
 @dataclass(frozen=True)
 class LandmarkParameters:
     """Landmarks of the map as obstacles."""
 
-    attention_range: float = 1.0  # maximum distance of a landmark that counts [m]
-    # Standard deviation of position and velocity, as of a static track known for long [m, m/s].
-    sigma: float = 0.005
+    attention_range: Annotated[float, "m"] = 1.0  # maximum distance of a landmark that counts
+    # Standard deviations of position and velocity, as of a static track known for long.
+    sigma: Annotated[float, "m"] = 0.005
+    velocity_sigma: Annotated[float, "m/s"] = 0.005
 
 
 @dataclass(frozen=True)
@@ -159,9 +171,9 @@ class WaypointSearchParameters:
     enabled: bool = False
     """Whether waypoints are searched for."""
 
-    cell: float = 0.10  # side of a grid cell [m]
-    reach: float = 1.2  # maximum distance of the waypoint [m]
-    around: float = 1.0  # margin of the grid around robot and destination [m]
+    cell: Annotated[float, "m"] = 0.10  # side of a grid cell
+    reach: Annotated[float, "m"] = 1.2  # maximum distance of the waypoint
+    around: Annotated[float, "m"] = 1.0  # margin of the grid around robot and destination
 
 
 @dataclass(frozen=True)
@@ -175,17 +187,17 @@ class RearCheckParameters:
     far_angle: float = 0.95  # body angle for ground right behind [rad]
     far_weight: float = 0.77  # weight of ground right behind, which costs speed [1]
     # Distances of the checked ground; a lost mover farther away than all is ignored [m].
-    rings: tuple[float, ...] = (0.40, 0.65, 0.90, 1.20)
+    rings: Annotated[tuple[float, ...], "m"] = (0.40, 0.65, 0.90, 1.20)
     rays: int = 4  # directions per sector [1]
     mover_speed: float = 1.1  # assumed speed of unseen movers, ratio to the robot's [1]
     start_urgency: float = 0.7  # urgency above which the body turns [1]
     stop_urgency: float = 0.3  # urgency below which the body turns back [1]
-    max_turn_time: float = 2.5  # maximum duration of a rear check [s]
-    retry_delay: float = 2.0  # time until the next rear check after a failed one [s]
-    clearance: float = 0.25  # gap to a mover within which no rear check starts [m]
-    min_approach: float = 0.02  # lower bound of the assumed closing speed [m/s]
-    min_time: float = 0.4  # lower bound of the time to collision [s]
-    max_age: float = 8.0  # upper bound of the age of ground [s]
+    max_turn_time: Annotated[float, "s"] = 2.5  # maximum duration of a rear check
+    retry_delay: Annotated[float, "s"] = 2.0  # time until the next rear check after a failed one
+    clearance: Annotated[float, "m"] = 0.25  # gap to a mover within which no rear check starts
+    min_approach: Annotated[float, "m/s"] = 0.02  # lower bound of the assumed closing speed
+    min_time: Annotated[float, "s"] = 0.4  # lower bound of the time to collision
+    max_age: Annotated[float, "s"] = 8.0  # upper bound of the age of ground
     max_urgency: float = 2.0  # upper bound of the urgency of a point [1]
 
 
@@ -193,7 +205,8 @@ class RearCheckParameters:
 class VelocityMappingParameters:
     """Velocity mapping from direction and speed to a body velocity."""
 
-    turn_gain: float = 1.5  # turn rate per heading error [1/s]
+    turn_gain: Annotated[float, "1/s"] = 1.5  # turn rate per heading error
     turn_first_angle: float = 0.5  # heading error above which a fast path starts with a turn [rad]
     sidestep_ratio: float = 1.2  # speed of a fast path, ratio to the maximum lateral speed [1]
-    lost_turn_rate: float = 0.5  # turn rate of a lost robot, which searches for beacons [rad/s]
+    # turn rate of a lost robot, which searches for beacons
+    lost_turn_rate: Annotated[float, "rad/s"] = 0.5

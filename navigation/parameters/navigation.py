@@ -5,6 +5,7 @@ printed structure.
 """
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from navigation.parameters.bounds import Positive
 from navigation.parameters.gaze import EvaluationParameters, GazeParameters
@@ -25,14 +26,15 @@ from navigation.parameters.planner import PlannerParameters
 class MissionParameters:
     """Via points and arrival at the goal."""
 
-    r_via: Positive = 0.15
+    r_via: Annotated[Positive, "m"] = 0.15
     """Distance at which a via point is passed [m]."""
-    r_goal: Positive = 0.05
+    r_goal: Annotated[Positive, "m"] = 0.05
     """Distance at which the goal is reached and the turn to its heading begins [m]."""
     heading_tolerance: Positive = 0.07
     """Heading error at which the mission is done [rad]."""
 
-    r_release: float = 0.08  # distance at which a robot that turns at the goal walks back [m]
+    # distance at which a robot that turns at the goal walks back
+    r_release: Annotated[float, "m"] = 0.08
 
 
 @dataclass(frozen=True)

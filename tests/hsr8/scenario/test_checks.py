@@ -99,7 +99,7 @@ def test_contradicting_keys_are_reported_with_their_line(text, expected):
     ("name", "override", "expected"),
     [
         ("walk", "command.vz=0.1", "allowed: vx, vy, wz"),
-        ("walk", "command.vx=3", "allowed: ≥ -1 and ≤ 1"),
+        ("walk", "command.vx=6", "allowed: ≥ -5 and ≤ 5"),
         ("walk", "command.footstep={forward=0.05, lift=1}", "allowed: single_support"),
         ("walk", "command.random.vx=[0.3, 0.1]", "the first bound must not be above the second"),
         ("walk", "command.stretch=[]", "command: is missing; expected vx"),
