@@ -1,0 +1,89 @@
+"""Posture of the joints that neither walk nor look: from a description and its SRDF file."""
+
+from collections.abc import Collection
+from math import isfinite
+from pathlib import Path
+from xml.etree import ElementTree
+
+from hsr8.errors import ModelError
+from hsr8.robots.description import RobotDescription
+from hsr8.suggestion import suggestion
+
+LIMIT_MARGIN = 0.02  # distance of a clipped angle from its limit, by the range [1]
+
+
+def stated_posture(description: RobotDescription, folder: Path) -> dict[str, float]:
+    """Angles of the posture, those of the SRDF file completed by the key ``posture`` [rad].
+
+    Args:
+        description: of the robot.
+        folder: of the description file, to which the SRDF file is relative.
+
+    Raises:
+        ModelError: the SRDF file cannot be read, or has no such group state.
+    """
+    if description.srdf is None:
+        return dict(description.posture)
+    file = folder / description.srdf
+    try:
+        robot = ElementTree.fromstring(file.read_bytes())
+    except (OSError, ElementTree.ParseError) as error:
+        raise ModelError(f"{file}: cannot be read: {error}; expected an SRDF file") from error
+    states = {state.get("name", ""): state for state in robot.iter("group_state")}
+    if description.state not in states:
+        raise ModelError(
+            f"{file}: no group state '{description.state}'"
+            f"{suggestion(str(description.state), list(states))}; the file has: "
+            f"{', '.join(states) or 'none'}"
+        )
+    angles = {}
+    for joint in states[str(description.state)].iter("joint"):
+        try:
+            values = [float(word) for word in joint.get("value", "").split()]
+        except ValueError:
+            values = []
+        if not values or not all(isfinite(value) for value in values):
+            raise ModelError(
+                f"{file}: joint '{joint.get('name')}' in the group state '{description.state}': "
+                f"value, got '{joint.get('value')}'; expected an angle [rad]"
+            )
+        if len(values) == 1:
+            angles[joint.get("name", "")] = values[0]
+    return angles | description.posture
+
+
+def clip_to_range(angle: float, lower: float, upper: float) -> float:
+    """Return an angle that is inside its range; one outside moves in by 2 % of the range [rad]."""
+    if lower <= angle <= upper:
+        return angle
+    margin = LIMIT_MARGIN * (upper - lower)
+    return min(max(angle, lower + margin), upper - margin)
+
+
+def check_joint_names(description: RobotDescription, names: Collection[str], file: Path) -> None:
+    """Check that every joint of a description is one of the model.
+
+    Args:
+        description: of the robot.
+        names: joints of the model.
+        file: the model, for the message.
+
+    Raises:
+        ModelError: a key names a joint that the model lacks.
+    """
+    keys = {
+        "head": description.head or (),
+        "shoulders": description.shoulders or (),
+        "zero": description.zero,
+        "posture": description.posture,
+        "effort": description.effort,
+        "speed": description.speed,
+        "rigid": description.rigid,
+    }
+    for key, joints in keys.items():
+        for joint in joints:
+            if joint not in names:
+                raise ModelError(
+                    f"{file}: {key}: no joint '{joint}'{suggestion(joint, list(names))}; expected "
+                    "a joint of the model"
+                )
