@@ -8,7 +8,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from hsr8.robots.description import RobotDescription
+from hsr8.errors import ModelError
+from hsr8.robots.description import CameraMount, RobotDescription
 from hsr8.robots.mesh_points import package_folders
 from hsr8.robots.posture import check_joint_names, clip_to_range, stated_posture
 from hsr8.robots.urdf_base import find_base
@@ -18,6 +19,7 @@ from hsr8.robots.urdf_joints import MAX_EFFORT, MAX_SPEED, Joints, joint_range, 
 from hsr8.robots.urdf_model import ModelBuilder
 from hsr8.robots.urdf_shapes import GeomBuilder
 from hsr8.robots.urdf_soles import Sole, find_soles
+from hsr8.suggestion import suggestion
 
 Array = NDArray[np.float64]
 
@@ -30,24 +32,19 @@ class Converted:
     the child link of its joint.
 
     Attributes:
-        spec: the model; the base stands on z = 0 at zero angles.
-        base: body with the free joint.
+        spec: the model; the base stands on z = 0 at the angles `zero`.
+        description: of the robot, in terms of the model: its feet, base and camera are bodies,
+            posture, effort and speed are complete, and its soles are those of the model.
         feet: bodies of the left and the right foot.
         soles: left and right sole, relative to the origins of the feet in the directions of the
             base at the angles `zero`.
-        posture: angles of the joints other than those of the legs, where not zero [rad].
-        effort: maximum torque of each joint that states one [N m].
-        speed: maximum speed of each joint that states one [rad/s].
         notes: one line per derived fact.
     """
 
     spec: mujoco.MjSpec
-    base: str
+    description: RobotDescription
     feet: tuple[str, str]
     soles: tuple[Sole, Sole]
-    posture: dict[str, float]
-    effort: dict[str, float]
-    speed: dict[str, float]
     notes: tuple[str, ...]
 
 
@@ -63,6 +60,10 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
         ModelError: the robot cannot be converted; the message has the element, the reason and the
             remedy.
     """
+    if description.servo == "own":
+        raise ModelError(
+            f"{file}: servo, got 'own', but a URDF file has no servos; expected 'rule', the default"
+        )
     urdf = read_urdf(file)
     moving = [j.name for j in urdf.joints.values() if j.type != "fixed"]
     check_joint_names(description, moving, file)
@@ -80,15 +81,27 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
     compare_with_file(model, file, base.link, base.rotation, joints.tree.held)
     left, right = (joints.tree.carrier(foot) for foot in description.feet)
     poses = joints.tree.poses(description.zero)
-    origins = [-(base.root_pose @ poses[foot])[:3, 3] for foot in (left, right)]
+    positions = {link: (base.root_pose @ pose)[:3, 3] for link, pose in poses.items()}
+    adapted = description.model_copy(
+        update={
+            "feet": (left, right),
+            "base": base.link,
+            "sole": None,
+            "zero": {name: v for name, v in description.zero.items() if name in joints.names},
+            "posture": posture,
+            "srdf": None,
+            "state": None,
+            "camera": _camera(joints, description, positions),
+            "effort": effort,
+            "speed": speed,
+            "rigid": (),
+        }
+    )
     return Converted(
         spec=spec,
-        base=base.link,
+        description=adapted,
         feet=(left, right),
-        soles=(soles[0].shifted(origins[0]), soles[1].shifted(origins[1])),
-        posture=posture,
-        effort=effort,
-        speed=speed,
+        soles=(soles[0].shifted(-positions[left]), soles[1].shifted(-positions[right])),
         notes=(
             *joints.notes,
             *base.notes,
@@ -101,14 +114,34 @@ def convert(file: Path, description: RobotDescription, folder: Path) -> Converte
     )
 
 
+def _camera(
+    joints: Joints, description: RobotDescription, positions: Mapping[str, Array]
+) -> CameraMount | None:
+    """Mount of the camera on a body of the model, where the description names a link."""
+    mount, tree = description.camera, joints.tree
+    if mount is None:
+        return None
+    link = mount if isinstance(mount, str) else mount.body
+    if isinstance(mount, str) or link not in positions:
+        kind = "camera" if isinstance(mount, str) else "link"
+        raise ModelError(
+            f"{tree.urdf.file}: camera: no {kind} '{link}'"
+            f"{suggestion(link, list(positions))}; expected a link of the URDF file as "
+            "{body, position, tilt_deg}"
+        )
+    carrier = tree.carrier(link)
+    at = positions[link] - positions[carrier] + mount.position
+    x, y, z = at.tolist()
+    return mount.model_copy(update={"body": carrier, "position": (x, y, z)})
+
+
 def _posture(
     joints: Joints, stated_angles: Mapping[str, float]
 ) -> tuple[dict[str, float], list[str]]:
     """Nonzero angles of the moving joints outside the legs, and notes on clipped ones."""
     angles, notes = {}, []
-    legs = {*joints.legs[0], *joints.legs[1]}
-    for joint in joints.tree.urdf.joints.values():
-        if not joints.tree.moves(joint) or joint.name in legs:
+    for joint in joints.moving:
+        if joint.name in joints.legs[0] or joint.name in joints.legs[1]:
             continue
         lower, upper = joint_range(joint)
         desired = stated_angles.get(joint.name, 0.0)
@@ -127,15 +160,13 @@ def _limits(
     joints: Joints, description: RobotDescription
 ) -> tuple[dict[str, float], dict[str, float], list[str]]:
     """Maximum torque and speed of the joints that state them, and a note on the others."""
-    moving = [j for j in joints.tree.urdf.joints.values() if joints.tree.moves(j)]
-    effort = {j.name: j.effort for j in moving if stated(j.effort, MAX_EFFORT)}
-    speed = {j.name: j.speed for j in moving if stated(j.speed, MAX_SPEED)}
-    names = {joint.name for joint in moving}
-    effort |= {name: value for name, value in description.effort.items() if name in names}
-    speed |= {name: value for name, value in description.speed.items() if name in names}
+    effort = {j.name: j.effort for j in joints.moving if stated(j.effort, MAX_EFFORT)}
+    speed = {j.name: j.speed for j in joints.moving if stated(j.speed, MAX_SPEED)}
+    effort |= {name: value for name, value in description.effort.items() if name in joints.names}
+    speed |= {name: value for name, value in description.speed.items() if name in joints.names}
     notes = []
     for key, values in (("effort", effort), ("speed", speed)):
-        silent = [j.name for j in moving if j.name not in values]
+        silent = [j.name for j in joints.moving if j.name not in values]
         if silent:
             more = " ..." if len(silent) > 6 else ""
             notes.append(

@@ -31,6 +31,16 @@ class Joints:
     legs: tuple[Leg, Leg]
     notes: tuple[str, ...]
 
+    @property
+    def moving(self) -> list[Joint]:
+        """Joints that the model has, in the order of the file."""
+        return [joint for joint in self.tree.urdf.joints.values() if self.tree.moves(joint)]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the moving joints."""
+        return [joint.name for joint in self.moving]
+
 
 def stated(value: float, limit: float) -> bool:
     """Return whether a maximum effort or speed is a real limit, not a placeholder."""
